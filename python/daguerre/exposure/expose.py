@@ -1,8 +1,8 @@
 """From a frame to a raw picture: light by channel, electrons, numbers.
 
-The frame is taken for the mean of the light, as a render converges to it; photon noise is drawn
-here. A pixel of the frame is one photosite of the sensor, whatever the frame's resolution: noise is
-what the sensor shows at 100 %.
+The frame counts as the mean of the light, to which a render converges; photon noise is added here.
+A pixel of the frame is one photosite of the sensor, whatever the frame's resolution, so noise looks
+as in a crop at 100 %.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from daguerre.sensors.sensor import Sensor
 from .lux_seconds import frame_iso, luminance_exposure
 
 FloatArray = NDArray[np.float64]
-#: Share of pixels with more noise of the render than of photons, above which a note says so.
+#: Share of pixels with more render noise than photon noise above which a note says so.
 NOISY_SHARE = 0.01
 _STRIPE = 256  # rows
 
@@ -39,9 +39,9 @@ class Light:
 
     Attributes:
         planes: Shape (H, W, P).
-        electrons: Electrons that a plane's 1 makes in each channel, shape (C, P).
+        electrons: Electrons in each channel for a value of 1 in each plane, shape (C, P).
         source: Kind of the planes: "channels", "bands" or "xyz".
-        lux_s: Luminance exposure of a value of 1.
+        lux_s: Luminance exposure of a value of 1, lux s.
     """
 
     planes: NDArray[np.float32]
@@ -100,7 +100,7 @@ def expose(
 
 
 def chosen_sensor(frame: Frame, sensor: str | Sensor | None) -> Sensor:
-    """The one that is named, or the frame's, or the ideal one."""
+    """Chooses the sensor: the given one, else the frame's, else the ideal one."""
     if sensor is not None:
         return load(sensor)
     name = frame.metadata.get("sensor") or "ideal"
@@ -111,7 +111,7 @@ def chosen_sensor(frame: Frame, sensor: str | Sensor | None) -> Sensor:
 
 
 def chosen_iso(frame: Frame, sensor: Sensor, iso: float | None, notes: list[str]) -> float:
-    """The one that is asked for, or the camera's where the sensor has it, or the base ISO."""
+    """Chooses the ISO: the given one, else the camera's if the sensor has it, else the base ISO."""
     if iso is not None:
         sensor.check_iso(iso)
         return float(iso)
@@ -125,7 +125,7 @@ def chosen_iso(frame: Frame, sensor: Sensor, iso: float | None, notes: list[str]
 
 
 def chosen_ev(frame: Frame, ev: float | None) -> float:
-    """The compensation that is asked for, or the camera's."""
+    """Chooses the exposure compensation: the given one, else the camera's."""
     given = frame.metadata.get("exposure_compensation") or 0.0 if ev is None else ev
     return number(given, "ev", -64, 64)
 
@@ -133,7 +133,7 @@ def chosen_ev(frame: Frame, ev: float | None) -> float:
 def dark_electrons(
     sensor: Sensor, seconds: float, temperature: float | None
 ) -> tuple[float, float]:
-    """Means that heat makes in a photosite, and more in a hot one."""
+    """Mean electrons of the dark current per photosite, and the excess of hot ones."""
     if temperature is not None:
         number(temperature, "temperature", -273.15, 200)
     factor = sensor.dark_current.factor(temperature) * seconds
@@ -141,7 +141,7 @@ def dark_electrons(
 
 
 def light_of(frame: Frame, sensor: Sensor, ev: float = 0.0) -> Light:
-    """The best planes that a frame has for a sensor: its channels, else bands, else XYZ."""
+    """Chooses the best planes of a frame for a sensor: its channels, else bands, else XYZ."""
     lux_s = luminance_exposure(frame.metadata) * 2.0**ev
     electrons = sensor.electrons_per_lux_s()[:, None] * lux_s
     seen = seen_of(frame, sensor)
@@ -206,7 +206,7 @@ def _pitch_note(frame: Frame, sensor: Sensor) -> list[str]:
 
 
 def _noise_note(frame: Frame, sensor: Sensor, light: Light) -> list[str]:
-    """How often the render's own noise is more than that of its photons."""
+    """Warns if the render's own noise exceeds photon noise in many pixels."""
     share = noisy_share(frame, sensor, light)
     if share <= NOISY_SHARE:
         return []
@@ -217,10 +217,10 @@ def _noise_note(frame: Frame, sensor: Sensor, light: Light) -> list[str]:
 
 
 def noisy_share(frame: Frame, sensor: Sensor, light: Light) -> float:
-    """Share of the pixels whose variance over samples exceeds that of their photons.
+    """Share of the pixels whose variance over samples exceeds that of photon noise.
 
     It compares luminance, in the strongest channel. Red, green and blue of a sample vary together
-    (a path is bright or dark), so their deviations add.
+    (a path is bright or dark), so their standard deviations add.
     """
     if frame.variance is None:
         return 0.0
@@ -272,10 +272,10 @@ def exposure_truth(
 
 
 def check_can_expose(sensor: str | Sensor, iso: float | None) -> None:
-    """Before a long render: whether the sensor is there and has this ISO.
+    """Checks, before a long render, that the sensor exists and has this ISO.
 
     Raises:
-        DaguerreError: It is not, or has not.
+        DaguerreError: No such sensor, or an ISO beyond its range.
     """
     body = load(sensor)
     if iso is not None:

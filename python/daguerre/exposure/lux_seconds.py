@@ -1,13 +1,13 @@
-"""Exposure in lux seconds: what a value of 1 in a frame stands for on the film.
+"""Exposure in lux seconds of a value of 1 in a frame.
 
-A frame holds H / H0. A white world (D65) of 1 cd/m2, which is 1 on the axis, brings the film an
-illuminance of h0 lux; so a value of 1 is an exposure of h0 t lux seconds, t being how long a point
-of the film is exposed. A lens that obeys the sine condition has h0 = pi sin^2(theta') =
+A frame holds H / H0. A white world (D65) of 1 cd/m2, which is 1 on the axis, gives the film an
+illuminance of h0 lux. So a value of 1 is an exposure of h0 t lux seconds, with t the exposure time
+of a point of the film. A lens that obeys the sine condition has h0 = pi sin^2(theta') =
 (pi / 4) / N^2, with N the working f-number (Ray, Applied Photographic Optics, 3rd ed., ch. 13).
 
-Blur and light are split by ``exposure_time`` and ``exposure_f_stop``: those two then are what the
-photograph was exposed with, in ``expTime`` and ``aperture`` of the metadata; the blur's own stop
-and shutter stay among the facts of the camera (``metadata["camera"]``).
+``exposure_time`` and ``exposure_f_stop`` separate brightness from blur. ``expTime`` and
+``aperture`` of the metadata then are the exposure of the photograph; the stop and shutter of the
+blur are in ``metadata["camera"]``.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from daguerre.errors import InputError
 
 
 def pinhole_note(metadata: Mapping[str, Any]) -> str | None:
-    """For frames that are exposed without a stop of their own; None: they have one."""
+    """Note on frames of a pinhole, which has no f-stop; None: the frame has one."""
     if metadata.get("aperture") is not None or metadata.get("h0") is None:
         return None
     return (
@@ -36,9 +36,9 @@ def luminance_exposure(metadata: Mapping[str, Any]) -> float:
     """Exposure of a value of 1 on the film, lux s.
 
     Args:
-        metadata: Metadata of a frame. Without ``luminance_exposure`` it is ``expTime`` times
-            ``h0``, and without that of a lens with ``tStop`` or ``aperture``: those of other
-            programs.
+        metadata: Metadata of a frame. Without ``luminance_exposure`` the exposure is ``expTime``
+            times ``h0``; without ``h0``, as in files of other programs, h0 follows from ``tStop``
+            or ``aperture``.
 
     Raises:
         InputError: A field is missing, negative, zero or no number; the message names it.
@@ -64,7 +64,7 @@ def luminance_exposure(metadata: Mapping[str, Any]) -> float:
 
 
 def frame_iso(metadata: Mapping[str, Any]) -> float | None:
-    """The ISO that a frame was set to; None: it says nothing.
+    """ISO that the camera of a frame was set to; None: unknown.
 
     Raises:
         InputError: ``isoSpeed`` is negative, zero or no number.
@@ -88,7 +88,7 @@ def _positive(metadata: Mapping[str, Any], name: str, what: str) -> float | None
 
 
 def with_exposure(metadata: Mapping[str, Any], factor: float) -> dict[str, Any]:
-    """The facts of the same frame exposed ``factor`` times as long."""
+    """Metadata of the same frame exposed ``factor`` times as long."""
     light = luminance_exposure(metadata)
     time = metadata.get("expTime")
     changed = {"luminance_exposure": light * factor}

@@ -1,10 +1,10 @@
-"""Metering: how bright a scene is to a camera, and the ISO that its time and stop need.
+"""Metering: the luminance that a camera measures, and the ISO that its time and stop need.
 
-A meter takes the mean of some part of the picture for middle grey. Its luminance L, cd/m2, is given
-as EV100 = log2(100 L / K), with K = 12.5 cd s/m2 as most cameras are calibrated (ISO 2720). The
-ISO is found from the exposure on the film itself, through lens and filters as in a camera: 10 / ISO
-lux s become middle grey (ISO 12232), so what was metered develops to 0.18. For an ideal lens both
-agree within 2 %: (pi / 4) K = 9.8.
+A meter takes the mean of some part of the picture for middle grey. Its luminance L, cd/m2, gives
+EV100 = log2(100 L / K), with K = 12.5 cd s/m2, the calibration of most cameras (ISO 2720). The ISO
+follows from the exposure on the film itself, through lens and filters as in a camera: 10 / ISO lux
+s become middle grey (ISO 12232), so the metered part develops to 0.18. For an ideal lens both agree
+within 2 %: (pi / 4) K = 9.8.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ GREY_LUX_S = 10.0
 CENTER_SHARE, CENTER_DIAMETER = 0.75, 0.5
 #: Spot: a circle of this share of the frame's area.
 SPOT_AREA = 0.025
-#: Matrix: zones across and down; those at the place in focus count so many times.
+#: Matrix: zones across and down; weight of those at the point in focus.
 ZONES, FOCUS_WEIGHT = (9, 7), 3.0
 #: A zone this many times as bright as middle grey is white; it may cost the rest one stop at most.
 WHITE_OVER_GREY, MOST_PROTECTION = 1 / 0.18, 2.0
-#: Zones count as no darker than this share of the brightest: a night's sky is no subject.
+#: Zones count at least as this share of the brightest, so that a night sky does not weigh in.
 DARKEST_ZONE = 2.0**-10
 _STRIPE = 256  # rows
 
@@ -49,9 +49,9 @@ class Metered:
     """Reading of a light meter.
 
     Attributes:
-        mode: centre, spot or matrix.
+        mode: Metering mode: centre, spot or matrix.
         luminance: Luminance taken for middle grey, cd/m2.
-        iso: ISO that makes it middle grey with the frame's time and stop.
+        iso: ISO that makes that luminance middle grey with the frame's time and stop.
     """
 
     mode: str
@@ -71,10 +71,10 @@ class Metered:
 
 @guarded
 def check_mode(mode: str, where: str = "meter") -> str:
-    """The name of a way to meter; ``center`` is one, too.
+    """Checks the name of a metering mode; ``center`` is valid, too.
 
     Raises:
-        UsageError: There is no such way.
+        UsageError: No such mode.
     """
     known = "centre" if mode == "center" else mode
     if known not in MODES:
@@ -90,14 +90,14 @@ def meter(frame: Frame, mode: str = "centre", *, at: tuple[float, float] | None 
 
     Args:
         frame: With exposure metadata.
-        mode: ``centre``: mean luminance, three quarters of it from the middle; ``spot``: of a
-            fortieth of the area about the place in focus; ``matrix``: zones, the place in focus
-            and highlights first.
-        at: The place in focus, px of the whole frame; None: its middle.
+        mode: ``centre``: mean luminance, three quarters of it from the middle; ``spot``: mean of a
+            fortieth of the area, about the point in focus; ``matrix``: zones, with most weight on
+            the point in focus and on highlights.
+        at: Point in focus, px of the whole frame; None: its middle.
 
     Raises:
-        UsageError: There is no such way to meter, or that place is not in the picture.
-        InputError: Nothing there is bright, or the frame's facts do not tell its exposure.
+        UsageError: No such mode, or the point is outside of the picture.
+        InputError: The metered part is black, or the frame lacks metadata of its exposure.
     """
     mode = check_mode(mode)
     frame = frame.without_overscan()
@@ -122,13 +122,13 @@ def meter(frame: Frame, mode: str = "centre", *, at: tuple[float, float] | None 
 
 @dataclass(frozen=True)
 class _Place:
-    """Where the frame's pixels are in the whole picture, px.
+    """Position of the frame's pixels in the whole picture, px.
 
     Attributes:
         width, height: Size of the whole picture.
         left, top: Place of the frame within it.
         columns: Width of the frame.
-        focus: The place in focus.
+        focus: Point in focus.
     """
 
     width: int
@@ -164,13 +164,13 @@ def _center_weight(place: _Place, rows: slice) -> FloatArray:
 
 
 def _spot_weight(place: _Place, rows: slice) -> FloatArray:
-    # A pixel at least, of however small a picture.
+    # At least one pixel, even in a tiny picture.
     radius2 = max(SPOT_AREA * place.width * place.height / math.pi, 0.51)
     return np.asarray(place.squared_distance(rows, place.focus) < radius2, np.float64)
 
 
 def _luminances(frame: Frame) -> Iterator[tuple[slice, FloatArray]]:
-    """Stripes of rows and their luminance, cd/m2; what is no number or negative is black."""
+    """Strips of rows and their luminance, cd/m2; NaN and negative values count as black."""
     luma = luminance_of_rgb()
     for begin in range(0, frame.height, _STRIPE):
         rows = slice(begin, min(begin + _STRIPE, frame.height))
@@ -180,7 +180,7 @@ def _luminances(frame: Frame) -> Iterator[tuple[slice, FloatArray]]:
 
 
 def _matrix(frame: Frame, place: _Place) -> float:
-    """Mean of the zones in stops; a white zone lifts it, by a stop at most."""
+    """Mean of the zones in stops; white zones raise it, by one stop at most."""
     across, down = ZONES
     sums, counts = np.zeros(across * down), np.zeros(across * down)
     columns = ((place.left + np.arange(place.columns)) * across) // place.width
@@ -201,7 +201,7 @@ def _matrix(frame: Frame, place: _Place) -> float:
 
 
 def _zone_weights(place: _Place) -> FloatArray:
-    """More where the picture is in focus, less with distance from there; one far away."""
+    """Weights of zones: highest at the point in focus, falling with distance to 1."""
     across, down = ZONES
     x = (np.arange(across) + 0.5) / across * place.width - place.focus[0]
     y = (np.arange(down) + 0.5) / down * place.height - place.focus[1]

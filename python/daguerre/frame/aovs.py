@@ -1,7 +1,7 @@
-"""Auxiliary channels of a frame: one row each, with names, unit, and what produces it.
+"""Auxiliary channels of a frame: a table of names, units and producers.
 
-A row here and the core's plane of that name are all that a new channel of film or ground truth
-needs: the flag, the film, ground truth and pass files read this table.
+A new channel needs a row here and a plane of that name in the core. The flag, the film, ground
+truth and pass files read this table.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ class Source(Enum):
     ALWAYS = "every picture"
 
 
-#: Producers that read scene and camera alone, whatever the samples.
+#: Producers that depend on scene and camera only, not on the samples.
 EXACT = (Source.TRUTH, Source.MEANS, Source.MOTION)
 
 
 @dataclass(frozen=True)
 class Aov:
-    """Channels that are asked for together.
+    """A group of channels that one name selects.
 
     Attributes:
         name: Name for ``--aov``, and of the channels in files.
-        parts: Letters of the channels behind its name; empty: the name is the channel.
-        unit: Such as m or px; empty: none.
-        sources: Where it comes from; ground truth replaces the film's, where both have it.
+        parts: Letters appended to the name for each channel; empty: the name is the channel.
+        unit: Unit such as m or px; empty: none.
+        sources: Producers; ground truth replaces the film's values where both exist.
         aliases: Other names for ``--aov``.
-        frames: For motion: how many frames later it looks.
+        frames: For motion: number of frames to the other picture.
     """
 
     name: str
@@ -77,25 +77,25 @@ TABLE = (
 
 
 def made_by(*sources: Source) -> Iterator[Aov]:
-    """The rows that any of these produces."""
+    """Rows that any of these sources produces."""
     return (row for row in TABLE if any(source in row.sources for source in sources))
 
 
 def channels_of(*sources: Source) -> tuple[str, ...]:
-    """Names in files of what any of these produces."""
+    """Names in files of the channels that any of these sources produces."""
     return tuple(channel for row in made_by(*sources) for channel in row.channels)
 
 
 def names_of(*sources: Source) -> tuple[str, ...]:
-    """Groups that any of these produces."""
+    """Names of the groups that any of these sources produces."""
     return tuple(row.name for row in made_by(*sources))
 
 
-#: Every row, by each name that it may be asked for.
+#: Rows by each of their names and aliases.
 BY_NAME = {name: row for row in TABLE for name in (row.name, *row.aliases)}
 #: Names in files: a film's channels, those of ground truth at one moment, and those of means.
 FILM_CHANNELS = channels_of(Source.FILM, Source.GUIDES)
 TRUTH_CHANNELS = channels_of(Source.TRUTH)
 MEANS_CHANNELS = channels_of(Source.TRUTH, Source.MEANS)
-#: Groups that only ground truth has, so asking for one asks for it.
+#: Groups that only ground truth has: asking for one turns ground truth on.
 EXACT_ONLY = tuple(row.name for row in made_by(*EXACT) if Source.FILM not in row.sources)

@@ -1,6 +1,6 @@
-"""Cryptomatte: shares of each pixel by the names of objects, for compositing programs.
+"""Cryptomatte: coverage of each pixel by the names of objects, for compositing programs.
 
-A name is known by its hash, a matte by pairs of hash and coverage, ranked in each pixel. Source:
+A hash stands for a name. Each pixel has pairs of hash and coverage, ranked by coverage. Source:
 Friedman and Jones 2015, Fully automatic ID mattes with support for motion blur and transparency;
 names of channels and attributes: Psyop, Cryptomatte specification 1.2.0.
 """
@@ -20,7 +20,7 @@ from daguerre.checks import short
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files.value import Value
 
-#: Layers of a file by the kind of names.
+#: Layers of a file by kind of name.
 LAYERS = {"object": "CryptoObject", "material": "CryptoMaterial", "asset": "CryptoAsset"}
 HASH, CONVERSION = "MurmurHash3_32", "uint32_to_float32"
 MAX_RANKS = 64
@@ -30,9 +30,9 @@ _EXPONENT = 23
 
 
 def hash_of(name: str) -> int:
-    """Hash of a name: one whose bits are neither a denormal number nor NaN or infinity, as float.
+    """Hash of a name; read as a float it is neither denormal, NaN nor infinity.
 
-    Programs keep it in a float channel, and may lose such numbers.
+    Programs keep it in a float channel, and may change such numbers.
     """
     bits = int(mmh3.hash(name.encode("utf-8", "surrogateescape"), signed=False))
     return bits ^ (1 << _EXPONENT) if bits >> _EXPONENT & 255 in (0, 255) else bits
@@ -43,9 +43,9 @@ class Cryptomatte(Value):
     """Mattes of all names of one kind.
 
     Attributes:
-        ids: Hashes of names, those that cover most of the pixel first; 0: nothing; uint32, shape
+        ids: Hashes of names, by falling coverage, uint32, shape (H, W, R); 0: none.
+        coverage: Share of the pixel that each name covers, through lens, shutter and filter, shape
             (H, W, R).
-        coverage: Share of the pixel of each, through lens, shutter and filter, shape (H, W, R).
         manifest: Hash of each name.
     """
 
@@ -54,10 +54,10 @@ class Cryptomatte(Value):
     manifest: dict[str, int] = field(default_factory=dict)
 
     def mask(self, *names: str) -> NDArray[np.float32]:
-        """Share of each pixel that things of these names cover together, shape (H, W).
+        """Coverage of each pixel by objects of these names together, 0 to 1, shape (H, W).
 
         Raises:
-            UsageError: There is no such name; the message suggests the nearest.
+            UsageError: No such name; the message suggests the nearest.
         """
         found = np.zeros(self.ids.shape[:2], np.float32)
         for name in dict.fromkeys(names):
@@ -72,14 +72,14 @@ class Cryptomatte(Value):
 
 
 def check_layers(value: Any, where: str) -> tuple[str, ...]:
-    """Layers that are asked for, in the order of ``LAYERS``.
+    """Returns the chosen layers, in the order of ``LAYERS``.
 
     Args:
-        value: Names, as a list or with commas between them; none or "": no layers.
+        value: Names, as a list or separated by commas; none or "": no layers.
         where: Name of the parameter, for the message.
 
     Raises:
-        UsageError: There is no such layer.
+        UsageError: No such layer.
     """
     names = value.split(",") if isinstance(value, str) else value
     if not isinstance(names, Iterable) or not all(isinstance(name, str) for name in names):
@@ -133,12 +133,12 @@ def taken(
     """Takes the mattes of Daguerre's layers out of the channels of a file.
 
     Args:
-        channels: Planes by name; those of mattes are removed.
+        channels: Planes by name, from which those of mattes are removed.
         facts: Attributes of the file.
         where: Name of the file, for messages.
 
     Raises:
-        InputError: A manifest is no list of names and hashes.
+        InputError: A manifest is not a list of names and hashes.
     """
     found: dict[str, Cryptomatte] = {}
     for kind, layer in LAYERS.items():

@@ -33,34 +33,37 @@ _STRIPE = 64  # rows
 @guarded(init=True)
 @dataclass(eq=False)
 class Frame(Value):
-    """A rendered picture, or one in the making.
+    """A rendered picture, or the state of one that is being rendered.
 
     Attributes:
-        rgb: Scene-linear Rec.709, shape (H, W, 3), relative exposure H / H0: a white world is 1.
+        rgb: Scene-linear Rec.709, shape (H, W, 3), relative exposure H / H0: a white world of
+            1 cd/m2 is 1.
         xyz: CIE 1931 XYZ of the same light, shape (H, W, 3).
-        alpha: Share of each pixel that objects cover, through lens, shutter and filter, by which
-            ``rgb`` is premultiplied, shape (H, W); default: 1.
-        catcher: Light that objects add to catchers, less what they take, if the scene has any,
-            shape (H, W, 3): plus ``rgb`` and (1 - ``alpha``) of a plate it is the picture.
-        catcher_ratio: The same as a factor of that part of the plate.
+        alpha: Share of each pixel that objects cover, through lens, shutter and filter, shape
+            (H, W); default: 1. ``rgb`` is premultiplied by it.
+        catcher: Light that objects add to catchers minus light that they take, shape (H, W, 3), if
+            the scene has catchers. The picture over a plate P is ``rgb`` + (1 - ``alpha``) P +
+            ``catcher``.
+        catcher_ratio: The same as a factor: ``rgb`` + (1 - ``alpha``) P ``catcher_ratio``.
         catcher_channels: ``catcher`` in the channels of the sensor, shape (H, W, C).
-        catcher_ratio_channels: ``catcher_ratio`` likewise.
-        cryptomatte: Share of each pixel by name, of objects, materials and assets, if asked for:
+        catcher_ratio_channels: ``catcher_ratio`` in the channels of the sensor.
+        cryptomatte: Mattes by the names of objects, materials and assets, if requested:
             ``frame.cryptomatte["object"].mask("ball")``.
         variance: Variance of the mean of R, G, B, shape (H, W, 3).
         flare: Light that ghosts added to ``rgb``, shape (H, W, 3), if they were drawn.
-        splats: Light that light paths brought to ``rgb``, shape (H, W, 3), beside ``aovs``.
-        halves: Pictures of the samples with even and with odd indices, each in two parts that add
-            up: by the camera, and by light paths; shape (H, W, 2, 2, 3), if they were kept.
+        splats: Light that light paths added to ``rgb``, shape (H, W, 3), with ``aovs``.
+        halves: Pictures of the samples of even and of odd index, each in two parts that add up:
+            by camera paths, and by light paths; shape (H, W, 2, 2, 3), if requested.
         samples: Samples per pixel, shape (H, W).
         aovs: Channels by name: ``depth.Z`` and ``P.X`` in m, ``N.X``, ``albedo.R``, ``object_id``;
             with ground truth also ``distance.Z``, ``material_id``, ``motion.U`` (px).
         metadata: Facts of camera and render; see ``daguerre.io.exr.write``.
-        channels: Channels of the sensor named in the metadata, shape (H, W, C), if one was named:
-            D65 of luminance 1 is 1 in each; their names are ``metadata["sensor_channels"]``.
-        bands: Mean radiance in bands of equal width, 380 to 780 nm, shape (H, W, N), if kept: D65
-            of luminance 1 is about 1 in each.
-        bad_samples: Number of samples that were NaN or Inf, and the first of them, (x, y, sample).
+        channels: Channels of the camera's sensor, shape (H, W, C), if it has one: D65 of luminance
+            1 is 1 in each; ``metadata["sensor_channels"]`` has their names.
+        bands: Mean radiance in wavelength bands of equal width, 380 to 780 nm, shape (H, W, N), if
+            requested: D65 of luminance 1 is about 1 in each.
+        bad_samples: Number of samples that were NaN or Inf, and the first of them as
+            (x, y, sample).
     """
 
     rgb: NDArray[np.float32]
@@ -120,10 +123,10 @@ class Frame(Value):
         return np.stack([self.aovs[n] for n in names], axis=2)
 
     def without_overscan(self) -> Frame:
-        """Crops the overscan: the pixels of the picture alone, which a sensor records.
+        """Crops the frame to the picture itself, which is the part that a sensor records.
 
         Raises:
-            UsageError: The frame is a crop that has none of them.
+            UsageError: The frame is a crop that lies outside of the picture.
         """
         width, height = self.metadata.get("resolution") or (self.width, self.height)
         left, top = (self.metadata.get("crop") or (0, 0))[:2]
@@ -153,11 +156,10 @@ class Frame(Value):
         """Encodes the picture for a screen, shape (H, W, 3): linear 1.0 is the screen's white.
 
         Args:
-            tone: "srgb" is the plain sRGB curve, clipped at 1; "soft" rolls the highlights off
-                above 0.8, so that small bright lamps keep some shape, and lets them get whiter
-                the brighter they are. Colours that sRGB lacks are brought in toward the grey of
-                the same luminance. Neither changes ``rgb``. ISO and exposure compensation belong
-                to development, not to this.
+            tone: "srgb" is the plain sRGB curve, clipped at 1. "soft" rolls off the highlights
+                above 0.8, so that small bright lamps keep some shape and get whiter the brighter
+                they are. Both move colours outside of sRGB toward the grey of the same luminance,
+                and leave ``rgb`` as it is. ISO and exposure compensation belong to development.
         """
         shown = np.empty(self.rgb.shape, np.uint8)
         for rows, encoded in self._stripes(tone):
@@ -165,14 +167,14 @@ class Frame(Value):
         return shown
 
     def encoded(self, tone: str) -> NDArray[np.float32]:
-        """Display values like ``display``, 0 to 1."""
+        """Encodes values like ``display``, 0 to 1."""
         shown = np.empty(self.rgb.shape, np.float32)
         for rows, encoded in self._stripes(tone):
             shown[rows] = encoded
         return shown
 
     def _stripes(self, tone: str) -> Iterator[tuple[slice, NDArray[np.float32]]]:
-        """Rows of the picture for a screen: little memory for what is in between."""
+        """Encodes the picture in strips of rows, which needs little memory."""
         if tone not in TONES:
             raise UsageError(f"frame: no tone {short(tone)}{suggest(tone, TONES)}")
         for row in range(0, self.height, _STRIPE):
@@ -182,14 +184,14 @@ class Frame(Value):
             yield rows, _srgb(_shoulder(linear) if tone == "soft" else linear)
 
     def save(self, path: str | os.PathLike[str], *, tone: str = "srgb") -> None:
-        """Writes the frame, whole or not at all; the suffix chooses the format.
+        """Writes the frame atomically; the suffix chooses the format.
 
         Args:
-            path: ``.exr`` keeps everything, linear, with all channels and camera attributes;
-                ``.png``, ``.jpg`` and ``.tif`` are pictures for the eye, with 1 as white. For a
-                photograph use ``expose`` and ``daguerre.development.develop``. They have no
-                overscan.
-            tone: Tone curve of pictures for the eye; see :meth:`display`.
+            path: ``.exr`` keeps everything, linear, with all channels and camera attributes.
+                ``.png``, ``.jpg`` and ``.tif`` are encoded for display, with 1 as white and
+                without overscan. For a photograph use ``expose`` and
+                ``daguerre.development.develop``.
+            tone: Tone curve of pictures for display; see :meth:`display`.
 
         Raises:
             UsageError: Unknown suffix.
@@ -207,7 +209,7 @@ class Frame(Value):
         white_balance: Any = None,
         temperature: float | None = None,
     ) -> Raw:
-        """Exposes a sensor to this light: a raw picture, with the noise of photons and sensor.
+        """Exposes a sensor to the frame: returns a raw picture with photon and sensor noise.
 
         A pixel of the frame is one photosite, whatever the frame's resolution.
 
@@ -216,14 +218,14 @@ class Frame(Value):
                 channels the frame holds, else "ideal".
             iso: ISO; default: the camera's, if the sensor has it, else the sensor's base ISO.
             seed: Seed of the shot's noise. The serial number seeds the sensor's fixed pattern.
-            ev: Exposure compensation: light times 2^ev; default: the camera's.
-            white_balance: White of the raw file's neutral, K or (x, y); default: the camera's,
-                else D65.
+            ev: Exposure compensation, EV: multiplies the light by 2^ev; default: the camera's.
+            white_balance: White balance that the raw file states as neutral, K or (x, y); default:
+                the camera's, else D65.
             temperature: Temperature of the sensor, deg C; default: that of its measurement.
 
         Raises:
-            DaguerreError: No such sensor, an ISO beyond it, or a frame without the facts of its
-                exposure; the message names the field.
+            DaguerreError: No such sensor, an ISO beyond its range, or a frame without the metadata
+                of its exposure; the message names the field.
         """
         from daguerre.exposure.expose import expose
 
@@ -243,11 +245,11 @@ class Frame(Value):
         iso: float | None = None,
         ev: float | None = None,
     ) -> dict[str, NDArray[np.float32]]:
-        """True exposure and saturation, without noise, for ``aovs``: references for photographs.
+        """Computes the true exposure and saturation, without noise, as channels for ``aovs``.
 
         Returns:
             ``exposure.Y``, luminance exposure in lux s; ``saturated.R`` and so on, 1 where the
-            light alone would saturate that channel's photosite; each of shape (H, W).
+            noiseless light saturates that channel's photosite; each of shape (H, W).
         """
         from daguerre.exposure.expose import exposure_truth
 
@@ -292,9 +294,9 @@ class Frame(Value):
 
 
 def check_format(path: str | os.PathLike[str], more: tuple[str, ...] = ()) -> str:
-    """The ending of an output, in lower case; ``more``: what else can be written there.
+    """Checks the suffix of an output and returns it in lower case; ``more``: further suffixes.
 
     Raises:
-        UsageError: Not one that can be written; the message lists those.
+        UsageError: No format has this suffix; the message lists those that do.
     """
     return formats.check_written(path, (*formats.written("frame"), *more))

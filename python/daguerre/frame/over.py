@@ -1,9 +1,9 @@
-"""Objects over a plate in linear light, with what catchers catch.
+"""Compositing of objects over a plate in linear light, with the layers of catchers.
 
-``catcher`` and ``catcher_ratio`` are those of :mod:`daguerre.frame.catcher`. Where the plate is
-what the set was modelled to be, all forms give the same picture. Where it is not, *auto* takes
-light away as a share of the plate, which knows the materials, and adds it as light, which a dark
-plate does not make less.
+``catcher`` and ``catcher_ratio`` are those of :mod:`daguerre.frame.catcher`. All forms give the
+same picture where the plate equals the modelled set. Elsewhere *auto* removes light as a share of
+the plate, which has the true materials, and adds light by difference, which does not depend on how
+dark the plate is.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ AUTO, RATIO, DIFFERENCE = FORMS = ("auto", "ratio", "difference")
 
 @dataclass(frozen=True)
 class Change:
-    """Change of a plate: ``factor`` times it, plus ``light``; shapes (H, W, C)."""
+    """Change of a plate: ``factor`` times the plate, plus ``light``; shapes (H, W, C)."""
 
     factor: Plane
     light: Plane
@@ -37,13 +37,13 @@ class Change:
 def change_of(
     light: Plane, alpha: Plane, catcher: Plane | None, ratio: Plane | None, form: str = AUTO
 ) -> Change:
-    """The change that objects bring to any plate.
+    """Computes the change that objects bring to any plate.
 
     Args:
         light: Light of the objects, premultiplied, shape (H, W, C).
-        alpha: Share that they cover, shape (H, W).
-        catcher: Difference that catchers caught, shape (H, W, C); None: there are none.
-        ratio: The same as a factor.
+        alpha: Coverage of the objects, shape (H, W).
+        catcher: Difference layer of the catchers, shape (H, W, C); None: there are no catchers.
+        ratio: Ratio layer of the catchers.
         form: ``auto``, ``ratio`` or ``difference``.
 
     Raises:
@@ -64,5 +64,5 @@ def change_of(
 
 
 def change_of_rgb(frame: Frame, form: str = AUTO) -> Change:
-    """The change in red, green and blue, relative exposure."""
+    """Computes the change in red, green and blue, relative exposure."""
     return change_of(frame.rgb, frame.alpha, frame.catcher, frame.catcher_ratio, form)

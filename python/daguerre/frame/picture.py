@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 @guarded
 @dataclass(eq=False)
 class Picture:
-    """A picture for the eye.
+    """A developed picture, encoded for display.
 
     Attributes:
-        pixels: Red, green and blue as files and screens have them, encoded with the curve of the
-            colour space, 0 to 1, float32, shape (H, W, 3).
+        pixels: Red, green and blue, encoded with the transfer curve of the colour space, 0 to 1,
+            float32, shape (H, W, 3).
         colour_space: ``srgb``, ``p3`` (Display P3) or ``rec2020``.
-        metadata: Facts of the shot, for EXIF.
+        metadata: Data of the shot, for EXIF.
     """
 
     pixels: NDArray[np.float32]
@@ -43,25 +43,25 @@ class Picture:
         return int(self.pixels.shape[0])
 
     def linear(self) -> NDArray[np.float32]:
-        """Light of the display, linear in the primaries of the colour space, shape (H, W, 3)."""
+        """Linear light in the primaries of the colour space, shape (H, W, 3)."""
         return spaces.decoded(self.pixels, self.colour_space)
 
     def bytes8(self) -> NDArray[np.uint8]:
-        """In 8 bits, shape (H, W, 3)."""
+        """Pixels in 8 bits, shape (H, W, 3)."""
         return quantized(self.pixels, 8)
 
     def save(
         self, path: str | os.PathLike[str], *, quality: int = 95, bits: int | None = None
     ) -> None:
-        """Writes the picture, whole or not at all, with its colour profile and EXIF.
+        """Writes the picture atomically, with its colour profile and EXIF.
 
         Args:
             path: ``.jpg``, ``.png``, ``.tif`` or ``.exr`` (linear).
             quality: JPEG quality, 1 to 100.
-            bits: 8 or 16; by default 16 for TIFF, 8 for others.
+            bits: Bits per channel, 8 or 16; default: 16 for TIFF, 8 for others.
 
         Raises:
-            UsageError: Another ending, or bits that the format lacks.
+            UsageError: Another suffix, or a bit depth that the format lacks.
             OutputError: The file cannot be written.
         """
         formats.write("picture", path, self, quality=quality, bits=bits)
@@ -80,7 +80,7 @@ class Picture:
 
 
 def quantized(pixels: NDArray[np.float32], bits: int) -> NDArray[Any]:
-    """0 .. 1 as whole numbers of 8 or 16 bits, rounded; in stripes, for little memory."""
+    """Rounds 0 .. 1 to integers of 8 or 16 bits, in strips of rows to save memory."""
     top = np.float32(2**bits - 1)
     out = np.empty(pixels.shape, np.uint8 if bits == 8 else np.uint16)
     for row in range(0, len(pixels), 64):

@@ -1,4 +1,4 @@
-"""A raw picture: what was read from a sensor, number by number, and what is known about it."""
+"""A raw picture: digital numbers read from a sensor, and data of the shot."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ class Raw:
 
     Attributes:
         mosaic: Digital numbers of the photosites, uint16, shape (H, W).
-        sensor: Sensor that took them.
+        sensor: Sensor that took the picture.
         iso: ISO setting.
-        black_level: DN of no light.
-        white_level: DN from which on a photosite is saturated.
+        black_level: DN without light.
+        white_level: DN at which a photosite is saturated.
         gain: DN per electron.
-        neutral: Reading of a white surface above black, in the light that the white balance is set
-            to, its strongest channel 1, shape (C,): the "as shot neutral" of DNG.
-        white_balance: That white, chromaticity (x, y).
-        metadata: Facts of the frame: ``expTime`` (s), ``aperture``, ``lensModel``, ...
+        neutral: Signal of a white surface above black under the light of the white balance, its
+            strongest channel 1, shape (C,): the "as shot neutral" of DNG.
+        white_balance: White point of the white balance, chromaticity (x, y).
+        metadata: Data of the shot: ``expTime`` (s), ``aperture``, ``lensModel``, ...
         clipped: True where the photosite was full or the number the highest, shape (H, W); None:
-            as the numbers say.
-        luminance_exposure: Luminance exposure of each photosite, lux s, shape (H, W); None: not
-            known.
+            derived from the numbers.
+        luminance_exposure: Luminance exposure of each photosite, lux s, shape (H, W); None:
+            unknown.
         notes: Remarks for the user.
     """
 
@@ -85,17 +85,17 @@ class Raw:
         return np.asarray(self.mosaic >= self.white_level)
 
     def exposure(self) -> NDArray[np.float32]:
-        """Luminance exposure of each photosite, lux s, shape (H, W): the truth, without noise.
+        """True luminance exposure of each photosite, without noise, lux s, shape (H, W).
 
         Raises:
-            InputError: It is not known of a picture that was read from a file.
+            InputError: It is unknown, as the picture was read from a file.
         """
         if self.luminance_exposure is None:
             raise InputError("raw: exposure: unknown, as the picture was read from a file")
         return self.luminance_exposure
 
     def electrons(self) -> NDArray[np.float32]:
-        """Electrons that the numbers stand for, noise and all, shape (H, W)."""
+        """Electrons that the numbers stand for, with their noise, shape (H, W)."""
         above = self.mosaic.astype(np.float32) - np.float32(self.black_level)
         return np.asarray(above / np.float32(self.gain), np.float32)
 
@@ -104,16 +104,16 @@ class Raw:
         return self.sensor.pattern.channel_map(self.height, self.width)
 
     def develop(self, **look: Any) -> Picture:
-        """Develops it to a picture; see ``daguerre.development.develop``."""
+        """Develops the raw picture; see ``daguerre.development.develop``."""
         from daguerre.development import develop
 
         return develop(self, **look)
 
     def save(self, path: str | os.PathLike[str], **look: Any) -> None:
-        """Writes it, whole or not at all; the suffix chooses the format.
+        """Writes the raw picture atomically; the suffix chooses the format.
 
         Args:
-            path: ``.dng`` keeps the numbers; others are developed first.
+            path: ``.dng`` keeps the numbers; other formats are developed first.
             look: Look of developed files; see ``daguerre.development.develop``.
         """
         formats.write("raw", path, self, **look)

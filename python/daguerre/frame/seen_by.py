@@ -1,9 +1,9 @@
-"""Channels of a sensor on the film, and those that bands of wavelengths make afterwards.
+"""Channels of a sensor: summed on the film, or computed from wavelength bands afterwards.
 
-A frame's channel is the integral of radiance times the sensor's response, of which D65 of luminance
-1 makes 1 (``Sensor.sensitivity`` with other units of radiance). The film sums it sample by sample,
-as exactly as XYZ. Bands keep the mean radiance within each: any sensor's channels are weighted sums
-of them, right for the spectra that renders are made of, as far as these are even within a band.
+A frame's channel is the integral of radiance times the sensor's response, scaled so that D65 of
+luminance 1 gives 1 (``Sensor.sensitivity`` with other units of radiance). The film sums it sample
+by sample, as exactly as XYZ. Bands keep the mean radiance within each. Any sensor's channels are
+weighted sums of bands, exact as far as spectra are constant within a band.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Seen:
-    """A frame as a sensor or a film stock sees it.
+    """Planes of a frame, and their weights in the channels of a sensor or a film stock.
 
     Attributes:
         planes: Planes of the frame, shape (H, W, P).
@@ -43,7 +43,7 @@ class Seen:
 
 
 def seen_of(frame: Frame, sensor: Seeing) -> Seen:
-    """The best planes that a frame has: channels of this very sensor, else bands, else XYZ."""
+    """Chooses the best planes of a frame: channels of this sensor, else bands, else XYZ."""
     from daguerre.sensors.fit import channels_from_xyz
 
     if frame.channels is not None and frame.metadata.get("sensor_hash") == sensor.hash:
@@ -60,7 +60,7 @@ def seen_of(frame: Frame, sensor: Seeing) -> Seen:
 
 
 def sensor_metadata(sensor: Sensor | None) -> dict[str, Any]:
-    """Facts of a frame whose channels are those of a sensor."""
+    """Metadata of a frame whose channels are those of a sensor."""
     if sensor is None:
         return {}
     return {

@@ -1,1 +1,1 @@
-"""Labels of a picture: things, their categories, masks, and boxes in the picture and in space."""
+"""Labels of a picture: objects, their categories, masks, and boxes in 2D and 3D."""

@@ -1,7 +1,7 @@
-"""Annotations of the things that a camera sees: boxes, masks, boxes in space; docs/ground-truth.md.
+"""Annotations of the objects that a camera sees: boxes, masks, 3D boxes; see docs/ground-truth.md.
 
-Boxes in the picture are (x, y, width, height), px from the upper left edge of the picture, as COCO
-has them: the box of its first pixel is (0, 0, 1, 1). Of a crop, the picture is the crop.
+Boxes in the picture are (x, y, width, height), px from the upper left corner of the picture, as in
+COCO: the box of the first pixel is (0, 0, 1, 1). With a crop, the picture is the crop.
 """
 
 from __future__ import annotations
@@ -34,22 +34,22 @@ FLIP = np.diag([1.0, -1.0, -1.0, 1.0])
 
 @dataclass(frozen=True, eq=False)
 class Annotation:
-    """One thing, as it is seen.
+    """Annotation of one object in a picture.
 
     Attributes:
-        name: Its node.
+        name: Name of its node.
         category: Its category.
-        instances: Indices of the scene's.
-        area: Pixels in which it is seen.
-        box: Around those; None: it is hidden.
-        full_box: Around all of it, hidden parts too, as far as the picture goes.
-        truncation: Share of its whole box that lies beside the picture; None: nobody knows, since
-            some of it has no place there, such as what is behind the camera.
-        visibility: Share of the pixels whose chief ray meets it, in which the ray meets it first.
-        box3: Around it in the world, m, at the picture's ``time``.
-        camera_box3: The same in the camera's frame, x right, y down, z ahead.
-        camera_from_node: From the node's own frame to the camera's, shape (4, 4), m: its pose, with
-            its scale; of several instances that of the first.
+        instances: Indices of its instances in the scene.
+        area: Number of pixels in which it is visible.
+        box: Box around those pixels; None: it is hidden.
+        full_box: Box around all of it, with hidden parts, clipped to the picture.
+        truncation: Share of its whole box that lies outside of the picture; None: unknown, as some
+            of it has no image point, such as parts behind the camera.
+        visibility: Share of the pixels whose chief ray meets it in which the ray meets it first.
+        box3: 3D box around it in the world, m, at the picture's ``time``.
+        camera_box3: 3D box in the camera's frame, x right, y down, z ahead.
+        camera_from_node: Transform from the node's frame to the camera's, shape (4, 4), m: pose and
+            scale; for several instances that of the first.
     """
 
     name: str
@@ -67,16 +67,16 @@ class Annotation:
 
 @dataclass(frozen=True, eq=False)
 class Annotations:
-    """The things of a picture.
+    """Annotations of all objects in a picture.
 
     Attributes:
-        things: Those that are in the picture, hidden or not, in the order of the scene.
-        categories: All that there may be.
-        labels: Index + 1 among ``things`` of what each pixel shows, shape (H, W).
-        time: Time of the boxes in space, s: with a rolling shutter that of the middle line.
-        world_from_camera: The camera's frame by OpenCV's convention, shape (4, 4), m.
-        intrinsics: ``model``, ``camera_matrix`` (3, 3) and ``parameters`` of OpenCV's form, if the
-            camera has them, with pixel centres at whole numbers.
+        things: Annotations of objects in the picture, hidden or not, in the order of the scene.
+        categories: All categories, whether in the picture or not.
+        labels: Object that each pixel shows, as index + 1 in ``things``, shape (H, W); 0: none.
+        time: Time of the 3D boxes, s; with a rolling shutter, that of the middle line.
+        world_from_camera: Pose of the camera, x right, y down, z ahead, shape (4, 4), m.
+        intrinsics: ``model``, ``camera_matrix`` (3, 3) and ``parameters`` as in OpenCV, with pixel
+            centres at integers, if the camera has such a form.
     """
 
     things: list[Annotation]
@@ -87,7 +87,7 @@ class Annotations:
     intrinsics: dict[str, Any] = field(default_factory=dict)
 
     def mask(self, index: int) -> NDArray[np.bool_]:
-        """Where one of ``things`` is seen, shape (H, W)."""
+        """Mask of the pixels in which one of ``things`` is visible, shape (H, W)."""
         return np.asarray(self.labels == index + 1)
 
 
@@ -99,12 +99,12 @@ def annotate(
     categories: Categories | str | Path | None = None,
     **options: Any,
 ) -> Annotations:
-    """Annotates each thing of a scene that a camera sees, without drawing a picture.
+    """Annotates the objects of a scene that a camera sees, without drawing a picture.
 
     Args:
         scene: The scene.
         camera: Camera, or its name in the scene; default: the scene's own.
-        categories: Categories of its things, or the file that says them; default: by node names.
+        categories: Categories of the objects, or a file of them; default: by node names.
         **options: Options of :class:`Session`: resolution, crop, threads, gt_time, gt_lens,
             gt_rays.
     """
@@ -118,7 +118,7 @@ def annotate(
 
 @core_errors(InputError, "render")
 def annotations_of(session: Session, categories: Categories | None = None) -> Annotations:
-    """Annotates what a session's camera sees, at ``gt_time``, or at mid without one."""
+    """Annotates what a session's camera sees, at ``gt_time`` or else at mid-exposure."""
     chosen = categories or Categories()
     truth = session.ground_truth
     moment = truth.moment(0)
@@ -162,7 +162,7 @@ class _Seen:
         self.boxes = _boxes(self.labels, count)
 
     def annotation(self, i: int, thing: Thing, scene: Scene, world: Any) -> Annotation | None:
-        """Annotates one group; None: it is not in the picture."""
+        """Annotates one object; None: it is not in the picture."""
         visible, whole = (int(n) for n in self.pixels[i])
         area = int(self.areas[i])
         if not (whole or area):
@@ -186,14 +186,14 @@ class _Seen:
         )
 
     def _ends(self, i: int, whole: int) -> NDArray[np.float64]:
-        """Low and high corner of all of it, px, where the whole picture would be."""
+        """Low and high corner of the whole object, px, in coordinates of the whole picture."""
         outline: NDArray[np.float64] = self.outlines[i].reshape(2, 2) - self.corner
         if not whole:
             return outline
         pixels = self.silhouettes[i].reshape(2, 2) - self.corner
         if not self.open[i] and np.isfinite(outline).all():
             return outline
-        # Edges that are all out of sight tell nothing of a face that fills the picture.
+        # Edges that are all out of view do not bound a face that fills the picture.
         low = np.fmin(outline[0], pixels[0])
         return np.stack([low, np.fmax(outline[1], pixels[1])])
 
@@ -216,13 +216,13 @@ def _box(ends: NDArray[np.float64]) -> Box:
 
 
 def _beside(ends: NDArray[np.float64], shown: NDArray[np.float64]) -> float:
-    """Share of a box that is not in the picture."""
+    """Share of a box that lies outside of the picture."""
     whole = float(np.prod(ends[1] - ends[0]))
     return max(0.0, 1 - float(np.prod(shown[1] - shown[0])) / whole) if whole > 0 else 0.0
 
 
 def _intrinsics(truth: GroundTruth, moment: Moment) -> dict[str, Any]:
-    """Empty where the camera has none: of glass, tilted lenses, shifts that change."""
+    """Intrinsics; empty for cameras without: real lenses, tilted lenses, moving shifts."""
     camera, setup = truth.camera.frozen_at(moment.scene.time), moment.setup
     width, height = truth.resolution
     (x0, y0), model = truth.crop[:2], setup.lens.model

@@ -1,4 +1,4 @@
-"""Boxes in space: around what belongs together, with the axes of its node."""
+"""3D boxes around the instances of an object, with the axes of its node."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Box3:
-    """A box that lies in space as it likes.
+    """An oriented box in space.
 
     Attributes:
-        center: Its middle, shape (3,), m.
-        size: Along its own axes, shape (3,), m.
-        rotation: Those axes, as columns of a rotation, shape (3, 3).
+        center: Centre, shape (3,), m.
+        size: Edge lengths along its own axes, shape (3,), m.
+        rotation: Its axes, as columns of a rotation matrix, shape (3, 3).
     """
 
     center: FloatArray
@@ -29,12 +29,12 @@ class Box3:
     rotation: FloatArray
 
     def corners(self) -> FloatArray:
-        """Shape (8, 3), m; the last axis changes first."""
+        """Corners, shape (8, 3), m; the last axis changes first."""
         half = np.array(list(product((-0.5, 0.5), repeat=3))) * self.size
         return np.asarray(half @ self.rotation.T + self.center)
 
     def seen_from(self, frame: FloatArray) -> Box3:
-        """The same in a frame that lies in the world as a rigid matrix (4, 4) has it."""
+        """Returns the box in another frame, whose pose in the world is a rigid matrix (4, 4)."""
         turn = frame[:3, :3]
         center = (self.center - frame[:3, 3]) @ turn
         return Box3(center, self.size, turn.T @ self.rotation)
@@ -43,12 +43,12 @@ class Box3:
 def box_of(
     scene: Scene, instances: Sequence[int], used: dict[int, NDArray[np.uint32]] | None = None
 ) -> Box3:
-    """The box around instances that have triangles, with the axes of the first one.
+    """Computes the box around instances that have triangles, with the axes of the first.
 
     Args:
-        scene: Vertices are those of its own time.
-        instances: Indices, one at least.
-        used: Vertices of triangles by the index of the mesh, kept from call to call.
+        scene: Scene, at whose time the vertices are taken.
+        instances: Indices of instances, at least one.
+        used: Cache of the vertices in triangles, by index of the mesh.
     """
     used = {} if used is None else used
     axes = rotation_of(scene.instances[instances[0]].transform)
@@ -64,9 +64,9 @@ def box_of(
 
 
 def rotation_of(world: FloatArray) -> FloatArray:
-    """The rotation that a matrix comes nearest to, scale, shear and mirrors left out."""
+    """Rotation nearest to a matrix, without scale, shear and mirroring."""
     u, _, v = np.linalg.svd(np.asarray(world, np.float64)[:3, :3])
     turn = u @ v
-    if np.linalg.det(turn) < 0:  # a mirror: the x axis looks the other way
+    if np.linalg.det(turn) < 0:  # mirrored: flip the x axis
         turn = turn @ np.diag([-1.0, 1.0, 1.0])
     return np.asarray(turn)

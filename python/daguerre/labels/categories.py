@@ -1,13 +1,13 @@
-"""Things of a scene and their categories: which instances belong together, and how they are named.
+"""Objects ("things") of a scene and their categories, by the names of nodes.
 
-Without a file each node with a mesh is a thing, and copies are of one category: ``Chair``,
-``Chair.001`` and ``Chair_2`` are chairs. A file says it otherwise::
+Without a file each node with a mesh is an object, and copies share a category: ``Chair``,
+``Chair.001`` and ``Chair_2`` are chairs. A file sets other rules::
 
     {"Chair*": "chair", "Lamp?": {"name": "lamp", "id": 7, "supercategory": "light"}, "Floor": null}
 
-Patterns of names (``*``, ``?``, ``[ab]``) in the order of the file; the first one that matches a
-node decides. A node is one thing with all that hangs below it. What is null, and what no pattern
-matches, is no thing.
+The keys are patterns of names (``*``, ``?``, ``[ab]``). The first pattern in the file that matches
+a node decides. A node is one object together with its descendants. Nodes that map to null, or that
+no pattern matches, are not objects.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _MAX_BYTES = 1_000_000
 
 @dataclass(frozen=True)
 class Category:
-    """Category of a thing; numbered from 1, like COCO's."""
+    """Category of objects; ids begin at 1, as in COCO."""
 
     name: str
     id: int
@@ -40,7 +40,7 @@ class Category:
 
 @dataclass(frozen=True)
 class Thing:
-    """Instances of a scene that belong together."""
+    """Object: instances of a scene that belong together."""
 
     name: str
     category: Category
@@ -49,7 +49,7 @@ class Thing:
 
 @dataclass(frozen=True)
 class Rule:
-    """Nodes of which name are what; None: nothing."""
+    """Category of the nodes that match a pattern; None: they are not objects."""
 
     pattern: str
     category: Category | None
@@ -58,11 +58,11 @@ class Rule:
 @guarded(init=True)
 @dataclass(frozen=True)
 class Categories:
-    """Rules that find the things of a scene; without rules, node names do.
+    """Rules that assign categories to nodes of a scene.
 
     Attributes:
-        rules: In their order; None: names are categories.
-        where: For messages.
+        rules: Rules in order of precedence; None: each name of a node is a category.
+        where: Start of messages.
     """
 
     rules: Sequence[Rule] | None = None
@@ -73,7 +73,7 @@ class Categories:
         """Reads a file of patterns.
 
         Raises:
-            InputError: With file and JSON path of what cannot be used.
+            InputError: The file cannot be used; the message names file and JSON path.
         """
         path = Path(path)
         try:
@@ -87,17 +87,17 @@ class Categories:
         return cls(_rules(parse(data, str(path))), str(path))
 
     def all(self, scene: Scene) -> list[Category]:
-        """All categories by number, whether a picture shows some or not."""
+        """All categories by id, whether a picture shows them or not."""
         if self.rules is None:
             return list(_by_name(scene).values())
         found = {rule.category.name: rule.category for rule in self.rules if rule.category}
         return sorted(found.values(), key=lambda category: category.id)
 
     def things(self, scene: Scene) -> list[Thing]:
-        """Finds the things of a scene.
+        """Finds the objects of a scene.
 
         Raises:
-            UsageError: A pattern that names no node.
+            UsageError: A pattern matches no node.
         """
         if self.rules is None:
             known = _by_name(scene)
@@ -128,7 +128,7 @@ class Categories:
 
 
 def base_name(name: str) -> str:
-    """A node's name without the numbers of copies; one that is nothing but a number stays."""
+    """Name of a node without the number of a copy; a name that is only a number stays."""
     base = name
     while (shorter := _COPY.sub("", base)) != base and shorter:
         base = shorter
@@ -136,7 +136,7 @@ def base_name(name: str) -> str:
 
 
 def _nodes(scene: Scene) -> dict[str, list[int]]:
-    """Instances of each node, by its name; those without one stand alone."""
+    """Instances of each node, by its name; instances without a node stand alone."""
     nodes: dict[str, list[int]] = {}
     for i, instance in enumerate(scene.instances):
         nodes.setdefault(instance.name or f"instance {i}", []).append(i)
@@ -167,7 +167,7 @@ def _rules(root: Item) -> list[Rule]:
 
 
 def _category(item: Item) -> Category | None:
-    """With the id 0 where the file says none."""
+    """Reads a category; its id is 0 if the file gives none."""
     if item.value is None:
         return None
     if isinstance(item.value, str):
@@ -185,7 +185,7 @@ def _category(item: Item) -> Category | None:
 
 
 def _numbered(root: Item, known: dict[str, Category]) -> dict[str, Category]:
-    """Those without a number get the free ones from 1 on, in the order of the file."""
+    """Gives categories without an id the free ids from 1 on, in the order of the file."""
     taken: dict[int, str] = {}
     for category in known.values():
         if category.id and taken.setdefault(category.id, category.name) != category.name:

@@ -1,8 +1,8 @@
-"""COCO files: the pictures of a call, and what each shows, as detectors and segmenters read it.
+"""COCO files: the pictures of a call and their annotations, for detectors and segmenters.
 
-Source: COCO, "Data format" (https://cocodataset.org/#format-data); masks are run lengths without
-compression, column by column, which all readers take. Beside COCO's members an image has the camera
-and an annotation the box of the whole thing and its boxes in space; see docs/ground-truth.md.
+Source: COCO, "Data format" (https://cocodataset.org/#format-data). Masks are uncompressed run
+lengths, column by column, which all readers support. Beside COCO's members an image has the camera,
+and an annotation has the box of the whole object and its 3D boxes; see docs/ground-truth.md.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 
 @guarded(init=True)
 class CocoFile:
-    """One file in the making.
+    """A COCO file that is being built.
 
     Args:
-        path: Where it will be; names of pictures are relative to its folder.
+        path: File to write; names of pictures are relative to its folder.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -47,7 +47,7 @@ class CocoFile:
         picture: str | os.PathLike[str],
         facts: Mapping[str, Any] | None = None,
     ) -> None:
-        """A picture and what it shows; ``facts`` are members of its image, such as ``frame``."""
+        """Adds a picture and its annotations; ``facts``: further members of its image."""
         height, width = seen.labels.shape
         number = len(self._images) + 1
         image: dict[str, Any] = {
@@ -77,7 +77,7 @@ class CocoFile:
         """Writes the whole file, atomically.
 
         Raises:
-            OutputError: It cannot be written.
+            OutputError: The file cannot be written.
         """
         categories = [self._categories[number] for number in sorted(self._categories)]
         whole = {
@@ -98,7 +98,7 @@ class CocoFile:
 
 
 def runs_of(labels: NDArray[np.integer[Any]]) -> dict[int, list[int]]:
-    """Run lengths of each label but 0, column by column: pixels without, with, without it, ..."""
+    """Run lengths of each label but 0, column by column: pixels outside, inside, outside, ..."""
     flat = labels.T.ravel()
     starts = np.concatenate([[0], np.flatnonzero(np.diff(flat)) + 1])
     ends = np.append(starts[1:], flat.size)
@@ -140,7 +140,7 @@ def _box3(box: Box3) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Numbers as JSON has them, to nine digits; text stays."""
+    """Converts numbers to JSON, rounded to nine digits; texts stay."""
     if isinstance(value, str):
         return value
     if isinstance(value, np.ndarray | list | tuple):

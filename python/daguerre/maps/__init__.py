@@ -1,1 +1,1 @@
-"""Where the pixels of a camera look: rays of its own, and maps that straighten its pictures."""
+"""Maps of a camera: the ray of each pixel, and STMaps that undistort and distort pictures."""

@@ -1,8 +1,8 @@
-"""Raymaps: the ray of each pixel, for programs that know no lens.
+"""Raymaps: the ray of each pixel, for programs without lens models.
 
-A ray is the chief ray of the pixel's centre, as ground truth has it (docs/ground-truth.md): through
-the middle of what the pixel sees. It is asked for at the pixel's own moment: with a rolling shutter
-each line has its own.
+A ray is the chief ray of the pixel's centre, as for ground truth (docs/ground-truth.md): it runs
+through the middle of what the pixel sees. Its time is the pixel's own: with a rolling shutter each
+line has another.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from daguerre.camera.camera import Camera
 
 FloatArray = NDArray[np.float64]
-#: Frames of rays, and what their coordinates mean.
+#: Coordinate frames of rays, and their descriptions.
 FRAMES = {
     "camera": "x right, y down, z ahead (OpenCV); from the entrance pupil; m",
     "world": "the scene's: y up; m",
@@ -43,15 +43,16 @@ _OPENCV = np.array([1.0, -1.0, -1.0])
 @guarded
 @dataclass(frozen=True)
 class RayMap:
-    """The ray of each pixel; NaN where a pixel sees nothing.
+    """Ray of each pixel; NaN where a pixel sees nothing.
 
     Attributes:
-        origin: Start of the ray, m, shape (H, W, 3): the centre of the camera for ideal lenses and
+        origin: Origin of the ray, m, shape (H, W, 3): the camera's centre for ideal lenses and
             projections, a point on the ray in front of the glass for a traced lens.
         direction: Unit vectors, shape (H, W, 3).
-        time: Time at which the pixel sees it, s after the scene's time, shape (H, W).
-        frame: One of ``FRAMES``: the camera's own as it stands at each ray's time, or the world's.
-        metadata: Facts of the camera, like those of frames.
+        time: Time at which the pixel is exposed, s after the scene's time, shape (H, W).
+        frame: Coordinate frame, one of ``FRAMES``: the camera's, as it stands at each ray's time,
+            or the world's.
+        metadata: Data of the camera, like those of frames.
     """
 
     origin: FloatArray
@@ -100,9 +101,9 @@ def raymap(
         scene: Scene, for its time and for autofocus; without it the camera then focuses at
             infinity.
         gt_time: Moment in the exposure of each pixel: open, mid or close.
-        frame: ``"camera"``: OpenCV's, x right, y down, z ahead, from the entrance pupil, as the
-            camera stands at the ray's time; ``"world"``: the scene's.
-        overscan: Pixels beside the picture, see ``Session``.
+        frame: Coordinate frame. ``"camera"``: OpenCV's, x right, y down, z ahead, from the entrance
+            pupil, as the camera stands at the ray's time; ``"world"``: the scene's.
+        overscan: Extra pixels around the picture, see ``Session``.
 
     Raises:
         UsageError: A parameter is out of its range.
@@ -118,7 +119,7 @@ def raymap(
 
 
 def check_frame(frame: str, where: str = "frame") -> None:
-    """Refuses what is no frame of rays."""
+    """Checks the name of a coordinate frame."""
     if frame not in FRAMES:
         raise UsageError(
             f"{where}: wanted {' or '.join(FRAMES)}, got {frame!r}{suggest(str(frame), FRAMES)}"
@@ -134,12 +135,12 @@ def rays_of(
     frame: str,
     overscan: Overscan = NONE,
 ) -> RayMap:
-    """Returns the rays, like ``raymap``, for arguments that are checked."""
+    """Returns the rays like ``raymap``, for checked arguments."""
     now = instants(camera, size)
     opens, _ = shutter.interval(camera, scene.time, size)
     begin = opens + GT_TIMES[gt_time] * shutter.shutter_time(camera)
     duration = shutter.core_shutter(now, size).duration_s
-    # An exposure of no length stands around its scene's time.
+    # An exposure of length 0 is at the scene's time.
     at = scene.at(begin + duration / 2)
     setup = set_up(at, now, size, core_scene, overscan)
     settings = _core.RenderSettings()

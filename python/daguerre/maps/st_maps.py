@@ -1,4 +1,4 @@
-"""STMaps of a camera, both ways: to straighten its pictures, and to bend straight ones.
+"""STMaps of a camera: to undistort its pictures, and to distort straight ones.
 
 ``daguerre.post.effects.stmap`` and docs/darkroom.md explain ``s`` and ``t``.
 """
@@ -33,8 +33,8 @@ class StMaps:
     """The two maps of a camera.
 
     Attributes:
-        view: The camera and its ideal twin.
-        overscan: Pixels beside the picture, which the maps also cover.
+        view: The camera and its rectified (pinhole) twin.
+        overscan: Extra pixels around the picture, which the maps cover too.
     """
 
     view: RectifiedView
@@ -47,15 +47,15 @@ class StMaps:
 
     @cached_property
     def undistort(self) -> Image:
-        """Map from the undistorted picture to the camera's own: s and t of each pixel.
+        """Map that makes the undistorted picture: s and t in the camera's picture of each pixel.
 
-        Shape (H, W, 2), rows from the top of the data window; NaN: nowhere.
+        Shape (H, W, 2), rows from the top of the data window; NaN: outside of both pictures.
         """
         return self._values(self._undistort)
 
     @cached_property
     def redistort(self) -> Image:
-        """Map from the camera's picture to the undistorted one: s and t, like ``undistort``."""
+        """Map that makes the camera's picture: s and t in the undistorted one of each pixel."""
         return self._values(self._redistort)
 
     def save(
@@ -77,10 +77,10 @@ class StMaps:
 
     @property
     def needed(self) -> dict[str, Overscan | None]:
-        """Pixels beside a picture that each map reads, for all of the display window.
+        """Overscan of the source that each map needs to fill the display window.
 
-        ``undistort`` reads the camera's picture, ``redistort`` the undistorted one. None: without
-        bounds, or parts that the camera does not show.
+        ``undistort`` reads the camera's picture, ``redistort`` the undistorted one. None: no
+        overscan suffices, as the source is unbounded or the camera does not show parts of it.
         """
         try:
             undistort: Overscan | None = to_undistort(self.view)
@@ -123,19 +123,20 @@ def stmaps(
     scene: Scene | None = None,
     overscan: Any = None,
 ) -> StMaps:
-    """Returns STMaps of any camera, in the middle of its exposure.
+    """Returns the STMaps of any camera, at mid-exposure.
 
-    The straight picture is that of the pinhole with the same focal length near the axis and the
-    same principal point; what lies on the plane in focus is in its place.
+    The undistorted picture is that of a pinhole with the same focal length near the axis and the
+    same principal point. The maps are exact for points in the plane of focus.
 
     Args:
         camera: Pinhole, thin, thick, exact, polynomial or projection.
         resolution: Width and height of the picture, px.
         scene: Scene, for autofocus; without it the camera then focuses at infinity.
-        overscan: Pixels beside the picture, which the maps also cover; see ``Session``.
+        overscan: Extra pixels around the picture, which the maps cover too; see ``Session``.
 
     Raises:
-        UsageError: A cube, which cannot be straightened; or a parameter of the camera.
+        UsageError: The camera is a cube, which cannot be undistorted; or one of its parameters is
+            wrong.
     """
     from daguerre.rendering.pixels import check_resolution
 

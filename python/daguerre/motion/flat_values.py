@@ -1,4 +1,4 @@
-"""Values of any kind as a row of numbers and what is none, to see how far two of them are apart."""
+"""Values of any kind as a row of numbers and a rest, to measure how far two values differ."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
-# A larger array is no parameter but a picture, and does not change.
+# A larger array is a picture, not a parameter, and does not change.
 _MAX_ARRAY = 64
 _ROUNDING = 1e-4
 
@@ -23,8 +23,8 @@ class Flat:
     Attributes:
         value: The value itself.
         numbers: All its finite numbers.
-        groups: Which of them are of one size, such as the three of a colour.
-        rest: Names, flags, and what is infinite: these do not change bit by bit.
+        groups: Groups of numbers with a common scale, such as the three of a colour.
+        rest: Names, flags and infinities, which cannot be interpolated.
     """
 
     value: Any
@@ -34,7 +34,7 @@ class Flat:
 
 
 def flat(value: Any) -> Flat:
-    """Takes a number, tuple, array or dataclass apart."""
+    """Flattens a number, tuple, array or dataclass."""
     numbers: list[float] = []
     taken = Flat(value, np.zeros(0))
     _take(value, numbers, taken)
@@ -75,9 +75,9 @@ def _add(values: list[float], numbers: list[float], into: Flat) -> None:
 
 
 def changes(values: list[Flat]) -> FloatArray:
-    """How much each number changes: the most of its group in all values, one row for all.
+    """Largest change of each number over all values, taken over its group; one row.
 
-    At least ``_ROUNDING`` of its size, so that rounding is not followed.
+    It is at least ``_ROUNDING`` of the number's size, so that rounding does not count as motion.
     """
     rows = np.array([v.numbers for v in values if len(v.numbers) == len(values[0].numbers)])
     if not rows.size:

@@ -1,7 +1,7 @@
-"""Values over time as keys over one interval, between which the core interpolates.
+"""Resampling of values over time to keys over one interval, which the core interpolates.
 
-How near the keys come is stated beside each kind: numbers, transforms, vertices. A jump becomes
-two keys of one time. One key says that nothing changes in the interval.
+Each function states its error bound: for numbers, transforms, vertices. A jump becomes two keys at
+the same time. A single key means that nothing changes in the interval.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ FloatArray = NDArray[np.float64]
 BOUND = 1e-4
 #: Error bound relative to the length of a path: 0.05 px of one across a picture of 2500 px.
 PATH_BOUND = 2e-5
-#: Bound relative to size, below which a value has only changed by rounding.
+#: Change relative to size, below which a value has only changed by rounding.
 _STILL = 1e-12
 
 
 def resample(dynamic: Dynamic, open_s: float, close_s: float) -> tuple[list[float], list[Any]]:
-    """Keys of numbers, tuples, materials, lights, ..., linear in between.
+    """Resamples numbers, tuples, materials, lights, ... to keys with linear interpolation.
 
-    Every number is kept to ``BOUND`` of what its tuple changes by in the interval.
+    The error of each number is at most ``BOUND`` of the change of its tuple in the interval.
 
     Args:
         dynamic: The value.
         open_s: Begin of the interval, s.
-        close_s: Its end.
+        close_s: End of the interval, s.
 
     Returns:
-        Times that do not fall, s, and the values there.
+        Times in rising order (equal at jumps), s, and the values at them.
     """
     subdivision = Subdivision(dynamic, flat, open_s, close_s)
     first = subdivision.first()
@@ -76,18 +76,18 @@ def resample_transform(
     most_breaks: int = MAX_BREAKS,
     where: str = "motion",
 ) -> _core.Motion:
-    """A transform over time, decomposed between its keys.
+    """Resamples a transform to keys with decomposed interpolation.
 
-    No corner is off by more than ``BOUND`` of the radius of what is transformed, or
-    ``PATH_BOUND`` of its way where that is more.
+    No corner is off by more than ``BOUND`` of the radius of the object, or ``PATH_BOUND`` of the
+    length of its path if that is more.
 
     Args:
         dynamic: World from local, (4, 4).
         open_s: Begin of the interval, s.
-        close_s: Its end.
-        corners: Corners of the box around what is transformed, shape (8, 3), m.
-        most_breaks: Largest number of breaks that are looked at.
-        where: For complaints.
+        close_s: End of the interval, s.
+        corners: Corners of the object's bounding box, shape (8, 3), m.
+        most_breaks: Maximum number of breaks to look at.
+        where: Owner of the transform, for messages.
     """
     points = np.concatenate([corners, np.ones((len(corners), 1))], axis=1).T
     subdivision = Subdivision(
@@ -118,7 +118,7 @@ def resample_transform(
 
 
 def resample_shown(dynamic: Dynamic, open_s: float, close_s: float) -> list[tuple[float, float]]:
-    """When something is there, as intervals (begin, end) in s; it changes at breaks only."""
+    """Intervals (begin, end), s, in which a flag is true; it changes only at breaks."""
     if open_s == close_s:
         return [(open_s, close_s)] if dynamic.at(open_s) else []
     times = [open_s, *some_breaks(dynamic, open_s, close_s, MAX_KEYS), close_s]

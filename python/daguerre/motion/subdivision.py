@@ -1,4 +1,4 @@
-"""A value over an interval, cut at its breaks and halved until what lies between keys fits."""
+"""Sampling of a value over an interval: cut at breaks, halved until interpolation fits."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ import numpy as np
 from .values import Dynamic
 
 T = TypeVar("T")
-#: Values a and b, s (0 .. 1), and the value that what lies at s between them is held against.
+#: Error of an interpolation: of values a and b, s (0 .. 1), and the true value at s between them.
 Check = tuple[T, T, float, T]
 #: Whether values are near enough.
 Fits = Callable[[list[Check[T]]], Sequence[bool]]
 
-#: Keys of one value, and how often a piece between two breaks is halved at most.
+#: Maximum number of keys of one value, and of halvings of a piece between two breaks.
 MAX_KEYS = 4096
 MAX_BREAKS = MAX_KEYS // 4
 _MAX_HALVINGS = 10
 _MAX_SAMPLES = 64
 QUARTERS = (0.25, 0.5, 0.75)
-#: Where to look first: uneven, so that what repeats does not look as if it stood still.
+#: Places of the first samples: uneven, so that periodic motion does not look constant.
 FIRST = (0.137, 0.25, 0.418, 0.5, 0.75, 0.873)
 
 
@@ -35,7 +35,7 @@ def samples(dynamic: Dynamic, open_s: float, close_s: float) -> list[tuple[float
 
 
 def some_breaks(dynamic: Dynamic, open_s: float, close_s: float, most: int) -> list[float]:
-    """The breaks inside of an interval; of more than ``most`` every second, third, ..."""
+    """Breaks inside of an interval; if there are more than ``most``, every second, third, ..."""
     if most == 0:
         return []
     found = np.unique(np.asarray(dynamic.breaks(open_s, close_s), np.float64))
@@ -46,14 +46,14 @@ def some_breaks(dynamic: Dynamic, open_s: float, close_s: float, most: int) -> l
 class Subdivision(Generic[T]):
     """Samples a value until the interpolation error is within tolerance.
 
-    A value with a method ``many`` (times (T,) to T values) is asked for many at once.
+    If the value has a method ``many`` (times (T,) to T values), it evaluates many times at once.
 
     Args:
         dynamic: The value.
-        taken: Function of it to sample, such as a row of numbers.
+        taken: Function of the value to sample, such as a row of numbers.
         open_s: Begin of the interval, s.
-        close_s: Its end.
-        most_breaks: Largest number of breaks that are looked at.
+        close_s: End of the interval, s.
+        most_breaks: Maximum number of breaks to look at.
     """
 
     def __init__(
@@ -73,14 +73,14 @@ class Subdivision(Generic[T]):
         self._known: dict[float, T] = {}
 
     def first(self) -> list[T]:
-        """Enough values to see whether something changes, and how much."""
+        """Samples that show whether the value changes, and by how much."""
         inside = [a + s * (b - a) for a, b in pairwise(self._cuts) for s in FIRST]
         times = [*self._cuts, *self._before.values(), *inside]
         self._look(times)
         return [self._known[t] for t in times]
 
     def keys(self, fits: Fits[T]) -> list[tuple[float, T]]:
-        """Times that do not fall, two equal ones where the value jumps, and the values there."""
+        """Times in rising order, two equal ones where the value jumps, and the values at them."""
         inner = list(self._before)
         held = fits([(self._left_of(t), self._left_of(t), 0.0, self._known[t]) for t in inner])
         jumps = {t for t, fit in zip(inner, held, strict=True) if not fit}
@@ -105,7 +105,7 @@ class Subdivision(Generic[T]):
     def _failing(
         self, spans: list[tuple[float, float]], checks: Sequence[float], fits: Fits[T]
     ) -> list[tuple[float, float]]:
-        """Those spans whose ends do not tell what lies between."""
+        """Spans within which interpolation between the ends does not fit."""
         inside = [(a, b, s, a + s * (b - a)) for a, b in spans for s in checks]
         self._look([time for *_, time in inside])
         listed = [(self._known[a], self._left_of(b), s, self._known[t]) for a, b, s, t in inside]
@@ -117,7 +117,7 @@ class Subdivision(Generic[T]):
         return self._known[self._before.get(time, time)]
 
     def _look(self, times: Sequence[float]) -> None:
-        """Works out the values that are not known yet."""
+        """Evaluates the value at times that are not sampled yet."""
         new = [t for t in dict.fromkeys(times) if t not in self._known]
         many = getattr(self._dynamic, "many", None)
         values = map(self._dynamic.at, new) if many is None or not new else many(np.array(new))

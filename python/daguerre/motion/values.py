@@ -1,7 +1,7 @@
-"""Values that change over time: keys, spins, and whatever else says what it is at a moment.
+"""Values that change over time: keys, spins, and any object with the methods of ``Dynamic``.
 
-Times are seconds of scene time. Outside of its keys a value is held. Matrices are interpolated by
-the core (``core/motion``), so that a picture and ``at`` agree.
+Times are seconds of scene time. Outside of its keys a value is constant. The core (``core/motion``)
+interpolates matrices, so that pictures and ``at`` agree.
 """
 
 from __future__ import annotations
@@ -24,35 +24,36 @@ from daguerre.errors import InputError, core_errors, suggest
 from daguerre.files.value import Value
 
 FloatArray = NDArray[np.float64]
-#: Ways between two matrices; the first is the default. Each is explained in docs/motion.md.
+#: Interpolations of matrices, the default first; docs/motion.md explains them.
 OF_MATRICES = ("decomposed", "linear", "twist", "slerp")
 OF_NUMBERS = ("linear", "step")
 MAX_KEYS = 1_000_000
-#: Far beyond any shot: more is a mistake, and doubles would lose the digits of a shutter or a turn.
+#: Limits far beyond any shot: larger values are mistakes, and double precision would not resolve a
+#: shutter or a turn.
 MAX_TIME = 1e12  # s
 MAX_SPEED = 1e9  # revolutions per second
 MAX_DISTANCE = 1e15  # of pivots and centres, m
 
 
 class Blending(Protocol):
-    """A value that is no number but has some, such as a projection: what keys may hold, too."""
+    """An object with numbers that keys can interpolate, such as a projection."""
 
     @property
     def form(self) -> tuple[Any, ...]:
-        """Form that all keys have in common."""
+        """Form that all keys must share."""
 
     def blended(self, other: Any, share: float) -> Any:
-        """Blends with another value of the same form, that share of the way."""
+        """Interpolates toward another value of the same form, by this fraction."""
 
 
 class Dynamic(Protocol):
     """A value that changes over time."""
 
     def at(self, time_s: float) -> Any:
-        """The value at a time, s."""
+        """Returns the value at a time, s."""
 
     def breaks(self, begin: float, end: float) -> Sequence[float] | FloatArray:
-        """Rising times inside of (begin, end), between which the value changes smoothly, s."""
+        """Times inside of (begin, end), rising, s; between them the value changes smoothly."""
 
 
 @guarded
@@ -61,7 +62,7 @@ class Keys(Value):
     """A value given at some times; made by :func:`keys`.
 
     Attributes:
-        times: Rising, shape (K,), s.
+        times: Times of the keys, rising, shape (K,), s.
         values: K numbers, tuples or arrays of one shape, names or flags, or projections.
         interpolation: One of ``OF_MATRICES`` for matrices (4, 4), else one of ``OF_NUMBERS``.
         pivot: Point in local space about which decomposed matrices turn, m.
@@ -79,12 +80,12 @@ class Keys(Value):
 
     @cached_property
     def motion(self) -> _core.Motion:
-        """The core's version; only for matrices."""
+        """Motion of the core; for matrices only."""
         matrices = np.array(self.values, np.float64)
         return _core.Motion.keys(self.times, matrices, self.interpolation, self.pivot or (0, 0, 0))
 
     def at(self, time_s: float) -> Any:
-        """Returns the value at a time, s: held before the first key and after the last."""
+        """Returns the value at a time, s; constant before the first key and after the last."""
         if self.moves_matrices and len(self.times) > 1:
             return np.asarray(self.motion.at(time_s))
         i = int(np.searchsorted(self.times, time_s, side="right")) - 1
@@ -96,7 +97,7 @@ class Keys(Value):
         return _lerp(a, b, float((time_s - self.times[i]) / (self.times[i + 1] - self.times[i])))
 
     def breaks(self, begin: float, end: float) -> list[float]:
-        """The times of the keys inside of (begin, end), s."""
+        """Times of the keys inside of (begin, end), s."""
         first = np.searchsorted(self.times, begin, side="right")
         last = np.searchsorted(self.times, end, side="left")
         return [float(t) for t in self.times[first:last]]
@@ -110,14 +111,15 @@ class Keys(Value):
 @guarded
 @dataclass(frozen=True, eq=False)
 class Spin(Value):
-    """A transform that turns evenly, by any number of turns; made by :func:`spin`.
+    """A transform that rotates at constant speed; made by :func:`spin`.
 
     Attributes:
-        axis: Direction in local space, counter-clockwise as seen from its tip; any length.
-        revolutions_per_second: May be negative.
+        axis: Direction in local space, of any length; rotation is counter-clockwise as seen from
+            its tip.
+        revolutions_per_second: Speed; negative: clockwise.
         center: Point on the axis in local space, m.
         transform: World from local at the angle 0: a matrix (4, 4), or keys of matrices.
-        time: When the angle is 0, s.
+        time: Time at which the angle is 0, s.
     """
 
     axis: tuple[float, float, float]
@@ -128,17 +130,17 @@ class Spin(Value):
 
     @cached_property
     def motion(self) -> _core.Motion:
-        """The same in the core."""
+        """Motion of the core."""
         at_rest = self.transform
         base = at_rest.motion if isinstance(at_rest, Keys) else _core.Motion.still(at_rest)
         return base.spinning(self.axis, self.revolutions_per_second, self.center, self.time)
 
     def at(self, time_s: float) -> NDArray[np.float64]:
-        """World from local at a time, s, shape (4, 4)."""
+        """Returns world from local at a time, s, shape (4, 4)."""
         return np.asarray(self.motion.at(time_s))
 
     def breaks(self, begin: float, end: float) -> list[float]:
-        """Breaks of its transform, s."""
+        """Breaks of the transform, s."""
         return self.transform.breaks(begin, end) if isinstance(self.transform, Keys) else []
 
     def __repr__(self) -> str:
@@ -153,11 +155,11 @@ class Composite(Value):
     value: Any
 
     def at(self, time_s: float) -> Any:
-        """The same with plain values, at a time, s."""
+        """Returns a copy with constant values, evaluated at a time, s."""
         return at(self.value, time_s)
 
     def breaks(self, begin: float, end: float) -> list[float]:
-        """Those of all that is inside."""
+        """Breaks of all dynamic values inside, s."""
         return sorted({float(t) for part in _dynamics(self.value) for t in part.breaks(begin, end)})
 
 
@@ -166,18 +168,18 @@ def keys(
     interpolation: str | None = None,
     pivot: ArrayLike | None = None,
 ) -> Keys:
-    """Makes a value over time from keys, for any parameter that may change.
+    """Makes a value over time from keys, for any parameter that may change over time.
 
     Args:
-        pairs: (time in s, value), times rising strictly. Values are numbers, tuples or arrays of
-            numbers of one shape, projections of one model and size, or names and flags, which
-            step.
+        pairs: Pairs (time in s, value), with strictly rising times. Values are numbers, tuples or
+            arrays of numbers of one shape, projections of one model and size, or names and flags,
+            which change in steps.
         interpolation: Interpolation of matrices (4, 4): decomposed (default), linear, twist or
             slerp; of other numbers: linear (default) or step.
-        pivot: Point in local space, m, about which decomposed matrices turn; absent: the origin.
+        pivot: Point in local space about which decomposed matrices turn, m; default: the origin.
 
     Raises:
-        InputError: Something else was given; the message names the key.
+        InputError: A time or a value is wrong; the message names the key.
     """
     if not isinstance(interpolation, str | None):
         raise InputError(f"keys: interpolation: wanted a name, got {shown(interpolation)}")
@@ -215,17 +217,18 @@ def spin(
     transform: ArrayLike | Keys | None = None,
     time: float = 0.0,
 ) -> Spin:
-    """Makes a transform that turns evenly about an axis: a wheel, a propeller.
+    """Makes a transform that rotates at constant speed about an axis: a wheel, a propeller.
 
     Args:
-        axis: Direction in local space; it turns counter-clockwise as seen from its tip.
-        revolutions_per_second: May be negative.
+        axis: Direction in local space; rotation is counter-clockwise as seen from its tip.
+        revolutions_per_second: Speed; negative: clockwise.
         center: Point on the axis in local space, m.
-        transform: World from local at the angle 0, (4, 4) or keys of such; absent: identity.
-        time: When the angle is 0, s.
+        transform: World from local at the angle 0, shape (4, 4), or keys of such; default: the
+            identity.
+        time: Time at which the angle is 0, s.
 
     Raises:
-        InputError: A number is not finite, or the axis has no length.
+        InputError: A number is not finite, or the axis has length 0.
     """
     direction = _point(axis, "spin: axis")
     if not math.hypot(*direction) > 0:
@@ -246,17 +249,17 @@ def spin(
     return made
 
 
-#: Lists in lists that are looked into; one may hold itself.
+#: Maximum depth of nested lists to search, as a list may contain itself.
 _DEEPEST = 8
 
 
 def at(value: Any, time: float, depth: int = 0) -> Any:
-    """A value as it is at a time in s; what does not move comes back as it is.
+    """Evaluates a value at a time; a constant value is returned unchanged.
 
     Args:
-        value: Anything: a dynamic value, or a dataclass, tuple or list with some inside.
-        time: s.
-        depth: How far inside; nothing that moves stands deeper than ``_DEEPEST``.
+        value: Dynamic value, or a dataclass, tuple or list that may contain some.
+        time: Scene time, s.
+        depth: Depth of nesting so far; values deeper than ``_DEEPEST`` are not evaluated.
     """
     if is_dynamic(value):
         return value.at(time)
@@ -275,7 +278,7 @@ def at(value: Any, time: float, depth: int = 0) -> Any:
 
 
 def moves(value: Any) -> bool:
-    """Whether a value is dynamic, or has something dynamic inside."""
+    """Whether a value is dynamic, or contains a dynamic value."""
     return next(iter(_dynamics(value)), None) is not None
 
 
@@ -313,7 +316,7 @@ def _pairs(pairs: Any) -> list[tuple[int, tuple[Any, Any]]]:
 
 
 def _value(value: Any, where: str, interpolation: str | None) -> Any:
-    """A number, a tuple of floats, a read-only array, a name or a flag; finite."""
+    """Normalizes the value of a key: a number, tuple of floats, read-only array, name or flag."""
     if _blends(value):
         return value
     if isinstance(value, str | bool | np.bool_ | None):
@@ -370,7 +373,7 @@ def _pivot(pivot: ArrayLike | None, shape: tuple[int, ...]) -> tuple[float, floa
 
 
 def _in_core(made: Keys | Spin, where: str) -> None:
-    """Refuses motions that the core cannot interpolate where they are written down."""
+    """Raises at once if the core cannot interpolate a motion."""
     with core_errors(InputError, where):
         _ = made.motion
 

@@ -1,4 +1,4 @@
-"""Catchers: parts of a scene that stand for what a photograph shows already."""
+"""Catchers: parts of a scene that stand in for something that a photograph shows already."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from collections.abc import Iterable
 
 from daguerre.errors import UsageError, suggest
 
-#: Effects of objects on a catcher, in their order; ``holdout`` stands for none of them.
+#: Effects of objects on a catcher, in order; ``holdout`` means none of them.
 EFFECTS = ("shadow", "reflection", "gi")
 HOLDOUT = "holdout"
 WANTED = f"{', '.join(EFFECTS)}, or {HOLDOUT}"
 
 
 def check_effects(effects: str | Iterable[str], where: str) -> tuple[str, ...]:
-    """Effects in their order.
+    """Checks effects and returns them in order.
 
     Args:
-        effects: Names, or a text with commas between them; ``holdout``, or no name: none of them.
+        effects: Names, or a text with commas between them; ``holdout`` or empty: no effects.
         where: Start of messages.
 
     Raises:
-        UsageError: A name is unknown, or stands beside ``holdout``.
+        UsageError: Unknown name, or ``holdout`` beside others.
     """
     names = effects.split(",") if isinstance(effects, str) else list(effects) or [HOLDOUT]
     names = [str(name).strip() for name in names]

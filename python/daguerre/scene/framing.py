@@ -1,4 +1,4 @@
-"""A camera for scenes that bring none: from the front, a little above, everything in the frame."""
+"""Default camera for scenes without one: from the front, slightly above, all in view."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from daguerre.camera.camera import Camera
 from .scene import Scene
 
 FloatArray = NDArray[np.float64]
-#: From where: glTF's front is +z; a little to the right and above shows depth.
+#: Direction to the camera: glTF's front is +z; slightly right and above shows depth.
 _TOWARD_CAMERA = np.array([0.35, 0.3, 1.0]) / math.sqrt(0.35**2 + 0.3**2 + 1)
 _HALF_FIELD = math.atan(12 / 50)  # of 50 mm over the height of 24 mm
 
 
 def frame_everything(scene: Scene) -> Camera | None:
-    """A 50 mm camera at f/8 that has the whole scene in view; None if there is nothing to see."""
+    """Makes a 50 mm camera at f/8 with the whole scene in view; None if the scene is empty."""
     corners = bounds(scene)
     if corners is None:
         return None
@@ -35,7 +35,7 @@ def frame_everything(scene: Scene) -> Camera | None:
 
 
 def bounds(scene: Scene) -> tuple[FloatArray, FloatArray] | None:
-    """Corners (3,) of the box around the boxes of what is shown, m; None if there is nothing."""
+    """Corners (3,) of the box around all visible instances, m; None if there are none."""
     filled = [i for i in scene.instances if i.shown and len(scene.meshes[i.mesh].positions)]
     if not filled:
         return None
@@ -46,7 +46,7 @@ def bounds(scene: Scene) -> tuple[FloatArray, FloatArray] | None:
         boxes[mesh] = (low + high) / 2, (high - low) / 2
     centers, halves = np.array([boxes[i.mesh] for i in filled]).swapaxes(0, 1)
     matrices = np.array([i.transform for i in filled])
-    # A turned box reaches as far along an axis as its half edges together.
+    # A rotated box reaches along an axis by the sum of its projected half edges.
     middles = np.einsum("nij,nj->ni", matrices[:, :3, :3], centers) + matrices[:, :3, 3]
     reach = np.einsum("nij,nj->ni", np.abs(matrices[:, :3, :3]), halves)
     return (middles - reach).min(axis=0), (middles + reach).max(axis=0)

@@ -1,4 +1,4 @@
-"""Environments by what a light meter reads on the ground: illuminance, lux."""
+"""Illuminance of the ground by an environment, as a light meter reads it, lux."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _STRIPE = 256  # rows
 
 
 def illuminance(environment: Environment) -> float:
-    """On a horizontal plane that faces up and has nothing about it, lux.
+    """Illuminance of an unobstructed horizontal plane that faces up, lux.
 
-    E = integral of L cos(theta) over the upper half; the rows of a panorama exactly.
+    E = integral of L cos(theta) over the upper hemisphere, exact for the rows of a panorama.
     """
     luma = luminance_of_rgb()
     if environment.image is None:
@@ -37,10 +37,10 @@ def illuminance(environment: Environment) -> float:
 
 
 def scale_for(environment: Environment, lux: float, where: str = "environment: lux") -> float:
-    """The scale, cd/m2, with which an environment has an illuminance.
+    """Computes the scale, cd/m2, that gives an environment an illuminance.
 
     Raises:
-        UsageError: It is no number of at least 0.
+        UsageError: The illuminance is not a number of at least 0.
         InputError: The environment is black above the horizon.
     """
     number(lux, where, 0)

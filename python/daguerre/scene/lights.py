@@ -1,4 +1,4 @@
-"""Emitters that are no surfaces. They sit at the origin of their transform and shine along -z."""
+"""Lights that are not meshes. They stand at the origin of their transform and shine along -z."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Color = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class PointLight:
-    """Intensity in cd; with a radius (m) it becomes a visible ball of the same intensity."""
+    """Point light: intensity in cd; with a radius (m), a visible ball of the same intensity."""
 
     intensity: Color = (1.0, 1.0, 1.0)
     range: float = math.inf
@@ -23,7 +23,7 @@ class PointLight:
 
 @dataclass(frozen=True)
 class SpotLight:
-    """Intensity on the axis in cd; half angles in degrees."""
+    """Spot light: intensity on the axis in cd, half angles in degrees."""
 
     intensity: Color = (1.0, 1.0, 1.0)
     inner_angle: float = 0.0
@@ -34,7 +34,7 @@ class SpotLight:
 
 @dataclass(frozen=True)
 class DirectionalLight:
-    """Illuminance in lux on a facing surface."""
+    """Directional light: illuminance in lux on a surface that faces it."""
 
     illuminance: Color = (1.0, 1.0, 1.0)
     name: str = ""
@@ -42,7 +42,7 @@ class DirectionalLight:
 
 @dataclass(frozen=True)
 class SphereLight:
-    """A ball of even luminance (cd/m2) that rays can hit; radius in m."""
+    """Visible ball of uniform luminance (cd/m2); radius in m."""
 
     luminance: Color = (1.0, 1.0, 1.0)
     radius: float = 0.1
@@ -53,10 +53,10 @@ Light = PointLight | SpotLight | DirectionalLight | SphereLight
 
 
 def check_light(light: Light) -> None:
-    """Refuses what is no light, and numbers that no light has.
+    """Checks a light and its values.
 
     Raises:
-        InputError: With the light's name and the field.
+        InputError: It is not a light, or a value is wrong; the message names light and field.
     """
     if not isinstance(light, Light):
         raise InputError(

@@ -16,11 +16,11 @@ Color = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class TextureSlot:
-    """Use of a texture by a material.
+    """Reference of a material to a texture.
 
     Attributes:
         texture: Index returned by ``Scene.add_texture``.
-        uv_set: 0 or 1.
+        uv_set: Set of texture coordinates, 0 or 1.
         transform: uv' = (a u + b v + c, d u + e v + f), as (a, b, c, d, e, f).
     """
 
@@ -31,14 +31,14 @@ class TextureSlot:
 
 @dataclass(frozen=True)
 class Diffuse:
-    """Lambert on both sides."""
+    """Lambertian diffuse material, on both sides."""
 
     reflectance: Color = (0.5, 0.5, 0.5)
 
 
 @dataclass(frozen=True)
 class Conductor:
-    """GGX microfacets of constant reflectance, both sides. ``alpha`` below 1e-3 is a mirror."""
+    """Metal: GGX microfacets of constant reflectance, both sides; ``alpha`` < 1e-3: a mirror."""
 
     reflectance: Color = (1.0, 1.0, 1.0)
     alpha: float = 0.1
@@ -46,12 +46,12 @@ class Conductor:
 
 @dataclass(frozen=True)
 class Dielectric:
-    """Clear glass, smooth (``alpha`` below 1e-3) or GGX rough; the normal's side is outside.
+    """Clear glass, smooth (``alpha`` < 1e-3) or GGX rough; the normal points outside.
 
     Attributes:
         ior: Index of refraction, at 587.6 nm.
         alpha: GGX roughness.
-        tint: Multiplies what is transmitted.
+        tint: Factor on transmitted light.
         dispersion: 20 / Abbe number; 0: the same index at every wavelength.
     """
 
@@ -63,12 +63,12 @@ class Dielectric:
 
 @dataclass(frozen=True)
 class Gltf:
-    """glTF metallic-roughness and its extensions, by the names of the glTF properties.
+    """glTF metallic-roughness material with extensions; fields have the names of glTF properties.
 
-    Those are KHR anisotropy, clearcoat, diffuse_transmission, dispersion (20 / Abbe number),
-    emissive_strength, ior, iridescence, sheen, specular, transmission and volume.
-    ``anisotropy_rotation`` is in degrees counter-clockwise from the tangent; the thickness of the
-    iridescent film is in nm, the maximum where no texture varies it.
+    The extensions are KHR anisotropy, clearcoat, diffuse_transmission, dispersion (20 / Abbe
+    number), emissive_strength, ior, iridescence, sheen, specular, transmission and volume.
+    ``anisotropy_rotation`` is in degrees counter-clockwise from the tangent. The thickness of the
+    iridescent film is in nm; without a texture the maximum is used.
 
     With ``specular_glossiness`` the base colour is the diffuse colour, the specular colour the
     reflectance at normal incidence. With ``unlit`` the base colour is a luminance in cd/m2, to
@@ -129,7 +129,7 @@ class Gltf:
     unlit: bool = False
 
     def __repr__(self) -> str:
-        """Names what is not as it is by default: there are 52 fields."""
+        """Lists only fields that differ from their defaults, as there are 52 fields."""
         return f"Gltf({', '.join(changed(self))})"
 
 
@@ -138,12 +138,12 @@ Kind = Diffuse | Conductor | Dielectric | Gltf
 
 @dataclass(frozen=True)
 class Material:
-    """A named material: one of the kinds above, and emission on top of it.
+    """A named material: a kind of surface, and emission added to it.
 
     Attributes:
         kind: Diffuse, Conductor, Dielectric or Gltf.
-        emission: Luminance added on the front side, cd/m2.
-        two_sided_emission: Emit from the back too.
+        emission: Luminance that the front side emits, cd/m2.
+        two_sided_emission: Whether the back emits too.
     """
 
     kind: Kind = field(default_factory=Diffuse)
@@ -153,10 +153,10 @@ class Material:
 
 
 def check_material(material: Material, where: str) -> None:
-    """Refuses what is no material, and values of the wrong shape; ranges are the core's to check.
+    """Checks a material and the shapes of its values; the core checks their ranges.
 
     Raises:
-        InputError: With the name of the field.
+        InputError: The message names the field.
     """
     if not isinstance(material, Material):
         raise InputError(f"{where}: wanted a Material, got {short(material)}")

@@ -1,4 +1,4 @@
-"""Meshes made of a user's arrays, each checked, and the keywords of ``Scene.add_mesh``."""
+"""Meshes from arrays, with checks, and the keywords of ``Scene.add_mesh``."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from daguerre.parameters.table import Table
 
 from .parts import Mesh
 
-#: Numbers that each vertex has.
+#: Number of components of each vertex attribute.
 COLUMNS = {"normals": 3, "uv": 2, "uv1": 2, "tangents": 4, "colors": 4}
 
 
@@ -55,7 +55,7 @@ MESH = Table(
 def mesh_of(
     positions: Any, indices: ArrayLike, attributes: Mapping[str, Any], where: str, name: str
 ) -> Mesh:
-    """The mesh of these arrays; ``attributes`` are those in ``COLUMNS``, or None.
+    """Makes a mesh from arrays; ``attributes`` are those in ``COLUMNS``, or None.
 
     Raises:
         InputError: A shape, an index or a number is wrong; the message names it.
@@ -71,7 +71,7 @@ def mesh_of(
 
 
 def _triangles(indices: ArrayLike, where: str, count: int) -> NDArray[Any]:
-    """Indices below the number of vertices, shape (M, 3)."""
+    """Checks indices against the number of vertices; shape (M, 3)."""
     triangles = to_numbers(indices, where, "indices", "shape (M, 3)")
     if triangles.dtype.kind not in "iu":
         raise InputError(f"{where}: indices: wanted integers, got {triangles.dtype}")
@@ -88,7 +88,7 @@ def _triangles(indices: ArrayLike, where: str, count: int) -> NDArray[Any]:
 
 
 def _with_alpha(colors: ArrayLike | None, where: str) -> ArrayLike | None:
-    """Colours without alpha are opaque; others stay as they are."""
+    """Adds an opaque alpha to colours that have none."""
     if colors is None or np.shape(colors)[-1:] != (3,):
         return colors
     rgb = array(colors, where, "colors", 3)

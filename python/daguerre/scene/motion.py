@@ -1,4 +1,4 @@
-"""Motion of a scene, beside the plain lists that show one moment of it."""
+"""Motion of a scene; the scene's own lists hold one moment of it."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ class Vertices(FixedArrays):
 
     Attributes:
         positions: Shape (N, 3), m.
-        normals: Shape (N, 3), or None where the mesh has none.
-        tangents: Shape (N, 4), likewise.
-        uv: Shape (N, 2), likewise. This, ``uv1`` and ``colors`` may differ from picture to picture,
-            but do not change while a shutter is open.
+        normals: Shape (N, 3), or None if the mesh has none.
+        tangents: Shape (N, 4), or None.
+        uv: Shape (N, 2), or None. ``uv``, ``uv1`` and ``colors`` may differ from picture to
+            picture, but must not change while the shutter is open.
         uv1: Shape (N, 2).
         colors: Shape (N, 4).
     """
@@ -36,16 +36,16 @@ class Vertices(FixedArrays):
 
 @dataclass(eq=False)
 class SceneMotion(Value):
-    """Values over time, by the index of what they belong to; what is absent stays.
+    """Values over time, by the index of their owner; owners without an entry do not change.
 
     Attributes:
-        instances: World from local, (4, 4).
-        shown: Whether an instance is there, true or false.
-        meshes: ``Vertices``.
-        materials: ``Material``.
-        lights: (light, its transform).
+        instances: World from local, shape (4, 4), by index of the instance.
+        shown: Visibility, true or false, by index of the instance.
+        meshes: ``Vertices`` by index of the mesh.
+        materials: ``Material`` by index.
+        lights: Pairs (light, its transform) by index of the light.
         environment: ``Environment``.
-        node_positions: World position (m) of a node, by its name.
+        node_positions: World position (m) by name of the node.
     """
 
     instances: dict[int, Dynamic] = field(default_factory=dict)
@@ -62,7 +62,7 @@ class SceneMotion(Value):
         return any(getattr(self, part.name) for part in fields(self))
 
     def parts(self) -> Iterator[tuple[str, Dynamic]]:
-        """All that changes, each with a name such as ``instances 3``."""
+        """All values over time, each with a name such as ``instances 3``."""
         for part in fields(self):
             value = getattr(self, part.name)
             if isinstance(value, dict):

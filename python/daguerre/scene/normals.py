@@ -1,4 +1,4 @@
-"""Normals and tangents of glTF made units, whatever quantisation, morphs and skins left of them."""
+"""Normalization of glTF normals and tangents after quantisation, morphs and skins."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ FloatArray = NDArray[np.float32]
 def unit_normals(
     normals: FloatArray, positions: FloatArray, triangles: NDArray[np.uint32], notes: Notes
 ) -> FloatArray:
-    """Unit length; where it is 0, the normal of a face there."""
+    """Normalizes normals; one of length 0 becomes the normal of an adjacent face."""
     lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals, dtype=np.float64))
     empty = lengths == 0
     if empty.any():
@@ -31,7 +31,7 @@ def unit_normals(
 
 
 def unit_tangents(tangents: FloatArray | None, notes: Notes) -> FloatArray | None:
-    """Unit length and a sign; a mesh with tangents of length 0 is better without any."""
+    """Normalizes tangents and their signs; drops all if one has length 0."""
     if tangents is None:
         return None
     lengths = np.linalg.norm(tangents[:, :3].astype(np.float64), axis=1)

@@ -15,7 +15,7 @@ from .motion import Vertices
 
 @dataclass(frozen=True, eq=False)
 class Mesh(FixedArrays):
-    """Triangles of one material, in their own space (m)."""
+    """Triangles of one material, in local space (m)."""
 
     positions: NDArray[np.float32]
     indices: NDArray[np.uint32]
@@ -33,16 +33,17 @@ class Mesh(FixedArrays):
 
 
 def vertices_of(mesh: Mesh) -> Vertices:
-    """The vertices of a mesh at the time of its scene."""
+    """Vertices of a mesh at the time of its scene."""
     return Vertices(mesh.positions, mesh.normals, mesh.tangents, mesh.uv, mesh.uv1, mesh.colors)
 
 
 @dataclass(frozen=True, eq=False)
 class Texture(FixedArrays):
-    """Pixels (H, W, C), uint8 or float32, row 0 on top; ``srgb`` decodes the colour channels.
+    """Image texture: pixels (H, W, C), uint8 or float32, row 0 on top.
 
-    ``filter`` is for magnified texels ("linear" or "nearest"), ``min_filter`` for minified ones,
-    with the names of glTF: "linear_mipmap_linear", ..., or "linear" and "nearest" for no mip-maps.
+    ``srgb``: the colour channels are sRGB-encoded. ``filter`` is for magnification ("linear" or
+    "nearest"), ``min_filter`` for minification, with glTF's names: "linear_mipmap_linear", ..., or
+    "linear" and "nearest" without mip-maps.
     """
 
     pixels: NDArray[np.uint8] | NDArray[np.float32]
@@ -59,9 +60,9 @@ class Texture(FixedArrays):
 
 @dataclass(frozen=True, eq=False)
 class Instance(Value):
-    """A mesh in the world.
+    """A mesh placed in the world.
 
-    ``catcher``: effects of objects that it catches (``Scene.set_catcher``); None: it is an object.
+    ``catcher``: effects of objects that it catches (``Scene.set_catcher``); None: not a catcher.
     """
 
     mesh: int
@@ -77,9 +78,9 @@ class Instance(Value):
 
 @dataclass(frozen=True, eq=False)
 class Plate(FixedArrays):
-    """A photograph of the set, (H, W, 3), cd/m2 as a frame has them, and the camera that took it.
+    """A photograph of the set, shape (H, W, 3), in the units of a frame, and its camera.
 
-    ``camera``: None is the one that renders.
+    ``camera``: None means the camera that renders.
     """
 
     pixels: NDArray[np.float32]
@@ -91,7 +92,7 @@ class Plate(FixedArrays):
 
 @dataclass(frozen=True, eq=False)
 class Environment(Value):
-    """Light from infinity: a panorama (H, W, 3) or one colour, times ``scale`` cd/m2."""
+    """Light from infinity: a panorama (H, W, 3) or one colour; ``scale`` is in cd/m2."""
 
     image: NDArray[np.float32] | None = None
     color: tuple[float, float, float] | None = None

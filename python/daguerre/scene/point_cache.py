@@ -1,4 +1,4 @@
-"""Meshes whose vertices are given at several times, as simulations and scans give them."""
+"""Meshes with vertices at several times, as from simulations and scans."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class PointCache(Value):
     """The vertices of a mesh over time.
 
     Attributes:
-        positions: Over time, shape (N, 3), m.
-        normals: Over time; None: those of ``rest``, turned as the surface around them turns.
-        rest: Vertices of one moment, to which its normals and tangents belong.
+        positions: Positions over time, shape (N, 3), m.
+        normals: Normals over time; None: those of ``rest``, rotated with the surface.
+        rest: Vertices of one moment, with the normals and tangents at that moment.
         triangles: Indices, shape (M, 3).
-        where: For complaints.
+        where: Owner of the vertices, for messages.
     """
 
     positions: Dynamic
@@ -39,7 +39,7 @@ class PointCache(Value):
     where: str
 
     def at(self, time_s: float) -> Vertices:
-        """The vertices at a time, s."""
+        """Returns the vertices at a time, s."""
         count = len(self.rest.positions)
         points = optional_array(self.positions.at(time_s), self.where, "positions", 3, count)
         assert points is not None
@@ -55,7 +55,7 @@ class PointCache(Value):
         return replace(self.rest, positions=points, normals=normals, tangents=tangents)
 
     def breaks(self, begin: float, end: float) -> Sequence[float]:
-        """Those of positions and normals."""
+        """Breaks of positions and normals, s."""
         both = [d for d in (self.positions, self.normals) if d is not None]
         return sorted({float(t) for d in both for t in d.breaks(begin, end)})
 
@@ -65,13 +65,13 @@ class PointCache(Value):
 
     @cached_property
     def _corners(self) -> NDArray[np.int64]:
-        """Which vertices are one: seams of textures split what is smooth. Shape (N,)."""
+        """Indices that merge vertices split by texture seams, shape (N,)."""
         assert self.rest.normals is not None
         rows = np.concatenate([self.rest.positions, self.rest.normals], axis=1)
         return np.asarray(np.unique(rows, axis=0, return_inverse=True)[1]).reshape(-1)
 
     def _smooth(self, points: FloatArray) -> NDArray[np.float64]:
-        """Unit normals of the surface at its vertices, faces weighted by area."""
+        """Unit normals at the vertices, with faces weighted by area."""
         a, b, c = (points[self.triangles[:, k]].astype(np.float64) for k in range(3))
         faces = np.cross(b - a, c - a)
         sums = np.zeros((len(points), 3))
@@ -82,7 +82,7 @@ class PointCache(Value):
 
 
 class _Turn:
-    """The shortest turns from unit vectors to others, of which there may be many at once.
+    """Shortest rotations from unit vectors to others, for many at once.
 
     Source: Moeller and Hughes 1999, Efficiently Building a Matrix to Rotate One Vector to Another.
     """
@@ -92,7 +92,7 @@ class _Turn:
         self._c = np.einsum("ni,ni->n", before, after)[:, None]
 
     def of(self, vectors: FloatArray) -> FloatArray:
-        """Unit vectors after the turn, float32."""
+        """Rotates unit vectors, float32."""
         v = vectors.astype(np.float64)
         along = np.cross(self._w, v)
         turned = self._c * v + along
@@ -104,10 +104,10 @@ class _Turn:
 
 
 def steps_of(steps: Any, where: str) -> Dynamic:
-    """Positions over time from what ``add_mesh(steps=...)`` takes.
+    """Positions over time from the argument of ``add_mesh(steps=...)``.
 
     Raises:
-        InputError: It is neither (times, positions) nor a value over time.
+        InputError: The argument is neither (times, positions) nor a value over time.
     """
     if is_dynamic(steps):
         value: Dynamic = steps

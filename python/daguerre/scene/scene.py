@@ -1,6 +1,6 @@
-"""A scene: meshes, textures, materials, instances, lights and cameras. Arrays in, nothing hidden.
+"""A scene: meshes, textures, materials, instances, lights and cameras, built from arrays.
 
-World frame: metres, +y up (glTF); transforms are 4x4 matrices that act on column vectors.
+World frame: metres, +y up (glTF). Transforms are 4x4 matrices that act on column vectors.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ class Scene(Value):
 
     Build it from arrays with the ``add_*`` methods, or read a file with :func:`daguerre.load`.
 
-    Its lists show the moment ``time`` (s); ``motion`` has what changes, and ``at`` goes to another
-    moment. Transforms, vertices and the parameters of materials, lights and environment may be
-    values over time, such as :func:`daguerre.keys` makes.
+    Transforms, vertices and the parameters of materials, lights and environment may be values over
+    time (:func:`daguerre.keys`). The lists of the scene hold the state at ``time`` (s); ``motion``
+    holds the values over time, and ``at`` returns the scene at another time.
     """
 
     path: Path | None = None
@@ -56,10 +56,10 @@ class Scene(Value):
     lights: list[tuple[Light, NDArray[np.float64]]] = field(default_factory=list)
     cameras: dict[str, Camera] = field(default_factory=dict)
     default_camera: str | None = None
-    #: other names by which ``camera`` finds one, such as that of the camera in its node
+    #: other names of cameras, such as that of the glTF camera of a node
     camera_aliases: dict[str, str] = field(default_factory=dict)
     environment: Environment | None = None
-    #: what of all that changes over time
+    #: values over time
     motion: SceneMotion = field(default_factory=SceneMotion)
     #: length of the animations of a file, s
     duration: float | None = None
@@ -69,9 +69,9 @@ class Scene(Value):
     node_positions: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     #: names of the variants of the file's materials, for ``load(variant=...)``
     variants: list[str] = field(default_factory=list)
-    #: what the reader met and did not understand, one sentence each, with counts
+    #: features of the file that the reader does not support, one sentence each, with counts
     warnings: list[str] = field(default_factory=list)
-    #: photograph of the set, as objects see it in mirrors and glass
+    #: photograph of the set, which objects reflect and refract
     plate: Plate | None = None
 
     __hash__ = None  # type: ignore[assignment]  # it changes
@@ -85,30 +85,30 @@ class Scene(Value):
         return f"<Scene {self.path.name if self.path else 'of arrays'}: {', '.join(words)}>"
 
     def at(self, time: float) -> Scene:
-        """Returns the scene at another time, s; what does not change is shared."""
+        """Returns the scene at another time, s; both scenes share the parts that do not change."""
         return scene_at(self, check_number(time, "scene: time"))
 
     def note(self, *sentences: str) -> None:
-        """Says what a reader met and did not understand, or decided: one sentence each."""
+        """Adds a warning of a reader: an unsupported feature, or a decision; one sentence."""
         self.warnings.extend(sentences)
 
     def set_clock(self, duration: float | None) -> None:
-        """Says how long the animations of a file last, s; None: there are none."""
+        """Sets the length of the file's animations, s; None: there are none."""
         self.duration = duration
 
     def add_variant(self, name: str) -> None:
-        """Says that the file has another set of materials, for ``load(variant=...)``."""
+        """Adds the name of a material variant of the file, for ``load(variant=...)``."""
         self.variants.append(name)
 
     def add_node(
         self, name: str, position: NDArray[np.float64], *, motion: Dynamic | None = None
     ) -> None:
-        """Names a place, which may have instances of the same name.
+        """Adds a node: a named position, which may group instances.
 
         Args:
-            name: For ``focus_on``, ids and boxes; each once.
-            position: In the world, shape (3,), m.
-            motion: The same over time.
+            name: Unique name, for ``focus_on``, ids and boxes.
+            position: World position, shape (3,), m.
+            motion: World position over time.
         """
         self.node_positions[name] = position
         self.nodes.setdefault(name, [])
@@ -116,20 +116,20 @@ class Scene(Value):
             self.motion.node_positions[name] = motion
 
     def group_instances(self, name: str, instances: Sequence[int]) -> None:
-        """Says which instances a node stands for: its own and its descendants'."""
+        """Sets the instances of a node: its own and its descendants'."""
         self.nodes[name] = list(instances)
 
     def set_catcher(self, node: str, effects: str | Sequence[str] = EFFECTS) -> None:
-        """Makes the meshes of a node, and below it, a part of the set: what the plate shows.
+        """Makes the meshes of a node and its descendants catchers: stand-ins for the plate.
 
-        A catcher is not in the picture: it hides objects that lie behind it, and what objects take
-        from its light and add to it becomes ``Frame.catcher`` (``docs/plates.md``). Its material
-        should look like what it stands for.
+        A catcher is not drawn. It hides objects behind it, and the light that objects take from it
+        and add to it becomes ``Frame.catcher`` (``docs/plates.md``). Its material should match the
+        real surface.
 
         Args:
             node: Name of the node.
-            effects: Which effects of objects count: "shadow", "reflection" and "gi" (default: all),
-                or "holdout" for none of them.
+            effects: Effects of objects to catch: "shadow", "reflection" and "gi" (default: all), or
+                "holdout" for none of them.
 
         Raises:
             UsageError: No such node, one without meshes, or an unknown effect.
@@ -143,15 +143,16 @@ class Scene(Value):
             self.instances[i] = replace(self.instances[i], catcher=found)
 
     def set_plate(self, pixels: ArrayLike, camera: Camera | None = None) -> None:
-        """Throws a photograph of the set back onto it, where objects see catchers.
+        """Projects a photograph of the set onto the catchers, for objects to see.
 
-        Mirrors and glass then show the photograph, and it lights what stands on it: where a catcher
-        lies in its frame and nothing of the set is in between; elsewhere catchers have the light of
-        their materials. Smooth mirrors and glass see it in the place of the environment, too.
+        Mirrors and glass then show the photograph, and its light bounces onto objects. It covers
+        catchers within its frame that no other catcher hides from its camera; elsewhere catchers
+        have the light of their materials. Smooth mirrors and glass also see it in place of the
+        environment.
 
         Args:
             pixels: Shape (H, W, 3), linear Rec.709, in units of a frame: 1 is a white of 1 cd/m2.
-            camera: Camera that took it; default: the one that renders.
+            camera: Camera that took the photograph; default: the one that renders.
 
         Raises:
             InputError: Another shape, or numbers that are not finite.
@@ -169,7 +170,7 @@ class Scene(Value):
 
     @property
     def has_catchers(self) -> bool:
-        """Whether some instance is a catcher."""
+        """Whether the scene has a catcher."""
         return any(instance.catcher is not None for instance in self.instances)
 
     def add_texture(
@@ -204,9 +205,9 @@ class Scene(Value):
         """Adds a material; returns its index.
 
         Args:
-            material: A material, or only what it is made of; absent: made from ``fields``.
-            motion: The material over time; ``material`` then is that of the scene's time.
-            **fields: Those of :class:`Material`.
+            material: A material, or only its kind; default: a material made from ``fields``.
+            motion: The material over time; ``material`` then is its state at the scene's time.
+            **fields: Fields of :class:`Material`.
         """
         if material is None:
             unknown = sorted(set(fields) - set(Material.__dataclass_fields__))
@@ -238,7 +239,7 @@ class Scene(Value):
         """Adds triangles; returns the index of the mesh.
 
         Args:
-            positions: Vertices, shape (N, 3), m; they may change over time.
+            positions: Positions of vertices, shape (N, 3), m; they may change over time.
             indices: Triangles, shape (M, 3) or (3 M,).
             normals: Unit normals, shape (N, 3); default: flat shading. Normals that do not change
                 belong to ``positions`` at the scene's time, and turn with the surface.
@@ -266,7 +267,7 @@ class Scene(Value):
         return len(self.meshes) - 1
 
     def _now(self, value: Any) -> Any:
-        """A value, or what it is at the time of the scene."""
+        """Returns a value, evaluated at the time of the scene."""
         return value.at(self.time) if is_dynamic(value) else value
 
     def add_instance(
@@ -279,19 +280,19 @@ class Scene(Value):
         shown: bool | Dynamic = True,
         motion: Dynamic | None = None,
     ) -> int:
-        """Puts a mesh into the world; returns the index of the instance.
+        """Places a mesh in the world; returns the index of the instance.
 
         Args:
             mesh: Index from ``add_mesh``.
             material: Index from ``add_material`` or a material; default: grey diffuse.
             transform: World from local, shape (4, 4), may change over time; default: identity.
             name: Name for messages, ids and ``focus_on``.
-            shown: Whether it is there, which may change over time.
-            motion: The transform over time; ``transform`` then is that of the scene's time.
+            shown: Whether the instance is visible; it may change over time.
+            motion: The transform over time; ``transform`` then is its state at the scene's time.
 
         Raises:
-            InputError: There is no such mesh or material, or the transform is no finite matrix.
-            UsageError: The transform is a list of keys over time, as it is before ``dg.keys``.
+            InputError: No such mesh or material, or the transform is not a finite matrix.
+            UsageError: The transform is a list of (time, matrix); pass it through ``dg.keys``.
         """
         where = f"instance {name or len(self.instances)!r}"
         mesh = self._index(mesh, len(self.meshes), f"{where}: mesh")
@@ -321,7 +322,7 @@ class Scene(Value):
     def add_instances(
         self, mesh: int, material: int, transforms: NDArray[np.float64], *, name: str = ""
     ) -> None:
-        """Puts a mesh into the world many times, looked at all at once: there may be a million.
+        """Places a mesh in the world many times, with one check for all: there may be a million.
 
         Args:
             mesh: Index from ``add_mesh``.
@@ -330,7 +331,7 @@ class Scene(Value):
             name: Name of all of them, as in :meth:`add_instance`.
 
         Raises:
-            InputError: There is no such mesh or material, or a transform is no finite matrix.
+            InputError: No such mesh or material, or a transform is not a finite matrix.
         """
         where = f"instances {name or len(self.instances)!r}"
         mesh = self._index(mesh, len(self.meshes), f"{where}: mesh")
@@ -355,7 +356,8 @@ class Scene(Value):
     ) -> int:
         """Adds a light at the origin of ``transform`` (4, 4), shining along its -z.
 
-        ``motion`` is both over time, (light, transform); they then are those of the scene's time.
+        ``motion`` gives both over time, as (light, transform); the arguments are then their state
+        at the scene's time.
         """
         shown = at(light, self.time)
         check_light(shown)
@@ -370,7 +372,7 @@ class Scene(Value):
     def add_camera(self, name: str, camera: Camera, *, alias: str = "") -> None:
         """Adds a camera under a name; the first one becomes the default.
 
-        ``alias`` is another name by which ``camera`` finds it, unless another camera has it.
+        ``alias`` is a second name for ``camera``, unless another camera has it.
         """
         for value, kind in ((name, str), (camera, Camera)):
             if not isinstance(value, kind):
@@ -390,16 +392,17 @@ class Scene(Value):
         rotation: float | Dynamic = 0.0,
         lux: float | None = None,
     ) -> None:
-        """Sets the light from infinity: a picture (H, W, 3) or a colour; 1.0 is ``scale`` cd/m2.
+        """Sets the light from infinity: an environment map or a colour; 1.0 is ``scale`` cd/m2.
 
-        All parameters but the picture may change over time.
+        All parameters but the map may change over time.
 
         Args:
-            image: Equirectangular, row 0 at the zenith (+y), centre column along -z; or its file.
+            image: Equirectangular map, shape (H, W, 3), row 0 at the zenith (+y), centre column
+                along -z; or its file.
             color: One linear colour for the whole sky.
             scale: Luminance of a value of 1, cd/m2.
-            rotation: Turn about +y, degrees.
-            lux: Illuminance on the ground, a horizontal plane that faces +y, instead of ``scale``.
+            rotation: Rotation about +y, degrees.
+            lux: Illuminance of the ground, a horizontal plane that faces +y, instead of ``scale``.
         """
         if lux is not None and not (isinstance(scale, int | float) and scale == 1):
             raise UsageError("environment: wanted either scale or lux, got both")
@@ -433,10 +436,10 @@ class Scene(Value):
         return index
 
     def camera(self, name: str | None = None) -> Camera:
-        """Returns the camera of that name, or the default one.
+        """Returns the camera of this name; without a name, the default camera.
 
         Raises:
-            InputError: There is none; the message suggests the nearest names.
+            InputError: There is no such camera; the message suggests the nearest names.
         """
         if name is None:
             if self.default_camera is None:
@@ -461,12 +464,12 @@ def _dynamic(value: Any) -> Dynamic | None:
 
 
 def _motion_of(value: Any) -> Dynamic | None:
-    """The value over time, or None if nothing in it changes."""
+    """Returns the value over time, or None if it does not change."""
     return _dynamic(value) or (Composite(value) if moves(value) else None)
 
 
 def _are_keys(transform: Any) -> bool:
-    """Whether this looks like [(time, matrix), ...]."""
+    """Whether a value looks like [(time, matrix), ...]."""
     return (
         isinstance(transform, list | tuple)
         and len(transform) > 0
@@ -489,7 +492,7 @@ def _panorama(image: ArrayLike) -> NDArray[np.float32]:
 
 
 def scene_at(scene: Scene, time: float) -> Scene:
-    """The scene with its lists evaluated anew; its motion is shared, and what stays, too."""
+    """Returns the scene with its lists evaluated at a time; shares motion and constant parts."""
     motion = scene.motion
     moved: dict[str, Any] = {
         "materials": _replaced(scene.materials, motion.materials, time),

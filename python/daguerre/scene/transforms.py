@@ -14,7 +14,7 @@ Matrix = NDArray[np.float64]
 
 
 def affine(matrices: Matrix, item: Item) -> Matrix:
-    """Matrices (..., 4, 4) with a last row of exactly 0, 0, 0, 1, which it must nearly be."""
+    """Sets the last row of matrices (..., 4, 4) to exactly 0, 0, 0, 1; it must be close to that."""
     last = matrices[..., 3, :].reshape(-1, 4)
     bad = np.flatnonzero(np.abs(last - (0, 0, 0, 1)).max(axis=1) > 1e-5)
     if bad.size:
@@ -24,7 +24,7 @@ def affine(matrices: Matrix, item: Item) -> Matrix:
 
 
 def compose(t: Matrix, q: Matrix, s: Matrix) -> Matrix:
-    """Translation x rotation x scale, shapes (..., 3), (..., 4; unit x, y, z, w), (..., 3)."""
+    """Composes translation (..., 3), rotation (..., 4; unit x, y, z, w) and scale (..., 3)."""
     x, y, z, w = q.tolist() if q.ndim == 1 else q.T  # one by one, floats are faster
     rows = np.array(
         (
@@ -41,7 +41,7 @@ def compose(t: Matrix, q: Matrix, s: Matrix) -> Matrix:
 
 
 def without_scale(world: Matrix) -> Matrix | None:
-    """The rigid part of a transform: place, -z and +y kept; None if there is no direction left.
+    """Removes scale from a transform, keeping position, -z and +y; None if an axis is degenerate.
 
     Cameras and lights ignore the scale of their node (glTF 2.0, 3.10; KHR_lights_punctual).
     """
@@ -59,7 +59,7 @@ def without_scale(world: Matrix) -> Matrix | None:
 
 
 def ranks(linear: Matrix) -> NDArray[np.int64]:
-    """Dimensions that transforms leave; 2 also where the float determinant would vanish."""
+    """Ranks of transforms; 2 also where the determinant vanishes in single precision."""
     volumes, sizes = np.abs(np.linalg.det(linear)), np.abs(linear).max(axis=(1, 2))
     found = np.full(len(linear), 3)
     for i in np.flatnonzero(~((volumes > 1e-30) & (volumes > 1e-12 * sizes**3))):
