@@ -1,4 +1,4 @@
-"""Renders: settings, sessions, jobs with checkpoints, passes and merging; for any front end."""
+"""Rendering for any front end: settings, sessions, jobs with checkpoints, passes and merging."""
 
 from .checkpoint import Checkpoint
 from .job import Job

@@ -1,14 +1,14 @@
-"""Adaptive sampling: a picture is drawn in rounds, each giving samples where they are needed.
+"""Adaptive sampling: draws a picture in rounds that add samples where they are needed.
 
 The error of a frame is relative: sqrt(mean(variance / (value^2 + 0.01))) over pixels and channels,
 with the variance that the film estimates. To reach it at least cost, pixel p needs n(p) samples in
 proportion to sqrt(V(p)), V the relative variance of one sample. A round decides from the sums of
 complete rounds alone, so neither threads nor interruptions change a bit.
 
-Where a sample count depends on the very values that it divides, the mean suffers: a pixel that by
-chance missed its bright paths looks clean and is left so. So pixels have three colours, and V of a
-pixel is taken from neighbours of the next colour, whose own counts come from those of the next:
-what a pixel has drawn comes back to its count after three rounds at the earliest, and faintly.
+If the sample count of a pixel depends on its own values, its mean is biased: a pixel that missed
+its bright paths by chance looks clean and stays so. So pixels have three colours, and V of a pixel
+comes from neighbours of the next colour, whose counts come from those of the next: the values of a
+pixel affect its own count after three rounds at the earliest, and faintly.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre.checks import number, whole
 
-#: Samples of every pixel before anything is decided, and step of all counts: aligned powers of two
+#: Samples of every pixel before the first decision, and step of all counts: aligned powers of two
 #: keep the sampler's points stratified.
 START = 16
 STEP = 8
-#: A round at most doubles the samples drawn, as the variances that it relies on are estimates, and
-#: adds this share at least, so that the last ones are not many.
+#: A round at most doubles the samples, as it relies on estimated variances, and adds at least this
+#: share, so that there are few last rounds.
 GROWTH = 1.06, 2.0
-#: No pixel gets less than this share of the mean: it may not have met its brightest light yet.
+#: Each pixel gets at least this share of the mean: it may not have met its brightest light yet.
 FLOOR = 1 / 3
-#: Pixels to each side of one whose variances speak for it, by 1 / distance^2. (Standard deviations
+#: Reach of neighbours whose variances count for a pixel, by 1 / distance^2. (Standard deviations
 #: would scatter less, but grow with the samples of a pixel that has rare light: a spiky picture
 #: came out 0.6 % too dark, and 3 % where rounds began at 8 samples.)
 REACH = 7
 MAX_SPP = 16384
-#: Added to the square of a value: what is darker than 0.1 need not be known as well.
+#: Added to the square of a value, so that values below 0.1 need less relative accuracy.
 DARK = 0.01
 PARTS: int = _core.ROUND_PARTS
 
@@ -46,14 +46,14 @@ Plane = NDArray[np.float32]
 
 @dataclass(frozen=True)
 class Round:
-    """Samples to be drawn, different for each pixel.
+    """A round: samples to draw, a different number for each pixel.
 
     Attributes:
         begin: First sample index of each pixel, shape (H, W).
-        count: How many it gets, shape (H, W).
-        drawn: Parts of the round, of ``PARTS``, that are drawn.
+        count: Number of samples of each pixel, shape (H, W).
+        drawn: Number of parts of the round, of ``PARTS``, that are drawn.
         noise: Relative error of the frame before this round.
-        expected: Mean samples per pixel that the wanted noise will probably take.
+        expected: Estimated mean samples per pixel for the target noise.
     """
 
     begin: Counts
@@ -64,19 +64,19 @@ class Round:
 
     @property
     def complete(self) -> bool:
-        """Whether all of it is drawn."""
+        """Whether the whole round is drawn."""
         return self.drawn >= PARTS
 
     def samples(self) -> float:
-        """Mean samples per pixel that are drawn."""
+        """Mean samples per pixel drawn so far."""
         return float(self.begin.mean() + self.count.mean() * self.drawn / PARTS)
 
 
 def check_noise(noise: object, spp: object, where: str = "noise") -> tuple[float, int]:
-    """The wanted relative error, and the most samples that a pixel may get.
+    """Checks the target relative error and the maximum samples per pixel.
 
     Raises:
-        UsageError: Out of range.
+        UsageError: One is out of range.
     """
     ceiling = MAX_SPP if spp is None else whole(spp, "spp", 2, 1 << 31, "2 .. 2^31")
     return number(noise, where, high=1.0, above=0.0), ceiling
@@ -90,15 +90,15 @@ def noise_of(variance: Plane, counts: Counts) -> float:
 def next_counts(
     variance: Plane, counts: Counts, factor: float, ceiling: int
 ) -> tuple[Counts, float]:
-    """Samples that each pixel gets in the next round, and what all have in the end, on average.
+    """Samples of each pixel in the next round, and the estimated mean in the end.
 
     Args:
         variance: Relative variance of one sample, (H, W).
         counts: Samples drawn, (H, W).
-        factor: Wanted relative variance of the frame over that of now.
-        ceiling: Most samples of a pixel.
+        factor: Target relative variance of the frame over the present one.
+        ceiling: Maximum samples of a pixel.
     """
-    # A subset of the pixels says how many are needed as well as all of them, and sooner.
+    # A subset of the pixels suffices to find the number, and is faster.
     some = slice(None, None, (variance.size >> 16) | 1)
     have, one = counts.ravel()[some].astype(np.float32), variance.ravel()[some]
     spread = around(variance)
@@ -130,7 +130,7 @@ def mean_over(values: Plane, counts: Counts | Plane) -> float:
 
 
 def share(need: Plane, have: Counts | Plane, scale: float, ceiling: int) -> Plane:
-    """Counts in proportion to need, but never fewer than there are, nor below the floor."""
+    """Counts in proportion to need, at least the present ones and the floor."""
     wanted = need * np.float32(scale)
     np.clip(wanted, have, ceiling, out=wanted, casting="same_kind")
     floor = FLOOR * float(wanted.mean(dtype=np.float64))
@@ -138,7 +138,7 @@ def share(need: Plane, have: Counts | Plane, scale: float, ceiling: int) -> Plan
 
 
 def dither(shape: tuple[int, ...]) -> Plane:
-    """Evenly spread over [0, 1) in every neighbourhood: added before rounding down, it keeps means.
+    """Dither values in [0, 1), even in every neighbourhood: added before flooring, they keep means.
 
     Source: Roberts 2018, The Unreasonable Effectiveness of Quasirandom Sequences (R2).
     """
@@ -149,7 +149,7 @@ def dither(shape: tuple[int, ...]) -> Plane:
 
 
 def first_scale(holds: Callable[[float], bool]) -> float:
-    """The smallest scale, to 1 part in 1000, at which something holds from there on."""
+    """Smallest scale, to 1 part in 1000, from which on a condition holds."""
     low, high = 1e-6, 1e12
     if not holds(high):
         return high

@@ -1,4 +1,4 @@
-"""The photograph of the set behind a picture: objects over it, with what catchers catch."""
+"""Background plate: composites a picture over the photograph of the set, with catchers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from daguerre.scene.scene import Scene
 from .parameters import PLATE
 from .settings import RenderSettings
 
-#: Difference of two pictures' sides, px of the smaller one, that is rounding.
+#: Difference of aspect, px of the smaller picture, that counts as rounding.
 _ROUNDING = 1.0
 
 
@@ -27,11 +27,11 @@ def shows_plate(settings: RenderSettings) -> bool:
 
 
 def check_backdrop(scene: Scene, settings: RenderSettings) -> None:
-    """Refuses a plate as background that is none, or of another camera or shape.
+    """Checks the background plate.
 
     Raises:
         UsageError: There is no plate, or another camera took it.
-        InputError: Its sides have another ratio than the picture's.
+        InputError: Its aspect ratio differs from the picture's.
     """
     if not shows_plate(settings):
         return
@@ -56,13 +56,13 @@ def check_backdrop(scene: Scene, settings: RenderSettings) -> None:
 
 
 def over(frame: Frame, pixels: NDArray[np.float32]) -> Frame:
-    """The frame over what is behind it; alpha and all layers stay those of the objects."""
+    """Composites the frame over its background; alpha and all layers stay those of the objects."""
     rgb = change_of_rgb(frame).of(pixels)
     return replace(frame, rgb=rgb, xyz=xyz_of(rgb))
 
 
 def behind(frame: Frame, plate: Plate | None) -> NDArray[np.float32]:
-    """Pixels of the plate behind those of a frame, (H, W, 3): 0 in the overscan."""
+    """Pixels of the plate behind a frame, shape (H, W, 3); 0 in the overscan."""
     wide, high = frame.metadata.get("resolution") or (frame.width, frame.height)
     left, top = (frame.metadata.get("crop") or (0, 0))[:2]
     assert plate is not None

@@ -1,4 +1,4 @@
-"""Checkpoints: a file that keeps a session's samples until its picture is complete."""
+"""Checkpoints: files that keep the samples of a session until its picture is complete."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ INTERVAL_S = 60.0
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """Where samples are kept.
+    """File that keeps samples.
 
     Attributes:
-        path: File, an .exr; None: they are not kept.
-        interval_s: Time between two saves; 0: only when the job stops.
+        path: File, an .exr; None: samples are not kept.
+        interval_s: Time between two saves, s; 0: save only when the job stops.
     """
 
     path: Path | None = None
@@ -35,24 +35,24 @@ class Checkpoint:
 
     @property
     def exists(self) -> bool:
-        """Whether there is one."""
+        """Whether the file exists."""
         return self.path is not None and self.path.exists()
 
     def save(self, session: Session) -> None:
-        """Writes the sums that a session has.
+        """Writes the sums of a session.
 
         Raises:
-            DaguerreError: The disk does not take them.
+            DaguerreError: The file cannot be written.
         """
         if self.path is not None:
             frame = replace(session.frame(truth=False, waves=False), aovs={})
             passes.write_pass(self.path, frame, passes.pass_of(session))
 
     def save_elsewhere(self, session: Session) -> Path | None:
-        """Writes the sums to a file of the same name in a new folder for temporary files.
+        """Writes the sums to a file of the same name in a new temporary folder.
 
         Returns:
-            The file; None if there is no place for it, either.
+            The file; None if that fails, too.
         """
         assert self.path is not None
         with suppress(OSError):
@@ -66,10 +66,10 @@ class Checkpoint:
         return None
 
     def load(self, session: Session, work: Work) -> bool:
-        """Takes up the samples of the file, if there is one.
+        """Loads the samples of the file, if it exists.
 
         Raises:
-            MismatchError: It belongs to another picture, or not to this work.
+            MismatchError: The file belongs to another picture, or to other samples.
         """
         if self.path is None or not self.path.exists():
             return False
@@ -80,10 +80,10 @@ class Checkpoint:
         return True
 
     def remove(self) -> None:
-        """Removes the file: the picture is complete.
+        """Removes the file when the picture is complete.
 
         Raises:
-            OutputError: The folder does not allow it.
+            OutputError: The file cannot be removed.
         """
         if self.path is not None:
             atomic.remove(self.path)

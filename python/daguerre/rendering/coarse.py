@@ -1,6 +1,6 @@
-"""A coarse picture for the first second: few pixels, one sample each, by a session of its own.
+"""A coarse preview for the first second: few pixels with one sample each, from a separate session.
 
-The session that draws the picture knows nothing of it, so no bit of the picture depends on it.
+The picture itself does not depend on it.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ from .settings import RenderSettings
 if TYPE_CHECKING:
     from daguerre.setup.built_scene import BuiltScene
 
-#: Pixels of the picture that is drawn, about.
+#: Approximate number of pixels of the preview.
 PIXELS = 20_000
 
 
 def coarse(
     scene: Scene, camera: Camera, settings: RenderSettings, built: BuiltScene | None = None
 ) -> tuple[Frame, BuiltScene]:
-    """The picture in large squares, at its full size, and the scene that was built for it.
+    """Draws a preview in large squares at full size; returns it and the scene built for it.
 
-    Light paths, ghosts, scatter and diffraction are left out, for they need time to be set up.
+    It omits light paths, ghosts, scatter and diffraction, whose set-up takes time.
 
     Args:
         scene: The scene.
         camera: The camera.
-        settings: How the picture is going to be rendered.
-        built: The scene built for another picture.
+        settings: Settings of the picture to preview.
+        built: Scene built for another picture, for reuse.
     """
     from .session import Session
 

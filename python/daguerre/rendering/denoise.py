@@ -1,7 +1,6 @@
-"""Noise removal by Intel Open Image Denoise, guided by what the lens sees. An extra.
+"""Denoising by Intel Open Image Denoise (extra ``denoise``), guided by albedo and normal.
 
-``docs/denoise.md`` says what it is given and why, what it costs in detail, and how its error is
-known.
+``docs/denoise.md`` explains its inputs, its loss of detail and its error estimate.
 """
 
 from __future__ import annotations
@@ -29,35 +28,35 @@ Image = NDArray[np.float32]
 
 MODULE = "mitsuba_oidn"
 PACKAGE = extras.EXTRAS[MODULE][0]
-#: Squares of pixels over whose means light is compared that denoising may have moved, px.
+#: Side of the squares whose means show light that denoising moved, px.
 BLOCK = 8
 
 
 def check_available() -> None:
-    """Says how to install the denoiser, if it is not there.
+    """Checks that the denoiser is installed.
 
     Raises:
-        UsageError: It is not installed.
+        UsageError: It is not; the message says how to install it.
     """
     extras.need(MODULE, "denoise")
 
 
 def denoise(frame: Frame) -> Frame:
-    """A copy of the frame with clean ``rgb`` and layers of catchers; the rest stays as it is.
+    """Returns a copy of the frame with denoised ``rgb`` and catcher layers; the rest is unchanged.
 
-    Ghosts of the lens stay as they were drawn: the guides know nothing of them. Scattered light
-    without ghosts is cleaned by itself. The frame has no channels of a sensor and no bands: noisy
-    ones beside a clean picture would be of no use. A sensor is fitted from the colours.
+    Ghosts of the lens stay as drawn, as the guides do not show them. Scattered light without ghosts
+    is denoised by itself. The copy has no sensor channels and no bands, which would be noisy beside
+    a clean picture; sensors are fitted to the colours instead.
 
-    The denoiser wants colours of at least 0, so negative ones (outside Rec.709) become 0.
+    The denoiser needs colours of at least 0, so negative ones (outside Rec.709) become 0.
 
-    The metadata say ``denoised``, by what; and, if the frame has halves, ``denoised_noise``: the
-    relative error that is left, by ``error_left``. Where a noise was wanted, that is its ``noise``,
-    and ``noise_of`` says so.
+    Metadata ``denoised`` names the denoiser. If the frame has halves, ``denoised_noise`` is the
+    relative error that is left (see ``error_left``). If a target noise was set, ``noise`` has that
+    value too, and ``noise_of`` says so.
 
     Raises:
         UsageError: The denoiser is not installed.
-        InputError: It failed.
+        InputError: The denoiser failed.
     """
     check_available()
     cleaner = Cleaner.of(frame)
@@ -75,19 +74,19 @@ def denoise(frame: Frame) -> Frame:
 
 
 def _by_the_lens(flare: Image, facts: Mapping[str, Any]) -> Image:
-    """Light that the lens brought: ghosts as drawn; scattered light alone is smooth, so clean."""
+    """Light that the lens added: ghosts as drawn, or scattered light alone, denoised."""
     drawn = np.asarray(flare, np.float32)
     alone = "scatter" in facts and "flare" not in facts
     return _run(color=np.maximum(_finite(drawn), 0)) if alone else drawn
 
 
 def noise_after(frame: Frame) -> float | None:
-    """The relative error that denoising this frame would leave; None: it cannot be known."""
+    """Relative error that denoising this frame would leave; None: unknown."""
     return _cleaned(frame, Cleaner.of(frame))[1]
 
 
 def _cleaned(frame: Frame, cleaner: Cleaner) -> tuple[Image, float | None]:
-    """The scene without noise and without ghosts, and the error that is left; None: not known."""
+    """Denoises the scene without ghosts; returns it and the error that is left (None: unknown)."""
     scene = _without(np.asarray(frame.rgb, np.float32), frame.flare)
     clean = cleaner(scene)
     return clean, _error_left(frame, cleaner, scene, clean)
@@ -95,14 +94,14 @@ def _cleaned(frame: Frame, cleaner: Cleaner) -> tuple[Image, float | None]:
 
 @dataclass(frozen=True)
 class Cleaner:
-    """The denoiser of a frame: takes pictures (H, W, 3) of its scene.
+    """Denoiser of a frame, for pictures (H, W, 3) of its scene.
 
-    Light of light paths is cleaned by itself: their discs of lamps out of focus have edges that no
-    guide knows, over a scene that has other noise.
+    It denoises the light of light paths separately: discs of defocused lamps have edges that no
+    guide shows, and other noise than the scene.
 
     Attributes:
-        guides: Albedo and normal, without noise; None: there are none.
-        splats: Light that light paths brought; None: there is none, or it is not known.
+        guides: Denoised albedo and normal; None: there are none.
+        splats: Light that light paths added; None: there is none, or it is unknown.
     """
 
     guides: tuple[Image, Image] | None = None
@@ -110,7 +109,7 @@ class Cleaner:
 
     @classmethod
     def of(cls, frame: Frame) -> Cleaner:
-        """The denoiser of a frame, whose guides are made clean once."""
+        """Makes the denoiser of a frame; denoises the guides once."""
         albedo, normal = (
             _group(frame, "denoise_albedo", "RGB"),
             _group(frame, "denoise_normal", "XYZ"),
@@ -125,11 +124,11 @@ class Cleaner:
         return cls(guides, splats)
 
     def __call__(self, scene: Image) -> Image:
-        """The scene without noise."""
+        """Denoises the scene."""
         return self._clean(_without(scene, self.splats), self.splats)
 
     def half(self, parts: Image) -> Image:
-        """A picture of half the samples without noise, from what camera and light paths brought.
+        """Denoises a picture of half the samples, given by its camera paths and light paths.
 
         Args:
             parts: Shape (H, W, 2, 3).
@@ -146,12 +145,12 @@ class Cleaner:
 
 
 def _run(**images: Image) -> Image:
-    """Filters the picture, by guides that are clean, or a guide alone."""
+    """Filters the picture by clean guides, or filters a guide."""
     library: Any = import_module(MODULE)
     given = {name: np.ascontiguousarray(image, np.float32) for name, image in images.items()}
     made = np.empty_like(next(iter(given.values())))
     try:
-        # The processor has the same bits for any number of threads; a graphics card has others.
+        # A CPU gives the same bits for any number of threads; a GPU gives others.
         run = library.Device(library.DeviceType.CPU).new_filter("RT")
         for name, image in (*given.items(), ("output", made)):
             run.set_image(name, image)
@@ -176,24 +175,24 @@ def _error_left(frame: Frame, cleaner: Cleaner, scene: Image, clean: Image) -> f
 
 
 def error_left(even: Image, odd: Image, moved: Image, variance: Image) -> float:
-    """The relative error of a denoised picture, as far as its own samples tell.
+    """Estimates the relative error of a denoised picture from its own samples.
 
-    Like ``noise`` of a frame: the root mean square over pixels and channels of
+    Like ``noise`` of a frame it is the root mean square, over pixels and channels, of
     error / sqrt(value^2 + 0.01). It has two parts:
 
-    - noise that is left: two pictures that have no sample in common, each denoised, differ by
-      twice the error of their mean, whatever the noise is like;
-    - light that was moved further than ``BLOCK`` pixels: means of squares of pixels before and
-      after, less what noise of the picture before explains.
+    - noise that is left: two denoised pictures without common samples differ by twice the error of
+      their mean, for any kind of noise;
+    - light that moved further than ``BLOCK`` pixels: the change of the means of squares of pixels,
+      minus what the noise before denoising explains.
 
-    It cannot know of smaller detail that the filter takes, nor of light that no sample has met.
+    It does not include smaller detail that the filter removes, nor light that no sample has met.
     The value is the smaller of the two, so that a spark in one of them does not hide its own error.
 
     Args:
-        even: Denoised picture of a half of the samples, (H, W, 3).
-        odd: That of the others.
-        moved: Denoised picture of all less the noisy one.
-        variance: Variance of the noisy one.
+        even: Denoised picture of one half of the samples, (H, W, 3).
+        odd: Denoised picture of the other half.
+        moved: Denoised picture of all samples minus the noisy one.
+        variance: Variance of the noisy picture.
     """
     value = np.minimum(even, odd).astype(np.float64)
     weight = 1 / (value**2 + DARK)
@@ -203,7 +202,7 @@ def error_left(even: Image, odd: Image, moved: Image, variance: Image) -> float:
 
 
 def _blocks(image: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-    """Means over squares of pixels; what is left at the edges is left out, unless it is all."""
+    """Means over squares of pixels; incomplete squares at the edges are dropped unless all are."""
     height, width = (max(side // BLOCK, 1) for side in image.shape[:2])
     rows, columns = (min(side, BLOCK) for side in image.shape[:2])
     cut = image[: height * rows, : width * columns]
@@ -211,7 +210,7 @@ def _blocks(image: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
 
 
 def _without(image: Image, layer: Image | None) -> Image:
-    """A picture without a layer of it, at least 0."""
+    """Subtracts a layer from a picture, clipped at 0."""
     rest = image if layer is None else image - layer
     return np.ascontiguousarray(np.maximum(_finite(rest), 0), np.float32)
 

@@ -1,7 +1,7 @@
-"""Layers of catchers without noise: what is added and what is taken away, each by itself.
+"""Denoising of catcher layers: light added and light taken, separately.
 
-The denoiser takes light, which is never below 0, and a change is. Filtered apart, both parts keep
-their means, and so does their difference.
+The denoiser needs values of at least 0, and a change of light can be negative. Filtered separately,
+both parts keep their means, and so does their difference.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ if TYPE_CHECKING:
 
 Image = NDArray[np.float32]
 
-#: Layers, and the value that says that nothing changes.
+#: Layers, and the value that means no change.
 _NEUTRAL = {
     "catcher": 0.0,
     "catcher_ratio": 1.0,
     "catcher_channels": 0.0,
     "catcher_ratio_channels": 1.0,
 }
-#: Pixels around a change beyond which there is none: there a plate keeps its bits.
+#: Reach of a change in pixels: beyond it the plate keeps its bits.
 REACH = 8
 
 
 def clean_catchers(frame: Frame, clean: Callable[[Image], Image]) -> dict[str, Any]:
-    """The layers of a frame's catchers without noise, by name; empty if it has none.
+    """Denoises the catcher layers of a frame; returns them by name, empty if it has none.
 
     Args:
-        frame: The picture as it was drawn.
-        clean: Filter of pictures (H, W, 3) of at least 0.
+        frame: The noisy picture.
+        clean: Filter for pictures (H, W, 3) of at least 0.
     """
     made: dict[str, Any] = {}
     for name, neutral in _NEUTRAL.items():
@@ -47,7 +47,7 @@ def clean_catchers(frame: Frame, clean: Callable[[Image], Image]) -> dict[str, A
 
 
 def _change(change: Image, clean: Callable[[Image], Image]) -> Image:
-    """A change without noise, shape (H, W, C); 0 where none is near."""
+    """Denoises a change, shape (H, W, C); 0 where none is near."""
     parts = [np.maximum(sign * change, 0) for sign in (1, -1)]
     more, less = (_of_channels(part, clean) if part.any() else part for part in parts)
     near = _near(np.asarray(change.any(axis=2)))
@@ -55,7 +55,7 @@ def _change(change: Image, clean: Callable[[Image], Image]) -> Image:
 
 
 def _of_channels(light: Image, clean: Callable[[Image], Image]) -> Image:
-    """Light of any number of channels: three at once, others one by one."""
+    """Filters light of any number of channels: three at once, others one by one."""
     if light.shape[2] == 3:
         return clean(light)
     alone = [clean(np.repeat(light[..., c, None], 3, axis=2)) for c in range(light.shape[2])]
@@ -63,7 +63,7 @@ def _of_channels(light: Image, clean: Callable[[Image], Image]) -> Image:
 
 
 def _near(changed: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Pixels with a changed one in the square of ``REACH`` around them."""
+    """Mask of pixels with a change in the square of ``REACH`` around them."""
     found = changed
     for axis in (0, 1):
         wide = np.pad(found, [(REACH, REACH) if a == axis else (0, 0) for a in (0, 1)])

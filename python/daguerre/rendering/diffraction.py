@@ -1,11 +1,11 @@
-"""Diffraction in a render: bands of wavelengths in the film, each spread by a kernel of its own.
+"""Diffraction in a render: the film has wavelength bands, each convolved with its own kernel.
 
-The picture is the sum of the bands times their colours, after each was convolved with the point
-spread of a perfect wave through the pupil. Spectra that are steep within a band have another colour
-than it; what the film's XYZ has beside the bands is spread by the mean of their kernels, so that no
-light and no colour is lost. Aberrations are in the picture already, traced. To a
-good approximation the transfer function of a lens is the product of both (Goodman, Introduction to
-Fourier Optics, 3rd ed., section 6.4), and it is exact where either is small.
+The picture is the sum of the bands times their colours, after convolution of each with the point
+spread function of a perfect wave through the pupil. Spectra that are steep within a band have
+another colour than the band; the difference between the film's XYZ and the bands is spread by the
+mean of their kernels, so that no light and no colour is lost. The traced picture has the
+aberrations already. To a good approximation the transfer function of a lens is the product of both
+(Goodman, Introduction to Fourier Optics, 3rd ed., section 6.4); it is exact where either is small.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 MOST_ZONES = 9
 LEAST_WAVELENGTHS = 24  # of all bands together
-ONE_ZONE, MANY_ZONES = 2049, 1025  # px across kernels at most
-DARK = 2e-4  # of the brightest band's colour: others have no kernels of their own
+ONE_ZONE, MANY_ZONES = 2049, 1025  # maximum width of kernels, px
+DARK = 2e-4  # of the brightest band's colour: darker bands have no kernel of their own
 
 
 @guarded
@@ -41,7 +41,7 @@ class Diffraction:
 
     Attributes:
         bands: Number of wavelength bands, 380 to 780 nm.
-        zones: Points along each side of the frame that have kernels of their own.
+        zones: Number of points along each side of the frame that have their own kernels.
     """
 
     bands: int = 16
@@ -53,7 +53,7 @@ class Diffraction:
 
     @property
     def words(self) -> str:
-        """Text for metadata."""
+        """Description for metadata."""
         return f"{self.bands} bands, {self.zones} x {self.zones} zones"
 
 
@@ -80,10 +80,10 @@ def plan(
     resolution: tuple[int, int],
     sensor: Sensor | None = None,
 ) -> dict[str, Any]:
-    """Everything that the picture's kernels are made of, as JSON; and a sensor's weights of bands.
+    """Data from which the kernels of a picture are made, as JSON, and a sensor's weights of bands.
 
     Raises:
-        UsageError: A pinhole, whose opening has no size.
+        UsageError: The camera is a pinhole, which has no pupil.
     """
     from .pupil_files import to_json
 
@@ -124,8 +124,8 @@ class Developed:
 
     Attributes:
         xyz: Shape (H, W, 3).
-        channels: Those of the plan's sensor, (H, W, C), if it has one.
-        bands: (H, W, bands), if they were to be kept.
+        channels: Channels of the plan's sensor, (H, W, C), if it has one.
+        bands: Wavelength bands, (H, W, bands), if they are kept.
     """
 
     xyz: NDArray[np.float32]
@@ -134,16 +134,16 @@ class Developed:
 
 
 def developed(film: Any, planned: Any, *, keep: bool = False, threads: int = 0) -> Developed:
-    """The picture of a film with bands, diffracted.
+    """Computes the diffracted picture of a film with bands.
 
     Args:
-        film: The core's.
-        planned: From ``plan``.
-        keep: Whether the bands are wanted, too.
-        threads: 0: all.
+        film: Film of the core.
+        planned: Plan from ``plan``.
+        keep: Whether to return the bands, too.
+        threads: Number of threads; 0: all cores.
 
     Raises:
-        InputError: A plan out of a damaged file.
+        InputError: The plan comes from a damaged file.
     """
     from daguerre.convolution.convolve import spread
 
@@ -200,7 +200,7 @@ def _add(xyz: NDArray[np.float32], plane: NDArray[np.float32], colour: NDArray[n
 
 
 def rgb_of(xyz: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Linear Rec.709 of XYZ, shape (H, W, 3)."""
+    """Converts XYZ to linear Rec.709, shape (H, W, 3)."""
     from daguerre.color.spectra import rgb_from_xyz
 
     return np.asarray(xyz @ rgb_from_xyz().T.astype(np.float32))
@@ -217,7 +217,7 @@ def _size(pupils: list[list[Pupil]], pitch: float, frame: tuple[int, ...]) -> in
 def _kernels(
     pupils: list[list[Pupil]], nm: NDArray[np.float64], pitch: float, size: int, threads: int
 ) -> NDArray[np.float32]:
-    """Kernels of bands with wavelengths nm (B, n); each keeps all light.
+    """Kernels of bands with wavelengths, nm, shape (B, n); each preserves energy.
 
     Returns:
         Their right halves, shape (B, Z, Z, size, size // 2 + 1): kernels of perfect waves are
@@ -236,7 +236,7 @@ def _kernels(
 
 
 def _whole(half: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Kernels (Z, Z, h, w, 1, 1) of their right halves."""
+    """Kernels (Z, Z, h, w, 1, 1) from their right halves."""
     from daguerre.analysis.diffraction import both_halves
 
     return both_halves(half)[..., None, None]

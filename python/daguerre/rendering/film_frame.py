@@ -1,4 +1,4 @@
-"""Frames made of a film's sums."""
+"""Frames from the sums of a film."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ OBJECTS = "objects"
 
 
 def set_film_state(film: Any, state: Mapping[str, NDArray[np.uint32]], where: str) -> None:
-    """Puts sums that ``film.state`` gave, by part, into a film of the same size.
+    """Puts sums from ``film.state``, by part, into a film of the same size.
 
     Raises:
-        MismatchError: A part is missing, unknown or of another size; the film is as it was then.
+        MismatchError: A part is missing, unknown or of another size; the film is unchanged then.
         InputError: A list is damaged.
     """
     shapes = {part: _shape(part, film.state(part)) for part in film.state_parts()}
@@ -36,7 +36,7 @@ def set_film_state(film: Any, state: Mapping[str, NDArray[np.uint32]], where: st
 
 
 def _shape(part: str, words: NDArray[np.uint32]) -> tuple[int, ...]:
-    """Shape that films of one layout share: of lists the number of rows."""
+    """Shape that films of one layout share; for lists the number of rows."""
     shape = np.shape(words)
     return (*shape[:1], *shape[2:]) if part == OBJECTS else shape
 
@@ -48,14 +48,14 @@ def frame_of(
     aovs: bool,
     waves: bool = True,
 ) -> Frame:
-    """The picture of a film: means, variance and counts as plain arrays.
+    """Makes the frame of a film: means, variance and counts as plain arrays.
 
     Args:
-        film: The core's.
-        metadata: Facts of the frame.
+        film: Film of the core.
+        metadata: Metadata of the frame.
         aovs: Whether the film has auxiliary channels.
-        waves: Whether its light is diffracted, if the film has bands; variance is always that
-            before.
+        waves: Whether to add diffraction if the film has bands; variance is always that before
+            diffraction.
     """
     planes: dict[str, NDArray[Any]] = {}
     if aovs:
@@ -95,7 +95,7 @@ def frame_of(
 
 
 def _catchers(film: Any, alpha: NDArray[np.float32]) -> dict[str, NDArray[np.float32]]:
-    """Layers of what catchers catch, if the film has any."""
+    """Layers of catchers, if the film has any."""
     parts = film.state_parts()
     made: dict[str, NDArray[np.float32]] = {}
     if "catchers" in parts:
@@ -108,7 +108,7 @@ def _catchers(film: Any, alpha: NDArray[np.float32]) -> dict[str, NDArray[np.flo
 
 
 def _mattes(film: Any, metadata: dict[str, Any]) -> dict[str, Any]:
-    """Mattes by name, if the film has objects; facts say where there are too many."""
+    """Mattes by name, if the film has objects; metadata tell of pixels with too many."""
     facts = metadata.get("mattes")
     if facts is None or OBJECTS not in film.state_parts():
         return {}
@@ -119,11 +119,11 @@ def _mattes(film: Any, metadata: dict[str, Any]) -> dict[str, Any]:
 
 
 def _halves(film: Any) -> NDArray[np.float32]:
-    """The pictures of even and odd samples, by the camera and by light paths, (H, W, 2, 2, 3)."""
+    """Pictures of even and odd samples, by camera and by light paths, shape (H, W, 2, 2, 3)."""
     halves = [[film.half_rgb(odd, splats) for splats in (False, True)] for odd in (False, True)]
     return np.stack([np.stack(half, axis=2) for half in halves], axis=2)
 
 
 def _plane(film: Any, name: str) -> NDArray[Any]:
-    """A channel of a film; ids are whole numbers, so no means."""
+    """Returns a channel of a film; ids are integers and never means."""
     return np.asarray(film.object_ids() if name == "object_id" else film.aov(name))

@@ -1,4 +1,4 @@
-"""Memory that a picture takes, held against what the machine has before anything is drawn."""
+"""Memory that a picture needs, checked against the machine's before anything is drawn."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from daguerre.frame.aovs import FILM_CHANNELS
 if TYPE_CHECKING:
     from .pixels import Box
 
-#: Bytes per pixel of a frame beside its film: colours, XYZ, variance, alpha, counts, and what is at
-#: hand while it is written. Measured: bench/film_memory.py.
+#: Bytes per pixel of a frame beside its film: colours, XYZ, variance, alpha, counts, and buffers of
+#: writing. Measured: bench/film_memory.py.
 FRAME = 52
 TRUTH = 108  # ground truth and its rays
-#: Nodes of ghosts' maps while they are drawn: sums of a value for each pixel, and a third more;
-#: those of scatter are that third again.
+#: Nodes of ghost maps while they are drawn: a sum per pixel, and a third more; scatter takes that
+#: third again.
 NODES, SCATTER_NODES = 32 / 3, 8 / 3
 FLOAT = 4
 MATTE_PLANES = 36  # of three layers of six ranks: hashes and shares
-#: The frame of a denoised picture and what the denoiser takes: per pixel, and for itself.
+#: Memory of a denoised frame and of the denoiser: per pixel, and fixed.
 DENOISED, DENOISER = 450, 950_000_000
 
 
 def pixel_bytes(layout: _core.FilmLayout, *, truth: bool = False, scatter: bool = False) -> int:
-    """Memory of a pixel at its peak, when the frame is made and written."""
+    """Peak memory per pixel, when the frame is made and written."""
     planes = 3 * (layout.flare + layout.splats * layout.aovs) + 12 * layout.halves
     planes += len(FILM_CHANNELS) * layout.aovs
     planes += 2 * (layout.channels + layout.bands)  # as one array, and as planes of a file
@@ -42,16 +42,16 @@ def pixel_bytes(layout: _core.FilmLayout, *, truth: bool = False, scatter: bool 
 def check_film(
     layout: _core.FilmLayout, *, truth: bool = False, scatter: bool = False, free: int | None = None
 ) -> None:
-    """Refuses a picture for which the machine has too little memory.
+    """Checks that the machine has enough memory for a picture.
 
     Args:
         layout: Layout of the film.
         truth: Whether the frame gets ground truth.
         scatter: Whether scattered light is drawn.
-        free: Bytes that may be taken; None: as ``memory.left_bytes`` tells.
+        free: Bytes that may be used; None: those of ``memory.left_bytes``.
 
     Raises:
-        InputError: The message tells how many pixels there is room for.
+        InputError: Too little memory; the message says how many pixels fit.
     """
     size = layout.width, layout.height
     each = pixel_bytes(layout, truth=truth, scatter=scatter)
@@ -59,13 +59,13 @@ def check_film(
 
 
 def check_picture(crop: Box | None, resolution: tuple[int, int]) -> None:
-    """The same of a picture of which no more than its size is known, so that it keeps the least."""
+    """Checks a picture like ``check_film`` when only its size is known: for the smallest film."""
     x0, y0, x1, y1 = crop or (0, 0, *resolution)
     check_film(_core.FilmLayout(width=x1 - x0, height=y1 - y0))
 
 
 def check_denoised(size: tuple[int, int], *, free: int | None = None) -> None:
-    """The same of what comes beside a film of that size when the picture is denoised."""
+    """Checks the memory that denoising needs beside a film of this size."""
     _check(size, DENOISED, DENOISER, "leave out --denoise", free)
 
 

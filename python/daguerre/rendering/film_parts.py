@@ -1,9 +1,8 @@
-"""Parts of a film that are drawn: the picture, and with overscan the pixels around it.
+"""Parts of a film: the picture, and with overscan the pixels around it.
 
-The picture is drawn as it is without overscan, so it keeps its bits: tables of a lens, aims of
-light paths and ghosts, and weights of wavelengths that glass sends to other pixels know nothing of
-what lies around it. Those pixels are drawn by the same camera with a larger sensor, into the same
-film.
+The picture is drawn as without overscan, so it keeps its bits: lens tables, aims of light paths and
+ghosts, and weights of dispersed wavelengths do not depend on the pixels around it. The same camera
+with a larger sensor draws those pixels, into the same film.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
     from daguerre.setup.resolved import ResolvedCamera
 
 NOWHERE: Box = (0, 0, 0, 0)
-#: Changes the seed around the picture, which has random numbers of its own.
+#: Changes the seed of the overscan, which has its own random numbers.
 _SEED = 0x9E3779B97F4A7C15
 
 
@@ -30,8 +29,8 @@ class FilmPart:
     """Pixels of a film that are drawn together.
 
     Attributes:
-        camera: The core's camera.
-        settings: Settings of the frame that the part belongs to: the picture, or the larger one.
+        camera: Camera of the core.
+        settings: Settings of the part's frame: the picture, or the larger frame around it.
         before: Columns and rows of that frame before the picture.
         pixels: Number of pixels.
     """
@@ -50,14 +49,14 @@ class FilmPart:
         which: tuple[Any, ...],
         progress: Any,
     ) -> tuple[bool, _core.RenderCounters]:
-        """Draws samples; returns whether all of them were drawn, and the counts.
+        """Draws samples; returns whether all of them were drawn, and the counters.
 
         Args:
-            draw: The core's ``render`` or ``render_round``.
+            draw: ``render`` or ``render_round`` of the core.
             scene: The scene.
-            film: All pixels.
-            corner: The first of them in the picture, px.
-            which: Samples, as ``draw`` takes them.
+            film: Film with all pixels.
+            corner: First pixel of the film in the picture's coordinates, px.
+            which: Samples, in the form that ``draw`` takes.
             progress: Progress callback, see ``Session.draw``.
         """
         film.place(corner[0] + self.before[0], corner[1] + self.before[1])
@@ -69,14 +68,14 @@ class FilmPart:
 
 
 def inside(region: Box, resolution: tuple[int, int]) -> Box:
-    """Part of a region that lies in the picture; ``NOWHERE`` if nothing does."""
+    """Part of a region that lies in the picture; ``NOWHERE`` if none does."""
     x0, y0, x1, y1 = region
     cut = (max(x0, 0), max(y0, 0), min(x1, resolution[0]), min(y1, resolution[1]))
     return cut if cut[0] < cut[2] and cut[1] < cut[3] else NOWHERE
 
 
 def area(box: Box) -> int:
-    """Pixels."""
+    """Number of pixels of a region."""
     return (box[2] - box[0]) * (box[3] - box[1])
 
 
@@ -87,12 +86,12 @@ def core_settings(
     overscan: Overscan,
     options: dict[str, Any],
 ) -> _core.RenderSettings:
-    """Settings of the core for the picture, or with ``overscan`` for the larger frame around it.
+    """Makes the core's settings for the picture, or for the larger frame with ``overscan``.
 
     Args:
         setup: The camera.
         resolution: Size of the picture, px.
-        core_shutter: The camera's shutter.
+        core_shutter: Shutter of the core.
         overscan: Pixels around the picture.
         options: Other settings of the core, by name.
     """

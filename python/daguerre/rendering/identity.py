@@ -1,4 +1,4 @@
-"""Identity of a picture: hashes that its passes share, and the facts in its files."""
+"""Identity of a picture: hashes that its passes share, and metadata of its files."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from .settings import RenderSettings
 
 
 class Drawn(Protocol):
-    """A picture that is drawn, as a session knows it."""
+    """A picture that is being drawn: the part of a session that its identity needs."""
 
     prepared: Prepared
     light_plan: LightPlan
@@ -43,11 +43,11 @@ class Drawn(Protocol):
         """Number of dropped samples, and the first of them."""
 
     def sample_counts(self) -> NDArray[np.uint32]:
-        """Samples drawn of each pixel, shape (H, W)."""
+        """Number of samples drawn of each pixel, shape (H, W)."""
 
 
 def key(session: Drawn) -> dict[str, str]:
-    """Facts that passes must share to be added: hashes of scene, camera, settings, build."""
+    """Key that passes must share to be added: hashes of scene, camera, settings, build."""
     one = session.prepared
     return {
         "scene": one.built.hash,
@@ -94,7 +94,7 @@ def metadata(session: Drawn) -> dict[str, Any]:
 
 
 def _settings_facts(session: Drawn) -> dict[str, Any]:
-    """Settings that pictures must share; what is off is left out, so that hashes stay."""
+    """Settings that passes must share; features that are off are omitted, so that hashes stay."""
     one, plan, settings = session.prepared, session.light_plan, session.settings
     light, reference = settings.light, settings.reference
     kind, radius = parse_filter(settings.sampling.filter)
@@ -137,7 +137,7 @@ def _settings_facts(session: Drawn) -> dict[str, Any]:
 
 
 def _sample_facts(session: Drawn) -> dict[str, Any]:
-    """Samples per pixel; of adaptive sampling mean and bounds, and the noise reached."""
+    """Samples per pixel; for adaptive sampling their mean and bounds, and the noise reached."""
     if session.round is None:
         return {"samples": sum(b - a for a, b in session.ranges)}
     counts = session.sample_counts()

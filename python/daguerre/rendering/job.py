@@ -1,4 +1,4 @@
-"""Job: renders pictures of a scene into their files, one after the other, for any front end."""
+"""Jobs: render pictures of a scene into files, one after the other, for any front end."""
 
 from __future__ import annotations
 
@@ -35,24 +35,23 @@ def _nothing(picture: Picture, session: Session) -> None:
 
 
 class Job:
-    """Renders pictures of one scene: a single one, those of a rig, the frames of a sequence.
+    """Renders pictures of one scene: a single one, those of a rig, or the frames of a sequence.
 
-    Samples that were drawn are kept in a checkpoint beside the first file of a picture, until that
-    is complete.
+    A checkpoint beside the first file of a picture keeps its samples until the picture is complete.
 
     Args:
         scene: The scene, at the time of frame 0.
         pictures: Pictures, each with its camera, settings and files.
-        reporter: Told what happens.
+        reporter: Receives progress and messages.
         control: Decides when to stop.
         interval_s: Time between checkpoints, s; 0: only when the job stops.
 
     Attributes:
         name: Name of the scene, for messages.
         opened: Called when a picture's scene is built, before its first sample.
-        written: Called when a picture is in its files.
-        skipped: Called with a picture that was there already.
-        staged: Called with a frame's number and its scene, to give it what files know of the frame.
+        written: Called when the files of a picture are written.
+        skipped: Called with a picture whose files exist already.
+        staged: Called with a frame's number and its scene, to add per-frame data such as a plate.
         done: Number of pictures that are complete.
     """
 
@@ -82,11 +81,11 @@ class Job:
         """Renders the pictures.
 
         Args:
-            resume: Whether to go on from checkpoints, and to leave pictures that are complete.
-            since: When the set-up of the first one began, by ``time.monotonic``.
+            resume: Whether to continue from checkpoints and skip complete pictures.
+            since: Start of the set-up of the first picture, by ``time.monotonic``, s.
 
         Returns:
-            False if the control stopped it.
+            False if the control stopped the job.
         """
         for view in {picture.view.name: picture.view for picture in self.pictures}.values():
             view.camera(self.scene)  # an error comes before hours are spent, not after
@@ -103,7 +102,7 @@ class Job:
         return True
 
     def scene_of(self, picture: Picture) -> Scene:
-        """The scene at the time of a frame: the same one for all cameras of a rate."""
+        """Returns the scene at the time of a frame; cameras of one frame rate share it."""
         scene = self._moment(picture)
         frame, last = picture.frame, self._staged
         if frame is not None and (last is None or last[0] != frame or last[1] is not scene):
@@ -120,11 +119,11 @@ class Job:
         return self._seen
 
     def camera_of(self, picture: Picture) -> Camera:
-        """The camera of a picture."""
+        """Returns the camera of a picture."""
         return picture.view.camera(self.scene_of(picture))
 
     def open(self, picture: Picture) -> Session:
-        """The session of a picture, checked and not drawn; warnings of a camera come once."""
+        """Makes and checks the session of a picture; reports warnings of each camera once."""
         from daguerre.setup.camera_facts import camera_warnings, lit
 
         from .session import Session
@@ -153,7 +152,7 @@ class Job:
         return session
 
     def _is_complete(self, picture: Picture) -> bool:
-        """Whether its files are there; those of a single picture may be of another call."""
+        """Whether a frame's files exist; those of a single picture may be from another call."""
         one = len(self.pictures) == 1 and picture.frame is None
         files = all(path.exists() for path in picture.output.written)
         return files and not one and not picture.output.checkpoint.exists()
@@ -186,7 +185,7 @@ class Job:
 
 
 class Drawing:
-    """One picture of a job, from its first sample to its files."""
+    """One picture of a job, from the first sample to its files."""
 
     def __init__(self, job: Job, picture: Picture, session: Session, setup_s: float) -> None:
         self.picture, self.output, self.session = picture, picture.output, session
@@ -200,7 +199,7 @@ class Drawing:
         self._preview_took = self._previewed_at = 0.0
 
     def run(self, *, resume: bool) -> bool:
-        """Draws and writes; False if the control stopped it."""
+        """Draws and writes the picture; False if the control stopped it."""
         work = self.loop.work
         if resume and self.checkpoint.load(self.session, work):
             self.tell.note(f"resuming at {self._samples()} of {work.total():.6g} samples")
@@ -220,7 +219,7 @@ class Drawing:
         return True
 
     def _out_of_memory(self) -> str:
-        """Tells what to do where memory ended within a pass, whose sums are of no use."""
+        """Message for a pass that ran out of memory, whose sums cannot be used."""
         kept = (
             f"{self.checkpoint.path} keeps the samples before; continue with --resume, or "
             if self.checkpoint.exists
@@ -237,7 +236,7 @@ class Drawing:
             self.output.write(self.session, frame, self.output.paths, self.tell)
             self.output.write_noisy(self.session, self.loop.work.done(), self.output.noisy)
         except BaseException:
-            # Hours of work must not die with a full disk, or with a channel that cannot be made.
+            # A full disk, or a channel that cannot be made, must not cost hours of work.
             self.loop.rescue()
             raise
         self.checkpoint.remove()
@@ -252,7 +251,7 @@ class Drawing:
         )  # fmt: skip
 
     def _stop(self) -> None:
-        """Keeps what is drawn; a second request means now: the last checkpoint has to do."""
+        """Saves the samples; after a second request, it keeps only the last checkpoint."""
         work = self.loop.work
         saved = self.loop.rescue() if self.control.stops < 2 else None
         there = saved or (self.checkpoint.path if self.checkpoint.exists else None)
@@ -266,7 +265,7 @@ class Drawing:
         self.tell.note(f"snapshot: {names} ({self._samples()} samples per pixel)")
 
     def _preview(self) -> None:
-        """Shows the picture so far, as long as that takes a small share of the time."""
+        """Shows the picture so far, unless that takes more than a small share of the time."""
         began = time.monotonic()
         waited = began - self._previewed_at
         if not self.tell.previews or waited * PREVIEW_SHARE < self._preview_took:
@@ -280,5 +279,5 @@ class Drawing:
 
 
 def shown(samples: float) -> str:
-    """Samples per pixel; a mean with one decimal."""
+    """Samples per pixel as text; a mean has one decimal."""
     return f"{round(samples, 1):.10g}"

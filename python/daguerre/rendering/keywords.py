@@ -41,26 +41,26 @@ class ViewKeywords(TypedDict, total=False):
 
 
 class SettingsKeywords(ViewKeywords, total=False):
-    """Those of one picture."""
+    """Parameters of one picture."""
 
     resolution: tuple[int, int]
 
 
 class RenderKeywords(SettingsKeywords, total=False):
-    """The same, and how many samples are drawn."""
+    """Parameters of one picture, and the number of samples."""
 
     spp: int | None
     noise: float | None
 
 
 class RigKeywords(ViewKeywords, total=False):
-    """Those of several pictures, whose sizes may differ."""
+    """Parameters of several pictures, whose sizes may differ."""
 
     spp: int | None
     noise: float | None
 
 
 def settings_of(given: RenderSettings | None, keywords: Any) -> RenderSettings:
-    """The record, with the keywords in it."""
+    """Returns the settings, changed by the keywords."""
     made = RenderSettings() if given is None else given
     return made.with_(**keywords)

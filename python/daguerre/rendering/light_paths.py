@@ -1,4 +1,4 @@
-"""How much light is followed from the emitters to the film: what the user asks for, checked.
+"""Numbers of light paths (from the lights to the film): reads and checks the parameters.
 
 See ``docs/light-paths.md``.
 """
@@ -12,25 +12,25 @@ from typing import Any
 from daguerre.checks import short
 from daguerre.errors import UsageError
 
-#: Light paths per sample index, straight from an emitter to the lens and with bounces.
+#: Numbers of light paths per sample index: straight from a light to the lens, and with bounces.
 Plan = tuple[float, float]
 OFF: Plan = (0.0, 0.0)
 TECHNIQUES = ("both", "camera", "light")
 MOST = 1e9
-#: Paths per sample index that ``auto`` takes, for each pixel of the frame.
+#: Paths per sample index that ``auto`` uses, for each pixel of the frame.
 PER_PIXEL = {"flare": 0.5, "scatter": 2.0}
 WANTED = f"auto, off, or one or two numbers of paths per sample index, 0 .. {MOST:g}"
 
 
 def check_light_paths(value: object, where: str = "light_paths") -> Plan | None:
-    """The plan that is asked for; None: the pilot decides.
+    """Reads the numbers of light paths; None: a pilot render chooses them.
 
     Args:
-        value: ``"auto"``, ``"off"``, M1, (M1, M2), or that as text: ``"2000,500"``.
-        where: For messages.
+        value: ``"auto"``, ``"off"``, M1, (M1, M2), or numbers as text: ``"2000,500"``.
+        where: Name of the parameter, for messages.
 
     Raises:
-        UsageError: Neither of these, or a number out of range.
+        UsageError: Another value, or a number out of range.
     """
     if isinstance(value, str) and value == "auto":
         return None
@@ -44,14 +44,14 @@ def check_light_paths(value: object, where: str = "light_paths") -> Plan | None:
 
 
 def check_paths(value: object, where: str) -> float | None:
-    """Paths of one kind per sample index; 0: none; None: as many as suit the frame.
+    """Reads the number of paths of one kind per sample index; 0: off; None: automatic.
 
     Args:
         value: ``"auto"``, ``"off"``, or a number, which may be text.
-        where: For messages.
+        where: Name of the parameter, for messages.
 
     Raises:
-        UsageError: None of these, or a number out of range.
+        UsageError: Another value, or a number out of range.
     """
     if isinstance(value, str) and value == "auto":
         return None
@@ -65,7 +65,7 @@ def check_paths(value: object, where: str) -> float | None:
 
 
 def _path_counts(parts: Sequence[Any], most: int) -> list[float] | None:
-    """One to ``most`` numbers of paths per sample index, which may be text; None: they are not."""
+    """Reads one to ``most`` numbers of paths per sample index, which may be text; None: invalid."""
     try:
         if any(isinstance(part, bool | bytes) for part in parts):
             return None
@@ -81,15 +81,15 @@ def _pair(value: Any) -> Sequence[Any]:
 
 
 def show_plan(plan: Plan) -> str | None:
-    """Text of a plan in the form of ``--light-paths``; None if off."""
+    """Numbers of light paths as text, in the form of ``--light-paths``; None if off."""
     return None if plan == OFF else ",".join(f"{m:.17g}" for m in plan)
 
 
 def check_highlights(value: object, where: str = "flare_highlights") -> bool:
-    """Whether light that other things send to the lens has ghosts, too.
+    """Reads whether light that reaches the lens by mirrors, glass and walls has ghosts.
 
     Raises:
-        UsageError: Neither on nor off.
+        UsageError: The value is neither on nor off.
     """
     if isinstance(value, str) and value in ("on", "off"):
         return value == "on"

@@ -1,4 +1,4 @@
-"""How much light is followed from emitters, ghosts and scatter, in picture and overscan."""
+"""Numbers of light paths, ghost paths and scatter paths, in picture and overscan."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .plate_light import throw_plate
 from .prepare import Prepared
 from .settings import RenderSettings
 
-#: Why paths that are asked for are not followed.
+#: Reasons for not drawing requested paths.
 DARK = {
     "flare": "no light of this scene makes a ghost in this lens",
     "scatter": "the scene has no lights, or the lens scatters nothing",
@@ -32,15 +32,15 @@ DARK = {
 
 @dataclass(frozen=True)
 class LightPlan:
-    """Paths that are followed for each sample index, and the parts of the film that draw them.
+    """Numbers of paths per sample index, and the parts of the film that draw them.
 
     Attributes:
-        parts: The picture, and what lies around it, where the crop has any of them.
-        light_paths: Paths from the emitters: straight to the lens, and with bounces.
-        flare: Paths of ghosts.
-        scatter: Paths that the lens scatters.
-        notes: Why some are not followed.
-        core: The core's settings of the picture.
+        parts: The picture and its overscan, as far as the crop has them.
+        light_paths: Number of paths from the lights: straight to the lens, and with bounces.
+        flare: Number of ghost paths.
+        scatter: Number of paths that the lens scatters.
+        notes: Reasons why some are not drawn.
+        core: Settings of the core for the picture.
     """
 
     parts: list[FilmPart]
@@ -52,12 +52,12 @@ class LightPlan:
 
     @property
     def followed(self) -> bool:
-        """Whether any part follows light from the emitters."""
+        """Whether any part draws light paths."""
         return any(part.settings.light_paths != OFF for part in self.parts)
 
 
 def plan_light(one: Prepared) -> LightPlan:
-    """Decides it for a picture, by the pilot where that is left to it."""
+    """Makes the plan for a picture, with a pilot render for automatic numbers."""
     with core_errors(UsageError):
         core = _settings(one, one.setup, NONE)
     wanted = check_light_paths(one.settings.light.light_paths)
@@ -65,7 +65,7 @@ def plan_light(one: Prepared) -> LightPlan:
         _check_catchers(one)
         wanted = OFF
     plan = pilot(one, core) if wanted is None else wanted
-    # The pilot judges by the frame; a crop gets the share that it has of its pixels.
+    # The pilot renders the whole frame; a crop gets paths in proportion to its pixels.
     shared = one.share(area(one.window)) if wanted is None else 1.0
     core.light_paths = light_paths = (plan[0] * shared, plan[1] * shared)
     core.prepare_light(one.core_scene, one.setup.core)
@@ -84,7 +84,7 @@ def plan_light(one: Prepared) -> LightPlan:
 
 
 def new_film(one: Prepared, plan: LightPlan) -> _core.Film:
-    """The film, with the layers that the picture needs."""
+    """Makes the film, with the layers that the picture needs."""
     x0, y0, x1, y1 = one.crop
     film, waves = one.settings.film, one.settings.diffraction
     curves = None if one.sensor is None else responses(one.sensor)
@@ -111,7 +111,7 @@ def new_film(one: Prepared, plan: LightPlan) -> _core.Film:
 
 
 def _check_catchers(one: Prepared) -> None:
-    """Refuses what would come into a plate twice, or not where it belongs.
+    """Refuses effects that would be in a plate twice, or in the wrong place.
 
     Raises:
         UsageError: The message names the parameter.
@@ -130,13 +130,13 @@ def _check_catchers(one: Prepared) -> None:
 
 
 def pilot(one: Prepared, core: _core.RenderSettings) -> Plan:
-    """Light paths that pay in this scene, by a few samples."""
+    """Numbers of light paths that pay off in this scene, estimated by a few samples."""
     m1, m2 = _core.pilot(one.core_scene, one.setup.core, core)
     return m1, m2
 
 
 def _around(one: Prepared, plan: Plan, paths: dict[str, float], pixels: int) -> FilmPart:
-    """The overscan, drawn by the same camera with a larger sensor."""
+    """Film part of the overscan, drawn by the same camera with a larger sensor."""
     overscan = one.overscan
     setup = set_up(one.scene, one.focused_camera, one.size, one.core_scene, overscan)
     core = _settings(one, setup, overscan)
@@ -150,7 +150,7 @@ def _around(one: Prepared, plan: Plan, paths: dict[str, float], pixels: int) -> 
 
 
 def _prepare(one: Prepared, core: _core.RenderSettings, name: str, notes: list[str]) -> float:
-    """Paths per sample index of flare or scatter, of a crop as of its frame; 0: none."""
+    """Paths per sample index of flare or scatter, as for the whole frame; 0: none."""
     paths = check_paths(getattr(one.settings.light, name), name)
     if paths == 0:
         return 0.0

@@ -1,4 +1,4 @@
-"""Draws a picture pass by pass; between passes it saves, asks whether to stop, and reports."""
+"""Loop of a render: draws pass by pass; between passes it saves, checks for a stop, and reports."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .schedule import Work
     from .session import Session
 
-#: Length of a pass, roughly, so that stopping and checkpoints need not wait.
+#: Approximate length of a pass, so that stops and checkpoints need not wait.
 PASS_S = 3.0
 
 
@@ -30,8 +30,8 @@ class Loop:
     Args:
         session: Session that draws.
         work: Samples to draw.
-        checkpoint: Where the sums are kept.
-        reporter: Told how far it is.
+        checkpoint: File that keeps the sums.
+        reporter: Receives progress and messages.
         control: Decides when to stop.
         snapshot: Writes the picture so far under another name.
         preview: Shows the picture so far; called after each pass but the last.
@@ -55,7 +55,7 @@ class Loop:
         self._saved = 0.0
 
     def run(self) -> bool:
-        """Draws until all is there, or until the control stops it; True: complete."""
+        """Draws until the work is complete or the control stops it; True: complete."""
         self.started = time.monotonic()
         saved_at = self.started
         limit = 1.0
@@ -83,7 +83,7 @@ class Loop:
                 saved_at = time.monotonic()
 
     def save(self, *, rescued: bool = False) -> bool:
-        """Writes the checkpoint; False, with a warning, if that fails: the render goes on."""
+        """Writes the checkpoint; returns False, with a warning, if that fails."""
         if self.checkpoint.path is None:
             return False
         try:
@@ -95,10 +95,10 @@ class Loop:
         return True
 
     def rescue(self) -> Path | None:
-        """Keeps what is drawn, as the render ends: beside the picture, else elsewhere.
+        """Saves the samples when the render ends: beside the picture, else elsewhere.
 
         Returns:
-            The file that has all of it; None if there is none.
+            The file that has all samples; None if there is none.
         """
         wanted, drawn = self.checkpoint.path, self.work.done()
         if wanted is None or self.session.torn or not drawn:
@@ -116,14 +116,14 @@ class Loop:
         self.reporter.saved(path, self._saved, rescued=rescued)
 
     def _snapshot(self) -> None:
-        """Writes a snapshot; one that cannot be written is no reason to stop drawing."""
+        """Writes a snapshot; if that fails, drawing goes on."""
         try:
             self.snapshot()
         except DaguerreError as error:
             self.reporter.warning(f"no snapshot: {error}")
 
     def _draw(self, size: float) -> bool:
-        """One pass, in a thread of its own: Python runs signal handlers in the main thread only."""
+        """Draws a pass in another thread, as Python runs signal handlers only in the main one."""
         fraction, given_up = 0.0, False
         result: list[bool] = []
         failure: list[BaseException] = []

@@ -1,4 +1,4 @@
-"""Mattes of a picture: whose names the film's objects have, and what it counted of each."""
+"""Mattes of a picture: names of the film's objects, and their coverage."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from daguerre.frame.cryptomatte import Cryptomatte, hash_of
 from daguerre.scene.lights import PointLight, SphereLight
 from daguerre.scene.scene import Scene
 
-#: Names of what has none of its own.
+#: Names for objects without a name.
 UNNAMED, LIGHT = "unnamed", "light"
 
 
 def matte_facts(scene: Scene, layers: Sequence[str], ranks: int) -> dict[str, Any] | None:
-    """Names by which a film's objects are known, as plain values that travel with its sums.
+    """Names of a film's objects, as plain values that are stored with its sums.
 
     Args:
         scene: The scene.
         layers: Layers, see ``frame.cryptomatte.LAYERS``.
-        ranks: Number of names that are kept of each pixel.
+        ranks: Number of names to keep for each pixel.
 
     Returns:
-        ``ranks``, and of each of ``layers`` its ``names`` and the number of the name of each object
+        ``ranks``, and for each of ``layers`` its ``names`` and the index of the name of each object
         (``of``): instances first, then sphere lights. None: there are no layers.
     """
     made = {layer: _numbered(_NAMES[layer](scene)) for layer in layers}
@@ -50,9 +50,9 @@ def _materials(scene: Scene) -> list[str]:
 
 
 def _assets(scene: Scene) -> list[str]:
-    """Names of the topmost nodes: of those that stand for an instance the one with most others.
+    """Names of the topmost nodes: for each instance, the node with the most instances.
 
-    Files name a node before those below it, so of two alike the first is the upper one.
+    A scene lists a node before its children, so of two equal ones the first is the upper one.
     """
     names = _objects(scene)
     size = [0] * len(names)
@@ -67,7 +67,7 @@ _NAMES = {"object": _objects, "material": _materials, "asset": _assets}
 
 
 def _spheres(scene: Scene) -> list[PointLight | SphereLight]:
-    """The lights that the core has as spheres, in its order."""
+    """Lights that the core draws as spheres, in its order."""
     return [
         light
         for light, _ in scene.lights
@@ -82,11 +82,11 @@ def mattes_of(
 
     Args:
         film: A film with objects.
-        facts: Those of ``matte_facts``.
+        facts: Result of ``matte_facts``.
 
     Returns:
-        The mattes by layer, the number of pixels with more names than there are ranks, and the
-        largest share of a pixel that these lack.
+        Mattes by layer, number of pixels with more names than ranks, and the largest coverage that
+        such a pixel loses.
     """
     found: dict[str, Cryptomatte] = {}
     cut, most = 0, 0.0

@@ -27,20 +27,20 @@ def merge(
     strict: bool = False,
     keep_sums: bool = False,
 ) -> Frame:
-    """Adds passes of one picture, in any order: it has the bits of a render in one go.
+    """Merges passes of one picture, in any order; the result is bit-identical to one render.
 
     Args:
         passes: Files of ``daguerre render --samples``, or of a ``rendering.Job``.
         out: Files to write, .exr, .png and so on; default: none.
-        strict: Whether a range of samples that is missing between the passes is an error.
-        keep_sums: Whether an .exr keeps the sums, so that it can be merged further.
+        strict: Whether a missing range of samples between the passes is an error.
+        keep_sums: Whether an .exr keeps the sums, so that it can be merged again.
 
     Returns:
-        The picture, with the channels that the passes were asked for.
+        The picture, with the channels that were requested for the passes.
 
     Raises:
         InputError: A file cannot be read, or has no sums.
-        MismatchError: Passes of different pictures, samples drawn twice, or missing ones.
+        MismatchError: Passes of different pictures, samples drawn twice, or (``strict``) missing.
         OutputError: A file cannot be written.
     """
     frame, total = merging.merge(passes)
@@ -53,23 +53,23 @@ def merge(
 
 
 def whole(frame: Frame, total: Pass) -> Frame:
-    """The picture with ground truth, and with the channels that were asked for alone."""
+    """Completes the picture: adds ground truth, and keeps only the requested channels."""
     frame = replace(frame, aovs=frame.aovs | total.truth)
     wanted = total.metadata.get("aovs")
     return frame if wanted is None else only(frame, wanted)
 
 
 def gaps(total: Pass) -> str | None:
-    """The ranges that are missing between the passes, in words; None: there are none."""
+    """Message about ranges that are missing between the passes; None: there are none."""
     found = missing_ranges(total.ranges)
     return f"samples {show_ranges(found)} are missing between the passes" if found else None
 
 
 def refuse_gaps(total: Pass) -> None:
-    """Refuses passes between which a range is missing.
+    """Checks that no range is missing between the passes.
 
     Raises:
-        MismatchError: The message names it.
+        MismatchError: One is missing; the message names it.
     """
     if text := gaps(total):
         raise MismatchError(f"merge: {text}")

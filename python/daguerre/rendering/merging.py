@@ -1,4 +1,4 @@
-"""Adding passes: the film's sums are integers, so any order and any split give the same bits."""
+"""Merging of passes: sums of a film are integers, so any order and any split give the same bits."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ BAND_WORDS = 4  # of 32 bits: a sum
 def merge(
     passes: Iterable[str | os.PathLike[str] | Pass], *, aovs: bool = True
 ) -> tuple[Frame, Pass]:
-    """Adds passes, in any order, exactly: the picture has the bits of a render in one go.
+    """Merges passes exactly, in any order; the result is bit-identical to one render.
 
     Args:
         passes: Files or passes.
-        aovs: Keep the auxiliary channels, if the passes have them.
+        aovs: Whether to keep the auxiliary channels, if the passes have them.
 
     Returns:
         The picture, and the sum as a pass, which also has the ground truth.
@@ -81,7 +81,7 @@ def _truth_facts(one: Pass) -> dict[str, Any]:
 
 
 def film_of(one: Pass) -> Any:
-    """The core's film with the sums of a pass."""
+    """Makes a film of the core with the sums of a pass."""
     from daguerre._core import Film, FilmLayout
 
     if not one.state.keys() - {OBJECTS}:

@@ -1,4 +1,4 @@
-"""Names of files of several pictures: ``shot.####.exr`` for frames, ``{camera}`` for cameras."""
+"""File names of several pictures: ``shot.####.exr`` for frames, ``{camera}`` for cameras."""
 
 from __future__ import annotations
 
@@ -7,24 +7,24 @@ from pathlib import Path
 
 from daguerre.files.numbered import PLACE, has_place, with_number
 
-#: Place of a camera's name in the name of a file.
+#: Placeholder of a camera's name in a file name.
 CAMERA = "{camera}"
 
 
 def has_frame(path: Path) -> bool:
-    """Whether the name has a place for the number of a frame."""
+    """Whether the name has a placeholder (#) for the frame number."""
     return has_place(path.name)
 
 
 def numbered(path: Path, frame: int) -> Path:
-    """``shot.####.exr`` with the frame in the place of #, with as many digits at least."""
+    """Replaces # in ``shot.####.exr`` by the frame number, with at least as many digits."""
     return path.with_name(with_number(path.name, frame))
 
 
 def named(path: Path, camera: str, *, several: bool) -> Path:
-    """The file of a camera: its name in the place of ``{camera}``.
+    """Replaces ``{camera}`` in a file name by the camera's name.
 
-    Without that place names of several cameras stand before the frame's number, or at the end.
+    Without ``{camera}``, names of several cameras go before the frame number, or to the end.
     """
     name = re.sub(r"[/\\\x00-\x1f\x7f]", "_", camera)
     name = "_" * len(name) if name in (".", "..") else name

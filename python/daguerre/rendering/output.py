@@ -1,4 +1,4 @@
-"""Output of a picture: the channels that are kept, its development, and its files."""
+"""Output of a picture: its channels, its development, and its files."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ class Output:
     """Files of a picture.
 
     Attributes:
-        paths: Files to write, .exr, .png and so on; of a bracket each stands for several.
+        paths: Files to write, .exr, .png and so on; with a bracket each stands for several.
         aovs: Groups of channels to keep, see ``daguerre.frame.aovs``.
-        denoise: Whether the picture is denoised.
-        noisy: Files of the picture before that.
-        tone: Curve of pictures that are not developed.
-        photograph: How pictures are exposed and developed.
+        denoise: Whether to denoise the picture.
+        noisy: Files for the picture before denoising.
+        tone: Tone curve of pictures that are not developed.
+        photograph: Exposure and development of pictures.
         is_pass: Whether an .exr keeps the sums, so that it can be merged.
-        baseline: Distance of the cameras of a stereo pair, m; 0: there is none.
-        beside: Files that the front end writes beside them, such as maps.
+        baseline: Distance between the cameras of a stereo pair, m; 0: no stereo.
+        beside: Further files that the front end writes, such as maps.
     """
 
     paths: tuple[Path, ...] = ()
@@ -54,36 +54,36 @@ class Output:
 
     @property
     def exposed(self) -> bool:
-        """Whether truth about the exposure is asked for."""
+        """Whether channels of the true exposure are requested."""
         return any(name in self.aovs for name in EXPOSED)
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """All that is written: of a bracket each exposure."""
+        """All pictures to write: with a bracket, each exposure."""
         paths = (*self.paths, *self.noisy)
         return tuple(file for path in paths for file, _ in self.photograph.files(path))
 
     @property
     def written(self) -> tuple[Path, ...]:
-        """The same, with those beside them."""
+        """All files to write, with those of the front end."""
         return (*self.files, *self.beside)
 
     def renamed(self, name: Callable[[Path], Path]) -> Output:
-        """The same into other files."""
+        """Returns a copy with other file names."""
         given = (self.paths, self.noisy, self.beside)
         paths, noisy, beside = (tuple(map(name, files)) for files in given)
         return replace(self, paths=paths, noisy=noisy, beside=beside)
 
     @property
     def checkpoint(self) -> Path:
-        """Where the sums are kept until the picture is complete."""
+        """File that keeps the sums until the picture is complete."""
         if not self.paths:
             raise OutputError("output: wanted a file, got none")
         return self.paths[0].with_suffix(".checkpoint.exr")
 
     @property
     def judge(self) -> Judge | None:
-        """The error that a denoised picture will have, on which ``noise`` counts; None: its own."""
+        """Function for the error after denoising, to compare with ``noise``; None: not denoised."""
         if not self.denoise:
             return None
         from .denoise import noise_after
@@ -91,7 +91,7 @@ class Output:
         return lambda session: noise_after(session.frame(truth=False, plate=False))
 
     def check(self, metadata: dict[str, Any], tell: Reporter) -> None:
-        """Refuses a camera that cannot give what is asked for, before anything is drawn."""
+        """Checks, before anything is drawn, that the camera can provide the output."""
         self._load_writers()
         self.photograph.check(metadata, self.paths, tell)
         if metadata.get("background") == PLATE:
@@ -106,10 +106,10 @@ class Output:
             luminance_exposure(metadata)  # or an error that names what is missing
 
     def _load_writers(self) -> None:
-        """Imports the libraries that will write: after hours of drawing, memory may be short.
+        """Imports the libraries that write, as memory may be short after hours of drawing.
 
         Raises:
-            UsageError: One of an extra is not installed.
+            UsageError: The package of an extra is not installed.
         """
         import OpenEXR  # noqa: F401
 
@@ -122,7 +122,7 @@ class Output:
             import OpenImageIO  # noqa: F401
 
     def _check_plate(self) -> None:
-        """Refuses what a plate in the picture would go through twice, or get lost in.
+        """Refuses outputs that would process the plate twice, or lose it.
 
         Raises:
             UsageError: The message says what to do instead.
@@ -136,7 +136,7 @@ class Output:
             )
 
     def frame(self, session: Session, samples: float, tell: Reporter) -> Frame:
-        """The picture so far, with the channels that were asked for."""
+        """Returns the picture so far, with the requested channels."""
         frame = session.frame(truth=False, plate=False)
         facts = {
             "resolution": (session.width, session.height),
@@ -169,14 +169,14 @@ class Output:
         return only(frame, self.aovs)
 
     def unfinished(self, session: Session) -> Frame:
-        """The picture so far as it is shown meanwhile: not denoised, and not diffracted."""
+        """Returns the picture so far for previews: not denoised, and without diffraction."""
         frame = session.frame(truth=False, waves=False)
         facts = {"resolution": (session.width, session.height), "crop": session.crop}
         frame = replace(frame, metadata={**frame.metadata, **facts}, aovs={})
         return self.photograph.metered(frame, self.paths, Reporter())
 
     def look(self, frame: Frame, *, complete: bool = False) -> Look:
-        """A picture in the making, developed as the one that comes."""
+        """Makes a preview of an incomplete picture, developed like the final one."""
         one = replace(self.photograph, bracket=())
 
         def write(path: Path) -> None:
@@ -186,13 +186,13 @@ class Output:
 
     @property
     def preview(self) -> Path:
-        """File of a picture that is not complete."""
+        """File for previews."""
         return self.checkpoint.with_name(
             self.checkpoint.name.removesuffix(".checkpoint.exr") + ".preview.png"
         )
 
     def write_noisy(self, session: Session, samples: float, paths: Sequence[Path]) -> None:
-        """Writes the picture before it was denoised."""
+        """Writes the picture before denoising."""
         if paths:
             plain, silent = replace(self, denoise=False), Reporter()
             plain.write(session, plain.frame(session, samples, silent), paths, silent)
@@ -209,6 +209,6 @@ class Output:
 
 
 def only(frame: Frame, groups: Sequence[str]) -> Frame:
-    """The frame with these groups of channels alone."""
+    """Returns the frame with only these groups of channels."""
     keep = {name: plane for name, plane in frame.aovs.items() if name.split(".")[0] in groups}
     return replace(frame, aovs=keep)

@@ -1,4 +1,4 @@
-"""Parameters of a render: one row each, from which record, checks, flags and documentation come."""
+"""Table of a render's parameters: the source of record, checks, flags and documentation."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .light_paths import TECHNIQUES, check_highlights, check_light_paths, check_
 from .pixels import check_crop, check_filter, check_resolution
 from .truth import GT_LENSES, GT_RAYS, GT_TIMES, MAX_RAYS
 
-#: Samples per pixel, where neither they nor a noise are asked for.
+#: Samples per pixel if neither ``spp`` nor ``noise`` is given.
 DEFAULT_SPP = 64
 MAX_SEED = (1 << 64) - 1
 PICTURE, TRUTH, SAMPLING, FILES = "Picture", "Ground truth", "Sampling", "Files"
@@ -34,14 +34,14 @@ class Setting(Parameter):
     """A parameter of a render.
 
     Attributes:
-        normal: Gives a value in its one form, or refuses it; called with the value and its name.
+        normal: Function that checks and normalizes a value; called with the value and its name.
     """
 
     _: KW_ONLY
     normal: Callable[[Any, str], Any] | None = None
 
     def check(self, value: Any, where: str) -> Any:
-        """The value in the form in which settings keep it; None: not given.
+        """Checks a value and returns it in the form that settings keep; None: not given.
 
         Raises:
             UsageError: The message says where, what is wanted and what it got.
@@ -290,7 +290,7 @@ THREADS = Setting(
     "threads", "Number of threads; 0 uses all cores", default=0, kind="whole", low=0, high=1024,
     wants="0 (all) .. 1024", flags=("--threads",), metavar="N", panel=SAMPLING, tells_default=True,
 )
-#: Flags alone: the record that ``diffraction`` takes is made of them.
+#: Rows for flags only, from which the ``Diffraction`` record is made.
 DIFFRACTION_ROWS = (
     Setting(
         "diffraction_bands", "Number of wavelength bands for {diffraction}",

@@ -1,7 +1,7 @@
-"""Facts of a pass file about its picture, checked before anything is made of it.
+"""Checks of the metadata of a pass file, before it is used.
 
-Such a file may come from another machine, or be damaged: each fact has the type that those have
-which :mod:`daguerre.io.exr.write` writes as attributes, or the file is refused.
+A file may come from another machine, or be damaged. Each value must have the type that
+:mod:`daguerre.io.exr.write` writes; otherwise the file is refused.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ _CHECKS: dict[str, Callable[[Any], bool]] = {
 
 
 def bad_fact(metadata: Mapping[str, Any]) -> str | None:
-    """The name of a fact that is of another type or size than it can be; None if all are good."""
+    """Name of a value with an impossible type or size; None if all are valid."""
     for name, check in _CHECKS.items():
         value = metadata.get(name)
         if value is not None and not check(value):
@@ -102,7 +102,7 @@ def bad_fact(metadata: Mapping[str, Any]) -> str | None:
 
 
 def are_ranges(value: Any) -> bool:
-    """Whether this is a list of [begin, end) that rise and do not overlap."""
+    """Whether a value is a list of [begin, end) that rise and do not overlap."""
     if not isinstance(value, list) or not value:
         return False
     last = 0

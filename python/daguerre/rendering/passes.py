@@ -1,21 +1,25 @@
-"""Pass files: a picture that can be looked at, and beside it the exact sums that can be added.
+"""Pass files: a viewable picture together with the exact sums for merging.
 
-A pass is an EXR of several parts. The first is the picture as in any frame. The second, ``sums``,
-has the film's fixed-point sums as they lie in memory, so that no copy is made: 28 words of 32 bits
-per pixel, in a picture of four channels that is seven times as wide. Its header has what must agree
-before two passes may be added (``daguerre:key``: hashes of scene, camera, settings and build) and
-which samples were drawn (``daguerre:ranges``), and what form of passes this is
-(``daguerre:pass``; another form is refused). A third part, ``aovs``, has those of the auxiliary
-channels in the same way, and parts ``splats`` and ``flare`` what light paths
-(``daguerre.rendering.light_paths``) and ghosts (``daguerre.setup.body``) brought, if any were
-drawn; a part ``bands`` has the bands of wavelengths of a diffracted picture, whose pupils are among
-the facts (``daguerre.rendering.diffraction``), or those that the frame keeps; parts ``channels``
-and ``channel_splats`` have those of its sensor. A part ``objects`` lists which object covers how
-much of which pixel: its rows are as long as the longest list.
-The sums are integers, so adding them in any order gives the same bits.
-The checkpoint of an adaptive render also has its round: begin and count of each pixel in a part
-``round``, and how far it is (``daguerre:round``). Ground truth is no part of the sums: every pass
-of a picture has it whole among the channels of its first part.
+A pass is an EXR of several parts:
+
+- The first part is the picture, as in any frame.
+- ``sums`` has the film's fixed-point sums as they lie in memory, without a copy: 28 words of 32
+  bits per pixel, in a picture of four channels that is seven times as wide. Its header has the key
+  that two passes must share to be added (``daguerre:key``: hashes of scene, camera, settings and
+  build), the samples drawn (``daguerre:ranges``) and the format of the pass (``daguerre:pass``;
+  another format is refused).
+- ``aovs`` has the sums of the auxiliary channels in the same way.
+- ``splats`` and ``flare`` have the light of light paths (``daguerre.rendering.light_paths``) and
+  ghosts (``daguerre.setup.body``), if any were drawn.
+- ``bands`` has the wavelength bands that the frame keeps, or those of a diffracted picture, whose
+  pupils are in the metadata (``daguerre.rendering.diffraction``).
+- ``channels`` and ``channel_splats`` have the channels of the sensor.
+- ``objects`` lists the coverage of each pixel by objects; its rows are as long as the longest list.
+- ``round``, in the checkpoint of an adaptive render, has begin and count of each pixel in the
+  current round; ``daguerre:round`` is the progress of the round.
+
+The sums are integers, so adding them in any order gives the same bits. Ground truth is not part of
+the sums: every pass of a picture has all of it among the channels of its first part.
 """
 
 from __future__ import annotations
@@ -52,11 +56,11 @@ if TYPE_CHECKING:
 
 State = dict[str, NDArray[np.uint32]]
 Facts = Mapping[str, Any]
-#: Form of pass files. It rises whenever words of the same size would mean something else.
+#: Format number of pass files; it rises whenever words of the same size change their meaning.
 FORM = 1
 SUMS = "sums"
 HASH = re.compile("[0-9a-f]{64}")
-BAND = 256  # rows of words that are read at once
+BAND = 256  # rows of words to read at once
 ROUND = "round"
 STATE_PARTS = (
     SUMS, "aovs", "splats", "flare", "halves", "bands", "channels", "channel_splats", "coverage",
@@ -70,7 +74,7 @@ WORDS = {
     "background, cryptomatte, diffraction, sensor, bands",
     "build": "the build of daguerre",
 }
-#: Settings that a header tells as they are.
+#: Settings that a header stores in plain form.
 SETTINGS = ("resolution", "crop", "overscan", "seed", "filter", "light_paths")
 
 
@@ -81,9 +85,9 @@ class Pass:
     Attributes:
         state: The film's words by part, each (H, W, words) uint32.
         ranges: Samples drawn, [begin, end), merged and sorted.
-        key: Facts that must agree with another pass, by name.
-        metadata: Facts of the frame.
-        path: Where it was read, for messages.
+        key: Values that must agree with another pass, by name.
+        metadata: Metadata of the frame.
+        path: File that it was read from, for messages.
         round: Round of adaptive sampling, else None.
         truth: Channels of ground truth (``rendering.truth``) by name, if the pass has them.
     """
@@ -98,7 +102,7 @@ class Pass:
 
 
 def pass_of(session: Session) -> Pass:
-    """Pass of all that a session has drawn so far."""
+    """Makes a pass of all samples that a session has drawn so far."""
     return Pass(
         session.state(),
         list(session.ranges),
@@ -144,7 +148,7 @@ def read_pass(path: str | os.PathLike[str]) -> Pass:
     """Reads a pass file.
 
     Raises:
-        InputError: Missing, damaged, or an EXR without sums.
+        InputError: The file is missing, damaged, or an EXR without sums.
     """
     path = Path(path)
     if not path.is_file():
@@ -175,7 +179,7 @@ def read_pass(path: str | os.PathLike[str]) -> Pass:
 
 
 def check_key(first: Pass, other: Pass) -> None:
-    """Refuses a pass of another picture and names what differs."""
+    """Checks that two passes belong to one picture; the error names the differences."""
     names = sorted({*first.key, *other.key})
     differing = [name for name in names if first.key.get(name) != other.key.get(name)]
     if differing:
@@ -187,7 +191,7 @@ def check_key(first: Pass, other: Pass) -> None:
 
 
 def _difference(name: str, first: Pass, other: Pass) -> str:
-    """Describes what differs under a name of the key: values where known, else hashes."""
+    """Describes the difference of one entry of the key: values if known, else hashes."""
     if name == "settings":
         values = [
             (fact.replace("_", " "), *(_value(p.metadata.get(fact)) for p in (other, first)))
@@ -201,14 +205,14 @@ def _difference(name: str, first: Pass, other: Pass) -> str:
 
 
 def _value(fact: Any) -> str:
-    """A setting as text; what is not in a header is off."""
+    """Returns a setting as text; a setting missing from the header is off."""
     if fact is None:
         return "off"
     return ",".join(map(str, fact)) if isinstance(fact, list | tuple) else str(fact)
 
 
 def _words(part: Layout, count: Any) -> NDArray[np.uint32]:
-    """Undoes :func:`_words_part`: the words (H, W, count) of a part."""
+    """Inverse of :func:`_words_part`: the words (H, W, count) of a part."""
     names = [f"words.{color}" for color in "RGBA"]
     if sorted(names) != list(part.channels) or set(part.channels.values()) != {"uint32"}:
         raise InputError(f"{part.path}: damaged pass file: part {part.name} has no words")
@@ -227,7 +231,7 @@ def _words(part: Layout, count: Any) -> NDArray[np.uint32]:
 
 
 def _read_truth(part: Layout) -> dict[str, NDArray[Any]]:
-    """The channels of ground truth of the picture in a pass."""
+    """Reads the channels of ground truth of the picture in a pass."""
     from daguerre.frame.aovs import EXACT, channels_of
 
     names = [name for name in part.channels if name in channels_of(*EXACT)]
@@ -238,7 +242,7 @@ def _read_truth(part: Layout) -> dict[str, NDArray[Any]]:
 
 
 def _field(path: Path, header: Facts, name: str, check: Callable[[Any], bool]) -> Any:
-    """A JSON attribute of the sums."""
+    """Reads a JSON attribute of the sums."""
     text = str(header.get(f"daguerre:{name}", ""))
     try:
         value = json.loads(text)
@@ -265,7 +269,7 @@ def _round(path: Path, header: Facts, words: NDArray[np.uint32]) -> Round:
 
 
 def _check_form(path: Path, header: Facts) -> None:
-    """Refuses passes of another form; those without a number are of the first."""
+    """Refuses passes of another format; those without a number have the first."""
     form = header.get("daguerre:pass", 1)
     if form != FORM:
         raise InputError(
@@ -275,7 +279,7 @@ def _check_form(path: Path, header: Facts) -> None:
 
 
 def _check_crop(path: Path, facts: Pass, words: NDArray[np.uint32]) -> None:
-    """The crop is what is there."""
+    """Checks that the crop in the metadata has the size of the sums."""
     x0, y0, x1, y1 = facts.metadata.get("crop") or (0, 0, *words.shape[1::-1])
     if (y1 - y0, x1 - x0) != words.shape[:2]:
         raise InputError(
@@ -306,7 +310,7 @@ def _header(path: Path, header: Facts) -> Pass:
 
 
 def _short(value: str | None) -> str:
-    """The start of a hash; other values as they are, the name of a build among them."""
+    """Shortens hashes; other values, such as the name of a build, stay."""
     if value is None:
         return "nothing"
     return value[:12] if HASH.fullmatch(value) else short(value, 120).strip("'")

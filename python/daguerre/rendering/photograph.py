@@ -1,7 +1,7 @@
-"""How a render becomes photographs: exposure by the triangle or by a meter, brackets, development.
+"""Photographs from a render: exposure set by hand or by a meter, brackets, development.
 
-An ``.exr`` is never changed by exposure. Other pictures show 1 as white, unless something of
-exposure or development was asked for; a ``.dng`` is always exposed.
+Exposure never changes an ``.exr``. Other pictures show 1 as white unless a parameter of exposure or
+development is given. A ``.dng`` is always exposed.
 """
 
 from __future__ import annotations
@@ -24,34 +24,34 @@ PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
 
 
 class Like(Protocol):
-    """A camera whose pictures these shall look like: that of a plate."""
+    """A camera whose look pictures imitate: that of a plate."""
 
     @property
     def facts(self) -> dict[str, Any]:
-        """Facts that frames tell of it in their files."""
+        """Metadata about the camera for files of frames."""
 
     def seen(self, frame: Frame, seed: int = 0) -> Frame:
-        """A clean frame as that camera sees it."""
+        """Turns a noiseless frame into that camera's, with its blur and noise."""
 
     def finished(self, picture: Picture, seed: int = 0) -> Picture:
-        """A developed picture with what that camera's development leaves in it."""
+        """Adds traces of that camera's development to a developed picture."""
 
 
 @dataclass(frozen=True)
 class Photograph:
-    """How pictures are photographed, developed and bracketed.
+    """Exposure, development and bracketing of pictures.
 
     Attributes:
-        develops: Whether pictures are developed; else 1 is white.
+        develops: Whether pictures are developed; otherwise 1 is white.
         sensor: Sensor that takes the picture; None: a perfect one.
-        iso: ISO as set; None: by the meter, or 100.
-        meters: Way to meter; None: the ISO is set.
-        ev: Compensation; what is not metered has it from the frame's facts.
-        bracket: Exposures, EV, each with a picture; empty: one.
+        iso: ISO setting; None: metered, or 100.
+        meters: Metering mode; None: the ISO is set.
+        ev: Exposure compensation, EV; without metering the frame's metadata have it.
+        bracket: Exposures, EV, each of which gives a picture; empty: a single picture.
         look: Tone curve; None: neutral.
         seed: Seed of the noise.
-        focus_at: Pixel that is in focus, if one was named: where the spot is metered.
-        like: Camera that exposed and developed pictures look like; None: none in particular.
+        focus_at: Pixel in focus, if given; spot metering uses it.
+        like: Camera whose look pictures imitate; None: none.
     """
 
     develops: bool = False
@@ -66,11 +66,11 @@ class Photograph:
     like: Like | None = None
 
     def exposes(self, path: Path) -> bool:
-        """Whether what is written there depends on exposure."""
+        """Whether a file depends on exposure."""
         return _is_raw(path) or (self.develops and path.suffix.lower() in PICTURES)
 
     def packages(self, path: Path) -> list[str]:
-        """Packages of extras without which an output cannot be written."""
+        """Packages of extras that an output needs."""
         kind = path.suffix.lower()
         writes_tags = kind in (".tif", ".tiff") or _is_raw(path)
         mosaic = self.sensor is not None and len(self.sensor.channels) > 1
@@ -78,7 +78,7 @@ class Photograph:
         return ["tifffile"] * writes_tags + ["rawpy"] * demosaics
 
     def files(self, path: Path) -> list[tuple[Path, float]]:
-        """The pictures that an output stands for, and how they are exposed, EV."""
+        """Files that an output stands for, and their exposures, EV."""
         if not self.bracket or not self.exposes(path):
             return [(path, 0.0)]
         return [
@@ -87,10 +87,10 @@ class Photograph:
         ]
 
     def check(self, metadata: dict[str, Any], paths: Sequence[Path], tell: Reporter) -> None:
-        """Before anything is drawn: whether the camera's facts tell an exposure.
+        """Checks, before anything is drawn, that the camera's metadata have an exposure.
 
         Raises:
-            InputError: They do not; the message names the field.
+            InputError: They lack it; the message names the field.
         """
         if not any(self.exposes(path) for path in paths):
             if self.meters or self.bracket:
@@ -108,14 +108,14 @@ class Photograph:
             tell.note("bracketed by time: motion blur is that of 0 EV")
 
     def metered(self, frame: Frame, paths: Sequence[Path], tell: Reporter) -> Frame:
-        """The frame with the ISO that the meter chooses, if it is to; says which."""
+        """Returns the frame with the metered ISO, if metering is on, and reports the ISO."""
         if not any(self.exposes(path) for path in paths) or self.meters is None:
             return frame
         from daguerre.exposure.metering import meter
 
         try:
             read = meter(frame, self.meters, at=self.focus_at)
-        except DaguerreError as error:  # black, say: no reason to lose what was drawn
+        except DaguerreError as error:  # such as a black picture, which must not cost the render
             tell.warning(f"--exposure auto: {error}; exposed as set")
             return frame
         wanted = read.iso * 2.0**self.ev
@@ -136,7 +136,7 @@ class Photograph:
         return replace(frame, metadata=facts)
 
     def write(self, frame: Frame, paths: Sequence[Path], tone: str, tell: Reporter) -> None:
-        """Writes outputs; each exposure is taken once, whatever its formats."""
+        """Writes outputs; each exposure is taken once for all its formats."""
         if self.like is not None:
             frame = replace(frame, metadata={**frame.metadata, "plate": self.like.facts})
         exposed = [path for path in paths if self.exposes(path)]
@@ -146,12 +146,12 @@ class Photograph:
         offsets = self.bracket or (0.0,)
         for offset in offsets if exposed else ():
             files = [file for path in exposed for file, ev in self.files(path) if ev == offset]
-            # Messages about a bracket speak of one of its pictures.
+            # Messages about a bracket name one of its pictures.
             told = tell if offset == min(offsets, key=abs) else Reporter()
             self._shoot(frame, offset, files, told)
 
     def _shoot(self, frame: Frame, offset: float, files: list[Path], tell: Reporter) -> None:
-        """One exposure into its files."""
+        """Writes one exposure to its files."""
         from daguerre.development import develop
         from daguerre.development.dng import size_note
         from daguerre.exposure.lux_seconds import with_exposure
@@ -187,7 +187,7 @@ def _is_raw(path: Path) -> bool:
 
 
 def offset_name(ev: float) -> str:
-    """``+1ev``: an exposure of a bracket, in the names of files."""
+    """Name of a bracket's exposure in file names, such as ``+1ev``."""
     return f"{ev:+.3g}ev" if ev else "0ev"
 
 

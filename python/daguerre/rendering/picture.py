@@ -1,4 +1,4 @@
-"""Pictures of a job: a view of the scene at a frame, how it is rendered, where it goes."""
+"""Pictures of a job: view, frame, settings and files."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class View:
     """One camera of a job.
 
     Attributes:
-        name: Name in files and progress; empty: the only one, of no name.
-        camera: Makes the camera from the scene of a frame.
-        notes: Remarks about it, made once.
+        name: Name in files and progress; empty: a single camera without a name.
+        camera: Function that makes the camera from the scene of a frame.
+        notes: Function that makes remarks about the camera, reported once.
     """
 
     name: str = ""
@@ -35,7 +35,7 @@ class View:
 
     @classmethod
     def of(cls, camera: Camera | str | None = None, name: str = "") -> View:
-        """A view by a camera, by one of the scene's, or by its only one."""
+        """Makes a view from a camera, the name of a camera in the scene, or its default camera."""
         if isinstance(camera, Camera):
             return cls(name, lambda scene: camera)
         return cls(name, lambda scene: scene.camera(camera))
@@ -46,13 +46,13 @@ class Picture:
     """One picture of a job.
 
     Attributes:
-        view: The camera.
-        settings: How it is rendered.
-        output: Its files.
-        samples: Range of samples [begin, end); None: as many as the settings ask for.
-        frame: Number in a sequence; None: there is none.
-        words: Which one of several it is, for people.
-        facts: The same for programs.
+        view: View of the camera.
+        settings: Render settings.
+        output: Files to write.
+        samples: Range of samples [begin, end); None: as the settings say.
+        frame: Frame number in a sequence; None: not a sequence.
+        words: Label among several pictures, for messages.
+        facts: Camera and frame among several pictures, for programs.
     """
 
     view: View
@@ -65,16 +65,16 @@ class Picture:
 
     @property
     def wanted(self) -> tuple[int, int]:
-        """Samples [begin, end) of each pixel; with a noise at most."""
+        """Samples [begin, end) of each pixel; with ``noise`` the maximum."""
         return self.samples or (0, self.settings.sampling.most)
 
 
 def in_order(pictures: Sequence[Picture], frames: Sequence[int] | None) -> list[Picture]:
-    """Pictures of all frames: frame after frame, of each all cameras.
+    """Lists the pictures of all frames: frame by frame, all cameras of each.
 
     Args:
-        pictures: One for each camera; their files have places for cameras and frames.
-        frames: Numbers of the frames; None: no sequence.
+        pictures: One for each camera; their file names have placeholders for cameras and frames.
+        frames: Frame numbers; None: not a sequence.
     """
     several = len(pictures) > 1
     return [
@@ -99,6 +99,6 @@ def _one_of(picture: Picture, frame: int | None, *, several: bool) -> Picture:
 
 
 def path_of(path: Path, camera: str, frame: int | None, *, several: bool) -> Path:
-    """A file's name with the camera and the frame in it."""
+    """File name with camera and frame filled in."""
     path = named(path, camera, several=several)
     return path if frame is None else numbered(path, frame)

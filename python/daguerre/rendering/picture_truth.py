@@ -1,4 +1,4 @@
-"""Ground truth of a picture: its channels have the bits that they have without overscan."""
+"""Ground truth of a picture, bit-identical with and without overscan."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .truth import GroundTruth
 
 
 def ground_truth(one: Prepared, region: Box, overscan: Overscan) -> GroundTruth:
-    """Ground truth at the moment of the settings; default: in the middle of the exposure."""
+    """Makes the ground truth at the moment of the settings; default: mid-exposure."""
     truth = one.settings.truth
     return GroundTruth(
         one.scene,
@@ -33,7 +33,7 @@ def ground_truth(one: Prepared, region: Box, overscan: Overscan) -> GroundTruth:
 
 
 def truth_planes(one: Prepared, whole: GroundTruth) -> dict[str, NDArray[Any]]:
-    """Its channels (H, W) by name; those of the picture are made as if there were no overscan."""
+    """Channels (H, W) by name; pixels of the picture are computed as without overscan."""
     motion = one.settings.truth.motion
     planes = whole.planes(motion=motion)
     if one.overscan and area(one.window):

@@ -1,4 +1,4 @@
-"""Pixels of a picture: its size, the region that is drawn, and the filter of each."""
+"""Pixels of a picture: size, crop and pixel filter."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LEAST_RADIUS, MOST_RADIUS = 0.25, 16.0  # px
 
 
 def check_resolution(value: Any, where: str = "resolution") -> tuple[int, int]:
-    """Width and height in px, checked."""
+    """Checks width and height, px."""
     try:
         width, height = value
     except (TypeError, ValueError):
@@ -26,7 +26,7 @@ def check_resolution(value: Any, where: str = "resolution") -> tuple[int, int]:
 
 
 def check_crop(value: Any, where: str = "crop") -> Box:
-    """Corners (x0, y0, x1, y1) of a region; whether it is in the picture, the picture knows."""
+    """Checks corners (x0, y0, x1, y1) of a region, but not whether they are in the picture."""
     try:
         x0, y0, x1, y1 = (operator.index(v) for v in value)
     except (TypeError, ValueError):
@@ -37,10 +37,10 @@ def check_crop(value: Any, where: str = "crop") -> Box:
 
 
 def crop_within(crop: Box | None, region: Box) -> Box:
-    """A crop that lies in the region of picture and overscan; None: all of it.
+    """Checks that a crop lies in the region of picture and overscan; None: all of it.
 
     Raises:
-        UsageError: It does not, or is empty.
+        UsageError: It lies outside, or is empty.
     """
     if crop is None:
         return region
@@ -56,7 +56,7 @@ def crop_within(crop: Box | None, region: Box) -> Box:
 
 
 def parse_filter(value: Any, where: str = "filter") -> tuple[str, float]:
-    """Name and radius (px; 0: its own) of a filter such as ``gaussian`` or ``gaussian:1.5``."""
+    """Parses a filter such as ``gaussian`` or ``gaussian:1.5``: name, radius (px; 0: default)."""
     kind, _, radius = str(value).replace("-", "_").partition(":")
     if kind not in FILTERS:
         raise UsageError(
@@ -74,6 +74,6 @@ def parse_filter(value: Any, where: str = "filter") -> tuple[str, float]:
 
 
 def check_filter(value: Any, where: str = "filter") -> str:
-    """The same as one text."""
+    """Checks a filter and returns it as text."""
     parse_filter(value, where)
     return str(value)

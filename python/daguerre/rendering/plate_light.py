@@ -1,4 +1,4 @@
-"""A photograph of the set as light: its pixels without the lens's own shading, and its camera."""
+"""Light of a plate: its pixels without the vignetting of the lens, and its camera."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from .film_parts import core_settings
 if TYPE_CHECKING:
     from .prepare import Prepared
 
-#: Size of the white picture that tells a lens's shading, px along the longer side, and its samples.
+#: Longer side, px, and samples per pixel of the white picture that shows a lens's vignetting.
 ACROSS, SPP = 64, 256
-#: Share of the light below which a corner tells nothing.
+#: Share of the light below which a corner is too dark to correct.
 DARK = 0.02
 
 
 def throw_plate(one: Prepared, core: _core.RenderSettings) -> None:
-    """Gives the core the scene's plate, if it has one, as light of the camera that took it."""
+    """Passes the scene's plate, if it has one, to the core as light seen by its camera."""
     plate = one.scene.plate
     if plate is None:
         return
@@ -43,9 +43,9 @@ def throw_plate(one: Prepared, core: _core.RenderSettings) -> None:
 def shading(
     camera: _core.Camera, taken: _core.RenderSettings, size: tuple[int, int]
 ) -> NDArray[np.float32]:
-    """Light that a white world brings to each pixel, relative exposure, shape (H, W, 3).
+    """Relative exposure of each pixel by a white world, shape (H, W, 3).
 
-    It is drawn small, and read in between. Glass tints it, too.
+    It is drawn small and interpolated. It includes the tint of the glass.
     """
     scale = min(1.0, ACROSS / max(size))
     small = max(2, math.ceil(size[0] * scale)), max(2, math.ceil(size[1] * scale))
@@ -62,7 +62,7 @@ def shading(
 
 
 def _grown(small: NDArray[np.float32], size: tuple[int, int]) -> NDArray[np.float32]:
-    """Linear between the middles of pixels, to another size."""
+    """Resizes a picture linearly between pixel centres."""
     for axis, wanted in ((0, size[1]), (1, size[0])):
         count = small.shape[axis]
         at = np.clip((np.arange(wanted) + 0.5) * count / wanted - 0.5, 0, count - 1)

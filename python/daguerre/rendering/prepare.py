@@ -1,4 +1,4 @@
-"""Everything that stands before the first sample: scene built, camera set up, region chosen."""
+"""Preparation of a render: builds the scene, sets up the camera, chooses the region."""
 
 from __future__ import annotations
 
@@ -35,16 +35,16 @@ class Prepared:
 
     Attributes:
         scene: The scene.
-        camera: The camera, as it was given.
-        settings: How it is rendered.
-        built: The scene as the core takes it.
-        setup: The camera, likewise.
-        interval: When the film is exposed, s.
-        overscan: Pixels beside the picture.
-        crop: Pixels that are drawn, (x0, y0, x1, y1).
-        sensor: Sensor whose channels the film has, if the camera names one.
-        pupils: Kernels of diffraction, as JSON.
-        mattes: Names of objects for mattes (``mattes.matte_facts``), if any are asked for.
+        camera: The camera, as given.
+        settings: Render settings.
+        built: Scene built for the core.
+        setup: Camera set up for the core.
+        interval: Begin and end of the exposure, s.
+        overscan: Extra pixels around the picture.
+        crop: Pixels to draw, (x0, y0, x1, y1).
+        sensor: Sensor whose channels the film has, if the camera has one.
+        pupils: Pupils for the kernels of diffraction, as JSON.
+        mattes: Names of objects for mattes (``mattes.matte_facts``), if requested.
         notes: Remarks for users.
     """
 
@@ -68,21 +68,21 @@ class Prepared:
 
     @property
     def core_scene(self) -> _core.Scene:
-        """The core's scene."""
+        """Scene of the core."""
         return self.built.core
 
     @property
     def focused_camera(self) -> Camera:
-        """The camera with the focus that was found."""
+        """Camera with its resolved focus."""
         return focused(self.camera, self.setup.lens.focus_distance_m)
 
     @property
     def window(self) -> Box:
-        """Pixels of the crop that lie in the picture."""
+        """Part of the crop that lies in the picture."""
         return inside(self.crop, self.size)
 
     def share(self, pixels: int) -> float:
-        """Pixels as a share of the picture's."""
+        """Returns a number of pixels as a share of the picture's."""
         return pixels / area((0, 0, *self.size))
 
 
@@ -97,8 +97,8 @@ def prepare(
     Args:
         scene: The scene.
         camera: Camera, or its name in the scene; None: the scene's own.
-        settings: How it is rendered.
-        built: Scene built for another picture, reused where both look at the same time.
+        settings: Render settings.
+        built: Scene built for another picture; reused if both expose at the same time.
     """
     if not isinstance(scene, Scene):
         raise UsageError(f"scene: wanted a Scene, got {short(scene)}")
@@ -128,7 +128,7 @@ def prepare(
 
 
 def _pupils(one: Prepared) -> dict[str, Any] | None:
-    """The pupils of mid-shutter, for the film with its overscan, if light is diffracted."""
+    """Pupils at mid-exposure, for the film with its overscan, if diffraction is on."""
     if one.settings.diffraction is None:
         return None
     camera = one.camera.frozen_at(0.5 * (one.interval[0] + one.interval[1]))

@@ -1,4 +1,4 @@
-"""Progress of a render, as plain numbers that any front end can show."""
+"""Progress of a render, as plain numbers for any front end."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Status:
-    """How far a render is.
+    """Progress of a render.
 
     Attributes:
-        fraction: Share of the wanted samples that is drawn, 0 .. 1.
-        samples: Samples per pixel that are complete.
-        samples_wanted: Samples per pixel in the end.
+        fraction: Share of the samples that is drawn, 0 .. 1.
+        samples: Complete samples per pixel.
+        samples_wanted: Samples per pixel at the end.
         samples_per_s: Camera samples (all pixels) per second.
         rays_per_s: Rays of all kinds per second.
-        elapsed_s: Since this run began to draw.
-        left_s: Estimated time left; None until there is a rate.
-        noise: Relative error reached, of adaptive sampling; None until it is known.
-        noise_wanted: The one to reach; None: a number of samples is wanted.
+        elapsed_s: Time since this run began to draw, s.
+        left_s: Estimated time left, s; None until there is a rate.
+        noise: Relative error reached by adaptive sampling; None until it is known.
+        noise_wanted: Target relative error; None: not adaptive.
     """
 
     fraction: float
@@ -33,7 +33,7 @@ class Status:
 
     @property
     def words(self) -> list[str]:
-        """Samples and rates."""
+        """Samples and rates as text."""
         return [
             *([_noise(self)] if self.noise_wanted else []),
             f"{round(self.samples, 1):g}/{round(self.samples_wanted, 1):g} spp",
@@ -44,13 +44,13 @@ class Status:
 
 @dataclass(frozen=True)
 class RowStatus:
-    """How far a picture is whose rows are made once, from top to bottom.
+    """Progress of a picture that is made row by row, from top to bottom.
 
     Attributes:
-        fraction: Share of the rows that is made, 0 .. 1.
+        fraction: Share of the rows that is complete, 0 .. 1.
         pixels_per_s: Pixels per second.
-        elapsed_s: Since the first row was asked for.
-        left_s: Estimated time left; None until there is a rate.
+        elapsed_s: Time since the start of the first row, s.
+        left_s: Estimated time left, s; None until there is a rate.
     """
 
     fraction: float
@@ -60,20 +60,20 @@ class RowStatus:
 
     @property
     def words(self) -> list[str]:
-        """The rate."""
+        """Rate as text."""
         return [f"{quantity(self.pixels_per_s)} pixels/s"]
 
 
 @dataclass(frozen=True)
 class FrameStatus:
-    """How far a sequence is whose frames are made once, one after the other.
+    """Progress of a sequence that is made frame by frame.
 
     Attributes:
-        fraction: Share of the frames that is made, 0 .. 1.
-        frames: Frames that are made.
-        frames_wanted: Frames in the end.
-        elapsed_s: Since the first one was begun.
-        left_s: Estimated time left; None until there is a rate.
+        fraction: Share of the frames that is complete, 0 .. 1.
+        frames: Number of complete frames.
+        frames_wanted: Number of frames at the end.
+        elapsed_s: Time since the start of the first frame, s.
+        left_s: Estimated time left, s; None until there is a rate.
     """
 
     fraction: float
@@ -84,7 +84,7 @@ class FrameStatus:
 
     @property
     def words(self) -> list[str]:
-        """How many frames."""
+        """Number of frames as text."""
         return [f"{self.frames}/{self.frames_wanted} frames"]
 
 
@@ -97,7 +97,7 @@ def _noise(status: Status) -> str:
 
 
 def quantity(value: float) -> str:
-    """``1.23 M``: three digits and a letter."""
+    """Formats a number with three digits and a letter, such as ``1.23 M``."""
     for limit, letter in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
         if value >= limit:
             return f"{value / limit:.3g} {letter}"

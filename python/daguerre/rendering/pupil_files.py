@@ -1,7 +1,7 @@
-"""Pupils as JSON: so a pass file says by itself how its light bends.
+"""Pupils as JSON, so that a pass file contains all that its diffraction needs.
 
-Numbers are kept to the last bit, rasters in 8 bits; what a session uses has gone this way too, so a
-merged picture has the bits of one that was drawn in one go.
+Numbers are exact to the last bit, rasters have 8 bits. Sessions use pupils that went through this
+form too, so a merged picture is bit-identical to one drawn in one go.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ Pupils = list[list[Pupil]]
 
 
 def to_json(pupils: Sequence[Sequence[Pupil]]) -> dict[str, Any]:
-    """Rows of pupils that share one iris."""
+    """Converts rows of pupils that share one iris to JSON."""
     first: Any = pupils[0][0]
     return {"iris": _iris(first.iris), "pupils": [[_pupil(p) for p in row] for row in pupils]}
 
 
 def from_json(value: Any) -> Pupils:
-    """The pupils again.
+    """Reads pupils from JSON.
 
     Raises:
-        ValueError: This is no such object.
+        ValueError: The JSON is not such an object.
     """
     try:
         iris = _read_iris(value["iris"])

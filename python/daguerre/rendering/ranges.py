@@ -8,7 +8,7 @@ Range = tuple[int, int]
 
 
 def join_ranges(ranges: Iterable[Range]) -> list[Range]:
-    """Sorted ranges [begin, end), touching ones joined."""
+    """Sorts ranges [begin, end) and joins adjacent ones."""
     joined: list[Range] = []
     for begin, end in sorted(ranges):
         if joined and begin <= joined[-1][1]:
@@ -19,7 +19,7 @@ def join_ranges(ranges: Iterable[Range]) -> list[Range]:
 
 
 def missing_ranges(ranges: Sequence[Range], wanted: Range | None = None) -> list[Range]:
-    """The gaps of ``ranges`` within ``wanted``, by default from 0 to the last sample drawn."""
+    """Gaps of ``ranges`` within ``wanted``, by default from 0 to the last sample drawn."""
     begin, end = wanted or (0, max((e for _, e in ranges), default=0))
     gaps: list[Range] = []
     for a, b in join_ranges(ranges):
@@ -34,5 +34,5 @@ def missing_ranges(ranges: Sequence[Range], wanted: Range | None = None) -> list
 
 
 def show_ranges(ranges: Iterable[Range]) -> str:
-    """``0:32, 64:96``."""
+    """Formats ranges, such as ``0:32, 64:96``."""
     return ", ".join(f"{a}:{b}" for a, b in ranges) or "none"

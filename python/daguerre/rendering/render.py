@@ -1,4 +1,4 @@
-"""One-call renders: ``render``, and ``iter_render``, which refines a picture step by step."""
+"""One-call renders: ``render``, and ``iter_render``, which yields a picture as it refines."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from .schedule import work_of
 from .session import Session
 from .settings import RenderSettings
 
-#: Told how far a picture is; False stops it.
+#: Callback that receives the progress of a picture; returning False stops it.
 Progress = Callable[[Status], bool | None]
 
 
@@ -45,10 +45,11 @@ def render(
         scene: The scene.
         camera: Camera, or its name in the scene; default: the scene's own.
         settings: How it is rendered; the keywords change it.
-        checkpoint: File, an .exr, that keeps the samples until the picture is complete: every
-            minute, and when ``progress`` stops. If it is there, the render goes on from it.
-        progress: Called some ten times a second with a ``rendering.Status``; returning False
-            stops after the samples that are being drawn, and the picture so far is returned.
+        checkpoint: File (.exr) that keeps the samples until the picture is complete. It is written
+            every minute, and when ``progress`` stops the render. If it exists, the render continues
+            from it.
+        progress: Called about ten times a second with a ``rendering.Status``. Returning False
+            stops the render after the current samples and returns the picture so far.
         {keywords}
 
     Returns:
@@ -68,7 +69,7 @@ def render(
 
 
 def finish(session: Session) -> Frame:
-    """The picture of a session, of as many samples as its settings ask for."""
+    """Draws a session to the samples of its settings and returns the picture."""
     sampling = session.settings.sampling
     if sampling.noise is None:
         session.draw(0, sampling.most)
@@ -79,13 +80,13 @@ def finish(session: Session) -> Frame:
 
 
 class _Watch(Reporter, Control):
-    """Tells a function how far a picture is, and stops when it says so."""
+    """Reports progress to a callback, and stops when that returns False."""
 
     def __init__(self, told: Progress) -> None:
         self._told = told
 
     def progress(self, status: Status) -> None:
-        """Calls the function; a picture of no samples is none, so one pass is always drawn."""
+        """Calls the callback; at least one pass is drawn, as a picture needs samples."""
         if self._told(status) is False and status.samples:
             self.stops = 1
 
@@ -110,9 +111,9 @@ def iter_render(
     settings: RenderSettings | None = None,
     **keywords: Unpack[RenderKeywords],
 ) -> Iterator[Frame]:
-    """Yields the picture as it refines: after 1, 2, 4, ... and at last ``spp`` samples.
+    """Yields the picture as it refines: after 1, 2, 4, ... and finally ``spp`` samples.
 
-    With ``noise``, after each round of adaptive sampling.
+    With ``noise`` it yields the picture after each round of adaptive sampling.
 
     Args:
         scene: The scene.

@@ -1,4 +1,4 @@
-"""Reporter and control: how a job tells what it does, and is told to stop, by any front end."""
+"""Reporter and control: interfaces through which a front end follows and stops a job."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Finished:
-    """A picture that is in its files.
+    """A complete picture, whose files are written.
 
     Attributes:
         session: Session that drew it.
         frame: The picture.
         paths: Its files.
-        samples: Samples per pixel; a mean where they differ.
+        samples: Samples per pixel; their mean if they differ.
         drawn: Samples per pixel that this run drew.
-        seconds: Time since drawing began.
-        setup_s: Time before that.
+        seconds: Time since drawing began, s.
+        setup_s: Time of the set-up before that, s.
     """
 
     session: Session
@@ -41,13 +41,13 @@ class Finished:
 
 @dataclass(frozen=True)
 class Stopped:
-    """A picture that is not complete.
+    """A picture that was stopped before it was complete.
 
     Attributes:
-        samples: Samples per pixel that were drawn.
-        total: Samples per pixel that were wanted.
+        samples: Samples per pixel drawn.
+        total: Samples per pixel that a complete picture has.
         checkpoint: File that keeps samples; None: there is none.
-        saved: Whether it has all that were drawn.
+        saved: Whether the checkpoint has all samples drawn.
     """
 
     samples: float
@@ -58,13 +58,13 @@ class Stopped:
 
 @dataclass(frozen=True)
 class Look:
-    """A picture in the making.
+    """A preview of a picture that is being drawn.
 
     Attributes:
-        frame: The samples so far.
-        path: File for it beside the output.
-        write: Writes it to a file for the eye, whole or not at all.
-        complete: Whether it is the picture itself.
+        frame: Frame of the samples so far.
+        path: File for previews, beside the output.
+        write: Function that writes the preview to a display file, atomically.
+        complete: Whether it is the final picture.
     """
 
     frame: Frame
@@ -74,37 +74,37 @@ class Look:
 
 
 class Reporter:
-    """Says nothing; front ends say what they like."""
+    """Receives the messages of a job; this one ignores them, front ends override it."""
 
     @property
     def previews(self) -> bool:
-        """Whether it shows pictures that are not complete."""
+        """Whether it shows previews."""
         return False
 
     def drawing(self, facts: Mapping[str, Any]) -> AbstractContextManager[Any]:
-        """Surrounds the drawing of a picture, named by its ``frame`` and ``camera`` if several."""
+        """Context of the drawing of a picture; ``frame`` and ``camera`` name one of several."""
         return nullcontext()
 
     def progress(self, status: Status) -> None:
-        """Shows how far the picture is; called several times a second."""
+        """Shows the progress of the picture; called several times a second."""
 
     def preview(self, look: Look) -> None:
-        """Shows a picture that is not complete, and at the end the one that is."""
+        """Shows previews of a picture, and at the end the complete one."""
 
     def note(self, text: str) -> None:
-        """Says what is good to know."""
+        """Reports a note."""
 
     def warning(self, text: str) -> None:
-        """Says what is probably not wanted."""
+        """Reports a warning: a result that the user probably does not want."""
 
     def saved(self, path: Path, samples: float, *, rescued: bool = False) -> None:
-        """Tells of a checkpoint; ``rescued``: because the picture could not be written."""
+        """Reports a saved checkpoint; ``rescued``: saved because the picture was not written."""
 
     def finished(self, result: Finished) -> None:
-        """Tells of a picture that is complete."""
+        """Reports a complete picture."""
 
     def stopped(self, result: Stopped) -> None:
-        """Tells of a picture that is not, because the control stopped it."""
+        """Reports a picture that the control stopped."""
 
 
 class Control:
@@ -117,12 +117,12 @@ class Control:
     stops: int = 0
 
     def poll(self) -> None:
-        """Looks around; called several times a second in the thread that runs the job."""
+        """Updates the state; called several times a second in the thread that runs the job."""
 
     def snapshot(self) -> bool:
-        """Whether a picture of the samples so far is wanted, once."""
+        """Whether to write a snapshot of the samples so far; each request counts once."""
         return False
 
     def watching(self) -> AbstractContextManager[Any]:
-        """Surrounds the drawing of a picture."""
+        """Context of the drawing of a picture."""
         return nullcontext()

@@ -1,4 +1,4 @@
-"""Several cameras that see one scene: stereo pairs, and rigs of robots and cars."""
+"""Several cameras in one scene: stereo pairs, and rigs of robots and cars."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def render_rig(
 ) -> dict[str, Frame]:
     """Renders one picture for each camera; the scene is built once.
 
-    All cameras draw the same random numbers, so each frame has the bits of ``render`` with that
-    camera alone, and the noise of two cameras that see nearly the same is nearly the same.
+    All cameras use the same random numbers. So each frame is bit-identical to ``render`` with that
+    camera alone, and cameras with similar views have similar noise.
 
     Args:
         scene: The scene.
@@ -70,13 +70,13 @@ def render_rig(
 
 @guarded
 def stereo_pair(camera: Camera, baseline: float) -> dict[str, Camera]:
-    """Makes a stereo pair of parallel cameras, with the given one in the middle between them.
+    """Makes a stereo pair of parallel cameras, with the given camera midway between them.
 
     They move with it.
 
     Args:
-        camera: Camera that gives all other parameters.
-        baseline: Distance between them, m.
+        camera: Camera that gives pose and all parameters.
+        baseline: Distance between the two cameras, m.
     """
     number(baseline, "stereo_pair: baseline", above=0)
     return {
@@ -86,30 +86,30 @@ def stereo_pair(camera: Camera, baseline: float) -> dict[str, Camera]:
 
 
 def check_straight(metadata: dict[str, Any]) -> None:
-    """Disparity by depth is of cameras whose pictures of straight lines are straight.
+    """Checks that a camera images straight lines as straight lines, as disparity needs.
 
     Raises:
-        InputError: The camera is another one.
+        InputError: It does not.
     """
     straight_focal_px(metadata, "disparity")
 
 
 @guarded
 def disparity(frame: Frame, baseline: float) -> NDArray[np.float32]:
-    """Returns the disparity of a stereo pair: how far apart both pictures show the same point, px.
+    """Returns the disparity of a stereo pair, px: x_left - x_right of the same point.
 
-    It is x_left - x_right for both pictures: focal length x baseline / depth; 0 where nothing is.
+    For both pictures it is focal length x baseline / depth; 0 where there is no surface.
 
     Args:
-        frame: Left or right, with ground truth (``gt_time``) through its chief rays, by a pinhole,
-            a thin lens or a rectilinear projection: their straight lines stay straight.
-        baseline: Distance of the pair's cameras, m.
+        frame: Left or right frame, with ground truth (``gt_time``) by chief rays, from a pinhole, a
+            thin lens or a rectilinear projection.
+        baseline: Distance between the cameras of the pair, m.
 
     Returns:
-        Shape (H, W).
+        Disparity, px, shape (H, W).
 
     Raises:
-        InputError: The picture is another one.
+        InputError: The frame has another kind of camera or no such ground truth.
     """
     number(baseline, "disparity: baseline", above=0)
     focal = straight_focal_px(frame.metadata, "disparity")

@@ -1,4 +1,4 @@
-"""Rounds of adaptive sampling: which pixels are drawn how often next."""
+"""Rounds of adaptive sampling: plans how many samples each pixel gets next."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from .session import Session
 
 
-#: How many times better than its samples a picture may become: beyond that nobody asks the judge,
-#: who needs seconds. (Denoising was measured to make it up to 10 times better.)
+#: Largest ratio of noise before and after denoising at which the judge, which takes seconds, is
+#: called. (Denoising was measured to reduce the error up to 10 times.)
 HOPE = 16.0
 
-#: Relative error that the picture of a session will have; None: it cannot know.
+#: Function for the relative error of a session's final picture; it returns None if unknown.
 Judge = Callable[["Session"], float | None]
 
 
 def rounds(session: Session, noise: float, spp: int | None = None) -> Iterator[Round]:
-    """Draws round after round, and yields each, until the noise or ``spp`` is reached."""
+    """Draws and yields round after round, until the noise or ``spp`` is reached."""
     noise, ceiling = check_noise(noise, spp)
     while plan_round(session, noise, ceiling):
         session.draw_round(PARTS)
@@ -33,16 +33,16 @@ def rounds(session: Session, noise: float, spp: int | None = None) -> Iterator[R
 
 
 def plan_round(session: Session, noise: float, ceiling: int, judge: Judge | None = None) -> bool:
-    """Decides what is drawn next, unless a round is under way.
+    """Plans the next round, unless one is under way.
 
     Args:
         session: Session that draws.
-        noise: Wanted relative error.
-        ceiling: Most samples of a pixel.
-        judge: Says what error the picture will have, where something comes after the samples.
+        noise: Target relative error.
+        ceiling: Maximum samples of a pixel.
+        judge: Function for the error of the final picture, if a step such as denoising follows.
 
     Returns:
-        False if nothing: the noise is reached, or no pixel may have more.
+        False if there is nothing to draw: the noise is reached, or all pixels have the maximum.
     """
     if session.round is not None and not session.round.complete:
         return True

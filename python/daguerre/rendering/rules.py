@@ -1,4 +1,4 @@
-"""Rules between parameters of a render: values that do not go together."""
+"""Rules between parameters of a render: combinations that are refused."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from daguerre.errors import UsageError
 from .light_paths import check_highlights, check_paths
 from .parameters import DEFAULT
 
-#: How messages call a parameter: by its name, or as a flag.
+#: Function that names a parameter in messages: by its name, or as a flag.
 Named = Callable[[str], str]
 
 
 def check_together(values: Mapping[str, Any], named: Named = str) -> None:
-    """Refuses values that do not go together.
+    """Checks that values can be combined.
 
     Args:
         values: All parameters by name.
-        named: How messages call a parameter.
+        named: Function that names a parameter in messages.
 
     Raises:
-        UsageError: The message names what is wrong.
+        UsageError: They cannot; the message names the parameters.
     """
     flare, scatter = (check_paths(values[name], name) != 0 for name in ("flare", "scatter"))
     if values["flare_order"] != DEFAULT["flare_order"] and not flare:

@@ -1,6 +1,6 @@
-"""Work of a render, pass by pass: a range of samples, or rounds until a noise is reached.
+"""Work of a render, in passes: a range of samples, or rounds until a noise is reached.
 
-Sizes are mean samples per pixel, so that both are timed and shown alike.
+Both measure work in mean samples per pixel, so that they are timed and shown in the same way.
 """
 
 from __future__ import annotations
@@ -22,25 +22,25 @@ if TYPE_CHECKING:
 
 
 class Work(Protocol):
-    """Something to draw."""
+    """Interface of work to draw."""
 
     def check(self, saved: Pass) -> None:
-        """Refuses a checkpoint from which this cannot go on."""
+        """Refuses a checkpoint from which this work cannot continue."""
 
     def prepare(self, limit: float) -> float:
-        """Chooses the next pass, of about ``limit`` samples at most; its size; 0: all is drawn."""
+        """Plans the next pass, of at most about ``limit`` samples; its size, or 0 at the end."""
 
     def draw(self, progress: Callable[[float], bool]) -> bool:
-        """Draws the pass that was prepared; False: stopped midway."""
+        """Draws the planned pass; False: stopped midway."""
 
     def done(self) -> float:
-        """Samples that are drawn."""
+        """Samples drawn so far."""
 
     def total(self) -> float:
-        """Samples that there will be in the end, as far as is known."""
+        """Samples at the end, or an estimate."""
 
     def facts(self) -> dict[str, Any]:
-        """Facts for a status, beside the progress."""
+        """Further values for a ``Status``."""
 
 
 class Range:
@@ -51,7 +51,7 @@ class Range:
         self._next = (0, 0)
 
     def check(self, saved: Pass) -> None:
-        """Refuses samples that are not wanted."""
+        """Refuses checkpoints with samples outside of the range."""
         if saved.round is not None:
             raise MismatchError(
                 f"{saved.path}: drawn with --noise; go on with --noise, or remove the file"
@@ -65,7 +65,7 @@ class Range:
                 )
 
     def prepare(self, limit: float) -> float:
-        """The next aligned power of two."""
+        """Plans the next aligned power of two."""
         missing = self._missing()
         if not missing:
             return 0.0
@@ -86,7 +86,7 @@ class Range:
         return self.wanted[1] - self.wanted[0]
 
     def facts(self) -> dict[str, Any]:
-        """Nothing more."""
+        """No further values."""
         return {}
 
     def _missing(self) -> list[tuple[int, int]]:
@@ -94,7 +94,7 @@ class Range:
 
 
 class Rounds:
-    """Adaptive sampling down to a noise, with at most ``ceiling`` samples of any pixel."""
+    """Adaptive sampling to a target noise, with at most ``ceiling`` samples per pixel."""
 
     def __init__(
         self, session: Session, noise: float, ceiling: int, judge: Judge | None = None
@@ -103,14 +103,14 @@ class Rounds:
         self._until = 0
 
     def check(self, saved: Pass) -> None:
-        """Goes on from rounds, and from samples 0:n of every pixel."""
+        """Accepts checkpoints with rounds, or with samples 0:n of every pixel."""
         if saved.round is None and saved.ranges and (len(saved.ranges) > 1 or saved.ranges[0][0]):
             raise MismatchError(
                 f"{saved.path}: holds samples {saved.ranges}; --noise can go on from 0:N alone"
             )
 
     def prepare(self, limit: float) -> float:
-        """A part of the round under way, or of the next one."""
+        """Plans a part of the round under way, or of the next one."""
         from . import adaptive
 
         if not rounds.plan_round(self.session, self.noise, self.ceiling, self.judge):
@@ -132,14 +132,14 @@ class Rounds:
         return self._round.samples()
 
     def total(self) -> float:
-        """Total of the work, as estimated before the round."""
+        """Total samples, as estimated before the round."""
         if self.session.round is None:
             return max(1.0, self.done())
         end = float(self._round.begin.mean() + self._round.count.mean())
         return max(end, self._round.expected)
 
     def facts(self) -> dict[str, Any]:
-        """The noise before this round, and the one that is wanted."""
+        """Noise before this round, and target noise."""
         known = self.session.round is not None and bool(self._round.begin.any())
         return {"noise": self._round.noise if known else None, "noise_wanted": self.noise}
 
@@ -152,16 +152,16 @@ class Rounds:
 def work_of(
     session: Session, wanted: tuple[int, int], noise: float | None, judge: Judge | None = None
 ) -> Work:
-    """Samples [begin, end) of each pixel, or rounds until a noise with ``end`` of each at most."""
+    """Makes the work: samples [begin, end), or rounds to a noise with at most ``end`` per pixel."""
     return Range(session, wanted) if noise is None else Rounds(session, noise, wanted[1], judge)
 
 
 def pass_size(missing: tuple[int, int], limit: float) -> int:
-    """How many samples the next pass draws: a power of two, on its multiples.
+    """Size of the next pass: a power of two, aligned to its multiples.
 
     Args:
-        missing: The first range that is missing, [begin, end).
-        limit: Most samples, but one at least.
+        missing: First missing range, [begin, end).
+        limit: Maximum samples; the size is at least one.
     """
     begin, end = missing
     size = 1

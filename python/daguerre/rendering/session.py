@@ -1,4 +1,4 @@
-"""Pictures: a session draws ranges of samples into one film; ``render`` is the whole of it."""
+"""Sessions: draw ranges of samples into one film; ``render`` is a complete session."""
 
 from __future__ import annotations
 
@@ -42,15 +42,15 @@ Progress = Callable[[float], bool]
 class Session:
     """A render in progress: scene, camera and a film of exact sums.
 
-    Any split of the samples into ranges, in any order and on any number of threads, gives the same
-    bits.
+    The result is bit-identical for any split of the samples into ranges, in any order and on any
+    number of threads.
 
     Args:
         scene: The scene.
         camera: Camera, or its name in the scene; default: the scene's own.
         settings: How it is rendered; the keywords change it.
-        built: ``Session.built`` of another session of this scene, unchanged since: it is reused
-            where both look at the same time.
+        built: ``Session.built`` of another session of the same, unchanged scene; it is reused if
+            both expose at the same time.
         {keywords}
 
     Raises:
@@ -88,12 +88,12 @@ class Session:
 
     @property
     def focused_camera(self) -> Camera:
-        """The camera with the focus that was found."""
+        """Camera with its resolved focus."""
         return self.prepared.focused_camera
 
     @property
     def torn(self) -> bool:
-        """Whether a pass was stopped midway, so that the sums are those of no samples."""
+        """Whether a pass was stopped midway, which makes the sums invalid."""
         return self._torn
 
     def _whole_film(self) -> _core.Film:
@@ -112,8 +112,8 @@ class Session:
             progress: Called with the fraction done, from any thread; returning False stops.
 
         Returns:
-            False if stopped. Part of the pass is in the sums then, so the session refuses to go
-            on, or to give a picture, until ``set_state`` brings sums that are whole.
+            False if stopped. The sums then contain part of the pass, so the session refuses to
+            draw or to return a picture until ``set_state`` restores complete sums.
         """
         begin = whole(begin, "samples", 0, MAX_SAMPLES)
         end = whole(end, "samples", 0, MAX_SAMPLES)
@@ -165,12 +165,12 @@ class Session:
 
     @core_errors(InputError, "render")
     def frame(self, *, truth: bool = True, waves: bool = True, plate: bool = True) -> Frame:
-        """Returns the picture of the samples drawn so far, with all channels asked for.
+        """Returns the picture of the samples drawn so far, with all requested channels.
 
         Args:
             truth: Whether to add ground truth.
             waves: Whether to add diffraction, which takes time.
-            plate: Whether to put it over the plate, if that is the background.
+            plate: Whether to composite over the plate, if that is the background.
         """
         aovs = self.settings.film.aovs
         frame = frame_of(self._whole_film(), self.metadata, aovs=aovs, waves=waves)
@@ -178,7 +178,7 @@ class Session:
         return self.with_truth(frame) if truth else frame
 
     def over_plate(self, frame: Frame) -> Frame:
-        """The frame over the plate of the scene, if that is the background."""
+        """Composites a frame over the scene's plate, if that is the background."""
         if not shows_plate(self.settings):
             return frame
         if self._plate is None:
@@ -186,7 +186,7 @@ class Session:
         return over(frame, self._plate)
 
     def with_truth(self, frame: Frame) -> Frame:
-        """The frame with the channels of ``gt_time``: from scene and camera, not from the sums."""
+        """Adds channels of ground truth to a frame, made from scene and camera, not the sums."""
         if self.settings.truth.moment is None:
             return frame
         frame = replace(frame, aovs=frame.aovs | self._truth)
@@ -197,7 +197,7 @@ class Session:
 
     @cached_property
     def ground_truth(self) -> GroundTruth:
-        """Ground truth of scene and camera, without samples: at ``gt_time``, or at mid."""
+        """Ground truth of scene and camera, at ``gt_time`` or else at mid-exposure."""
         return ground_truth(self.prepared, self.crop, self.overscan)
 
     @cached_property
@@ -207,7 +207,7 @@ class Session:
     def object_ids(self, moment: Moment) -> NDArray[np.uint32]:
         """Index + 1 of the instance that each pixel sees by ground truth, (H, W); 0: none.
 
-        ``moment`` is that of ``ground_truth``, so that it need not be built again.
+        ``moment`` is that of ``ground_truth``, for reuse.
         """
         known = self.settings.truth.moment is not None
         return self._truth["object_id"] if known else self.ground_truth.object_ids(moment)
@@ -219,7 +219,7 @@ class Session:
         return film.bad_sample_count, list(film.bad_samples)
 
     def sample_counts(self) -> NDArray[np.uint32]:
-        """Samples drawn of each pixel, shape (H, W)."""
+        """Number of samples drawn of each pixel, shape (H, W)."""
         return np.asarray(self._whole_film().sample_counts())
 
     def relative_variance(self, dark: float) -> NDArray[np.float32]:
@@ -227,9 +227,9 @@ class Session:
         return np.asarray(self._whole_film().relative_variance(dark))
 
     def state(self) -> dict[str, NDArray[np.uint32]]:
-        """The film's exact sums as 32-bit words, (H, W, words) of the crop, by part.
+        """Exact sums of the film as 32-bit words, (H, W, words) of the crop, by part.
 
-        Views of the film, without a copy: they show what is drawn later, too.
+        They are views of the film, not copies, so they change with further samples.
         """
         film = self._whole_film()
         return {part: film.state(part) for part in film.state_parts()}
@@ -240,7 +240,7 @@ class Session:
         ranges: list[tuple[int, int]],
         round: Round | None = None,
     ) -> None:
-        """Continues from sums that ``state`` gave, drawn from these sample ranges, or in rounds.
+        """Restores sums from ``state``, drawn from these sample ranges, or in rounds.
 
         Raises:
             MismatchError: A part is missing, unknown or of another size.
@@ -252,7 +252,7 @@ class Session:
 
     @cached_property
     def key(self) -> dict[str, str]:
-        """Facts that passes must share to be added: hashes of scene, camera, settings, build."""
+        """Key that passes must share to be added: hashes of scene, camera, settings, build."""
         return identity.key(self)
 
     @property

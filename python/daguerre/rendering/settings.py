@@ -1,7 +1,7 @@
-"""How a picture is rendered: one record, in groups, which is checked once and travels anywhere.
+"""Render settings: one record, in groups, with all parameters except scene and camera.
 
-A ``RenderSettings`` is plain values: it compares, prints, pickles, and goes to and from JSON. Scene
-and camera say what is seen; everything else that a picture depends on stands here.
+A ``RenderSettings`` has plain values and is checked once: it can be compared, printed, pickled, and
+converted to and from JSON.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ OverscanLike = Overscan | str | float | tuple[int, int, int, int]
 
 
 class _Group:
-    """A group of settings: the table checks each of them."""
+    """A group of settings, each checked by the table."""
 
     def __post_init__(self) -> None:
         for name in names_in(type(self)):
@@ -35,7 +35,7 @@ class _Group:
 
 @dataclass(frozen=True)
 class Sampling(_Group):
-    """Samples: how many, where in the pixel, and their random numbers."""
+    """Sampling: number of samples, pixel filter and random numbers."""
 
     spp: int | None = DEFAULT["spp"]
     noise: float | None = DEFAULT["noise"]
@@ -44,13 +44,13 @@ class Sampling(_Group):
 
     @property
     def most(self) -> int:
-        """Samples of each pixel; with ``noise`` the most that one may get."""
+        """Samples of each pixel; with ``noise`` the maximum."""
         return self.spp or (DEFAULT_SPP if self.noise is None else MAX_SPP)
 
 
 @dataclass(frozen=True)
 class Film(_Group):
-    """Pixels: which ones are drawn, and what is kept of each."""
+    """Film: the pixels that are drawn, and the channels that are kept."""
 
     resolution: tuple[int, int] = DEFAULT["resolution"]
     crop: tuple[int, int, int, int] | None = DEFAULT["crop"]
@@ -64,7 +64,7 @@ class Film(_Group):
 
 @dataclass(frozen=True)
 class Light(_Group):
-    """Light transport: which paths are followed, and how far."""
+    """Light transport: kinds, numbers and lengths of paths."""
 
     max_depth: int = DEFAULT["max_depth"]
     light_paths: str | float | tuple[float, float] = DEFAULT["light_paths"]
@@ -77,7 +77,7 @@ class Light(_Group):
 
 @dataclass(frozen=True)
 class Backdrop(_Group):
-    """Background of the scene, and glass before it."""
+    """Background of the picture, and glass in front of it."""
 
     background: str = DEFAULT["background"]
     see_through: bool = DEFAULT["see_through"]
@@ -85,7 +85,7 @@ class Backdrop(_Group):
 
 @dataclass(frozen=True)
 class Truth(_Group):
-    """Ground truth: at which moment, and through which rays."""
+    """Ground truth: its moment and its rays."""
 
     gt_time: str | None = DEFAULT["gt_time"]
     gt_lens: str = DEFAULT["gt_lens"]
@@ -94,13 +94,13 @@ class Truth(_Group):
 
     @property
     def moment(self) -> str | None:
-        """The moment; motion and means without one ask for that of the middle."""
+        """Moment of ground truth; motion and means use mid-exposure if none is given."""
         asked = self.motion or self.gt_lens == "mean"
         return self.gt_time or ("mid" if asked else None)
 
     @property
     def rays(self) -> int:
-        """Rays of each pixel."""
+        """Number of rays per pixel."""
         return 1 if self.gt_lens == "chief" else self.gt_rays or GT_RAYS
 
 
@@ -116,7 +116,7 @@ class Reference(_Group):
 @guarded(init=True)
 @dataclass(frozen=True)
 class RenderSettings(Value):
-    """How a picture is rendered.
+    """Settings of a render.
 
     Attributes:
         sampling: Samples: spp, noise, seed, filter.
@@ -128,7 +128,7 @@ class RenderSettings(Value):
         threads: Number of threads; 0: all cores.
 
     Raises:
-        UsageError: A value is out of its range, or does not go with another.
+        UsageError: A value is out of its range, or excludes another.
     """
 
     sampling: Sampling = field(default_factory=Sampling)
@@ -145,11 +145,11 @@ class RenderSettings(Value):
 
     @classmethod
     def of(cls, **values: Any) -> RenderSettings:
-        """Settings by the names of their parameters, whatever group they are in."""
+        """Makes settings from parameters by name, of any group."""
         return cls().with_(**values)
 
     def with_(self, **changes: Any) -> RenderSettings:
-        """A copy with other values, by the names of their parameters."""
+        """Returns a copy with some parameters changed, by name."""
         refuse_unknown(changes, TABLE, "settings", TypeError)
         groups: dict[str, Any] = {
             group: replace(getattr(self, group), **given)
@@ -167,7 +167,7 @@ class RenderSettings(Value):
 
     @classmethod
     def read(cls, values: Mapping[str, Any], named: Named) -> RenderSettings:
-        """Settings by the names of their parameters; messages call each as ``named`` does."""
+        """Makes settings from parameters by name; ``named`` names them in messages."""
         if isinstance(named, type) and named is not str:
             raise UsageError(f"settings: named: wanted a function, got {shown(named)}")
         for name, value in values.items():
@@ -179,12 +179,12 @@ class RenderSettings(Value):
 
     @property
     def diffraction(self) -> Diffraction | None:
-        """Diffraction, in the bands that the film keeps; None: light is no wave."""
+        """Diffraction settings, with the bands that the film keeps; None: off."""
         asked = self.light.diffraction
         return with_bands(asked, self.film.bands) if isinstance(asked, Diffraction) else None
 
     def to_json(self) -> dict[str, Any]:
-        """The record as JSON's values, by group."""
+        """Converts the settings to JSON values, by group."""
         found = asdict(self)
         if isinstance(self.film.overscan, Overscan):
             found["film"]["overscan"] = str(self.film.overscan)
@@ -192,10 +192,10 @@ class RenderSettings(Value):
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> RenderSettings:
-        """Settings from ``to_json``; groups and values that are absent have their defaults.
+        """Makes settings from the result of ``to_json``; missing values have their defaults.
 
         Raises:
-            UsageError: A group or parameter that there is not, or a value that it cannot have.
+            UsageError: Unknown group or parameter, or a value out of its range.
         """
         refuse_unknown(data, (*GROUPS, "threads"), "settings")
         groups: dict[str, Any] = {}
@@ -216,14 +216,14 @@ GROUPS: dict[str, Any] = {
 
 
 def names_in(group: Any) -> tuple[str, ...]:
-    """Parameters of a group."""
+    """Names of the parameters of a group."""
     return tuple(item.name for item in fields(group))
 
 
 def refuse_unknown(
     given: Any, known: Iterable[str], where: str, error: type[Exception] = UsageError
 ) -> None:
-    """Refuses names that are none of the known ones, and what has no names."""
+    """Refuses unknown names, and values that are not mappings."""
     if not isinstance(given, Mapping):
         raise error(f"{where}: wanted parameters by name, got {short(given)}")
     names = list(known)

@@ -1,7 +1,7 @@
-"""Ground truth: exact values at a stated time of the exposure, and motion in pixels.
+"""Ground truth: exact values at a stated moment of the exposure, and motion in pixels.
 
-One ray per pixel, the chief ray of the pixel's centre, or means over a fixed set of the rays that
-expose it, at the pixel's own moment: with a rolling shutter each line has its own. See
+It uses the chief ray of the pixel's centre, or means over a fixed set of the rays that expose the
+pixel, at the pixel's own time: with a rolling shutter each line has another. See
 docs/ground-truth.md.
 """
 
@@ -25,11 +25,11 @@ from daguerre.setup.resolved import ResolvedCamera
 from daguerre.setup.scene import build
 
 Shot = tuple[_core.Scene, _core.Camera, _core.RenderSettings]
-#: When in the exposure of a pixel: as a fraction of its length.
+#: Moments of the exposure of a pixel, as fractions of its length.
 GT_TIMES = {"open": 0.0, "mid": 0.5, "close": 1.0}
-#: Through which rays: the chief ray of the pixel's centre, or all that expose it.
+#: Rays of a pixel: the chief ray of its centre, or a mean over all that expose it.
 GT_LENSES = ("chief", "mean")
-#: How many of those are drawn.
+#: Number of rays per pixel for means: default and maximum.
 GT_RAYS = 64
 MAX_RAYS = 65536
 
@@ -39,9 +39,9 @@ class Moment:
     """Scene and camera at a moment of ground truth.
 
     Attributes:
-        shot: The core's shot.
-        scene: The scene then; with a rolling shutter, when the line in the middle opens.
-        setup: The camera, likewise.
+        shot: Shot of the core.
+        scene: Scene at that moment; with a rolling shutter, that of the middle line.
+        setup: Camera at that moment, like the scene.
     """
 
     shot: Shot
@@ -54,16 +54,16 @@ class GroundTruth:
     """Ground truth of a frame.
 
     Attributes:
-        scene: The scene; its time is that of the frame.
-        camera: The camera, its focus chosen.
-        resolution: Width and height, px.
+        scene: The scene, at the time of the frame.
+        camera: The camera, with resolved focus.
+        resolution: Width and height of the picture, px.
         crop: Pixels (x0, y0, x1, y1), end exclusive.
         gt_time: Moment in the exposure of each pixel: open, mid or close.
-        gt_lens: chief or mean: through which rays.
+        gt_lens: Rays: chief or mean.
         gt_rays: Rays per pixel for means.
-        threads: 0: all cores.
-        core_scene: The scene if it does not move, so that it need not be built again.
-        overscan: Pixels around the picture that the crop may have, too.
+        threads: Number of threads; 0: all cores.
+        core_scene: Built scene for reuse, if nothing moves.
+        overscan: Extra pixels around the picture that the crop may include.
     """
 
     scene: Scene
@@ -81,9 +81,10 @@ class GroundTruth:
     def planes(self, *, motion: bool) -> dict[str, NDArray[Any]]:
         """Channels (H, W) by name; with ``motion`` also ``motion.U`` and so on, px.
 
-        ``motion`` is where the surface point that a pixel sees appears in the next frame, 1 / fps
-        later, minus where it is now: +U right, +V down. ``motion_back``: the frame before. NaN
-        where it does not appear there, hidden or behind the camera. Means also have coverage.
+        ``motion`` is the displacement of the surface point that a pixel sees to its position in the
+        next frame, 1 / fps later: +U right, +V down. ``motion_back`` is that to the frame before.
+        They are NaN where the point has no position there: it is behind the camera, or its instance
+        is not shown then. Means also have coverage.
         """
         now = self._shot(0)
         if self.gt_lens == "mean":
@@ -108,7 +109,7 @@ class GroundTruth:
 
     @core_errors(InputError, "render")
     def object_ids(self, moment: Moment) -> NDArray[np.uint32]:
-        """That plane alone, (H, W), of ``moment(0)``."""
+        """Plane of object ids at ``moment(0)``, shape (H, W)."""
         if self.gt_lens == "mean":
             seen: Any = _core.see_mean(*moment.shot, self.crop, self.gt_rays)
         else:
@@ -119,7 +120,7 @@ class GroundTruth:
         return self.moment(frames).shot
 
     def moment(self, frames: int) -> Moment:
-        """Scene and camera some frames later, built for the moments of ground truth alone."""
+        """Builds scene and camera some frames later, for the moment of ground truth only."""
         camera = instants(self.camera, self.resolution)
         opens, _ = shutter.interval(self.camera, self.scene.time, self.resolution)
         exposure = shutter.shutter_time(self.camera)
@@ -139,12 +140,12 @@ class GroundTruth:
 
 
 def _by_channel(row: Aov, values: NDArray[Any]) -> dict[str, NDArray[Any]]:
-    """Planes (H, W) of values (H, W, channels)."""
+    """Splits values (H, W, channels) into planes (H, W)."""
     return {name: values[:, :, i].astype(np.float32) for i, name in enumerate(row.channels)}
 
 
 def focused(camera: Camera, distance: float | None) -> Camera:
-    """The camera with the focus that was found for the picture: it does not hunt between frames."""
+    """Returns the camera with the focus of the picture fixed, so that it does not hunt."""
     if distance is None or "focus_distance" in camera.motion:
         return camera
     return replace(
@@ -153,7 +154,7 @@ def focused(camera: Camera, distance: float | None) -> Camera:
 
 
 def instants(camera: Camera, resolution: tuple[int, int]) -> Camera:
-    """The camera with an exposure of no length, around the scene's time, on each of its lines."""
+    """Returns the camera with an exposure of length 0 on each line, about the scene's time."""
     order, line_time = shutter.scan(camera, resolution)
     rolling = (
         rolling_shutter.RollingShutter(order, line_time=line_time) if order != "none" else None
