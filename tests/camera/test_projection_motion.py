@@ -137,7 +137,10 @@ LARGE = dg.Projection("opencv", (400, 300), (150.0, 150.0))
         (lambda: {"projection": dg.keys([(0, WIDE), (1, 3.0)])}, r"keys\[1\]"),
         (lambda: {"projection": dg.keys([(0, 1.0), (1, 3.0)])}, "wanted a Projection"),
         (lambda: {"projection": dg.keys([(0, WIDE), (1, LONG)], "twist")}, "linear, step"),
-        (lambda: {"tilt": dg.keys([(-1, (-3.0, 0.0)), (1, (3.0, 0.0))])}, "without tilt"),
+        (
+            lambda: {"tilt": dg.keys([(-1, (-3.0, 0.0)), (1, (3.0, 0.0))])},
+            "wanted either projection or tilt",
+        ),
         (lambda: {"sensor_size": dg.keys([(-1, (8.0, 6.0)), (1, (9.0, 6.75))])}, "sensor_size"),
     ],
 )

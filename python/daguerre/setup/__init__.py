@@ -1,1 +1,1 @@
-"""Scenes and cameras as the core takes them, in its units and its order."""
+"""Set-up: converts scenes and cameras to the core's form and units."""

@@ -1,11 +1,10 @@
-"""Exact lenses that are ready at once when the same lens was set up before.
+"""Cache of the set-up of exact lenses ("aims").
 
-Results of the set-up of an exact lens are kept in a folder, one file per lens and setting,
-named by a hash of everything that it depends on, the build of this package included:
-``$XDG_CACHE_HOME/daguerre/aims`` (``~/.cache`` where that is not set). ``DAGUERRE_CACHE`` names
-another folder, or is ``off``. Files are written whole or not at all; beyond 256 MB those that were
-not used for longest go. A folder that cannot be written and files that are damaged do no harm: the
-lens is set up anew.
+A folder keeps the results, one file per lens and setting, named by a hash of everything that they
+depend on, including the build of this package: ``$XDG_CACHE_HOME/daguerre/aims`` (``~/.cache`` if
+that is not set). ``DAGUERRE_CACHE`` names another folder, or is ``off``. Files are written
+atomically; beyond 256 MB the least recently used ones are removed. If the folder cannot be written
+or a file is damaged, the lens is set up anew.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ MAX_BYTES = 256 << 20
 
 
 def folder() -> Path | None:
-    """Where aims are kept; None: nowhere."""
+    """Folder that keeps aims; None: no cache."""
     choice = os.environ.get("DAGUERRE_CACHE", "")
     if choice.lower() == "off":
         return None
@@ -50,12 +49,12 @@ BUILD = f"{_core.__version__} {identity(Path(_core.__file__))}"
 
 
 def file_name(key: str) -> str:
-    """Under which this build keeps the state of a key."""
+    """Name of the file in which this build keeps the state of a key."""
     return hashlib.blake2b(f"{key} {BUILD}".encode(), digest_size=16).hexdigest() + ".aim"
 
 
 def load(key: str) -> bytes | None:
-    """The bytes kept under a key, if any; marks them as used."""
+    """Loads the bytes kept under a key, if any, and marks them as used."""
     place = folder()
     if place is None:
         return None
@@ -70,7 +69,7 @@ def load(key: str) -> bytes | None:
 
 
 def store(key: str, state: bytes) -> None:
-    """Keeps the bytes under a key, if that is possible."""
+    """Stores bytes under a key, if possible."""
     place = folder()
     if place is None:
         return
@@ -88,7 +87,7 @@ def store(key: str, state: bytes) -> None:
 
 
 def _drop_oldest(place: Path) -> None:
-    """Removes what was not used for longest until all is within MAX_BYTES."""
+    """Removes the least recently used files until all fit into MAX_BYTES."""
 
     def entries() -> Iterator[tuple[float, int, str]]:
         with os.scandir(place) as scan:
@@ -110,14 +109,14 @@ def _drop_oldest(place: Path) -> None:
 def exact_lens(
     prescription: _core.Prescription, settings: _core.ExactLensSettings
 ) -> _core.ExactLens:
-    """A lens at one focus and f-stop, ready to draw rays; the same bits whether kept or not.
+    """Sets up a lens at one focus and f-stop; bit-identical with and without the cache.
 
     Args:
-        prescription: The lens, its gaps set for zoom and focus.
+        prescription: The lens, with gaps set for zoom and focus.
         settings: Its stop and focus, and the film that it covers.
 
     Raises:
-        CoreError: The lens cannot open or focus like that.
+        CoreError: The lens has no such stop or focus.
     """
     key = _core.ExactLens.aim_key(prescription, settings)
     known = load(key)

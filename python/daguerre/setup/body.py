@@ -1,4 +1,4 @@
-"""Ghosts in a picture: how much light is followed by way of two reflections, and by which camera.
+"""Camera body: cover glass and sensor, which add ghosts, and parts that scatter light.
 
 See ``docs/flare.md``.
 """
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 
 def stack_of(camera: Camera) -> _core.SensorStack:
-    """Surfaces that the body adds to those of the lens.
+    """Makes the surfaces that the body adds to those of the lens.
 
     Raises:
-        UsageError: Glass or a sensor that cannot be.
+        UsageError: A value of cover glass or sensor is out of its range.
     """
     CAMERA["sensor_reflectance"].check(camera.sensor_reflectance, "camera: sensor_reflectance")
     reflectance = float(camera.sensor_reflectance)
@@ -42,7 +42,7 @@ def stack_of(camera: Camera) -> _core.SensorStack:
 
 
 def stack_facts(camera: Camera) -> dict[str, Any]:
-    """Facts of the body, for metadata and hashes; empty if it declares nothing."""
+    """Data of the body for metadata and hashes; empty without cover glass and reflectance."""
     facts: dict[str, Any] = {}
     if camera.cover_glass is not None:
         facts["cover_glass"] = list(camera.cover_glass)
@@ -52,14 +52,14 @@ def stack_facts(camera: Camera) -> dict[str, Any]:
 
 
 def parts_of(camera: Camera) -> _core.LensScatter:
-    """The core's record of what scatters.
+    """Makes the core's record of the parts that scatter.
 
     Raises:
-        UsageError: Values that cannot be.
+        UsageError: A value is out of its range.
     """
     return core_parts(camera.scatter)
 
 
 def scatter_facts(camera: Camera) -> dict[str, Any]:
-    """Scatter of the lens for metadata and hashes, where scatter is drawn."""
+    """Scatter of the lens for metadata and hashes, if scatter is drawn."""
     return asdict(camera.scatter or LensScatter())

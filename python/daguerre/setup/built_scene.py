@@ -1,4 +1,4 @@
-"""A scene that is built: what all cameras share that look at it at the same time."""
+"""A built scene, which all cameras with the same exposure interval share."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from .scene import build, content_hash
 
 
 class BuiltScene:
-    """The core's scene, and what is known about it.
+    """Scene of the core, with warnings and a hash.
 
     Args:
-        scene: The scene; it must not change while this is used.
-        interval: When it is seen, s.
+        scene: The scene; it must not change while this object is in use.
+        interval: Exposure interval, s.
 
     Attributes:
-        core: The core's scene.
-        warnings: A sentence for each motion that cannot be shown to its end.
+        core: Scene of the core.
+        warnings: A sentence for each motion that is only approximated.
     """
 
     def __init__(self, scene: Scene, interval: tuple[float, float]) -> None:
@@ -27,10 +27,10 @@ class BuiltScene:
         self.core: _core.Scene = build(scene, interval, self.warnings)
 
     def shows(self, scene: Scene, interval: tuple[float, float]) -> bool:
-        """Whether it is of this scene at this time; what stays is the same at any."""
+        """Whether it was built from this scene for this interval; a static scene fits any."""
         return self.scene is scene and (self.interval == interval or not scene.motion)
 
     @cached_property
     def hash(self) -> str:
-        """Hash of all that a picture can depend on."""
+        """Hash of everything that a picture can depend on."""
         return content_hash(self.scene, self.interval)

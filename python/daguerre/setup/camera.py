@@ -1,6 +1,6 @@
-"""The wall between a photographer's camera and the core's: names and units become mm, m and rays.
+"""Set-up of a camera: converts a photographer's parameters to the core's camera.
 
-All lengths in mm unless the name says otherwise. Distances of focus are m.
+Lengths are in mm unless the name says otherwise. Focus distances are in m.
 """
 
 from __future__ import annotations
@@ -44,14 +44,14 @@ def set_up(
 
     Args:
         scene: For ``focus_on``.
-        camera: In a photographer's terms.
-        resolution: Width and height, px.
-        core_scene: For autofocus; None: autofocus gives infinity.
-        overscan: Pixels beside the frame that are drawn, too.
+        camera: Camera to set up.
+        resolution: Width and height of the picture, px.
+        core_scene: Scene for autofocus; None: autofocus gives infinity.
+        overscan: Extra pixels to draw around the frame.
 
     Raises:
-        UsageError: A parameter that is wrong, or that the chosen kind of lens cannot honour.
-        InputError: The lens file cannot be used, the lens cannot focus or open so far, or the scene
+        UsageError: A parameter is wrong, or the lens model does not support it.
+        InputError: The lens file cannot be used, the lens has no such focus or stop, or the scene
             has no such node.
     """
     if not isinstance(camera, Camera):
@@ -61,7 +61,7 @@ def set_up(
     pose = pose_over(camera, begin, end)
     world = pose.at(0.5)
     changing = changes(camera, begin, end)
-    now = camera.frozen_at(0.5 * (begin + end))  # what is said of a camera is said of mid-shutter
+    now = camera.frozen_at(0.5 * (begin + end))  # facts of a camera are those at mid-exposure
     size = _picture_size(now, resolution)
     check(now, model, prescription=prescription is not None)
     focus = Focus(scene, now, resolution, size, world, core_scene)
@@ -72,7 +72,7 @@ def set_up(
         notes.append(tilt.note(now.tilt, lens.focal_length_mm))
 
     def lens_of(moment: Camera) -> ResolvedLens:
-        """Makes the lens of another moment, whose focus distance is known."""
+        """Makes the lens at another moment, with a known focus distance."""
         like = lens.model  # what stands in for it at mid-shutter
         moment = moment if like == model else moment.with_(lens_model=like)
         check(moment, like, prescription=prescription is not None)
@@ -109,7 +109,7 @@ def _picture_size(camera: Camera, resolution: tuple[int, int]) -> tuple[float, f
 def _film_size(
     size: tuple[float, float], resolution: tuple[int, int], overscan: Overscan
 ) -> tuple[float, float]:
-    """Width and height (mm) of the film around the frame's middle that has all that is drawn."""
+    """Width and height (mm) of the film, centred on the frame, that includes the overscan."""
     across, along = (
         pixels * mm / count
         for pixels, mm, count in zip(

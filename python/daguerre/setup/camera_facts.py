@@ -1,4 +1,4 @@
-"""Facts of a camera and a scene that a photographer asks for, without rendering.
+"""Facts of a camera and a scene for photographers, without rendering.
 
 Depth of field and hyperfocal distance: S. F. Ray, Applied Photographic Optics, 3rd ed., ch. 22,
 for a thin lens of focal length f, f-stop N and circle of confusion c (f, c in the same unit):
@@ -29,33 +29,34 @@ COC_PER_DIAGONAL = 1 / 1500
 
 @dataclass(frozen=True)
 class Facts:
-    """A camera in numbers; None where something is unknown or without meaning.
+    """Numbers of a camera; None where one is unknown or meaningless.
 
     Attributes:
         lens: Name of the lens, or thin, or pinhole.
         focal_length_mm: Focal length at infinity focus.
         f_stop: F-stop; None for a pinhole.
-        t_stop: F-stop of a lens without losses that is as bright; None without glass.
-        zoom_mm: Focal length at which a zoom stands.
+        t_stop: F-stop of a lossless lens of the same brightness; None without glass.
+        zoom_mm: Focal length that a zoom lens is set to.
         zoom_range_mm: Shortest and longest focal length of a zoom.
-        squeeze: How much an anamorphic lens narrows the picture; else 1.
+        squeeze: Factor by which an anamorphic lens narrows the picture; else 1.
         tilt_deg: Tilt of the lens about x, then y.
         decentered: Number of elements off the axis.
-        sensor_mm: Width, height.
-        picture_mm: The part of the sensor that a picture of the wanted shape covers.
+        sensor_mm: Width and height of the sensor.
+        picture_mm: Width and height of the part of the sensor that the picture covers.
         field_of_view_deg: Field of view of the sensor: horizontal, vertical, diagonal.
-        picture_field_of_view_deg: Field of view of the picture, likewise.
-        focus_m: Distance of the sharp plane from the pupil; inf is infinity.
+        picture_field_of_view_deg: Field of view of the picture: horizontal, vertical, diagonal.
+        focus_m: Distance of the plane of focus from the entrance pupil; inf: infinity.
         notes: How the focus was found, and other decisions.
-        coc_mm: Circle of confusion that still counts as sharp.
-        hyperfocal_m: Focus here, and everything from half of it to infinity is sharp.
-        near_m: Where sharpness begins.
-        far_m: Where it ends.
+        coc_mm: Diameter of the circle of confusion that still counts as sharp.
+        hyperfocal_m: Hyperfocal distance: focused there, everything from half of it to infinity is
+            sharp.
+        near_m: Near limit of the depth of field.
+        far_m: Far limit of the depth of field.
         pixel_pitch_um: Pixel pitch of the picture.
-        pupil_diameter_mm: Entrance pupil.
-        shutter_s: How long a point of the film is exposed.
-        shutter: The same in words, with what else the shutter does.
-        ev100: log2(N^2 / t) - log2(ISO / 100), ISO 2720.
+        pupil_diameter_mm: Diameter of the entrance pupil.
+        shutter_s: Exposure time of a point of the film.
+        shutter: Description of the shutter.
+        ev100: Exposure value log2(N^2 / t) - log2(ISO / 100), ISO 2720.
     """
 
     lens: str
@@ -96,7 +97,7 @@ def camera_facts(
         camera: The camera.
         scene: Scene, for ``focus_on``.
         core_scene: Built scene, for autofocus; see :func:`needs_autofocus`.
-        resolution: Shape of the picture, px.
+        resolution: Width and height of the picture, px.
     """
     from daguerre.camera.shutter import describe, shutter_time
     from daguerre.setup.camera import set_up
@@ -162,7 +163,7 @@ def hyperfocal_m(focal_mm: float, f_stop: float, coc_mm: float) -> float:
 def depth_of_field_m(
     focal_mm: float, f_stop: float, coc_mm: float, focus_m: float
 ) -> tuple[float, float]:
-    """Near and far limit of sharpness, m, for a focus distance from the lens, m."""
+    """Near and far limit of the depth of field, m, for a focus distance from the lens, m."""
     hyper = hyperfocal_m(focal_mm, f_stop, coc_mm)
     f, s = focal_mm / 1000, focus_m
     if math.isinf(s):
@@ -177,8 +178,8 @@ def field_of_view_deg(
 ) -> tuple[float, float, float]:
     """Full angles, 2 atan(d / 2 f): horizontal, vertical, diagonal.
 
-    ``focal_mm`` is that of the pinhole with the same framing; an anamorphic lens sees wider than
-    its film is by its squeeze.
+    ``focal_mm`` is that of the pinhole with the same framing; the horizontal field of an anamorphic
+    lens is wider by its squeeze.
     """
     width, height = size_mm[0] * squeeze, size_mm[1]
     sides = (width, height, math.hypot(width, height))
@@ -187,7 +188,7 @@ def field_of_view_deg(
 
 
 def camera_warnings(camera: Camera) -> list[str]:
-    """Values that are probably a mistake of units."""
+    """Warnings about values that are probably in the wrong unit."""
     found = []
     focal, width = camera.focal_length, camera.sensor_size[0]
     if focal is not None and not 1 <= focal <= 2000:
@@ -204,7 +205,7 @@ def camera_warnings(camera: Camera) -> list[str]:
 
 
 def scene_facts(scene: Scene) -> dict[str, Any]:
-    """Counts what is in a scene."""
+    """Counts the parts of a scene."""
     triangles = [len(mesh.indices) for mesh in scene.meshes]
     corners = bounds(scene)
     environment = scene.environment
@@ -241,7 +242,7 @@ def scene_facts(scene: Scene) -> dict[str, Any]:
 
 
 def _moves(scene: Scene) -> dict[str, Any]:
-    """Counts what changes over time: how many of each kind, and which parameters of cameras."""
+    """Counts the parts that change over time, by kind, and lists the parameters of cameras."""
     motion = scene.motion
     counts = {
         "instances": len(motion.instances),
@@ -257,7 +258,7 @@ def _moves(scene: Scene) -> dict[str, Any]:
 
 
 def lit(scene: Scene) -> bool:
-    """Whether there is any light, at any time."""
+    """Whether the scene has any light, at any time."""
     return bool(scene.lights or scene.environment or any(_emits(scene, i) for i in scene.instances))
 
 

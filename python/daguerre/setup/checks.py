@@ -1,4 +1,4 @@
-"""Refuses camera parameters that no lens has, or that the chosen kind of lens cannot honour."""
+"""Checks of camera parameters: their ranges, and whether the lens model supports them."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ PRESCRIBED = ("ideal", "prescription")
 
 
 def check_surfaces(model: str, where: str) -> None:
-    """Refuses lens models without surfaces.
+    """Checks that the lens model has surfaces.
 
     Raises:
-        UsageError: The lens has none.
+        UsageError: It has none.
     """
     if model not in TRACED:
         raise UsageError(
@@ -36,7 +36,7 @@ def check_surfaces(model: str, where: str) -> None:
 
 
 def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
-    """The prescription, if any, and which of ``MODELS``, or ``projection``."""
+    """Returns the prescription, if any, and the model: one of ``MODELS``, or ``projection``."""
     if camera.projection is not None:
         return None, _projection(camera)
     model = camera.lens_model
@@ -56,7 +56,7 @@ def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
 
 
 def _projection(camera: Camera) -> str:
-    """A calibration stands in the place of a lens."""
+    """Checks a projection, which replaces a lens."""
     from daguerre.camera.projection import Projection
 
     if not isinstance(camera.projection, Projection):
@@ -69,7 +69,7 @@ def _projection(camera: Camera) -> str:
 
 
 def is_given(camera: Camera, row: Parameter) -> bool:
-    """Whether the camera has another value than the default, or one that changes."""
+    """Whether the camera has a value other than the default, or one over time."""
     value = getattr(camera, row.name)
     if row.name in camera.motion:
         return True
@@ -79,7 +79,7 @@ def is_given(camera: Camera, row: Parameter) -> bool:
 
 
 def check(camera: Camera, model: str, *, prescription: bool) -> None:
-    """Refuses values that no lens has, and values that this kind cannot honour.
+    """Checks the ranges of values, and that the lens model supports them.
 
     Args:
         camera: Camera at one moment.
@@ -103,7 +103,7 @@ def check(camera: Camera, model: str, *, prescription: bool) -> None:
 
 
 def _check_together(camera: Camera, model: str) -> None:
-    """Refuses values that are good by themselves and do not go together."""
+    """Refuses combinations of values that are valid by themselves."""
     most = CAMERA["tilt"].high
     if math.hypot(*camera.tilt) > most:
         raise UsageError(f"camera: tilt: wanted at most {most:g} degrees, got {camera.tilt}")

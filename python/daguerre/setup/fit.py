@@ -1,4 +1,4 @@
-"""Whether a polynomial lens is as good as a camera asks for."""
+"""Quality of a polynomial lens against the tolerance of a camera."""
 
 from __future__ import annotations
 
@@ -21,10 +21,11 @@ class FitQuality:
     Attributes:
         degree: Degree of the polynomials.
         rms_um: RMS error on the film.
-        rms_px: The same in pixels.
+        rms_px: RMS error in pixels.
         largest_um: Largest error on the film.
-        used: Whether it draws; else it is not good enough, and the exact lens does.
-        note: The same in a sentence.
+        used: Whether the polynomials draw; otherwise they miss the tolerance, and the exact lens
+            draws.
+        note: Quality in a sentence.
     """
 
     degree: int
@@ -46,11 +47,11 @@ class FitQuality:
 
 
 def judged(lens: _core.ExactLens, camera: Camera, name: str, pitch_mm: float) -> FitQuality:
-    """Judges whether the polynomials of a lens are as good as a camera asks for.
+    """Judges whether the polynomials of a lens meet a camera's tolerance.
 
     Args:
-        lens: With a fit.
-        camera: For the tolerance.
+        lens: Lens with a fit.
+        camera: Camera, for the tolerance.
         name: Name of the lens, for the note.
         pitch_mm: Pixel pitch, mm.
     """
@@ -83,7 +84,7 @@ def _length(um: float) -> str:
 
 
 def _field_deg(exact: _core.ExactLens, inner_mm: float, radius_mm: float) -> float:
-    """From straight ahead to what a film point sees; if it sees nothing, the last before it."""
+    """View angle of a film point, deg; if it sees nothing, that of the last point before it."""
     angle = 0.0
     for step in range(9):
         x, y, z = exact.chief_direction(radius_mm - (radius_mm - inner_mm) * step / 8, 0.0)

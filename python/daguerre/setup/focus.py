@@ -1,4 +1,4 @@
-"""How far away what shall be sharp is: stated, measured along a ray, or asked of a node."""
+"""Focus distance: stated, measured along a ray, or that of a node."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ SharpAt = Callable[[NDArray[np.float64]], float]
 
 @dataclass(frozen=True)
 class Sharp:
-    """A focus that was found.
+    """A resolved focus.
 
     Attributes:
-        distance_m: From the entrance pupil along the axis; may be infinite.
+        distance_m: Distance from the entrance pupil along the axis; may be infinite.
         notes: How it was found, unless it was stated.
     """
 
@@ -39,16 +39,17 @@ class Sharp:
 
 @dataclass(frozen=True)
 class Focus:
-    """Answers how far away what shall be sharp is.
+    """Finds the focus distance.
 
     Attributes:
-        scene: For nodes.
-        camera: Camera that says what is to be sharp.
+        scene: Scene, for ``focus_on``.
+        camera: Camera with its focus parameters.
         resolution: Width and height of the picture, px.
-        frame_mm: The same on the film, without overscan.
+        frame_mm: Width and height of the picture on the film, without overscan.
         world: World from camera, m, shape (4, 4).
-        core_scene: For autofocus; None: it gives infinity.
-        sharp_at: Where a tilted lens has to focus for a point; None: at the point's depth.
+        core_scene: Scene for autofocus; None: it gives infinity.
+        sharp_at: Function for the focus distance of a tilted lens for a point; None: the focus
+            distance is the point's depth.
     """
 
     scene: Scene
@@ -60,7 +61,7 @@ class Focus:
     sharp_at: SharpAt | None = None
 
     def distance(self, direction_of: Directions) -> Sharp:
-        """Finds the focus distance, given where film points look."""
+        """Finds the focus distance, given the view directions of film points."""
         camera = self.camera
         if (
             camera.focus_at is None
@@ -82,10 +83,10 @@ class Focus:
         return self._along(direction_of(film_x, film_y), what)
 
     def settled(self, direction_at: Callable[[float], Directions]) -> Sharp:
-        """Finds the focus of a lens whose view follows its focus where that matters: tilted.
+        """Finds the focus of a tilted lens, whose view directions depend on its focus.
 
         Args:
-            direction_at: Where film points look, given a focus distance in m.
+            direction_at: View directions of film points, given a focus distance in m.
         """
         found = self.distance(direction_at(math.inf))
         if self.sharp_at is not None:
@@ -108,7 +109,7 @@ class Focus:
         return Sharp(distance, (f"autofocus: {what} meets a surface {depth:.4g} m away",))
 
     def _on_node(self, name: str) -> Sharp:
-        """Depth of the visible surface in the middle of the node, else of its nearest vertex."""
+        """Depth of the visible surface at the middle of the node, else of its nearest vertex."""
         scene = self.scene
         if name not in scene.node_positions and name not in scene.nodes:
             known = set(scene.node_positions) | set(scene.nodes)
@@ -152,7 +153,7 @@ class Focus:
 
 
 def _world_vertices(scene: Scene, instances: list[int]) -> Iterator[NDArray[np.float64]]:
-    """Vertices of instances, shape (N, 3), m: in pieces, as a forest has more than fit."""
+    """Yields vertices of instances, shape (N, 3), m, in pieces that fit into memory."""
     by_mesh: dict[int, list[int]] = {}
     for i in instances:
         by_mesh.setdefault(scene.instances[i].mesh, []).append(i)

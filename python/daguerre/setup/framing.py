@@ -1,4 +1,4 @@
-"""A camera at one moment, with its pose, its film and its focus: what any lens is set up for."""
+"""Framing: camera, pose, film and focus at one moment, from which any lens is set up."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ class Framing:
     """A camera at one moment, without its lens.
 
     Attributes:
-        camera: In a photographer's terms.
+        camera: Camera at that moment.
         pose: World from camera while the shutter is open.
-        focus: Answers how far away what shall be sharp is.
-        film_mm: Width and height of the film around the frame's middle that has all that is drawn.
+        focus: Finder of the focus distance.
+        film_mm: Width and height of the film, centred on the frame, with overscan.
     """
 
     camera: Camera

@@ -1,6 +1,6 @@
-"""A camera without glass: a calibrated projection, or an ideal lens.
+"""Set-up of a camera without glass: a calibrated projection, or an ideal lens.
 
-All lengths in mm unless the name says otherwise. Distances of focus are m.
+Lengths are in mm unless the name says otherwise. Focus distances are in m.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def _projection(framing: Framing, projection: Projection) -> ResolvedLens:
             raise UsageError("camera: focus_at: the projection sees nothing there")
         return np.asarray(seen * (1, -1, -1))
 
-    if projection.is_wide:  # what is sharp lies on a sphere
+    if projection.is_wide:  # the surface of focus is a sphere
         focus = replace(focus, sharp_at=lambda point: float(np.linalg.norm(point)))
     sharp = focus.distance(direction) if radius > 0 else Sharp(math.inf)
     core = _core.Camera.projection(
@@ -130,7 +130,7 @@ def _with_iris(framing: Framing, model: str) -> ResolvedLens:
 
 
 def _film_distance(camera: Camera, f: float, distance: float) -> float:
-    """Along the camera's axis, mm: that of the pinhole with the same framing."""
+    """Film distance along the camera's axis, mm: that of the pinhole with the same framing."""
     if not camera.focus_breathing:
         return f
     if not distance * 1e3 > f:

@@ -1,4 +1,4 @@
-"""Imperfections of a lens that was made: elements off its axis, and grooves in its aspheres."""
+"""Manufacturing imperfections of a lens: decentred elements, and grooves in aspheres."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ Ripple = tuple[float, float, int]
 
 
 def imperfect(lens: Lens, camera: Camera) -> Lens:
-    """Returns the lens with the imperfections that a camera asks for.
+    """Returns the lens with the imperfections of a camera.
 
     Raises:
-        UsageError: Values that cannot be, or a lens without aspheric surfaces for a ripple.
+        UsageError: A value is out of its range, or a lens with ripple has no aspheric surface.
     """
     for surfaces, place, angles in decenters(camera):
         lens = lens.decentered(surfaces, place, angles)
@@ -26,7 +26,7 @@ def imperfect(lens: Lens, camera: Camera) -> Lens:
 
 
 def decenters(camera: Camera) -> list[Decenter]:
-    """The elements off the axis, checked."""
+    """Checks the decentred elements."""
     wanted = "((first, last), (x, y)) or ((first, last), (x, y), (about x, about y))"
     found: list[Decenter] = []
     given: Any = camera.decenter
@@ -44,7 +44,7 @@ def decenters(camera: Camera) -> list[Decenter]:
 
 
 def ripple_of(camera: Camera) -> Ripple | None:
-    """The ripple, checked; None: smooth."""
+    """Checks the ripple; None: smooth."""
     given: Any = camera.ripple
     if given is None:
         return None
@@ -57,7 +57,7 @@ def ripple_of(camera: Camera) -> Ripple | None:
 
 
 def _rippled(lens: Lens, ripple: Ripple) -> Lens:
-    """The lens with grooves in all of its aspheric surfaces, each with its own."""
+    """Returns the lens with different grooves in each of its aspheric surfaces."""
     height, period, seed = ripple
     if not any(s.kind == "aspheric" for s in lens.surfaces):
         raise UsageError(f"camera: ripple: {lens.name} has no aspheric surface")

@@ -14,7 +14,7 @@ from daguerre.errors import UsageError, core_errors
 
 
 def iris_of(camera: Camera) -> _core.Iris:
-    """The shape of the iris: round, blades, or a picture."""
+    """Makes the shape of the iris: round, blades, or a picture."""
     if camera.aperture_image is not None:
         try:
             picture = np.asarray(camera.aperture_image, np.float32)
@@ -31,7 +31,7 @@ def iris_of(camera: Camera) -> _core.Iris:
 
 
 def mask_of(camera: Camera, name: str) -> NDArray[np.float32] | None:
-    """``front_mask`` or ``iris_mask``, checked; None: clean."""
+    """Checks ``front_mask`` or ``iris_mask``; None: clean."""
     given = getattr(camera, name)
     if given is None:
         return None
@@ -44,7 +44,7 @@ def mask_of(camera: Camera, name: str) -> NDArray[np.float32] | None:
 
 
 def dirt_facts(camera: Camera) -> dict[str, Any]:
-    """The masks for metadata and hashes."""
+    """Masks for metadata and hashes."""
     masks = {name: mask_of(camera, name) for name in ("front_mask", "iris_mask")}
     return {
         f"{name}_sha256": hashlib.sha256(repr(mask.shape).encode() + mask.tobytes()).hexdigest()
@@ -54,7 +54,7 @@ def dirt_facts(camera: Camera) -> dict[str, Any]:
 
 
 def iris_facts(camera: Camera) -> dict[str, Any]:
-    """The iris for metadata and hashes."""
+    """Iris for metadata and hashes."""
     if camera.aperture_image is not None:
         image = np.ascontiguousarray(camera.aperture_image, np.float32)
         return {"aperture_image_sha256": hashlib.sha256(image.tobytes()).hexdigest()}

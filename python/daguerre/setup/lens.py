@@ -1,6 +1,6 @@
-"""A camera with a real lens: traced exactly, as a thick lens, or replaced by an ideal one.
+"""Set-up of a camera with a real lens: traced exactly, as a thick lens, or as an ideal one.
 
-All lengths in mm unless the name says otherwise. Distances of focus are m.
+Lengths are in mm unless the name says otherwise. Focus distances are in m.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ from .resolved import Glass, ResolvedLens
 
 @dataclass(frozen=True)
 class _Chosen:
-    """A prescription at its zoom and f-stop, and the model that shall draw it.
+    """A prescription at its zoom and f-stop, and the model that draws it.
 
     Attributes:
-        lens: The lens, focused as its file has it.
+        lens: The lens, focused as in its file.
         model: One of ``MODELS``.
         order: First-order data of that lens.
-        transmittance: Share of the light on the axis that passes the glass.
+        transmittance: Share of the light on the axis that the glass transmits.
         f_stop: Focal length / entrance pupil diameter.
     """
 
@@ -53,7 +53,7 @@ class _Chosen:
 
     @property
     def traced(self) -> bool:
-        """Whether its surfaces are drawn, or polynomials that are fitted to them."""
+        """Whether the model traces surfaces, or polynomials fitted to them."""
         return self.model in TRACED
 
     @property
@@ -64,13 +64,13 @@ class _Chosen:
 
 @dataclass(frozen=True)
 class _InFocus:
-    """A lens, its film and its iris.
+    """A focused lens, with its film and f-stop.
 
     Attributes:
-        lens: With the gaps of its zoom and focus.
+        lens: The lens with the gaps of its zoom and focus.
         order: First-order data of that lens.
-        film_z: Film on the lens's axis, in its frame.
-        distance: From the entrance pupil along the lens's axis, m.
+        film_z: Position of the film on the lens's axis, in the lens's frame.
+        distance: Focus distance from the entrance pupil along the lens's axis, m.
         f_stop: Focal length / entrance pupil diameter.
     """
 
@@ -86,9 +86,9 @@ class _Drawn:
     """A lens that is ready to draw.
 
     Attributes:
-        core: The core's camera.
+        core: Camera of the core.
         h0: Illuminance on the axis by a world of 1 cd/m2, lux.
-        fit: Quality of its polynomials, if they were asked for.
+        fit: Quality of its polynomials, if the model has them.
         notes: Notes for the user.
     """
 
@@ -103,7 +103,7 @@ def set_up(framing: Framing, lens: lenses.Lens, model: str) -> ResolvedLens:
 
     Raises:
         UsageError: Autofocus on a pixel outside of the frame.
-        InputError: The lens cannot focus or open so far.
+        InputError: The lens has no such focus or stop.
     """
     camera, focus = framing.camera, framing.focus
     chosen = _chosen(camera, lens, model)
@@ -147,7 +147,7 @@ def _chosen(camera: Camera, lens: lenses.Lens, model: str) -> _Chosen:
 
 
 def _notes(camera: Camera, chosen: _Chosen) -> list[str]:
-    """Notes on facts that a picture does not show: zoom, light lost in the glass, squeeze."""
+    """Notes on zoom, light lost in the glass, and squeeze."""
     notes = []
     lens, squeeze = chosen.lens, chosen.squeeze
     if lens.zoom_range_mm and camera.zoom is None:
@@ -175,8 +175,8 @@ def _notes(camera: Camera, chosen: _Chosen) -> list[str]:
 
 
 def _transmittance(lens: lenses.Lens, order: lenses.FirstOrder) -> float:
-    """On the axis, of light as bright as a D65 world, at any f-stop."""
-    f_stop = order.f_number or DEFAULT_F_STOP  # 0: a stop whose size nobody knows
+    """Luminous transmittance on the axis for D65, which is the same at any f-stop."""
+    f_stop = order.f_number or DEFAULT_F_STOP  # 0: the size of the stop is unknown
     with reported(lens.source):
         thick = _core.ThickLens(lens.prescription, f_stop, _core.Iris(), math.inf)
     return float(thick.transmittance)
@@ -191,7 +191,7 @@ def _f_stop(
 ) -> float:
     if camera.t_stop is None:
         f_stop = camera.f_stop or max(DEFAULT_F_STOP, order.f_number)
-        # A pinhole does not open: a scene's f-stop that the lens lacks is no error.
+        # A pinhole has no f-stop, so a scene's f-stop that the lens lacks is no error.
         return max(f_stop, order.f_number) if model in WITHOUT_IRIS else f_stop
     f_stop = camera.t_stop * math.sqrt(transmittance)
     if f_stop < 0.99 * order.f_number:  # as the core grants
@@ -262,7 +262,7 @@ def _ideal(framing: Framing, model: str, sharp: _InFocus, film: float) -> _Drawn
 
 
 def _directions(framing: Framing, chosen: _Chosen, distance: float) -> Directions:
-    """View directions of film points at a focus distance that may not be the last one."""
+    """View directions of film points at a trial focus distance."""
     camera = framing.camera
     if camera.focus_at is None or not chosen.traced or any(camera.tilt):
         film = framing_distance(_focused(camera, chosen, distance))

@@ -1,12 +1,11 @@
 """Focus, zoom, iris and film shift that change while the shutter is open.
 
-An ideal lens or a projection is keyed so that its numbers are within the bound of
-:mod:`daguerre.motion.resample` at all times; the parameters of a projection's model change in steps
-that move nothing by more than twice ``MODEL_BLUR`` of a pixel. A thick or exact lens is set up in
-states, each drawn by the samples that are nearest to it in time: so many that focusing and tilting
-blur by less than ``STATE_BLUR`` of a pixel from what it should be, and the iris turns and bends by
-less than 1 % of its radius. Its f-stop needs no states: the widest iris is closed as far as it is
-at each moment.
+An ideal lens or a projection has keys, whose error is within the bound of
+:mod:`daguerre.motion.resample`. The parameters of a projection's model change in steps that move
+nothing by more than twice ``MODEL_BLUR`` of a pixel. A thick or exact lens is set up in states;
+each sample uses the state nearest in time. There are so many states that focusing and tilting miss
+the true blur by less than ``STATE_BLUR`` of a pixel, and the iris turns and bends by less than 1 %
+of its radius. The f-stop needs no states: the widest iris is closed to its size at each moment.
 """
 
 from __future__ import annotations
@@ -29,12 +28,12 @@ from daguerre.motion.resample import resample
 
 from .resolved import ResolvedLens
 
-#: Blur, px, by which the focus of a state may miss.
+#: Blur error, px, that the focus of a state may have.
 STATE_BLUR = 0.1
-#: Radii by which the iris's corner may miss.
+#: Error of an iris corner that a state may have, in radii.
 _STATE_TURN = 0.01
 MAX_STATES = 129
-#: The same of a projection's model, whose states are cheap, and are ground truth's, too.
+#: Blur error, px, for a projection's model, whose states are cheap and serve ground truth, too.
 MODEL_BLUR = 0.01
 MAX_MODELS = 513
 _LOOKS = 1024
@@ -43,12 +42,12 @@ _LENS = (
     *("focal_length", "f_stop", "aperture_diameter", "focus_distance", "tilt", "zoom"),
     *("projection", *_IRIS),
 )
-_ACROSS = 9  # points across the picture at which it is seen how far a model moves it
+_ACROSS = 9  # points across the picture at which the motion by a model is measured
 
 
 @dataclass(frozen=True)
 class LensMotion:
-    """Changes of a lens within an exposure, and how it is made for a moment.
+    """Changes of a lens within an exposure.
 
     Attributes:
         camera: Camera with its motion.
@@ -56,7 +55,7 @@ class LensMotion:
         begin: Begin of the interval, s.
         end: End of the interval, s.
         lens: The lens at mid-exposure.
-        make: Makes the lens of a camera without motion.
+        make: Function that makes the lens of a camera without motion.
     """
 
     camera: Camera
@@ -67,17 +66,17 @@ class LensMotion:
     make: Callable[[Camera], ResolvedLens]
 
     def apply(self, frame: tuple[float, float], pitch: float) -> list[str]:
-        """Hands the changes over to the core's camera of mid-exposure.
+        """Applies the changes to the core's camera at mid-exposure.
 
         Args:
             frame: Size of the picture on the film, mm.
             pitch: Pixel pitch, mm.
 
         Returns:
-            Notes on bounds that are missed, and on what stands in for what.
+            Notes on error bounds that are missed, and on lens models that are replaced.
 
         Raises:
-            UsageError: A parameter changes that cannot.
+            UsageError: A parameter changes that must be constant.
         """
         if "sensor_size" in self.changing:
             raise UsageError(
@@ -96,16 +95,16 @@ class LensMotion:
 
     @property
     def _in_states(self) -> bool:
-        """Whether the lens is set up in states; ideal lenses blend."""
+        """Whether the lens is set up in states; ideal lenses are interpolated."""
         return self.lens.model in (*TRACED, "thick")
 
     @cached_property
     def _still(self) -> Camera:
-        """The camera at mid-exposure."""
+        """Camera at mid-exposure."""
         return self.camera.frozen_at(0.5 * (self.begin + self.end))
 
     def _at(self, time: float) -> Camera:
-        """The camera at a time; what it focuses on is known."""
+        """Camera at a time, with a known focus distance."""
         now = self.camera.frozen_at(time)
         distance = self.lens.focus_distance_m
         if "focus_distance" in self.changing or distance is None:
@@ -125,7 +124,7 @@ class LensMotion:
         return np.array([(t - self.begin) / span for t in times], np.float32)
 
     def _looks(self) -> list[float]:
-        """Moments at which it is seen how fast things change."""
+        """Moments at which the rate of change is measured."""
         even = self.begin + (self.end - self.begin) * np.arange(_LOOKS + 1) / _LOOKS
         return [float(t) for t in even]
 
@@ -148,7 +147,7 @@ class LensMotion:
         return _too_many("projection: its parameters", needed, MAX_MODELS)
 
     def _model_times(self) -> tuple[list[float], int]:
-        """Times of models of a projection whose parameters change, and how many are asked for."""
+        """Times of the models of a changing projection, and the number that the bound needs."""
         if "projection" not in self.changing:
             return [], 0
         models = [self.camera.motion["projection"].at(t) for t in self._looks()]
@@ -196,11 +195,11 @@ class LensMotion:
     def _state_times(
         self, cameras: list[Camera], reach: float, stop: float, blur_mm: float
     ) -> tuple[list[float], int]:
-        """Times of the states, and how many the bounds ask for.
+        """Times of the states, and the number that the bounds need.
 
-        Focusing at s moves the film by about f^2 / s; a state serves as much to either side of it.
-        Tilting moves what is sharp by as much as the film's edge turns (``reach`` from the axis),
-        zooming what lies there.
+        Focusing at s moves the film by about f^2 / s; a state serves equally to either side of it.
+        Tilting moves the surface of focus by as much as the film's edge turns (``reach`` from the
+        axis); zooming moves the image there.
         """
         film_mm = blur_mm * stop
         # inf counts as 0, so does a focus that stays
@@ -217,7 +216,7 @@ class LensMotion:
         return self._spread(steps, MAX_STATES)
 
     def _spread(self, steps: NDArray[np.float64], most: int) -> tuple[list[float], int]:
-        """Times of states that share what changes from look to look, in units of what one may."""
+        """Times of states that share the total change evenly, in units of one state's bound."""
         way = np.concatenate([[0.0], np.cumsum(steps)])
         if not way[-1] > 0:
             return [0.5 * (self.begin + self.end)], 1
@@ -227,7 +226,7 @@ class LensMotion:
         return [float(t) for t in np.interp(middles, way, self._looks())], needed
 
     def _change_setting(self) -> None:
-        """Iris radius of an exact lens, relative to its widest, and the film's shift."""
+        """Sets iris radius (relative to the widest) and film shift of an exact lens over time."""
         core, exact, middle = self.lens.core, self._in_states, self._still.shift
         widest = min(self._stop(self._at(t)) for t in self._looks()) if exact else 1.0
 
@@ -252,7 +251,7 @@ def _too_many(what: str, needed: int, most: int) -> list[str]:
 
 @dataclass(frozen=True)
 class _Watched:
-    """Values that follow from parameters that change."""
+    """Values computed from parameters that change, as a value over time."""
 
     value: Callable[[float], Any]
     camera: Camera

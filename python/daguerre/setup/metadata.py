@@ -1,6 +1,6 @@
-"""Facts of a camera that is set up: as JSON, and in the names and units of the EXR attributes.
+"""Metadata of a camera: as JSON, and in the names and units of EXR attributes.
 
-The wall between records and files: nothing computes with what is made here.
+They are only for files and hashes; nothing computes with them.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 
 def camera_metadata(camera: Camera, setup: ResolvedCamera, columns: int) -> dict[str, Any]:
-    """Facts of the camera for a picture's metadata.
+    """Makes the camera's part of a picture's metadata.
 
     Args:
-        camera: In a photographer's terms.
-        setup: The same, set up.
+        camera: The camera.
+        setup: The camera, set up.
         columns: Width of the picture, px.
     """
     lens, matrix = setup.lens, setup.world_from_camera
@@ -60,7 +60,7 @@ def camera_metadata(camera: Camera, setup: ResolvedCamera, columns: int) -> dict
 
 
 def facts_of(setup: ResolvedCamera) -> dict[str, Any]:
-    """Camera parameters as resolved, for metadata and hashes; JSON-able."""
+    """Resolved camera parameters as JSON values, for metadata and hashes."""
     camera = setup.camera
     return {
         "lens_model": setup.lens.model,
@@ -138,7 +138,7 @@ def _hash_lens(lens: Lens) -> str:
 
 
 def _world_to_camera(world_from_camera: NDArray[np.float64]) -> NDArray[np.float64]:
-    """OpenEXR's convention: row vectors, left-handed camera with +z forward, +x right, +y up."""
+    """Camera from world as in OpenEXR: row vectors, left-handed, +z forward, +x right, +y up."""
     camera_from_world = np.linalg.inv(world_from_camera)
     return np.asarray((np.diag([1.0, 1.0, -1.0, 1.0]) @ camera_from_world).T)
 

@@ -1,4 +1,4 @@
-"""Where a camera is while the shutter is open: a rigid motion, whatever moves it."""
+"""Pose of a camera while the shutter is open: a rigid motion."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from daguerre.errors import UsageError
 from daguerre.motion.resample import resample_transform
 from daguerre.motion.values import Dynamic, Keys, Spin
 
-#: Between rigid keys these stay rigid; a camera that turns by lerped matrices would be sheared.
+#: Interpolations that stay rigid between rigid keys; linear matrices would shear the camera.
 _STAY_RIGID = ("decomposed", "twist", "slerp")
-#: Points around a moving camera, m, by which the error of its motion is measured.
+#: Points around a moving camera, m, at which the error of its motion is measured.
 _AROUND = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float64)
 
-#: Moments at which a motion is looked at for its hash.
+#: Number of moments at which a motion is sampled for its hash.
 _LOOKS = 64
 
 
 @dataclass(frozen=True)
 class _Rigid:
-    """World from camera over time, without what scale the file may have."""
+    """World from camera over time, without the scale of the file."""
 
     transform: Dynamic
 
@@ -43,7 +43,7 @@ class _Rigid:
 
 @dataclass(frozen=True, eq=False)
 class _Mounted:
-    """World from what is fixed to a camera that moves."""
+    """World from an object that is fixed to a moving camera."""
 
     body: Dynamic
     place: NDArray[np.float64]
@@ -56,11 +56,11 @@ class _Mounted:
 
 
 def mounted(camera: Camera, place: NDArray[np.float64]) -> Camera:
-    """The same camera at another place of the body that it is fixed to, and moving with it.
+    """Returns a copy of a camera at another pose in its frame, which moves with it.
 
     Args:
-        camera: It gives all else.
-        place: Pose of the new camera in this one's frame, rigid, m; shape (4, 4).
+        camera: Camera that gives all other parameters.
+        place: Pose of the new camera in this one's frame, rigid, m, shape (4, 4).
     """
     given: Any = camera
     if not isinstance(given, Camera):
@@ -79,9 +79,9 @@ def moved_right(camera: Camera, shift: float) -> Camera:
 
 
 def pose(camera: Camera, begin: float, end: float) -> _core.Motion:
-    """World from camera over an interval (s), in fractions of it; rigid.
+    """Rigid motion, world from camera, over an interval (s), in fractions of it.
 
-    Keys and spins go to the core as they are; anything else as keys that keep the bound of
+    Keys and spins go to the core unchanged. Other motions become keys within the error bound of
     :func:`daguerre.motion.resample.resample_transform`.
 
     Raises:
@@ -103,12 +103,12 @@ def pose(camera: Camera, begin: float, end: float) -> _core.Motion:
 
 @dataclass(frozen=True)
 class Change:
-    """How a parameter changes in an interval, JSON-able.
+    """Change of a parameter in an interval, as JSON values.
 
     Attributes:
-        open: Its value at the begin.
-        close: Its value at the end.
-        sha256: Hash of its values on the way.
+        open: Value at the begin.
+        close: Value at the end.
+        sha256: Hash of the values between.
     """
 
     open: Any
@@ -117,12 +117,12 @@ class Change:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """The change for metadata and hashes."""
+        """Makes the record of a change, for metadata and hashes."""
         return {"open": self.open, "close": self.close, "sha256": self.sha256}
 
 
 def changes(camera: Camera, begin: float, end: float) -> dict[str, Change]:
-    """Which parameters change in an interval, s, and how."""
+    """Changes of parameters in an interval, s, by name."""
     if not end > begin:
         return {}
     even = [begin + (end - begin) * i / _LOOKS for i in range(_LOOKS + 1)]
@@ -139,27 +139,27 @@ def changes(camera: Camera, begin: float, end: float) -> dict[str, Change]:
 
 
 def _plain(value: Any) -> Any:
-    """For JSON."""
+    """Converts a value to JSON."""
     return value.facts() if isinstance(value, Projection) else np.asarray(value).tolist()
 
 
 def _near(keys: Keys, begin: float, end: float) -> Keys:
-    """The keys that an interval needs, made rigid."""
+    """Selects the keys that an interval needs, and makes them rigid."""
     first = max(0, int(np.searchsorted(keys.times, begin, side="right")) - 1)
     last = int(np.searchsorted(keys.times, end, side="left")) + 1
     values = tuple(rigid(value) for value in keys.values[first:last])
     return replace(keys, times=keys.times[first:last], values=values)
 
 
-#: Largest distance of a camera from the origin, m: longer rays overflow in the ray tracer.
+#: Maximum distance of a camera from the origin, m: longer rays overflow in the ray tracer.
 MAX_DISTANCE = 1e18
 
 
 def rigid(transform: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The rotation and position of a transform: a camera has no scale.
+    """Rotation and position of a transform, without scale.
 
     Raises:
-        UsageError: The matrix is no 4x4 of finite numbers, is singular, or stands too far away.
+        UsageError: The matrix is not a finite 4x4, is singular, or lies too far from the origin.
     """
     try:
         matrix = np.asarray(transform, np.float64)

@@ -1,7 +1,7 @@
-"""Records of a camera that is set up: its numbers as resolved, and the core's camera.
+"""Records of a camera that is set up: resolved parameters, and the core's camera.
 
-All lengths in mm and all angles in degrees unless a name says otherwise. What files say of a camera
-is made of these records in :mod:`.metadata`, and nowhere read back.
+Lengths are in mm and angles in degrees unless a name says otherwise. :mod:`.metadata` converts
+these records for files; they are never read back.
 """
 
 from __future__ import annotations
@@ -30,16 +30,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Glass:
-    """A prescription as a camera uses it.
+    """A prescription as set up in a camera.
 
     Attributes:
-        lens: The lens at its zoom, focused as its file has it.
+        lens: The lens at its zoom, focused as in its file.
         effective_focal_length_mm: Focal length at its focus.
-        entrance_pupil_offset_mm: From the entrance pupil to the film, along the camera's axis.
-        squeeze: How much it narrows the picture; 1: it does not.
-        transmittance: Share of the light on the axis that passes the glass.
+        entrance_pupil_offset_mm: Distance from the entrance pupil to the film, along the camera's
+            axis.
+        squeeze: Factor by which it narrows the picture; 1: none.
+        transmittance: Share of the light on the axis that the glass transmits.
         h0: Illuminance on the axis by a world of 1 cd/m2, lux.
-        fit: Quality of the polynomials, if they were asked for.
+        fit: Quality of the polynomials, if the model has them.
     """
 
     lens: Lens
@@ -53,19 +54,20 @@ class Glass:
 
 @dataclass(frozen=True)
 class ResolvedLens:
-    """A lens that is ready to draw, of any kind.
+    """A lens of any model, ready to draw.
 
     Attributes:
-        core: The core's camera.
+        core: Camera of the core.
         model: Model that draws: exact, polynomial, thick, thin, pinhole or projection.
         name: Name of the lens; thin, pinhole or projection without one.
         focal_length_mm: Focal length as engraved.
         pinhole_focal_length_mm: Film distance of the pinhole with the same framing.
-        f_stop: F-stop; None: a pinhole without a lens behind its name.
-        aperture_diameter_mm: Diameter of an ideal lens; None: glass, or no opening.
-        focus_distance_m: From the entrance pupil along the lens's axis; None: all is sharp.
-        projection: Calibration in the place of a lens.
-        glass: Prescription, if there is one, whatever model draws it.
+        f_stop: F-stop; None: a pinhole without a prescription.
+        aperture_diameter_mm: Aperture of an ideal lens; None: a prescription, or a pinhole.
+        focus_distance_m: Focus distance from the entrance pupil along the lens's axis; None:
+            everything is sharp.
+        projection: Projection that replaces a lens.
+        glass: Prescription, if there is one, for any model.
         notes: Decisions made on the user's behalf, one sentence each.
     """
 
@@ -83,43 +85,43 @@ class ResolvedLens:
 
     @property
     def t_stop(self) -> float | None:
-        """F-stop of a lens without losses that is as bright; None: no glass."""
+        """F-stop of a lossless lens of the same brightness; None: no glass."""
         if self.glass is None or self.f_stop is None:
             return None
         return self.f_stop / math.sqrt(self.glass.transmittance)
 
     @property
     def effective_focal_length_mm(self) -> float:
-        """Focal length at its focus; as engraved, without glass."""
+        """Focal length at its focus; without glass, the engraved one."""
         return self.glass.effective_focal_length_mm if self.glass else self.focal_length_mm
 
     @property
     def entrance_pupil_offset_mm(self) -> float | None:
-        """From the entrance pupil to the film, along the camera's axis; None: no glass."""
+        """Distance from the entrance pupil to the film, along the camera's axis; None: no glass."""
         return self.glass.entrance_pupil_offset_mm if self.glass else None
 
     @property
     def squeeze(self) -> float:
-        """How much an anamorphic lens narrows the picture; else 1."""
+        """Factor by which an anamorphic lens narrows the picture; else 1."""
         return self.glass.squeeze if self.glass else 1.0
 
     def film_offset_m(self, tilt_deg: tuple[float, float]) -> float:
-        """From the entrance pupil to the film along the lens's axis, m; 0: no glass."""
+        """Distance from the entrance pupil to the film along the lens's axis, m; 0: no glass."""
         return 1e-3 * (self.entrance_pupil_offset_mm or 0.0) / cosine(tilt_deg)
 
 
 @dataclass(frozen=True, eq=False)
 class ResolvedCamera:
-    """A camera that is ready to draw, as it is at mid-shutter.
+    """A camera at mid-exposure, ready to draw.
 
     Attributes:
-        camera: The same in a photographer's terms, at mid-shutter.
+        camera: Camera parameters at mid-exposure.
         lens: The lens.
         resolution: Width and height of the picture, px.
-        interval_s: When the shutter is open: begin and end.
-        world_from_camera: Pose at mid-shutter, m, shape (4, 4).
+        interval_s: Begin and end of the exposure.
+        world_from_camera: Pose at mid-exposure, m, shape (4, 4).
         frame_size_mm: Width and height of the picture on the film.
-        shift_mm: Middle of the picture against the lens's axis, right and up.
+        shift_mm: Position of the picture's middle relative to the lens's axis, right and up.
         changes: Changes while the shutter is open, by the name of the parameter.
         notes: Decisions made on the user's behalf, one sentence each.
     """
@@ -136,7 +138,7 @@ class ResolvedCamera:
 
     @property
     def core(self) -> _core.Camera:
-        """The core's camera."""
+        """Camera of the core."""
         return self.lens.core
 
     @property
@@ -149,7 +151,7 @@ class ResolvedCamera:
 
     @property
     def setting(self) -> LensSetting:
-        """Setting of a lens with glass, as the bench takes it."""
+        """Setting of a lens with glass, for the bench."""
         glass, zoomed = self.lens.glass, self.camera.zoom is not None
         return LensSetting(
             f_stop=self.lens.f_stop,

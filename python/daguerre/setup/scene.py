@@ -1,4 +1,4 @@
-"""From the scene's arrays to the core's scene, and a hash of what was handed over."""
+"""Conversion of a scene to the core's scene, and a hash of its content."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ def build(
     interval: tuple[float, float] | None = None,
     notes: list[str] | None = None,
 ) -> _core.Scene:
-    """Hands the scene to the core, which checks it and builds the ray tracer.
+    """Passes the scene to the core, which checks it and builds the ray tracer.
 
     Args:
         scene: The scene.
-        interval: When it is seen, s; None: at its ``time``.
-        notes: Gets a sentence for each motion that cannot be shown to its end.
+        interval: Exposure interval, s; None: the scene's ``time``.
+        notes: List that gets a sentence for each motion that is only approximated.
 
     Raises:
-        InputError: Some part cannot be rendered; the message names it.
+        InputError: A part cannot be rendered; the message names it.
     """
     if not isinstance(scene, Scene):
         raise UsageError(f"scene: wanted a Scene, got {short(scene)}")
@@ -78,7 +78,7 @@ def content_hash(scene: Scene, interval: tuple[float, float] | None = None) -> s
 
     Args:
         scene: The scene.
-        interval: When it is seen, s; what moves is looked at its ends, its keys and in between.
+        interval: Exposure interval, s; motion is sampled at its ends, at keys and between.
     """
     digest = hashlib.sha256()
 

@@ -1,4 +1,4 @@
-"""Moving parts of a scene in the form that the core takes: over the interval of one picture."""
+"""Moving parts of a scene in the core's form, over the interval of one picture."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from daguerre.scene.scene import Scene
 from .vertices import MAX_STEPS, resample_vertices, same_array
 
 FloatArray = NDArray[np.float64]
-#: Keys of a file that are looked at, of all transforms together; few of each are left at least,
-#: or none where even that is too much work: halving finds what they tell, if less exactly.
+#: Maximum number of a file's keys that are used, for all transforms together. Each keeps at least a
+#: few, or none if even that is too much work: halving then finds the motion, less exactly.
 MAX_ALL_BREAKS = 1 << 18
 _MIN_BREAKS = 8
 
@@ -32,9 +32,9 @@ class MovingParts:
     """The moving parts of a scene over an interval.
 
     Args:
-        scene: Has the motion.
+        scene: Scene with the motion.
         interval: Begin and end, s.
-        notes: Is told where a bound cannot be kept.
+        notes: List that gets a sentence for each error bound that is missed.
     """
 
     def __init__(self, scene: Scene, interval: tuple[float, float], notes: list[str]) -> None:
@@ -47,7 +47,7 @@ class MovingParts:
         self._most = max(_MIN_BREAKS, min(MAX_BREAKS, shared)) if shared else 0
 
     def vertices(self, index: int) -> Vertices:
-        """Those of a mesh: of one moment, (N, ...), or of even steps, (S, N, ...)."""
+        """Vertices of a mesh: at one moment, (N, ...), or at even steps, (S, N, ...)."""
         mesh = self._scene.meshes[index]
         dynamic = self._scene.motion.meshes.get(index)
         if dynamic is None:
@@ -99,7 +99,7 @@ class MovingParts:
             self._crowded.append((where, many, most))
 
     def finish(self) -> None:
-        """Says once what has more keys than can be shown."""
+        """Adds one note about parts with more keys than are used."""
         motion = self._scene.motion
         kinds = {"shown": motion.shown, "material": motion.materials, "light": motion.lights}
         for kind, dynamics in kinds.items():
@@ -117,7 +117,7 @@ class MovingParts:
             )
 
     def shown(self, index: int) -> list[tuple[float, float]] | None:
-        """When an instance is there, s; None: always."""
+        """Intervals in which an instance is visible, s; None: always."""
         dynamic = self._scene.motion.shown.get(index)
         if dynamic is None:
             return None if self._scene.instances[index].shown else []
@@ -129,7 +129,7 @@ class MovingParts:
 
 
 def _stacked(steps: list[Vertices], name: str) -> Any:
-    """One array of all steps; None where a step has none."""
+    """Stacks the arrays of all steps; None if a step has none."""
     arrays = [getattr(step, name) for step in steps]
     return None if any(a is None for a in arrays) else freeze_in_place(np.stack(arrays))
 

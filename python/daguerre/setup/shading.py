@@ -1,4 +1,4 @@
-"""Materials, lights and the environment, in the form that the core takes them: over an interval."""
+"""Materials, lights and the environment in the core's form, over an interval."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ from daguerre.scene.parts import Environment
 from daguerre.scene.scene import Scene
 
 Interval = tuple[float, float]
-#: Kind of light, and what the core's function for that kind takes.
+#: Kind of light, and arguments of the core's function for that kind.
 CoreLight = tuple[Any, ...]
 
 
 @dataclass(frozen=True)
 class _Seen:
-    """A value over time, as ``look`` makes it what the core takes: there it shall be linear."""
+    """A value over time in the form that ``look`` gives it, in which the core interpolates."""
 
     dynamic: Dynamic
     look: Callable[[Any], Any]
@@ -55,7 +55,7 @@ class _Seen:
 
 
 def add_materials(builder: _core.SceneBuilder, scene: Scene, interval: Interval) -> None:
-    """All materials; those that change as keys."""
+    """Adds all materials; those that change become keys."""
     for i, material in enumerate(scene.materials):
         dynamic = scene.motion.materials.get(i)
         if dynamic is None:
@@ -68,7 +68,7 @@ def add_materials(builder: _core.SceneBuilder, scene: Scene, interval: Interval)
 
 
 def add_lights(builder: _core.SceneBuilder, scene: Scene, interval: Interval) -> None:
-    """All lights; those that change as keys."""
+    """Adds all lights; those that change become keys."""
     for i, (light, transform) in enumerate(scene.lights):
         dynamic = scene.motion.lights.get(i)
         first = _core_light(light, transform)
@@ -82,7 +82,7 @@ def add_lights(builder: _core.SceneBuilder, scene: Scene, interval: Interval) ->
 
 
 def add_environment(builder: _core.SceneBuilder, scene: Scene, interval: Interval) -> None:
-    """The environment, and what changes of it."""
+    """Adds the environment with its changes."""
     dynamic = scene.motion.environment
     environment = scene.environment if dynamic is None else dynamic.at(interval[0])
     if environment is None:
@@ -98,7 +98,7 @@ def add_environment(builder: _core.SceneBuilder, scene: Scene, interval: Interva
 
 
 def _pose(environment: Environment, image: Any) -> tuple[tuple[float, ...], float]:
-    """Factor on the environment's light, and its turn about +y, rad."""
+    """Factor on the environment's light, and its rotation about +y, rad."""
     if environment.image is not image:
         raise InputError(
             "environment: image: wanted the same image at all times, got another later"

@@ -1,4 +1,4 @@
-"""Pictures in which straight lines are straight, read back from what their files say."""
+"""Rectilinear pictures, recognised from their metadata."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ _STRAIGHT = (*IDEAL, "rectilinear")
 
 
 def straight_focal_px(metadata: Mapping[str, Any], where: str) -> float:
-    """Returns the focal length of a straight picture along its rows, px.
+    """Returns the focal length of a rectilinear picture along its rows, px.
 
     Args:
         metadata: Metadata of a frame, as :func:`.metadata.camera_metadata` makes it.
         where: Name of the caller, for messages.
 
     Raises:
-        InputError: Another kind of camera, or a file that does not say its camera.
+        InputError: Another kind of camera, or metadata without a camera.
     """
     facts = metadata.get("camera", {})
     projection = facts.get("projection", {})

@@ -1,7 +1,7 @@
-"""Where a tilted lens has to focus for a point to be sharp.
+"""Focus of a tilted lens.
 
-The lens is turned about the centre of its entrance pupil (``core/camera/tilt.h``); the film stays
-across the camera's -z, and a focus distance runs along the lens's axis.
+The lens turns about the centre of its entrance pupil (``core/camera/tilt.h``). The film stays
+perpendicular to the camera's -z. Focus distances are along the lens's axis.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ FloatArray = NDArray[np.float64]
 
 
 def turn(tilt_deg: tuple[float, float]) -> FloatArray:
-    """Camera from lens, shape (3, 3): about the camera's x, then about its y."""
+    """Rotation, camera from lens, shape (3, 3): about the camera's x, then about its y."""
     a, b = np.radians(tilt_deg)
     about_x = np.array([[1, 0, 0], [0, math.cos(a), -math.sin(a)], [0, math.sin(a), math.cos(a)]])
     about_y = np.array([[math.cos(b), 0, math.sin(b)], [0, 1, 0], [-math.sin(b), 0, math.cos(b)]])
@@ -29,7 +29,7 @@ def cosine(tilt_deg: tuple[float, float]) -> float:
 
 
 def note(tilt_deg: tuple[float, float], focal_length: float) -> str:
-    """Where the plane of focus goes: through a line f / sin(tilt) from the lens.
+    """Note on the plane of focus, which passes through a line f / sin(tilt) from the lens.
 
     Source: Merklinger 1996, Focusing the View Camera, ch. 5 (the hinge rule).
     """
@@ -44,7 +44,7 @@ def note(tilt_deg: tuple[float, float], focal_length: float) -> str:
 
 @dataclass(frozen=True)
 class CardinalPoints:
-    """Cardinal points of a lens, which decide where images lie: z in its frame, see ``FirstOrder``.
+    """Cardinal points of a lens, z in its frame; see ``FirstOrder``.
 
     Attributes:
         front_focal_z: Front focal point.
@@ -62,20 +62,20 @@ class CardinalPoints:
 
     @classmethod
     def thin(cls, focal_length: float) -> CardinalPoints:
-        """Makes that of a thin lens."""
+        """Makes the cardinal points of a thin lens."""
         return cls(-focal_length, focal_length, focal_length**2, focal_length, 0)
 
 
 def focus_on(cardinal: CardinalPoints, tilt_deg: tuple[float, float], point_m: FloatArray) -> float:
-    """Focus distance (m, along the lens's axis) at which a point of the camera's frame is sharp.
+    """Focus distance (m, along the lens's axis) at which a point is sharp.
 
-    The point's image (Newton's x x' = f f') lies on the film; so the film's place is known, and
-    with it what is sharp on the axis.
+    The point's image (Newton's x x' = f f') lies on the film. This gives the film's position, and
+    with it the distance that is sharp on the axis.
 
     Args:
-        cardinal: The lens.
-        tilt_deg: About x and y.
-        point_m: Shape (3,), camera frame, m.
+        cardinal: Cardinal points of the lens.
+        tilt_deg: Tilt about x and y.
+        point_m: Point in the camera's frame, m, shape (3,).
     """
     rotation = turn(tilt_deg)
     p = 1e3 * rotation.T @ point_m
@@ -92,7 +92,7 @@ def focus_on(cardinal: CardinalPoints, tilt_deg: tuple[float, float], point_m: F
 
 
 def focus_still(film_mm: float, tilt_deg: tuple[float, float], point_m: FloatArray) -> float:
-    """The same of a thin lens whose film stays where it is when it focuses (``ThinLens``).
+    """Focus distance for a thin lens whose film does not move when it focuses (``ThinLens``).
 
     With c the chief ray of depth 1, a the axis and D the film's distance, the point in focus has
     the depth t with 1 / t = (c . a) (a_z / D + 1 / focus) - 1 / D.

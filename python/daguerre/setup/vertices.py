@@ -1,4 +1,4 @@
-"""Vertices over time at even steps of an interval, as many as it takes."""
+"""Resampling of vertices over time to even steps of an interval."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ _MAX_BREAKS = 64
 def resample_vertices(
     dynamic: Dynamic, open_s: float, close_s: float
 ) -> tuple[list[Vertices], bool]:
-    """Vertices at even steps, linear in between.
+    """Resamples vertices to even steps with linear interpolation.
 
-    1 step says that nothing changes; else there are 2, 3, 5, ... 129, until no vertex is off by
-    more than ``BOUND`` of the radius of the mesh, or ``PATH_BOUND`` of the longest way where that
-    is more.
+    One step means that nothing changes. Otherwise there are 2, 3, 5, ... 129, until no vertex is
+    off by more than ``BOUND`` of the radius of the mesh, or ``PATH_BOUND`` of the longest path if
+    that is more.
 
     Args:
         dynamic: The vertices.
         open_s: Begin of the interval, s.
-        close_s: Its end.
+        close_s: End of the interval, s.
 
     Returns:
-        The vertices at each step, and whether they keep the bound.
+        The vertices at each step, and whether they are within the bound.
     """
     grid = _Grid(dynamic, open_s, close_s)
     first = grid.at(0.0)
@@ -62,18 +62,18 @@ class _Grid:
         self._kept: dict[float, Vertices] = {}
 
     def once(self, fraction: float) -> Vertices:
-        """The vertices; not kept, as they may be many."""
+        """Evaluates the vertices without caching, as they may be many."""
         found = self._kept.get(fraction)
         time = (1 - fraction) * self._open + fraction * self._close
         return self._dynamic.at(time) if found is None else found
 
     def at(self, fraction: float) -> Vertices:
-        """The vertices; kept."""
+        """Evaluates the vertices, with caching."""
         self._kept[fraction] = self.once(fraction)
         return self._kept[fraction]
 
     def fits(self, count: int, checks: Sequence[float]) -> bool:
-        """Whether ``count`` segments come near enough at some fractions."""
+        """Whether ``count`` segments are within the bound at some fractions."""
         first, last = _points(self.at(0.0)), _points(self.at(1.0))
         radius = 0.5 * float(np.linalg.norm(np.ptp(first, axis=0)))
         way = float(np.linalg.norm(last - first, axis=1).max())
