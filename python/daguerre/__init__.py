@@ -175,16 +175,16 @@ def load(
     allow_dirs: Sequence[str | Path] = (),
     **options: Any,
 ) -> Scene:
-    """Reads a scene file (.glb, .gltf, or a format that was registered) at a time in seconds.
+    """Reads a scene file (.glb, .gltf, or a registered format) at a time, s.
 
-    A file without a camera gets one, named ``framing``, that has everything in view.
+    A file without a camera gets a camera named ``framing`` that has everything in view.
 
     Args:
         path: The file.
-        time: Where the animations are evaluated, s.
-        variant: One of the file's ``variants`` of materials; absent: as the file stands.
-        allow_dirs: Folders outside the file's own that it may refer to.
-        **options: Those of a registered format (``docs/importers.md``).
+        time: Time at which animations are evaluated, s.
+        variant: Material variant, one of ``Scene.variants``; default: the materials as in the file.
+        allow_dirs: Folders, besides the file's own, from which it may read files.
+        **options: Options of a registered format (``docs/importers.md``).
 
     Raises:
         InputError: The file cannot be used; the message names the file and the place in it.
@@ -197,10 +197,10 @@ def load(
 
 @guarded
 def load_frame(path: str | Path) -> Frame:
-    """Reads a picture (.exr) with all its channels and facts, of Daguerre or another program.
+    """Reads a picture (.exr) of Daguerre or another program, with all channels and metadata.
 
     Raises:
-        InputError: It cannot be read; the message names the file.
+        InputError: The file cannot be read; the message names it.
     """
     from .io.exr.read import read_frame
 

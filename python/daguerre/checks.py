@@ -1,4 +1,4 @@
-"""Checks of what users hand over: one clear error that names what, wanted and got."""
+"""Checks of users' arguments: one clear error that names argument, wanted and got."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .errors import DaguerreError, InputError, UsageError
 
-#: Limits of the side of a picture (px) and the samples of a pixel, and the size that pictures have.
+#: Maximum side of a picture (px), maximum samples of a pixel, and default size of pictures.
 MAX_RESOLUTION = 65536
 DEFAULT_RESOLUTION = (960, 540)
 MAX_SAMPLES = 1 << 31
-#: Numbers of an array that a user hands over, at most.
+#: Maximum number of elements in a user's array.
 MAX_NUMBERS = 1 << 31
 #: Deflate cannot shrink data more than this (zlib's "Technical details").
 DEFLATE_LIMIT = 1032
 
 
 def array(values: ArrayLike, where: str, what: str, columns: int) -> NDArray[np.float32]:
-    """Finite numbers of shape (N, columns), float32."""
+    """Checks finite numbers of shape (N, columns); returns float32."""
     numbers = to_numbers(values, where, what, f"shape (N, {columns})")
     if numbers.ndim != 2 or numbers.shape[1] != columns:
         raise InputError(f"{where}: {what}: wanted shape (N, {columns}), got {numbers.shape}")
@@ -53,7 +53,7 @@ def optional_array(
 def to_numbers(
     values: Any, where: str, what: str, wanted: str, error: type[DaguerreError] = InputError
 ) -> NDArray[Any]:
-    """A numeric array; what is none is named by its type."""
+    """Converts to a numeric array; the error names the type of other values."""
     try:
         numbers = np.asarray(values)
     except ValueError:
@@ -66,13 +66,13 @@ def to_numbers(
 
 
 def doubles(values: Any, where: str, what: str, wanted: str) -> NDArray[np.float64]:
-    """A parameter as an array of numbers, of whatever shape: in order, as the core reads it."""
+    """Converts a parameter to a contiguous array of doubles of any shape, for the core."""
     numbers = to_numbers(values, where, what, wanted, UsageError)
     return np.asarray(numbers, np.float64, order="C")
 
 
 def wavelengths(values: ArrayLike, where: str) -> NDArray[np.float64]:
-    """Wavelengths that glass can be asked for, nm, of any shape."""
+    """Checks wavelengths for glass, nm, of any shape."""
     found = doubles(values, where, "values", "wavelengths in nm")
     if found.size and not (found.min() >= 1 and found.max() <= 1e6):
         raise UsageError(f"{where}: wanted wavelengths of 1 to 1e6 nm, got {short(found.tolist())}")
@@ -80,7 +80,7 @@ def wavelengths(values: ArrayLike, where: str) -> NDArray[np.float64]:
 
 
 def rows(values: ArrayLike, where: str, columns: int) -> NDArray[np.float64]:
-    """Points or rays of an analysis as (N, columns); one alone is a row."""
+    """Checks points or rays of an analysis, shape (N, columns); a single one becomes a row."""
     numbers = doubles(values, where, "values", f"shape (N, {columns})")
     if numbers.ndim not in (1, 2) or numbers.shape[-1] != columns:
         raise UsageError(f"{where}: wanted shape (N, {columns}), got {numbers.shape}")
@@ -88,7 +88,7 @@ def rows(values: ArrayLike, where: str, columns: int) -> NDArray[np.float64]:
 
 
 def line(values: ArrayLike, where: str) -> NDArray[np.float64]:
-    """Numbers in a row, shape (N,); one alone is a row of one."""
+    """Checks numbers, shape (N,); a single one becomes a row of one."""
     numbers = np.atleast_1d(doubles(values, where, "values", "shape (N,)"))
     if numbers.ndim != 1:
         raise UsageError(f"{where}: wanted shape (N,), got {numbers.shape}")
@@ -96,7 +96,7 @@ def line(values: ArrayLike, where: str) -> NDArray[np.float64]:
 
 
 def as_readonly(values: NDArray[Any], dtype: DTypeLike | None = None) -> NDArray[Any]:
-    """The array itself if nobody can change it, else a read-only copy: the core reads in place."""
+    """Returns the array if it cannot change, else a read-only copy, as the core reads in place."""
     base: Any = values
     while isinstance(base, np.ndarray) and not base.flags.writeable:
         base = base.base
@@ -111,7 +111,7 @@ def as_readonly(values: NDArray[Any], dtype: DTypeLike | None = None) -> NDArray
 
 
 def freeze_in_place(values: NDArray[Any]) -> NDArray[Any]:
-    """The array, from now on read-only, so that :func:`as_readonly` need not copy it."""
+    """Makes the array read-only, so that :func:`as_readonly` need not copy it."""
     base: Any = values
     while isinstance(base, np.ndarray):
         base.flags.writeable = False
@@ -120,12 +120,12 @@ def freeze_in_place(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def matrix(transform: Any, where: str) -> NDArray[np.float64]:
-    """A finite transform (4, 4); None is the identity."""
+    """Checks a finite transform (4, 4); None is the identity."""
     return np.eye(4) if transform is None else given_matrix(transform, where)
 
 
 def given_matrix(transform: Any, where: str) -> NDArray[np.float64]:
-    """A finite transform (4, 4)."""
+    """Checks a finite transform (4, 4)."""
     numbers = to_numbers(transform, where, "transform", "shape (4, 4)").astype(np.float64)
     if numbers.shape != (4, 4):
         raise InputError(f"{where}: transform: wanted shape (4, 4), got {numbers.shape}")
@@ -137,7 +137,7 @@ def given_matrix(transform: Any, where: str) -> NDArray[np.float64]:
 def color(
     value: Any, where: str, error: type[DaguerreError] = InputError
 ) -> tuple[float, float, float]:
-    """Three finite numbers of at least 0."""
+    """Checks three finite numbers of at least 0."""
     try:
         r, g, b = (float(v) for v in value)
     except (TypeError, ValueError):
@@ -157,7 +157,7 @@ def number(
     infinite: bool = False,
     error: type[DaguerreError] = UsageError,
 ) -> float:
-    """A number in [low, high], or above ``above``; infinite only if that is allowed."""
+    """Checks a number in [low, high], or above ``above``; infinite only if that is allowed."""
     wanted = "a number" if low == -math.inf else f"a number of at least {low:g}"
     if above is not None:
         wanted = f"a number above {above:g}"
@@ -180,7 +180,7 @@ def number(
 
 
 def numbers(value: Any, where: str, count: int, wanted: str) -> tuple[float, ...]:
-    """``count`` finite numbers."""
+    """Checks ``count`` finite numbers."""
     try:
         result = tuple(float(v) for v in islice(value, count + 1))
     except (TypeError, ValueError, OverflowError):
@@ -191,7 +191,7 @@ def numbers(value: Any, where: str, count: int, wanted: str) -> tuple[float, ...
 
 
 def whole(value: Any, where: str, low: int, high: int, bounds: str | None = None) -> int:
-    """An integer of any kind in [low, high]."""
+    """Checks an integer of any type in [low, high]."""
     wanted = bounds or f"{low} .. {high}"
     try:
         result = operator.index(value)
@@ -203,7 +203,7 @@ def whole(value: Any, where: str, low: int, high: int, bounds: str | None = None
 
 
 def short(value: Any, length: int = 60) -> str:
-    """The value as text that fits into a message."""
+    """Formats a value as text that fits into a message."""
     try:
         text = " ".join(repr(value).split())
     except (ValueError, RecursionError):  # whole numbers of thousands of digits
@@ -212,7 +212,7 @@ def short(value: Any, length: int = 60) -> str:
 
 
 def shown(value: Any) -> str:
-    """A value of any kind for a message: plain ones as they are, others by what they are."""
+    """Formats any value for a message: plain values as they are, others by their type."""
     if isinstance(value, np.ndarray):
         return f"an array {value.shape} of {value.dtype}"
     if isinstance(value, type):
@@ -224,15 +224,15 @@ def shown(value: Any) -> str:
 
 
 def plain_light(pixels: NDArray[Any], where: str, *, infinite: bool = False) -> None:
-    """Refuses pictures with NaN, and infinite light unless it is of use.
+    """Refuses pictures with NaN, and with infinite light unless allowed.
 
     Args:
         pixels: Shape (H, W, C).
         where: For messages.
-        infinite: Whether that may be.
+        infinite: Whether infinite light is allowed.
 
     Raises:
-        InputError: The message names the first pixel, (x, y).
+        InputError: The picture has such pixels; the message names the first, (x, y).
     """
     if pixels.size == 0 or math.isfinite(pixels.min() + (0 if infinite else pixels.max())):
         return

@@ -1,9 +1,9 @@
-"""Checks at the door of public functions: what is handed over against what annotations name.
+"""Type checks of the arguments of public functions, by their annotations.
 
 ``@guarded`` reads the kinds of a function's parameters from its annotations, once, on its first
-call: a scene, a path, a number, numbers, a text. A value of another kind is refused by one error
-that names function, parameter, wanted and got. Limits are checked inside, where they are known. A
-class that is ``@guarded`` has all its public methods checked; its constructor with ``init=True``.
+call: a scene, a path, a number, numbers, a text. A value of another kind raises an error that names
+function, parameter, wanted and got. The function itself checks limits. For a ``@guarded`` class all
+public methods are checked, and with ``init=True`` its constructor.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Anything = TypeVar("Anything", bound=Callable[..., Any])
 
 
 class _Numbers:
-    """Stands for ``ArrayLike`` and ``NDArray[...]`` while an annotation is read."""
+    """Placeholder for ``ArrayLike`` and ``NDArray[...]`` while an annotation is read."""
 
     def __class_getitem__(cls, item: object) -> type[_Numbers]:
         return cls
@@ -43,7 +43,7 @@ _KNOWN: dict[str, Any] = {
 
 
 class _Names(dict[str, Any]):
-    """Names of a module; one that only type checkers know is a class without content."""
+    """Names of a module; one that only type checkers import becomes an empty class."""
 
     def __missing__(self, name: str) -> Any:
         return kinds.unseen(name)
@@ -51,11 +51,11 @@ class _Names(dict[str, Any]):
 
 @dataclass(frozen=True)
 class _Plan:
-    """Parameters of a function that are checked.
+    """Parameters of a function to check.
 
     Attributes:
-        by_place: Place, name and kind of those that need no name in a call.
-        by_name: Kinds of all.
+        by_place: Position, name and kind of positional parameters.
+        by_name: Kinds of all parameters by name.
     """
 
     by_place: tuple[tuple[int, str, Kind], ...]
@@ -75,13 +75,13 @@ def guarded(
 def guarded(
     function: Any = None, *, init: bool = False, arrays: bool = True, but: tuple[str, ...] = ()
 ) -> Any:
-    """Checks the kinds of what a function, or each public method of a class, is given.
+    """Checks the kinds of the arguments of a function, or of each public method of a class.
 
     Args:
         function: The function or class.
-        init: Whether the constructor of a class is checked, too.
-        arrays: Whether arrays are; else the function does it, and says which shape it wants.
-        but: Names of parameters that the function checks itself, in better words.
+        init: Whether to check the constructor of a class, too.
+        arrays: Whether to check arrays; if not, the function does, and names the shape it wants.
+        but: Names of parameters that the function checks itself, with better messages.
     """
     if function is None:
         return functools.partial(guarded, init=init, arrays=arrays, but=but)
@@ -96,7 +96,7 @@ def guarded(
 
 
 def _shut(cls: type, name: str, member: Any, arrays: bool, but: tuple[str, ...]) -> None:
-    """Puts a door before a method of a class, which may be a base's; one is enough."""
+    """Adds checks to a method of a class, which may be inherited, unless it has them."""
     if hasattr(getattr(member, "__func__", member), "has_door"):
         return
     shown_as = cls.__name__ if name == "__init__" else name
@@ -107,7 +107,7 @@ def _shut(cls: type, name: str, member: Any, arrays: bool, but: tuple[str, ...])
 
 
 def _with_door(function: Any, name: str, arrays: bool, but: tuple[str, ...]) -> Any:
-    """The function behind its checks; itself if it takes nothing but its object."""
+    """Returns the function with checks, or itself if it has no parameters to check."""
     if not function.__annotations__.keys() - {"return"}:
         return function
     plan: _Plan | None = None

@@ -21,7 +21,7 @@ __all__ = [
 
 
 class DaguerreError(ValueError):
-    """Base of all errors that a user can act on."""
+    """Base of all errors that a user can correct."""
 
     exit_code = 3
 
@@ -52,9 +52,9 @@ class OutputError(DaguerreError):
 
 @contextmanager
 def core_errors(raised: type[DaguerreError], where: str = "") -> Iterator[None]:
-    """Raises what the core refuses inside as an error of ``raised``, ``where`` ahead of its words.
+    """Converts errors of the core to ``raised``, with ``where`` in front of the message.
 
-    Works as a decorator, too. Other errors pass: a ``ValueError`` of our own code is a fault.
+    It works as a decorator, too. Other errors pass: a ``ValueError`` of our own code is a bug.
     """
     try:
         yield
@@ -63,7 +63,7 @@ def core_errors(raised: type[DaguerreError], where: str = "") -> Iterator[None]:
 
 
 def suggest(name: object, known: Iterable[str]) -> str:
-    """``" (did you mean 'a' or 'b'?)"`` with the nearest known names, or all of a short list."""
+    """Makes " (did you mean 'a' or 'b'?)" from the nearest known names, or all of a short list."""
     names = sorted(known)
     near = difflib.get_close_matches(str(name), names, n=3, cutoff=0.5) or (
         names if len(names) <= 8 else []

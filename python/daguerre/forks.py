@@ -1,7 +1,7 @@
-"""Threads of OpenImageIO, which a fork would lose: they end before it, and come back after it.
+"""Ends the threads of OpenImageIO before a fork, which would lose them, and restarts them after.
 
-The end of a process waits for them. ``daguerre.io.exr.threads`` does the same for OpenEXR,
-``core/bind/unlocked.cpp`` for oneTBB.
+Otherwise the end of a forked process would wait for them. ``daguerre.io.exr.threads`` does the same
+for OpenEXR, ``core/bind/unlocked.cpp`` for oneTBB.
 """
 
 from __future__ import annotations

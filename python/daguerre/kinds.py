@@ -1,4 +1,4 @@
-"""Kinds of values that annotations name, and what each takes."""
+"""Kinds of values that annotations name, and the values that each accepts."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import numpy as np
 
 from .checks import MAX_NUMBERS
 
-#: Answer of ``take`` to a value of another kind.
+#: Result of ``take`` for a value of another kind.
 REFUSED: Any = object()
 _MOST_PARTS = 100_000
 _ROWS = (collections.abc.Sequence, np.ndarray)
@@ -31,9 +31,9 @@ class Kind:
     """A kind of values.
 
     Attributes:
-        words: Wanted values, for messages.
-        take: The value, made plain, or ``REFUSED``.
-        arrays: Whether arrays of any shape are among them.
+        words: Description of accepted values, for messages.
+        take: Function that returns the value in plain form, or ``REFUSED``.
+        arrays: Whether arrays of any shape are accepted.
     """
 
     words: str
@@ -42,19 +42,19 @@ class Kind:
 
 
 class Unseen:
-    """Base of classes that an annotation names and only type checkers import."""
+    """Base of placeholders for classes that only type checkers import."""
 
     def __class_getitem__(cls, item: object) -> type[Unseen]:
         return cls
 
 
 def unseen(name: str) -> type[Unseen]:
-    """A class that stands for another of this name."""
+    """Makes a placeholder for the class of this name."""
     return type(name, (Unseen,), {})
 
 
 def of(hint: Any, *, none: bool = False) -> Kind | None:
-    """The kind that an annotation names; None: anything, or what is not known here."""
+    """Kind that an annotation names; None: anything, or a kind that is not checked."""
     parts = typing.get_args(hint) if _is_union(hint) else (hint,)
     none = none or None in parts or types.NoneType in parts
     found = [_single(part) for part in parts if part not in (None, types.NoneType)]
@@ -107,7 +107,7 @@ def _single(hint: Any) -> Kind | None:
 
 
 def _protocol(name: str, members: Iterable[str]) -> Kind:
-    """Objects of any class that have the members of a protocol."""
+    """Kind of objects of any class with the members of a protocol."""
     asked = [m for m in members if m == "__call__" or not m.startswith("_")]
 
     def take(value: Any) -> Any:
@@ -119,7 +119,7 @@ def _protocol(name: str, members: Iterable[str]) -> Kind:
 
 
 def _object(cls: type) -> Kind:
-    """Objects of a class, which only type checkers may know: then by its name."""
+    """Kind of objects of a class; a class that only type checkers import is found by name."""
     name = cls.__name__
     article = "an" if name[0] in "AEIOU" else "a"
 
@@ -133,7 +133,7 @@ def _object(cls: type) -> Kind:
 
 
 def _parts(origin: Any, args: tuple[Any, ...]) -> Kind:
-    """A tuple, or another row of values of one kind."""
+    """Kind of tuples, or other sequences of values of one kind."""
     fixed = origin is tuple and bool(args) and args[-1] is not Ellipsis
     inner = [of(arg) for arg in args if arg is not Ellipsis]
     words = _words_of_parts(inner, fixed)
@@ -176,7 +176,7 @@ def _words_of_parts(inner: list[Kind | None], fixed: bool) -> str:
 
 
 def _number(value: Any) -> Any:
-    """A real number that is one: no NaN, no flag, none that a double cannot hold."""
+    """Accepts a real number that a double can hold, but not NaN or a flag."""
     if type(value) is float:
         return REFUSED if value != value else value
     if type(value) is int and -_WHOLE < value < _WHOLE:
@@ -216,7 +216,7 @@ def _text(value: Any) -> Any:
 
 
 def _path(value: Any) -> Any:
-    """A path of text without a zero byte, which no system takes."""
+    """Accepts a path of text without a zero byte, which no system supports."""
     if isinstance(value, os.PathLike) and not isinstance(value, PurePath):
         value = os.fspath(value)
     fits = isinstance(value, str | PurePath) and "\0" not in str(value)
@@ -224,7 +224,7 @@ def _path(value: Any) -> Any:
 
 
 def _array(value: Any) -> Any:
-    """Numbers of any shape."""
+    """Accepts numbers of any shape."""
     if not isinstance(value, np.ndarray):
         if isinstance(value, str | bytes | bytearray | np.bool_ | bool):
             return REFUSED
@@ -256,8 +256,8 @@ _PLAIN: dict[Any, Kind] = {
     ),
     collections.abc.Callable: Kind("a function", lambda v: v if callable(v) else REFUSED),
 }
-#: Names of annotations: arrays under other names, and what is checked where it is used.
+#: Names of annotations: other names of arrays, and kinds that are checked where they are used.
 _ARRAYS = frozenset({"_Numbers", "FloatArray", "Floats", "Image", "Real"})
 _OPEN = frozenset({"Progress", "Source", "Samples", "OverscanLike", "Self", "Light"})
-#: Protocols that a module may import for type checkers alone, and what they ask for.
+#: Protocols that a module may import for type checkers only, and their members.
 _PROTOCOLS = {"Dynamic": ("at", "breaks")}

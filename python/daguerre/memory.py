@@ -1,7 +1,7 @@
-"""Memory that we may still take, so that what cannot fit is refused and not killed.
+"""Memory that the process may still use, so that too large tasks are refused instead of killed.
 
-That is what the machine and its control groups have free, as long as the process stays below its
-limit: 80 % of what they give in all, or what was asked for (``set_limit``).
+It is the free memory of the machine and its control groups, as long as the process stays below its
+limit: 80 % of their total memory, or the limit of ``set_limit``.
 """
 
 from __future__ import annotations
@@ -13,20 +13,20 @@ from pathlib import Path
 from .errors import UsageError
 
 PROC, GROUPS = Path("/proc"), Path("/sys/fs/cgroup")
-#: Share of what there is in all that a process takes, if nobody says another limit.
+#: Default limit: share of the total memory that a process uses.
 SHARE = 0.8
 _asked: float | None = None
 
 
 def set_limit(limit: float | None) -> None:
-    """Limits what this process takes.
+    """Limits the memory that this process uses.
 
     Args:
-        limit: Bytes, or a share of what the machine or the control group gives if at most 1; None:
-            ``SHARE``.
+        limit: Bytes; or, if at most 1, a share of the memory of the machine or its control group;
+            None: ``SHARE``.
 
     Raises:
-        UsageError: It is not above 0.
+        UsageError: The limit is not above 0.
     """
     global _asked
     if limit is not None and not 0 < limit < math.inf:
@@ -35,7 +35,7 @@ def set_limit(limit: float | None) -> None:
 
 
 def left_bytes(proc: Path = PROC, groups: Path = GROUPS) -> int | None:
-    """Memory that this process may still take, bytes; None: nobody tells."""
+    """Memory that this process may still use, bytes; None: unknown."""
     free, most = free_bytes(proc, groups), limit_bytes(proc, groups)
     told = [
         count
@@ -46,7 +46,7 @@ def left_bytes(proc: Path = PROC, groups: Path = GROUPS) -> int | None:
 
 
 def limit_bytes(proc: Path = PROC, groups: Path = GROUPS) -> int | None:
-    """Memory that this process may take in all, bytes; None: nobody tells what there is."""
+    """Memory that this process may use in all, bytes; None: unknown."""
     if _asked is not None and _asked > 1:
         return int(_asked)
     given = total_bytes(proc, groups)
@@ -54,7 +54,7 @@ def limit_bytes(proc: Path = PROC, groups: Path = GROUPS) -> int | None:
 
 
 def total_bytes(proc: Path = PROC, groups: Path = GROUPS) -> int | None:
-    """Memory of the machine, or less where a control group of ours has a limit; without swap."""
+    """Memory of the machine, or the limit of a control group of the process; without swap."""
     facts = _numbers(proc / "meminfo")
     found = [1024 * facts["MemTotal:"]] if "MemTotal:" in facts else []
     for folder in _groups(proc, groups):
@@ -64,17 +64,17 @@ def total_bytes(proc: Path = PROC, groups: Path = GROUPS) -> int | None:
 
 
 def own_bytes(proc: Path = PROC) -> int:
-    """Memory that is this process's own: files that it reads can be dropped."""
+    """Private memory of this process, without cached files, which can be dropped."""
     facts = _numbers(proc / "self" / "status")
     return 1024 * (facts.get("RssAnon:", 0) + facts.get("VmSwap:", 0))
 
 
 def free_bytes(proc: Path = PROC, groups: Path = GROUPS) -> int | None:
-    """Memory and swap that are free or can be had by dropping caches; None: nobody tells.
+    """Memory and swap that are free, or become free by dropping caches; None: unknown.
 
-    Linux tells it of the machine, and of the control groups that we are in: those of a container or
-    a cluster's job may allow less. Sources: proc(5); the kernel's admin-guide/cgroup-v1/memory.rst
-    and cgroup-v2.rst.
+    Linux reports it for the machine and for the control groups of the process; those of a container
+    or a cluster's job may allow less. Sources: proc(5); the kernel's
+    admin-guide/cgroup-v1/memory.rst and cgroup-v2.rst.
     """
     found = [_of_machine(proc), *(_of_group(folder) for folder in _groups(proc, groups))]
     told = [free for free in found if free is not None]
@@ -82,7 +82,7 @@ def free_bytes(proc: Path = PROC, groups: Path = GROUPS) -> int | None:
 
 
 def shown(count: float) -> str:
-    """Bytes as people read them, such as 12.3 GB."""
+    """Formats bytes for people, such as 12.3 GB."""
     for unit in ("B", "kB", "MB", "GB"):
         if count < 1000:
             return f"{count:.3g} {unit}"
@@ -99,9 +99,9 @@ def _of_machine(proc: Path) -> int | None:
 
 
 def _groups(proc: Path, groups: Path) -> Iterator[Path]:
-    """Folders of the groups with memory limits that this process is in, to the root of each.
+    """Folders of the control groups of this process that limit memory, up to the root of each.
 
-    A container sees its own group at the root, by whatever name the machine has it.
+    A container sees its own group at the root, whatever the machine calls it.
     """
     for line in _lines(proc / "self" / "cgroup"):
         _, controllers, path = line.split(":", 2)
@@ -113,7 +113,7 @@ def _groups(proc: Path, groups: Path) -> Iterator[Path]:
 
 
 def _of_group(folder: Path) -> int | None:
-    """Limit less use, of either version; files that are cached and not in use can be dropped."""
+    """Limit minus use of a group, of either version; inactive cached files do not count."""
     for limit, usage, cached in (
         ("memory.max", "memory.current", "inactive_file"),
         ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
@@ -125,13 +125,13 @@ def _of_group(folder: Path) -> int | None:
 
 
 def _number(path: Path) -> int | None:
-    """The number that a file holds; None: no file, or no limit ("max")."""
+    """Reads the number in a file; None: no file, or no limit ("max")."""
     word = next(iter(_lines(path)), "")
     return int(word) if word.isdecimal() else None
 
 
 def _numbers(path: Path) -> dict[str, int]:
-    """Lines of a name and a number."""
+    """Reads lines of a name and a number."""
     words = (line.split() for line in _lines(path))
     return {w[0]: int(w[1]) for w in words if len(w) > 1 and w[1].isdecimal()}
 

@@ -1,6 +1,6 @@
 """Quantities as people type them: ``250cm``, ``2in``, ``1/48``, ``16.6ms``, ``f/2.8``, ``36x24``.
 
-Every parser names its flag in its message; a number without a unit is in the unit of the parameter.
+Messages of a parser name its flag. A number without a unit is in the unit of the parameter.
 """
 
 from __future__ import annotations
@@ -47,23 +47,23 @@ _NUMBER = re.compile(
 
 
 def length_mm(flag: str, text: str) -> float:
-    """A length in mm; without a unit it is mm."""
+    """Parses a length, mm; a number without a unit is in mm."""
     return _quantity(flag, text, LENGTHS, "mm", "a length such as 50, 50mm, 5cm or 2in") * 1e3
 
 
 def pitch_um(flag: str, text: str) -> float:
-    """A pixel pitch in um; without a unit it is um."""
+    """Parses a pixel pitch, um; a number without a unit is in um."""
     wanted = "a pixel pitch such as 3.45, 3.45um or 0.00345mm"
     return _finite(flag, text, _quantity(flag, text, LENGTHS, "um", wanted)) * 1e6
 
 
 def distance_m(flag: str, text: str) -> float:
-    """A distance in m; without a unit it is m. ``inf`` is allowed."""
+    """Parses a distance, m, or ``inf``; a number without a unit is in m."""
     return _quantity(flag, text, LENGTHS, "m", "a distance such as 2.5, 250cm, 8ft or inf")
 
 
 def unit_m(flag: str, text: str) -> float:
-    """Length of a unit, m: ``mm``, ``25mm``."""
+    """Parses the length of a unit, m, such as ``mm`` or ``25mm``."""
     wanted = "a unit such as mm, 25mm or 0.001"
     if text.isalpha() and text not in LENGTHS:
         raise _bad(flag, wanted, text)
@@ -74,25 +74,25 @@ def unit_m(flag: str, text: str) -> float:
 
 
 def time_s(flag: str, text: str) -> float:
-    """A time in s; without a unit it is s."""
+    """Parses a time, s; a number without a unit is in s."""
     return _finite(
         flag, text, _quantity(flag, text, TIMES, "s", "a time such as 1/48, 0.02 or 16.6ms")
     )
 
 
 def angle_deg(flag: str, text: str) -> float:
-    """An angle in degrees; without a unit it is degrees."""
+    """Parses an angle, degrees; a number without a unit is in degrees."""
     value = _quantity(flag, text, ANGLES, "deg", "an angle such as 30, 30deg or 0.5rad")
     return _finite(flag, text, value)
 
 
 def plain_number(flag: str, text: str, wanted: str) -> float:
-    """A number without a unit, or a fraction of two."""
+    """Parses a number without a unit, or a fraction of two numbers."""
     return _finite(flag, text, _quantity(flag, text, {"": 1.0}, "", wanted))
 
 
 def f_number(flag: str, text: str) -> float:
-    """``2.8`` or ``f/2.8``."""
+    """Parses an f-number: ``2.8`` or ``f/2.8``."""
     number = re.sub(r"^[fF]/?", "", text.strip())
     return _finite(
         flag, text, _quantity(flag, number, {"": 1.0}, "", "an f-stop such as 2.8 or f/2.8")
@@ -100,7 +100,7 @@ def f_number(flag: str, text: str) -> float:
 
 
 def t_number(flag: str, text: str) -> float:
-    """``2.9``, ``T2.9`` or ``T/2.9``."""
+    """Parses a T-number: ``2.9``, ``T2.9`` or ``T/2.9``."""
     number = re.sub(r"^[tT]/?", "", text.strip())
     return _finite(
         flag, text, _quantity(flag, number, {"": 1.0}, "", "a T-stop such as 2.9 or T2.9")
@@ -108,7 +108,7 @@ def t_number(flag: str, text: str) -> float:
 
 
 def white(flag: str, text: str) -> float | tuple[float, float]:
-    """A colour temperature in K such as ``5600`` or ``5600K``, or x and y."""
+    """Parses a white: a colour temperature, K, such as ``5600`` or ``5600K``, or x,y."""
     if "," in text:
         x, y = numbers(flag, text, 2, "0.3127,0.3290")
         return x, y
@@ -120,7 +120,7 @@ def white(flag: str, text: str) -> float | tuple[float, float]:
 def decenter(
     flag: str, text: str
 ) -> tuple[tuple[int, int], tuple[float, float], tuple[float, float]]:
-    """``FIRST-LAST:X,Y[,AX,AY]``: surfaces (0 is the front), mm, degrees."""
+    """Parses ``FIRST-LAST:X,Y[,AX,AY]``: surfaces (0 is the front), mm, degrees."""
     wanted = "surfaces, mm and degrees such as 3-5:0.1,0 or 3-5:0,0,0.2,0"
     match = re.fullmatch(r"\s*(\d+)(?:-(\d+))?\s*:(.*)", text)
     if not match:
@@ -135,7 +135,7 @@ def decenter(
 
 
 def numbers(flag: str, text: str, count: int, example: str) -> tuple[float, ...]:
-    """``count`` finite numbers between commas."""
+    """Parses ``count`` finite numbers between commas."""
     wanted = f"{count} numbers such as {example}"
     parts = text.split(",")
     if len(parts) != count:
@@ -145,7 +145,7 @@ def numbers(flag: str, text: str, count: int, example: str) -> tuple[float, ...]
 
 
 def integers(flag: str, text: str, count: int, example: str) -> tuple[int, ...]:
-    """``count`` whole numbers between commas."""
+    """Parses ``count`` whole numbers between commas."""
     values = numbers(flag, text, count, example)
     if any(value != int(value) for value in values):
         raise _bad(flag, f"{count} whole numbers such as {example}", text)
@@ -153,7 +153,7 @@ def integers(flag: str, text: str, count: int, example: str) -> tuple[int, ...]:
 
 
 def sensor_mm(flag: str, text: str) -> tuple[float, float]:
-    """``36x24`` in mm, or the name of a common size."""
+    """Parses a sensor size: ``36x24``, mm, or the name of a common size."""
     name = text.strip().lower()
     if name in SENSORS:
         return SENSORS[name]
@@ -173,7 +173,7 @@ def sensor_mm(flag: str, text: str) -> tuple[float, float]:
 
 
 def resolution(flag: str, text: str, default: tuple[int, int]) -> tuple[int, int]:
-    """``960x540``, or a share of the default such as ``50%``; px."""
+    """Parses a picture size, px: ``960x540``, or a share of the default such as ``50%``."""
     wanted = "a size in pixels such as 960x540, or a share such as 50%"
     share = re.fullmatch(r"\s*(\d+\.?\d*)\s*%\s*", text)
     if share:
@@ -190,7 +190,7 @@ def resolution(flag: str, text: str, default: tuple[int, int]) -> tuple[int, int
 
 
 def sample_range(flag: str, text: str) -> tuple[int, int]:
-    """``a:b``, the samples from a up to but without b."""
+    """Parses ``a:b``: the samples from a up to, not including, b."""
     match = re.fullmatch(r"\s*(\d+)\s*:\s*(\d+)\s*", text)
     if not match or not int(match[1]) < int(match[2]):
         raise _bad(flag, "a range a:b with a < b, such as 32:64", text)
@@ -198,7 +198,7 @@ def sample_range(flag: str, text: str) -> tuple[int, int]:
 
 
 def memory_bytes(flag: str, text: str) -> float:
-    """Bytes, or a share of what there is, up to 1: 8GB, 512MiB, 50%."""
+    """Parses an amount of memory, bytes, or a share up to 1: 8GB, 512MiB, 50%."""
     wanted = "an amount of memory above 0 such as 8GB, 512MiB or 50%"
     plain = text.strip().lower()
     share = plain.endswith("%")

@@ -1,4 +1,4 @@
-"""``daguerre calibrate``: the projection of a lens, as calibrations of cameras have it."""
+"""``daguerre calibrate``: fits a projection model of camera calibration to a lens."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 FORMATS = ("opencv", "ros", "kalibr", "opentrackio")
 PICTURES = (".png", ".svg", ".pdf")
 ALL = "all"
-WELL = 1.0  # px: what is worse is told
+WELL = 1.0  # px; larger errors give a note
 USUAL = {"resolution": (1920, 1280), "wavelength_nm": TYPED_D_LINE_NM}
 
 
@@ -106,7 +106,7 @@ def calibrate(
 
 
 def _compare(fits: list[ProjectionFit], *, json: bool) -> None:
-    """The best first."""
+    """Prints the fits, the best first."""
     if json:
         from json import dumps
 
@@ -152,7 +152,7 @@ def _write(
 
 
 def _write_maps(map_flags: MapFlags, made: ProjectionFit) -> None:
-    """Writes maps of the lens, not of its fit."""
+    """Writes maps of the lens itself, not of its fit."""
     from daguerre import Scene
     from daguerre.camera.overscan import NONE
 

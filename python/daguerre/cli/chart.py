@@ -1,4 +1,4 @@
-"""``daguerre chart``: test charts as scenes, with what is known about them."""
+"""``daguerre chart``: test charts as scenes, with their true values."""
 
 from __future__ import annotations
 

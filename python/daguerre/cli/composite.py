@@ -76,7 +76,7 @@ def composite(
 
 
 def _run(shots: list[Shot], how: dict[str, Any], shown: progress.Silent, *, resume: bool) -> None:
-    """Makes one frame after the other."""
+    """Composites frame after frame."""
     began, made = time.monotonic(), 0
     for i, shot in enumerate(shots):
         if shot.frame is not None:

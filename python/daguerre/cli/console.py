@@ -13,16 +13,16 @@ from typing import TextIO
 #: the arguments that this run was started with, without the program's name
 argv: list[str] = []
 
-#: what is said goes through here, so that a progress bar can make room for it
+#: function that prints messages, so that a progress bar can make room for them
 writer: Callable[[str], None] | None = None
 quiet = False
 
 
 def plain(text: str) -> str:
-    r"""The text with what a terminal would obey, or that cannot be encoded, written as ``\x1b``.
+    r"""Escapes control characters, and those that cannot be encoded, such as ``\x1b``.
 
-    Names of files and words of pictures come from strangers: escape sequences in them could clear
-    the screen, retitle the window, or type. Lines stay lines.
+    File names and texts in pictures are untrusted: escape sequences in them could clear the screen,
+    retitle the window, or type. Newlines stay.
     """
     if text.isprintable():
         return text
@@ -34,12 +34,12 @@ def _escaped(character: str) -> str:
 
 
 def show(text: object = "") -> None:
-    """Lines on stdout: what was asked for."""
+    """Prints results on stdout."""
     print(plain(str(text)))
 
 
 def say(text: str) -> None:
-    """A line on stderr, whatever ``--quiet`` says."""
+    """Prints a line on stderr, also with ``--quiet``."""
     line = plain(" ".join(text.split()))
     try:
         if writer is not None:
@@ -51,16 +51,16 @@ def say(text: str) -> None:
 
 
 def nobody_reads(stream: TextIO) -> None:
-    """Whoever read this stream has gone; the picture is still wanted, words about it are not."""
+    """Discards further output of a stream whose reader has gone; the render goes on."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, stream.fileno())
     os.close(nowhere)
 
 
 def open_streams() -> None:
-    """Gives streams that were closed before the start somewhere to go.
+    """Opens streams that were closed before the start, on the null device.
 
-    Else the next file that is opened has the number of one of them, and words go into it.
+    Otherwise the next file to be opened would get the number of one, and messages would go into it.
     """
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
@@ -69,29 +69,29 @@ def open_streams() -> None:
 
 
 def is_stuck(error: OSError) -> bool:
-    """Whether a stream could not be written: an error of a file has its name."""
+    """Whether the error is of a stream; errors of files have a file name."""
     stuck = errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO
     return error.filename is None and error.errno in stuck
 
 
 def note(text: str) -> None:
-    """Something good to know."""
+    """Prints a note."""
     if not quiet:
         say(f"daguerre: {text}")
 
 
 def warn(text: str) -> None:
-    """Something that is probably not wanted."""
+    """Prints a warning: about a result that the user probably does not want."""
     if not quiet:
         say(f"daguerre: warning: {text}")
 
 
 def error(text: str) -> None:
-    """Why nothing more is done."""
+    """Prints the error that ends the command."""
     say(f"daguerre: error: {text}")
 
 
 def command_line(*extra: str) -> str:
-    """This run's command, to be typed again, with flags added unless they are there."""
+    """Command line of this run, to be typed again, with further flags if they are missing."""
     words = ["daguerre", *argv, *(flag for flag in extra if flag not in argv)]
     return shlex.join(words)

@@ -1,4 +1,4 @@
-"""``daguerre demo``: a first picture, with nothing to find or to download."""
+"""``daguerre demo``: a first picture, without downloads."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def write_scene(path: Path) -> None:
     """Writes the demo scene as .glb.
 
     Raises:
-        OutputError: It cannot be written.
+        OutputError: The file cannot be written.
     """
     package = Path(daguerre.__file__).parent
     installed, checkout = package / "scenes", package.parents[1] / "scenes"

@@ -1,4 +1,4 @@
-"""``daguerre develop``: photographs of what was recorded."""
+"""``daguerre develop``: photographs from frames and raw files."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class RecipeFlags(TableFlags):
 
 @made_of(_FILE, panel=FILE)
 class FileFlags(TableFlags):
-    """Flags of the file that is written."""
+    """Flags of the output file."""
 
 
 @with_flags(taker=SensorFlags, recipe=RecipeFlags, file=FileFlags)
@@ -117,7 +117,7 @@ def develop(
 
 @contextmanager
 def _named(source: Path) -> Iterator[None]:
-    """Errors of a frame say from which file it is."""
+    """Context in which errors of a frame name its file."""
     try:
         yield
     except InputError as error:
@@ -141,7 +141,7 @@ def _check(source: Path, outputs: list[Path]) -> None:
 
 
 def _check_stock(source: Path, outputs: list[Path], used: dict[str, Any]) -> None:
-    """Film stands in the place of a sensor, and has a speed of its own."""
+    """Checks flags with ``--stock``: film replaces a sensor and has its own speed."""
     for name in ("sensor", "iso"):
         if name in used:
             raise UsageError(f"--stock and --{name}: wanted one of them, got both")
@@ -153,7 +153,7 @@ def _check_stock(source: Path, outputs: list[Path], used: dict[str, Any]) -> Non
 
 
 def _on_film(frame: Frame, stock: str, wanted: dict[str, Any]) -> Frame:
-    """The print of film that was exposed."""
+    """Exposes film and prints it."""
     from daguerre.exposure.lux_seconds import frame_iso
     from daguerre.stocks import load
 
@@ -165,7 +165,7 @@ def _on_film(frame: Frame, stock: str, wanted: dict[str, Any]) -> Frame:
 
 
 def _tell_speed(film: float, camera: float | None) -> None:
-    """A camera that was set to another ISO than its film has exposed it wrongly."""
+    """Notes that the camera was set to another ISO than its film, if so."""
     stops = 0.0 if camera is None else math.log2(film / camera)
     if abs(stops) >= 0.5:
         console.note(

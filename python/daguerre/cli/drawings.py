@@ -1,4 +1,4 @@
-"""Files that are drawn: their endings, and whether they can be written, before there is work."""
+"""Early checks of drawings: suffixes, and whether the files can be written."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ FORMATS = (".svg", ".png", ".pdf")
 def check_drawing(
     flag: str, path: Path | None, *, plotted: bool = True, formats: Sequence[str] = FORMATS
 ) -> None:
-    """Refuses a drawing that cannot be made or written.
+    """Checks that a drawing can be made and written.
 
     Args:
-        flag: That named it.
+        flag: Flag of the drawing, for messages.
         path: The file; None: no drawing.
-        plotted: By the extra ``plot``, whatever the ending.
-        formats: Endings that it may have.
+        plotted: Whether it needs the extra ``plot`` for any suffix.
+        formats: Suffixes that it may have.
     """
     from daguerre.files.atomic import check_writable
     from daguerre.plots.lens_file import check_available

@@ -1,6 +1,6 @@
-"""Help pages: flags in groups. A long page begins with what everyone needs; ``--help-all`` has all.
+"""Help pages with flags in groups; a long page shows common flags, ``--help-all`` shows all.
 
-Texts, groups and their order are those of the flags; nothing here knows a command but by its name.
+Texts, groups and their order come from the flags; this module knows commands only by name.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import typer.core
 from . import console
 
 ALL = "--help-all"
-#: Flags that a page shows first; the others wait for --help-all.
+#: Flags that a page shows first; --help-all shows the others.
 FIRST = {
     "render": (
         "--output", "--res", "--camera", "--lens", "--f-stop", "--focus", "--shutter", "--sensor",
@@ -64,7 +64,7 @@ class HelpCommand(typer.core.TyperCommand):
 
 
 def _rows(ctx: Any, parameters: Iterable[Any]) -> Rows:
-    """Names and texts of parameters that a help shows."""
+    """Names and texts of the parameters to show."""
     return [row for one in parameters if (row := one.get_help_record(ctx)) is not None]
 
 

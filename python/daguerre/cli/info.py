@@ -1,4 +1,4 @@
-"""``daguerre info``: what is in a scene, and its cameras in mm, m and s."""
+"""``daguerre info``: describes a scene and its cameras, in mm, m and s."""
 
 from __future__ import annotations
 
@@ -162,7 +162,7 @@ def _scene_lines(content: dict[str, Any]) -> list[str]:
 
 
 def _moving(moves: dict[str, Any]) -> str:
-    """Such as ``34 instances, cameras 'pan' (transform)``."""
+    """Describes motion, such as ``34 instances, cameras 'pan' (transform)``."""
     parts = [
         name if name == "environment" else f"{count} {name}"
         for name, count in moves.items()

@@ -1,4 +1,4 @@
-"""``daguerre light-probe``: the light of a place from photographs, as ``--env`` of a render."""
+"""``daguerre light-probe``: environment maps from photographs, for ``render --env``."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def light_probe(
 
 
 def _check(photographs: list[Path], output: Path, sun_out: Path | None) -> None:
-    """Refuses wrong outputs before anything is read."""
+    """Checks the outputs before anything is read."""
     from daguerre.errors import UsageError
     from daguerre.files.atomic import check_writable
     from daguerre.files.formats import check_written

@@ -1,4 +1,4 @@
-"""``daguerre match-plate``: the camera of a photograph, for objects that are put into it."""
+"""``daguerre match-plate``: the camera of a photograph, for compositing objects into it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @made_of(MATCH)
 class MatchFlags(TableFlags):
-    """Flags for what the photograph does not say."""
+    """Flags for data that the photograph lacks."""
 
 
 @with_flags(flags=MatchFlags)

@@ -1,4 +1,4 @@
-"""``daguerre merge``: adds passes of one picture, exactly, in any order; or joins its crops."""
+"""``daguerre merge``: merges passes of a picture exactly, in any order, or joins its crops."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``daguerre post``: the darkroom, effects of a lens on pictures that exist."""
+"""``daguerre post``: the darkroom, lens effects on existing pictures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a render says how far it is: a bar on a terminal, lines in a log, JSON for programs."""
+"""Display of progress: a bar on a terminal, lines in a log, JSON for programs."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ Which = dict[str, Any]
 
 
 class Silent:
-    """Says nothing; the base of the others."""
+    """Shows nothing; base of the other displays."""
 
     def update(self, status: AnyStatus) -> None:
         """Shows the newest status."""
 
     def event(self, name: str, **facts: Any) -> None:
-        """Something that happened once: done, checkpoint, interrupted."""
+        """Reports a single event: done, checkpoint, interrupted."""
 
     def start(self) -> None:
-        """Takes its place on the screen."""
+        """Starts the display."""
 
     def stop(self) -> None:
-        """Leaves the screen as it was."""
+        """Removes the display from the screen."""
 
     def __enter__(self) -> Self:
         self.start()
@@ -46,7 +46,7 @@ class Silent:
 
 
 class Lines(Silent):
-    """A plain line every ten seconds, for logs."""
+    """Prints a plain line every ten seconds, for logs."""
 
     period_s = 10.0
 
@@ -62,7 +62,7 @@ class Lines(Silent):
 
 
 class JsonLines(Silent):
-    """One JSON object a line on stdout: ``{"event": "progress", "fraction": 0.25, ...}``."""
+    """Prints a JSON object a line on stdout: ``{"event": "progress", "fraction": 0.25, ...}``."""
 
     period_s = 0.5
 
@@ -88,7 +88,7 @@ class JsonLines(Silent):
 
 
 class Bar(Silent):
-    """A bar on a terminal, with rates and time left."""
+    """Shows a bar on a terminal, with rates and time left."""
 
     def __init__(self, which: Which) -> None:
         from rich.console import Console
@@ -111,7 +111,7 @@ class Bar(Silent):
         self._progress.update(self._task, completed=status.fraction, description=text)
 
     def start(self) -> None:
-        """Shows the bar; lines that are said make room for it."""
+        """Shows the bar; messages are printed above it."""
         self._progress.start()
         screen = self._progress.console
         console.writer = lambda line: screen.print(
@@ -119,17 +119,17 @@ class Bar(Silent):
         )
 
     def stop(self) -> None:
-        """Takes the bar away."""
+        """Removes the bar."""
         self._progress.stop()
 
 
 def choose(*, quiet: bool, as_json: bool, which: Which | None = None) -> Silent:
-    """JSON if asked for, nothing if quiet, else a bar on a terminal and lines elsewhere.
+    """Chooses the display: JSON if requested, none if quiet, else a bar on a terminal, or lines.
 
     Args:
         quiet: Whether ``--quiet`` was given.
         as_json: Whether ``--json-progress`` was given.
-        which: ``frame`` and ``camera`` of this picture, where there are several.
+        which: ``frame`` and ``camera`` of this picture, if there are several.
     """
     one = which or {}
     if as_json:
@@ -140,19 +140,19 @@ def choose(*, quiet: bool, as_json: bool, which: Which | None = None) -> Silent:
 
 
 def named(which: Which) -> str:
-    """Such as ``frame 7, camera left:``, or nothing."""
+    """Label such as ``frame 7, camera left:``, or empty."""
     return ", ".join(f"{name} {value}" for name, value in which.items()) + ": " * bool(which)
 
 
 def describe(status: AnyStatus, *, percent: bool = True) -> str:
-    """One line: how much, rates, elapsed and left."""
+    """Describes progress in a line: percentage, rates, time elapsed and left."""
     left = "?" if status.left_s is None else duration(status.left_s)
     words = [*status.words, f"elapsed {duration(status.elapsed_s)}", f"left {left}"]
     return ", ".join([f"{100 * status.fraction:.1f}%", *words] if percent else words)
 
 
 def duration(seconds: float) -> str:
-    """``42 s``, ``3:07``, ``1:02:03``."""
+    """Formats a time: ``42 s``, ``3:07``, ``1:02:03``."""
     whole = round(seconds)
     if whole < 60:
         return f"{whole} s"

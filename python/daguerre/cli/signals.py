@@ -1,4 +1,4 @@
-"""Signals of a render: Ctrl-C, SIGTERM, SIGHUP stop it, twice at once; SIGUSR1: a snapshot."""
+"""Signals of a render: Ctrl-C, SIGTERM, SIGHUP stop it (twice: at once); SIGUSR1: a snapshot."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from . import console
 
 
 class Signals(Control):
-    """Stops a job, or asks it for a snapshot, when the process gets a signal."""
+    """Stops a job, or requests a snapshot, when the process gets a signal."""
 
     def __init__(self) -> None:
         self.stops = 0
         self._answered = self._snapshot = False
 
     def poll(self) -> None:
-        """Answers the first signal to stop."""
+        """Prints a note at the first signal to stop."""
         if self.stops and not self._answered:
             self._answered = True
             console.note("stopping after this pass; Ctrl-C again stops at once")
 
     def snapshot(self) -> bool:
-        """Whether SIGUSR1 came since this was asked."""
+        """Whether SIGUSR1 came since the last call."""
         wanted, self._snapshot = self._snapshot, False
         return wanted
 

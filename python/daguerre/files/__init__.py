@@ -1,1 +1,1 @@
-"""Texts and files of any kind: values that know their place, files written whole or not at all."""
+"""Files: parsed values that keep their place for error messages, and atomic writing."""

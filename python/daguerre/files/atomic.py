@@ -1,9 +1,9 @@
-"""Files that appear under their final name complete or not at all: temp + fsync + rename.
+"""Atomic writing: files appear under their final name complete or not at all.
 
-Power that fails at any moment leaves the old file or the new one: the bytes are on the disk before
-the name is, and the folder with the name is before what the file replaces may go. Writers hold a
-lock on their temporary file, so what a killed one left is known by having none, and goes when the
-same file is written or removed next.
+A temporary file is written, synced and renamed. A power failure at any moment leaves the old file
+or the new one: the bytes reach the disk before the name, and the folder is synced after it. Writers
+hold a lock on their temporary file. One without a lock was left by a killed writer, and is removed
+when the same file is written or removed next.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ _HEX = frozenset("0123456789abcdef")
 
 @contextmanager
 def atomic_path(target: str | os.PathLike[str]) -> Iterator[Path]:
-    """A temporary path beside ``target`` that becomes ``target`` when the block ends well.
+    """Yields a temporary path that replaces ``target`` when the block ends without error.
 
-    The temporary file has the suffix of the target, since image writers choose by it. If anything
-    is raised inside the block, Ctrl-C included, it is removed and the target is untouched.
+    The temporary file has the suffix of the target, since image writers choose by it. If the block
+    raises anything, Ctrl-C included, the file is removed and the target is unchanged.
 
     Args:
-        target: Final path; a link is followed, so that the file that it points to is replaced.
+        target: Final path; a link is followed, and the file that it points to is replaced.
 
     Raises:
-        OutputError: No such folder, no permission, disk full; named with the path.
+        OutputError: No such folder, no permission, disk full; the message names the path.
     """
     path = _resolved(target)
     _drop_left(path)
@@ -60,12 +60,12 @@ def write_bytes(target: str | os.PathLike[str], data: bytes) -> None:
 
 
 def check_writable(target: str | os.PathLike[str]) -> None:
-    """Tries whether a file could be written there, by making and removing an empty one beside it.
+    """Checks that a file can be written, by making and removing an empty one beside it.
 
-    Removes what such a try left when it was killed: the file itself may be written and stay.
+    It also removes temporary files of killed writers; the file itself is not touched.
 
     Raises:
-        OutputError: It could not; said before hours are spent on a picture.
+        OutputError: It cannot be written. Call this before hours are spent on a picture.
     """
     path = _resolved(target)
     _drop_left(path)
@@ -76,10 +76,10 @@ def check_writable(target: str | os.PathLike[str]) -> None:
 
 
 def remove(target: str | os.PathLike[str]) -> None:
-    """Removes a file, if it is there, and what writers of it left when they were killed.
+    """Removes a file, if it exists, and temporary files that killed writers of it left.
 
     Raises:
-        OutputError: The folder does not allow it.
+        OutputError: It cannot be removed.
     """
     path = Path(target)
     with _os_errors(path):
@@ -107,7 +107,7 @@ def _temporary(path: Path) -> Path:
 
 
 def _create(path: Path) -> int:
-    """Makes an empty file, locked as long as the descriptor that is returned is open."""
+    """Makes an empty file, which is locked while the returned descriptor is open."""
     # 0o666 less the umask, as any program; mkstemp would make it unreadable for others.
     descriptor = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
     with suppress(OSError):  # some network file systems have no locks

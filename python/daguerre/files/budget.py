@@ -1,4 +1,4 @@
-"""Limits on what a small file can ask for, all its wishes together."""
+"""Budgets: limits on the total that a small file can request."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from .json_item import Item
 
 
 class Budget:
-    """Counts down.
+    """Counter with a limit.
 
     Args:
-        limit: Largest number in all.
+        limit: Maximum total.
         what: Name of the things counted.
     """
 
@@ -19,7 +19,7 @@ class Budget:
         self._what = what
 
     def spend(self, count: int, item: Item) -> None:
-        """Takes ``count``; too many are a complaint about ``item``."""
+        """Adds ``count``; raises an error at ``item`` if the total exceeds the limit."""
         self._left -= count
         if self._left < 0:
             item.fail(f"wanted at most {self._limit} {self._what}, got more")

@@ -1,4 +1,4 @@
-"""Packages that not everyone needs: which extra brings each, and one error where one is missing."""
+"""Optional packages: the extra that has each, and one error if one is missing."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from importlib.util import find_spec
 
 from daguerre.errors import UsageError
 
-#: The name by which a package is imported: its name for pip, and the extra of Daguerre that has it.
+#: Import name of a package: its name for pip, and the extra of Daguerre that has it.
 EXTRAS = {
     "DracoPy": ("DracoPy", "compression"),
     "opengl_basisu": ("opengl_basisu", "compression"),
@@ -17,7 +17,7 @@ EXTRAS = {
     "tifffile": ("tifffile", "raw"),
     "yaml": ("PyYAML", "calibration"),
 }
-#: Extensions of glTF that need a package, and its name as it is imported.
+#: Extensions of glTF that need a package, with its import name.
 EXTENSIONS = {"KHR_draco_mesh_compression": "DracoPy", "KHR_texture_basisu": "opengl_basisu"}
 
 
@@ -27,25 +27,25 @@ def missing(module: str) -> bool:
 
 
 def missing_for(extension: str) -> str:
-    """The package that an extension of glTF needs and that is not installed; empty if none."""
+    """Package that an extension of glTF needs and that is not installed; empty if none."""
     module = EXTENSIONS.get(extension, "")
     return module if module and missing(module) else ""
 
 
 def hint(module: str) -> str:
-    """The command that installs a package."""
+    """Command that installs a package."""
     return f'pip install "daguerre[{EXTRAS[module][1]}]"'
 
 
 def need(module: str, use: str) -> None:
-    """Refuses what needs a package that is not installed.
+    """Checks that an optional package is installed.
 
     Args:
-        module: The package, as it is imported.
-        use: Task or file that needs it; the error begins with it.
+        module: Import name of the package.
+        use: Task or file that needs it; the message begins with it.
 
     Raises:
-        UsageError: It is not installed; the error says how to install it.
+        UsageError: It is not installed; the message says how to install it.
     """
     if missing(module):
         name = EXTRAS[module][0]

@@ -1,7 +1,7 @@
-"""The table of file formats: which function reads or writes a file, told by the end of its name.
+"""Table of file formats: the functions that read or write a file, by its suffix.
 
-Whoever reads or writes asks this table and knows no format. A new one is a row: below, or at run
-time by :func:`register`. ``docs/importers.md`` says what the reader of a scene has to do.
+All reading and writing goes through this table. A new format is a row: below, or at run time by
+:func:`register`. ``docs/importers.md`` explains how to write a reader of scenes.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from typing import Any, Literal
 from daguerre.errors import InputError, UsageError, suggest
 
 Kind = Literal["scene", "frame", "picture", "raw", "environment"]
-#: A function, or "module:function", so that nothing is imported before it is needed.
+#: A function, or "module:function", which is imported on first use.
 Function = str | Callable[..., Any]
-#: A suffix: whatever no other row of the kind has.
+#: Suffix that matches every suffix without another row of the kind.
 ANY = "*"
 
 
@@ -28,13 +28,14 @@ class Format:
     """A file format.
 
     Attributes:
-        name: For messages, such as ``glTF 2.0``.
-        kind: Contents of such a file.
-        suffixes: Ends of names, lower case, with their dots; or ``ANY``.
-        reads: Called as ``reads(path, **options)``; None: it cannot be read.
-        writes: Called as ``writes(path, value, **options)``; None: it cannot be written.
-        takes: Options of both, besides ``time`` (s) of scenes; None: they check them.
-        needs: A package without which it cannot be used, and how to install it.
+        name: Name for messages, such as ``glTF 2.0``.
+        kind: Kind of content, such as scene or picture.
+        suffixes: Suffixes, lower case, with their dots; or ``ANY``.
+        reads: Reader, called as ``reads(path, **options)``; None: it cannot be read.
+        writes: Writer, called as ``writes(path, value, **options)``; None: it cannot be written.
+        takes: Options of reader and writer, besides ``time`` (s) of scenes; None: they check their
+            options themselves.
+        needs: Package that it needs, and how to install it.
     """
 
     name: str
@@ -70,7 +71,7 @@ _FORMATS = [
 
 
 def register(made: Format) -> None:
-    """Adds a format to the table; one of the same kind and name is replaced.
+    """Adds a format to the table, or replaces the one of the same kind and name.
 
     Raises:
         UsageError: Another format of the kind has one of its suffixes.
@@ -89,17 +90,17 @@ def register(made: Format) -> None:
 
 
 def formats(kind: Kind) -> list[Format]:
-    """The rows of a kind."""
+    """Rows of a kind."""
     return [row for row in _FORMATS if row.kind == kind]
 
 
 def written(kind: Kind) -> tuple[str, ...]:
-    """Ends of names that values of a kind can be written to."""
+    """Suffixes to which values of a kind can be written."""
     return tuple(suffix for row in formats(kind) if row.writes for suffix in row.suffixes)
 
 
 def read(kind: Kind, path: str | os.PathLike[str], **options: Any) -> Any:
-    """Reads a file by the end of its name.
+    """Reads a file in the format of its suffix.
 
     Raises:
         InputError: No format of the kind has this suffix, or the file cannot be used.
@@ -115,7 +116,7 @@ def read(kind: Kind, path: str | os.PathLike[str], **options: Any) -> Any:
 
 
 def write(kind: Kind, path: str | os.PathLike[str], value: Any, **options: Any) -> None:
-    """Writes a value, whole or not at all, by the end of the file's name.
+    """Writes a value atomically, in the format of the file's suffix.
 
     Raises:
         UsageError: No format of the kind has this suffix, or the format no such option.
@@ -128,10 +129,10 @@ def write(kind: Kind, path: str | os.PathLike[str], value: Any, **options: Any) 
 
 
 def check_written(path: str | os.PathLike[str], known: tuple[str, ...]) -> str:
-    """The end of the name of an output, in lower case.
+    """Checks the suffix of an output and returns it in lower case.
 
     Raises:
-        UsageError: Not one of ``known``; the message lists those.
+        UsageError: It is not one of ``known``; the message lists those.
     """
     suffix = Path(path).suffix.lower()
     if suffix not in known:
@@ -156,7 +157,7 @@ def _either(names: list[str] | tuple[str, ...]) -> str:
 def _ready(
     row: Format, function: Function, path: str | os.PathLike[str], options: dict[str, Any]
 ) -> Callable[..., Any]:
-    """The function of a format, after a look at its options and the package it needs."""
+    """Returns a function of a format, after checks of its options and the package it needs."""
     _check_options(row, path, options)
     if row.needs is not None and find_spec(row.needs[0]) is None:
         raise UsageError(f"{path}: {row.name} needs {row.needs[0]}: {row.needs[1]}")

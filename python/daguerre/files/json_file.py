@@ -1,4 +1,4 @@
-"""Files of a library as JSON: of a known schema and members, with errors that name the place."""
+"""JSON files of libraries, with checks of schema and members; errors name the place."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ MAX_BYTES = 16_000_000
 def read_json_file(
     path: str | Path, what: str, schema: str, members: Collection[str], make: Callable[[Item], Made]
 ) -> Made:
-    """Reads what a file describes.
+    """Reads a library file and makes its object.
 
     Args:
         path: The file.
-        what: It is: for messages.
-        schema: That the file must name.
-        members: That its object may have.
-        make: Makes the thing of the file's object.
+        what: Kind of object, for messages.
+        schema: Schema that the file must name.
+        members: Members that its JSON object may have.
+        make: Function that makes the result from the JSON object.
 
     Raises:
-        InputError: With file and JSON path of what cannot be used.
+        InputError: The file cannot be used; the message names file and JSON path.
     """
     path = Path(path)
     try:

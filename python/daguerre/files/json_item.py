@@ -1,4 +1,4 @@
-"""JSON values that know where they stand, so that every complaint names file and JSON path."""
+"""JSON values with their place, so that every error names file and JSON path."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 
 from daguerre.errors import InputError
 
-#: Numbers end up in single precision.
+#: Largest number; values are converted to single precision.
 MAX_NUMBER = 3.4e38
 
 
@@ -25,19 +25,19 @@ def short(value: object, limit: int = 60) -> str:
 
 
 def clean(name: str) -> str:
-    """A name that can be printed and written as UTF-8, free of control characters."""
+    """Makes a name printable: valid UTF-8 without control characters."""
     return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name)[:200]
 
 
 def _named(key: str, limit: int = 60) -> str:
-    """A key of a stranger's file as a message shows it."""
+    """Formats a key of an untrusted file for a message."""
     return key if len(key) <= limit else f"{key[: limit - 20]}... ({len(key)} long)"
 
 
 class Item:
-    """A JSON value with its place; the getters check type and range and raise ``InputError``.
+    """A JSON value with its place; getters check type and range and raise ``InputError``.
 
-    The path is put together only when something is wrong: a scene may have a million nodes.
+    The path is built only for errors, as a scene may have a million nodes.
     """
 
     __slots__ = ("key", "parent", "value")
@@ -48,7 +48,7 @@ class Item:
         self.parent = parent
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Travels with its place, but without the rest of its file."""
+        """Pickles the value with its place, but without the rest of its file."""
         place: list[str | int] = []
         item: Item | None = self
         while item is not None:
@@ -57,12 +57,12 @@ class Item:
         return _at_place, (self.value, tuple(reversed(place)))
 
     def holding(self, value: Any) -> Item:
-        """Another value at the same place."""
+        """Returns another value at the same place."""
         return Item(value, self.key, self.parent)
 
     @property
     def path(self) -> str:
-        """Such as ``meshes[2].primitives[0].attributes.POSITION``."""
+        """JSON path, such as ``meshes[2].primitives[0].attributes.POSITION``."""
         keys: list[str] = []
         item: Item = self
         while item.parent is not None:
@@ -72,7 +72,7 @@ class Item:
 
     @property
     def file(self) -> str:
-        """The file that this value comes from."""
+        """File that this value comes from."""
         item: Item = self
         while item.parent is not None:
             item = item.parent
@@ -87,20 +87,20 @@ class Item:
         self.fail(f"wrong type: wanted {wanted}, got {short(self.value)}")
 
     def get(self, key: str) -> Item | None:
-        """The member of that name, or None; this must be an object."""
+        """Returns the member of this name, or None; the value must be an object."""
         if not isinstance(self.value, dict):
             self._type("an object")
         return Item(self.value[key], key, self) if key in self.value else None
 
     def need(self, key: str) -> Item:
-        """The member of that name; it must be there."""
+        """Returns the member of this name, which must exist."""
         member = self.get(key)
         if member is None:
             Item(None, key, self).fail("missing: wanted a value, got none")
         return member
 
     def members(self) -> list[Item]:
-        """All members of an object."""
+        """Returns all members of an object."""
         if not isinstance(self.value, dict):
             self._type("an object")
         return [Item(value, key, self) for key, value in self.value.items()]
@@ -111,14 +111,14 @@ class Item:
         return (Item(value, i, self) for i, value in enumerate(self.value))
 
     def list_of(self, key: str) -> list[Item]:
-        """The elements of a member that is a list; none if it is absent."""
+        """Returns the elements of a member that is a list; empty if it is absent."""
         member = self.get(key)
         return [] if member is None else list(member)
 
     def number(
         self, low: float = -math.inf, high: float = math.inf, *, above: float | None = None
     ) -> float:
-        """A finite number in [low, high] and, if given, greater than ``above``."""
+        """Returns a finite number in [low, high] and, if given, greater than ``above``."""
         if isinstance(self.value, bool) or not isinstance(self.value, (int, float)):
             self._type("a number")
         try:
@@ -136,7 +136,7 @@ class Item:
         return number
 
     def integer(self, low: int = 0, high: int | None = None) -> int:
-        """An integer in [low, high]; 3.0 counts as one, as JSON has but one kind of number."""
+        """Returns an integer in [low, high]; 3.0 is valid, as JSON has one type of number."""
         if isinstance(self.value, bool) or not isinstance(self.value, (int, float)):
             self._type("an integer")
         if isinstance(self.value, float) and not self.value.is_integer():
@@ -148,7 +148,7 @@ class Item:
         return number
 
     def index(self, count: int, of: str) -> int:
-        """An index into a list of the file with ``count`` elements."""
+        """Returns an index into a list of the file with ``count`` elements."""
         if count == 0 and isinstance(self.value, int) and not isinstance(self.value, bool):
             self.fail(f"index out of range: wanted none, as there are no {of}, got {self.value}")
         number = self.integer(-(2**63))
@@ -159,7 +159,7 @@ class Item:
     def numbers(
         self, count: int, low: float = -math.inf, high: float = math.inf
     ) -> tuple[float, ...]:
-        """A list of exactly ``count`` finite numbers in [low, high]."""
+        """Returns a list of exactly ``count`` finite numbers in [low, high]."""
         if not isinstance(self.value, list):
             self._type(f"a list of {count} numbers")
         if len(self.value) != count:
@@ -167,19 +167,19 @@ class Item:
         return tuple(element.number(low, high) for element in self)
 
     def text(self) -> str:
-        """A string."""
+        """Returns a string."""
         if not isinstance(self.value, str):
             self._type("a string")
         return str(self.value)
 
     def flag(self) -> bool:
-        """True or false."""
+        """Returns true or false."""
         if not isinstance(self.value, bool):
             self._type("true or false")
         return bool(self.value)
 
     def choice(self, options: Collection[Any]) -> Any:
-        """One of a few values."""
+        """Returns one of the given values."""
         if isinstance(self.value, bool) or not isinstance(self.value, (str, int)):
             self._type("one of " + ", ".join(map(repr, options)))
         if self.value not in options:
@@ -198,7 +198,7 @@ class Item:
         *,
         above: float | None = None,
     ) -> float:
-        """A member that is a number, or the default."""
+        """Returns a member that is a number, or the default."""
         member = self.get(key)
         return default if member is None else member.number(low, high, above=above)
 
@@ -209,23 +209,23 @@ class Item:
         low: float = -math.inf,
         high: float = math.inf,
     ) -> tuple[float, ...]:
-        """A member that is a list as long as the default, or the default."""
+        """Returns a member that is a list of the default's length, or the default."""
         member = self.get(key)
         return default if member is None else member.numbers(len(default), low, high)
 
     def name(self) -> str:
-        """The member ``name``, cleaned for printing; empty if absent."""
+        """Returns the member ``name``, cleaned for printing; empty if absent."""
         member = self.get("name")
         return "" if member is None else clean(member.text())
 
     def extension(self, name: str) -> Item | None:
-        """The object of an extension, or None."""
+        """Returns the object of an extension, or None."""
         extensions = self.get("extensions")
         return None if extensions is None else extensions.get(name)
 
 
 def _at_place(value: Any, place: tuple[str | int, ...]) -> Item:
-    """A value whose parents are known by their keys alone."""
+    """Restores a pickled value, whose parents are only known by their keys."""
     parent: Item | None = None
     for key in place[:-1]:
         parent = Item(None, key, parent)

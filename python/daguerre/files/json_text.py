@@ -1,6 +1,6 @@
-"""JSON text into values that know where they stand; what JSON forbids is refused with its place.
+"""Strict JSON parser for values with their place.
 
-Python's parser is more forgiving: it takes NaN, and the last of two members of one name.
+Python's parser is more lenient: it accepts NaN, and takes the last of two members of one name.
 Source: RFC 8259, chapters 4 (names should be unique), 6 and 8.1.
 """
 
@@ -16,20 +16,20 @@ from .json_item import Item
 
 
 def parse(data: bytes, file: str) -> Item:
-    """The value that a file's bytes spell.
+    """Parses the bytes of a file.
 
     Raises:
-        InputError: It is no JSON, is nested too deeply, or an object has a member twice.
+        InputError: They are not JSON, are nested too deeply, or an object has a member twice.
     """
     return Item(_value(_text(data, file), file), file)
 
 
 class _NotJson(Exception):
-    """A constant that JSON does not have."""
+    """Constant that JSON does not have."""
 
 
 class _Twice:
-    """Stands where an object has two members of one name."""
+    """Marker for an object with two members of one name."""
 
 
 def _text(data: bytes, file: str) -> str:
@@ -81,7 +81,7 @@ def _refuse(name: str) -> NoReturn:
 
 
 def _place(text: str) -> tuple[int, int]:
-    """Line and column of the first NaN or Infinity outside of strings: the parser does not say."""
+    """Line and column of the first NaN or Infinity outside of strings, which the parser lacks."""
     for match in re.finditer(r'"(?:[^"\\]|\\.)*"|NaN|-?Infinity', text):
         if match[0][0] != '"':
             line = text.count("\n", 0, match.start()) + 1
@@ -90,7 +90,7 @@ def _place(text: str) -> tuple[int, int]:
 
 
 def _complain(root: Item) -> None:
-    """Names the first member that stands twice; without recursion."""
+    """Raises an error for the first duplicate member; without recursion."""
     stack = [root]
     while stack:
         item = stack.pop()

@@ -22,17 +22,17 @@ def find(
     names: Collection[str],
     suffixes: Collection[str] = (".json",),
 ) -> Path:
-    """Returns the file of a name, or the file that is meant itself.
+    """Returns the file of a library name, or the given file itself.
 
     Args:
         what: Kind of thing that the library holds, for messages: sensor, stock, lens.
         name_or_path: One of ``names``, or a file.
         folder: Folder of the library.
         names: Names of the library.
-        suffixes: Suffixes, in lower case, that mark a file even where there is none of that name.
+        suffixes: Suffixes, in lower case, that mark a file even if none of that name exists.
 
     Raises:
-        InputError: An unknown name; the nearest are suggested.
+        InputError: Unknown name; the message suggests the nearest.
     """
     text, path = str(name_or_path), Path(name_or_path)
     if text in names:

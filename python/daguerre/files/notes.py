@@ -1,20 +1,20 @@
-"""Notes on what a reader did not understand: one sentence each, with a count, never a flood."""
+"""Notes of a reader on unsupported features: one sentence each, with a count."""
 
 from __future__ import annotations
 
 
 class Notes:
-    """Counts remarks; ``sentences`` gives each once."""
+    """Counts remarks; ``sentences`` lists each once."""
 
     def __init__(self) -> None:
         self._counts: dict[str, int] = {}
 
     def add(self, sentence: str, count: int = 1) -> None:
-        """Counts a remark ``count`` times more; equal sentences are one remark."""
+        """Adds a remark ``count`` times; equal sentences are one remark."""
         self._counts[sentence] = self._counts.get(sentence, 0) + count
 
     def sentences(self) -> list[str]:
-        """Each remark with its count, in the order of first appearance."""
+        """Remarks with their counts, in the order of first appearance."""
         return [
             f"{sentence} ({count} {'use' if count == 1 else 'uses'})"
             for sentence, count in self._counts.items()
@@ -22,7 +22,7 @@ class Notes:
 
 
 class Silence(Notes):
-    """For what is read again: its remarks have been counted."""
+    """Ignores remarks, for content that is read again."""
 
     def add(self, sentence: str, count: int = 1) -> None:
         """Does nothing."""

@@ -1,4 +1,4 @@
-"""Sources of values: a JSON, YAML or XML file that names the place of each complaint."""
+"""Sources of parsed values: JSON, YAML or XML files that can name the place of an error."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Text files of one statement a line, such as OBJ: each with its place, for complaints."""
+"""Text files with one statement a line, such as OBJ, each with its place for messages."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from pathlib import Path
 
 from daguerre.errors import InputError
 
-#: A statement takes some bytes: what a file can ask for is bounded by its size.
+#: Maximum size of a file, which bounds the number of its statements.
 MAX_BYTES = 1 << 30
 
 
 def statements(
     path: str | os.PathLike[str], comment: str = "#"
 ) -> Iterator[tuple[str, str, list[str]]]:
-    """Place (``file: line 7: word``), first word and the others of each line that has words.
+    """Yields place (``file: line 7: word``), first word and other words of each non-empty line.
 
     Raises:
-        InputError: It is no ordinary file, is too large, or cannot be read as UTF-8.
+        InputError: It is not an ordinary file, is too large, or cannot be read as UTF-8.
     """
     file = Path(path)
     try:

@@ -1,7 +1,7 @@
-"""URIs inside scene files: data URIs are unpacked, paths must stay in the scene's folder.
+"""URIs in scene files: data URIs are decoded, paths must stay in the scene's folder.
 
-A scene comes from strangers. Without this wall, a file could make the renderer read any other file
-of the user and carry it out inside a texture.
+Scenes are untrusted. Without this check, a file could make the renderer read any file of the user
+and leak it through a texture.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .json_item import Item, short
 
 
 class Folder:
-    """The folder of a scene and the folders allowed besides; both with links followed.
+    """Folder of a scene and further allowed folders, both with links resolved.
 
     Args:
         scene: Path of the scene file.
@@ -32,10 +32,10 @@ class Folder:
         self.allowed = [self.base, *(Path(os.path.realpath(d)) for d in allow_dirs)]
 
     def resolve(self, uri: Item) -> Path:
-        """The existing ordinary file that a URI names.
+        """Returns the existing ordinary file of a URI.
 
         Raises:
-            InputError: The URI leaves the allowed folders, or there is no such file.
+            InputError: The URI leaves the allowed folders, or no such file exists.
         """
         path = self._path(uri)
         if not any(path.is_relative_to(directory) for directory in self.allowed):
@@ -77,12 +77,12 @@ class Folder:
 
 
 def is_data(uri: Item) -> bool:
-    """Whether the URI carries its bytes itself."""
+    """Whether the URI contains its data."""
     return uri.text()[:5].lower() == "data:"
 
 
 def data_bytes(uri: Item) -> bytes:
-    """The bytes of a data URI (RFC 2397), base64 or percent-encoded."""
+    """Decodes a data URI (RFC 2397), base64 or percent-encoded."""
     header, comma, body = uri.text().partition(",")
     if not comma:
         uri.fail(f"broken data URI: wanted 'data:...;base64,...', got {short(uri.text())}")

@@ -1,8 +1,8 @@
-"""Values that travel: they pickle, copy and compare by what they hold.
+"""Value classes: pickle, copy and compare by content.
 
-Results that a value caches (``cached_property``, such as its form in the core) stay at home: they
-are made again where they are needed. A pickle belongs to the version that made it: another one
-refuses it by name, as its parts may have other names or meanings there.
+Cached results of a value (``cached_property``, such as its form in the core) are not pickled, but
+computed again where needed. A pickle can only be read by the version that made it, as its parts may
+have other names or meanings in another.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from daguerre.errors import InputError
 
 _Seen = dict[tuple[int, int], tuple[Any, Any]]
 _PLAIN = str | int | bool | None
-#: Name under which a pickle keeps the version that made it; no attribute is called so.
+#: Key under which a pickle keeps the version that made it; no attribute has this name.
 MADE_BY = "made by daguerre"
 
 
 class Value:
-    """Base of values that may hold arrays. As a dataclass, it wants ``eq=False``."""
+    """Base of values that may hold arrays; dataclasses need ``eq=False``."""
 
     def __getstate__(self) -> dict[str, Any]:
         kind = type(self)
@@ -54,7 +54,7 @@ class Value:
 
 
 class FixedArrays(Value):
-    """Base of values whose arrays nobody changes, not after a trip either: the core reads them."""
+    """Base of values with read-only arrays, also after unpickling, as the core reads them."""
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         super().__setstate__(state)
@@ -64,9 +64,9 @@ class FixedArrays(Value):
 
 
 def same(a: Any, b: Any) -> bool:
-    """Whether two values hold the same: numbers by size, NaN like NaN, arrays by their elements.
+    """Whether two values are equal: numbers by value, NaN equals NaN, arrays by elements.
 
-    Types without a comparison of their own are compared by what they would be pickled as.
+    Types without their own comparison are compared by their pickled state.
     """
     return _same(a, b, {})
 
@@ -93,7 +93,7 @@ def _same(a: Any, b: Any, seen: _Seen) -> bool:
 
 
 def _compares(kind: type[Any]) -> bool:
-    """Whether values of a type know by themselves when they are equal."""
+    """Whether a type defines its own comparison."""
     return any("__eq__" in vars(base) for base in kind.__mro__[:-1])
 
 
@@ -108,7 +108,7 @@ def _pickled_alike(a: Any, b: Any, seen: _Seen) -> bool:
 
 
 def changed(record: Any) -> list[str]:
-    """Fields of a dataclass that are not as they are by default, as ``name=value``, to print it."""
+    """Fields of a dataclass that differ from their defaults, as ``name=value``, for printing."""
     return [
         f"{field.name}={_brief(value)}"
         for field in fields(record)

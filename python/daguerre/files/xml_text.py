@@ -1,7 +1,7 @@
-"""OpenCV's XML into values that know where they stand.
+"""Parser of OpenCV's XML for values with their place.
 
-Document types are refused, and with them entities, through which a small file can grow without
-bounds or name other files: OpenCV writes none.
+It refuses document types, and with them entities, through which a small file can grow without
+bounds or read other files. OpenCV writes none.
 
 Source: OpenCV, ``cv::FileStorage`` (modules/core/doc and src/persistence_xml.cpp): a name is an
 element, the elements of a list are called ``_``, and text between blanks is numbers, or words
@@ -25,10 +25,10 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\Z|[-+]?\.(?:inf
 
 
 def parse(data: bytes, file: str) -> Item:
-    """The value that a file's bytes spell.
+    """Parses the bytes of a file.
 
     Raises:
-        InputError: It is no XML, is not OpenCV's, or has what calibrations do not need.
+        InputError: They are not XML, not OpenCV's, or have features that calibrations do not need.
     """
     reader = _Reader(file)
     try:
@@ -49,7 +49,7 @@ def parse(data: bytes, file: str) -> Item:
 
 
 class _Element:
-    """One element while it is read."""
+    """An element that is being read."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -58,7 +58,7 @@ class _Element:
         self.names: set[str] = set()
 
     def value(self) -> Any:
-        """Members by name, a list, or what the text says."""
+        """Value of the element: members by name, a list, or its text."""
         if not self.members:
             return _said("".join(self.text))
         if all(member.name == "_" for member in self.members):
@@ -111,7 +111,7 @@ class _Reader:
 
 
 def _said(text: str) -> Any:
-    """A number, text, or a list of both."""
+    """Parses text to a number, text, or a list of both."""
     words = _WORDS.findall(text)
     if not words or not all(_NUMBER.match(word) or _is_quoted(word) for word in words):
         return text.strip()

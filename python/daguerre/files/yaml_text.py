@@ -1,9 +1,9 @@
-"""YAML text into values that know where they stand: plain data alone.
+"""YAML parser of plain data, for values with their place.
 
-Calibrations need no tags, anchors or aliases, through which a small file can grow without bounds or
-name objects of Python: all are refused. OpenCV's own tag of matrices is the one exception, and its
-first line ``%YAML:1.0``, which is no YAML. Numbers are YAML 1.2's: 1.1 takes ``1e-08``, as OpenCV
-and Python write it, for text.
+It refuses tags, anchors and aliases, which calibrations do not need, and through which a small file
+can grow without bounds or name Python objects. The exceptions are OpenCV's tag of matrices and its
+first line ``%YAML:1.0``, which is not valid YAML. Numbers are those of YAML 1.2: YAML 1.1 reads
+``1e-08``, as OpenCV and Python write it, as text.
 
 Source: YAML 1.2.2, chapter 10.3 (the core schema).
 """
@@ -24,10 +24,10 @@ _OPENCV_HEAD = re.compile(r"\A\ufeff?%YAML:1\.0[^\n]*")
 
 
 def parse(data: bytes, file: str) -> Item:
-    """The value that a file's bytes spell.
+    """Parses the bytes of a file.
 
     Raises:
-        InputError: It is no YAML, or has what calibrations do not need.
+        InputError: They are not YAML, or have features that calibrations do not need.
     """
     try:
         text = data.decode("utf-8-sig")
@@ -68,7 +68,7 @@ class _Plain(yaml.SafeLoader):
         return super().compose_node(parent, index)
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
-        """Text alone names values, each once: PyYAML takes the last of two of one name."""
+        """Accepts only text as names, each once; PyYAML would take the last of two."""
         found: dict[str, Any] = {}
         for key, value in node.value:
             if not isinstance(key, yaml.ScalarNode):

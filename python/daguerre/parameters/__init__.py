@@ -1,1 +1,1 @@
-"""Parameters: each declared once, for flags, checks, JSON, docstrings and the pages of docs."""
+"""Parameters: each declared once, for flags, checks, JSON, docstrings and documentation."""

@@ -1,7 +1,7 @@
-"""Functions that take rows of a table as keywords: the signatures that people see.
+"""Signatures of functions whose keywords are rows of a table.
 
-Type checkers read a TypedDict, the type of the function's ``**keywords``; ``help()`` and
-``inspect.signature`` get theirs from the table, so that a parameter is written down once.
+Type checkers read a TypedDict, the type of the function's ``**keywords``. ``help()`` and
+``inspect.signature`` use the table, so that each parameter is declared once.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ Rows = Table | Mapping[str, Parameter]
 
 
 def takes(rows: Rows, keywords: Any) -> Callable[[Function], Function]:
-    """Shows the keywords of a TypedDict in the signature and the docstring of a function.
+    """Puts the keywords of a TypedDict into the signature and the docstring of a function.
 
-    They stand where the function has ``**keywords``, and where its docstring says ``{keywords}``.
+    They replace ``**keywords`` in the signature and ``{keywords}`` in the docstring.
 
     Args:
-        rows: Row of each keyword.
-        keywords: The TypedDict; its order is that of the signature.
+        rows: Rows of the keywords.
+        keywords: The TypedDict, in the order of the signature.
     """
     types = keywords.__annotations__
 
@@ -48,7 +48,7 @@ def takes(rows: Rows, keywords: Any) -> Callable[[Function], Function]:
 
 
 def with_rows(text: str | None, rows: Rows, names: Iterable[str]) -> str | None:
-    """A docstring with a line of each parameter in the place of ``{keywords}``."""
+    """Replaces ``{keywords}`` in a docstring by a line for each parameter."""
     if text is None or "{keywords}" not in text:
         return text
     line = next(line for line in text.splitlines() if "{keywords}" in line)

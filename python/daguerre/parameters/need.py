@@ -1,4 +1,4 @@
-"""Conditions that a camera must meet to take a parameter."""
+"""Conditions of parameters on the kind of camera."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ class Need:
     """A condition on the kind of camera.
 
     Attributes:
-        kinds: Traits of cameras of which one must be there, such as ``("exact", "polynomial")``.
-        refusal: Words that tell a user what to do; ``{kind}`` is the model of the camera's lens.
-            Empty: another camera leaves the parameter aside.
+        kinds: Traits of cameras, such as ``("exact", "polynomial")``; the camera needs one of them.
+        refusal: Message for the user; ``{kind}`` stands for the model of the camera's lens. Empty:
+            other cameras ignore the parameter.
     """
 
     kinds: tuple[str, ...]
@@ -30,7 +30,7 @@ class Need:
             where: Parameter in question, for the message.
 
         Raises:
-            UsageError: None of the traits is wanted.
+            UsageError: The camera has none of the kinds.
         """
         if self.refusal and not set(self.kinds) & set(traits):
             raise UsageError(f"{where}: {self.refusal.replace('{kind}', kind)}")

@@ -1,4 +1,4 @@
-"""Parameters: each a row that says what it means, which values it takes, and how it is typed."""
+"""Parameter: a row with meaning, accepted values, default and flag of a parameter."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from daguerre.files.json_item import short
 
 from .need import Need
 
-#: ``value`` is an object of Python, which a row describes and does not check.
+#: Kinds of values; ``value`` is a Python object, which a row describes but does not check.
 Kind = Literal[
     "number", "whole", "flag", "choice", "text", "size", "numbers", "file", "picture", "value"
 ]
 
 REQUIRED = object()
-#: Texts of numbers may have another unit of the same kind: 2.5m, 250cm.
+#: Parsers of numbers by unit: texts may have another unit of the same kind, as in 2.5m, 250cm.
 _PARSERS = {
     "mm": units.length_mm,
     "m": units.distance_m,
@@ -34,38 +34,38 @@ _PARSERS = {
 class Parameter:
     """A parameter of a camera, a rendering or an effect.
 
-    Texts name other parameters in braces, ``{f_stop}``: a help shows their flags, a docstring
+    Texts name other parameters in braces, ``{f_stop}``: help texts show their flags, docstrings
     their names.
 
     Attributes:
         name: Name in Python and JSON.
-        meaning: Help text of one phrase.
-        unit: Such as mm, px, stops; empty: none.
-        default: None: not given; REQUIRED: there is none.
+        meaning: Help text, one phrase without a full stop.
+        unit: Unit such as mm, px, stops; empty: none.
+        default: Default; None: not given; REQUIRED: there is none.
         kind: number; whole; flag (0 or 1); choice; text (a name); size (two lengths such as 36x24,
             in the unit); numbers (``count`` of them); file; picture (a file, or an array); value.
         choices: Values of a choice.
-        low: The least that a number may be.
-        high: The most.
-        above: A number that must be exceeded, checked before ``low``.
+        low: Smallest number allowed.
+        high: Largest number allowed.
+        above: Number that must be exceeded, checked before ``low``.
         infinite: Whether a number may be infinite.
         odd: Whether a whole number must be odd.
         count: Length of ``numbers``.
-        wants: Wanted values in words, where kind and limits do not say all.
-        hint: Advice that follows when 0 is refused.
-        flags: Names on the command line, the usual one first; none: it has no flag.
-        metavar: Placeholder for its value in a help; of a choice, default: the choices.
-        parse: Reads the text of its flag: called with the flag's name and the text; default: by
+        wants: Accepted values in words, if kind and limits do not suffice.
+        hint: Advice to append to the error if 0 is refused.
+        flags: Names on the command line, the main one first; empty: no flag.
+        metavar: Placeholder for its value in help; default for a choice: the choices.
+        parse: Parser of the flag's text, called with the flag's name and the text; default: by
             kind and unit.
-        repeated: Whether the flag may be repeated, each with a part of the value.
-        panel: Part of a help that shows it.
-        default_words: The default in words, such as ``the file's, else 5.6``.
-        usual: Value that is used where none is given, if that is always the same.
-        tells_default: Whether texts show the default, or the usual value, itself.
-        more: Sentences that follow the meaning in docstrings and pages.
-        in_python: Text of a docstring, where a value of Python differs from that of the flag.
-        explained: Pages of the docs that tell more, such as ``flare.md#the-body``.
-        needs: Conditions that a camera must meet to take it.
+        repeated: Whether the flag may be repeated, each time with a part of the value.
+        panel: Section of help that shows it.
+        default_words: Default in words, such as ``the file's, else 5.6``.
+        usual: Value used if none is given, if it is always the same.
+        tells_default: Whether texts show the default, or the usual value.
+        more: Sentences that follow the meaning in docstrings and pages, without the last full stop.
+        in_python: Docstring text, if the Python value differs from that of the flag.
+        explained: Pages of the docs with more, such as ``flare.md#the-body``.
+        needs: Conditions that a camera must meet.
         rivals: Name of a group of parameters of which at most one may be given.
         movable: Whether it may change while the shutter is open (``dg.keys``).
     """
@@ -107,33 +107,33 @@ class Parameter:
 
     @property
     def flag(self) -> str:
-        """Name of its flag for messages; without one its own name."""
+        """Name of its flag for messages; without a flag, its own name."""
         long = (name for name in self.flags if name.startswith("--"))
         return next(long, self.name).partition("/")[0]
 
     @property
     def placeholder(self) -> str | None:
-        """Placeholder for its value in a help."""
+        """Placeholder for its value in help."""
         return self.metavar or "|".join(self.choices) or None
 
     @property
     def field(self) -> str:
-        """Name of the field that holds its flag's value."""
+        """Name of the field that holds the value of its flag."""
         return self.flag.removeprefix("--").replace("-", "_")
 
     def takes(self, kind: str) -> bool:
-        """Whether cameras of a kind make use of it."""
+        """Whether cameras of a kind use it."""
         return all(kind in need.kinds for need in self.needs)
 
     @property
     def parser(self) -> Callable[[str, str], Any] | None:
-        """Reads the text of its flag; None: the command line reads its type itself."""
+        """Parser of the text of its flag; None: the command line parses its type itself."""
         if self.parse is None and self.kind == "number":
             return _PARSERS.get(self.unit)
         return units.sensor_mm if self.parse is None and self.kind == "size" else self.parse
 
     def from_text(self, text: str) -> Any:
-        """The value that the text of its flag stands for.
+        """Parses the text of its flag.
 
         Raises:
             UsageError: The message names the flag.
@@ -142,7 +142,7 @@ class Parameter:
 
     @property
     def wanted(self) -> str:
-        """Values that it may have, for messages."""
+        """Description of the accepted values, for messages."""
         if self.wants:
             return self.wants
         if self.kind == "choice":
@@ -161,17 +161,17 @@ class Parameter:
         return words + (f" and at most {self.high:g}" if self.high < math.inf else "")
 
     def help(self, shown: Callable[[str], str]) -> str:
-        """The phrase of a command's help: meaning and default.
+        """Makes the help text: meaning and default.
 
         Args:
-            shown: How to show another parameter, by its name.
+            shown: Function that shows another parameter, given its name.
         """
         default = f" [{self.default_shown}]" if self.default_shown else ""
         return fill(self.meaning + default, shown) + "."
 
     @property
     def default_shown(self) -> str:
-        """The default for readers; empty: no text tells it."""
+        """Default in words; empty: texts do not show it."""
         if not self.tells_default:
             return self.default_words
         value = self.default if self.usual is None else self.usual
@@ -179,11 +179,11 @@ class Parameter:
         return " x ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in parts)
 
     def read(self, value: Any, where: str, error: type[InputError | UsageError]) -> Any:
-        """The value that a text, or a value of JSON, stands for.
+        """Parses a text or a JSON value.
 
         Args:
-            value: Text of a command line, or a value of JSON.
-            where: For messages, such as ``--effect grain: size``.
+            value: Text of a command line, or a JSON value.
+            where: Start of messages, such as ``--effect grain: size``.
             error: Type of error to raise.
         """
         try:
@@ -196,16 +196,16 @@ class Parameter:
         return result
 
     def check(self, value: Any, where: str) -> None:
-        """Refuses a value of Python that is none of its values; None means not given.
+        """Checks a Python value; None means not given.
 
         Raises:
-            UsageError: The message says where, what is wanted and what it got.
+            UsageError: The value is not accepted; the message names it and the accepted values.
         """
         if value is not None or self.required:
             self.check_given(value, where)
 
     def check_given(self, value: Any, where: str) -> None:
-        """Refuses a value of Python that is none of its values, and None."""
+        """Checks a Python value, which must not be None."""
         match self.kind:
             case "number":
                 self._check_number(value, where)
@@ -244,7 +244,7 @@ class Parameter:
             ) from None
 
     def _read(self, value: Any, where: str) -> Any:
-        """None: not what is wanted."""
+        """Parses a value; None: it is not accepted."""
         match self.kind:
             case "text" | "file" | "picture":
                 return value if isinstance(value, str) and value else None
@@ -268,7 +268,7 @@ class Parameter:
 
 
 def fill(text: str, shown: Callable[[str], str]) -> str:
-    """The text with the parameters that it names in braces shown as a reader knows them."""
+    """Replaces parameters in braces in a text by the names that ``shown`` gives them."""
     parts = text.split("{")
     rest = (part.partition("}") for part in parts[1:])
     return parts[0] + "".join(shown(name) + after for name, _, after in rest)

@@ -12,7 +12,7 @@ from .parameter import Parameter
 
 
 class Table:
-    """Parameters in the order in which helps and pages show them."""
+    """Table of parameters, in the order of help and pages."""
 
     def __init__(self, *rows: Parameter | Iterable[Parameter]) -> None:
         self.rows: tuple[Parameter, ...] = tuple(
@@ -32,14 +32,14 @@ class Table:
         return name in self._rows
 
     def __getitem__(self, name: str) -> Parameter:
-        """The parameter of this name, which is in the table."""
+        """Returns the parameter of this name, which must be in the table."""
         return self._rows[name]
 
     def find(self, name: str, where: str, error: type[InputError | UsageError]) -> Parameter:
-        """The parameter of a name that a user typed.
+        """Returns the parameter of a name that a user typed.
 
         Raises:
-            InputError or UsageError: There is none; the nearest is suggested.
+            InputError or UsageError: Unknown name; the message suggests the nearest.
         """
         if name not in self._rows:
             listed = ", ".join(self._rows) or "nothing"
@@ -49,17 +49,17 @@ class Table:
 
     @property
     def flagged(self) -> tuple[Parameter, ...]:
-        """Those with a flag."""
+        """Parameters with a flag."""
         return tuple(row for row in self.rows if row.flags)
 
     def values(
         self, given: Mapping[str, Any], where: str, error: type[InputError | UsageError]
     ) -> dict[str, Any]:
-        """All parameters by name: those given, read and checked, and defaults for the others.
+        """Values of all parameters by name: given ones, parsed and checked, and defaults.
 
         Args:
-            given: By name, as text or as values of JSON.
-            where: For messages, such as ``--effect grain``.
+            given: Values by name, as text or JSON values.
+            where: Start of messages, such as ``--effect grain``.
             error: Type of error to raise.
         """
         for name in given:
@@ -75,16 +75,16 @@ class Table:
         return values
 
     def filled(self, given: Mapping[str, Any], function: str, where: str = "") -> dict[str, Any]:
-        """All parameters by name: values of Python, checked, and defaults for the others.
+        """Values of all parameters by name: given Python values, checked, and defaults.
 
         Args:
             given: Keywords of a function.
-            function: Its name.
+            function: Name of the function.
             where: Owner of the parameters, for messages; default: the function.
 
         Raises:
-            TypeError: There is no such parameter.
-            UsageError: None of its values.
+            TypeError: No such parameter.
+            UsageError: A value is not accepted.
         """
         for name in given:
             if name not in self:
@@ -96,11 +96,11 @@ class Table:
         return values
 
     def default(self, name: str) -> Any:
-        """Default of a parameter; None: not given."""
+        """Default of a parameter; None: none."""
         return self[name].default
 
     def defaults(self) -> dict[str, Any]:
-        """Default by name; None: not given."""
+        """Defaults by name; None: none."""
         return {row.name: row.default for row in self.rows}
 
     def rivals(self) -> tuple[tuple[str, ...], ...]:
@@ -112,14 +112,14 @@ class Table:
         return tuple(tuple(names) for names in groups.values())
 
     def refuse_rivals(self, given: Collection[str], where: str = "") -> None:
-        """Refuses parameters that exclude each other.
+        """Checks that given parameters do not exclude each other.
 
         Args:
-            given: Names of the parameters that were given.
-            where: Owner of the parameters, such as ``camera``; empty: name their flags.
+            given: Names of the given parameters.
+            where: Owner of the parameters, such as ``camera``; empty: messages name their flags.
 
         Raises:
-            UsageError: The message names them.
+            UsageError: They do; the message names them.
         """
         for names in self.rivals():
             both = [name for name in names if name in given]
@@ -131,7 +131,7 @@ class Table:
                 raise UsageError(f"{flags}: wanted one of them, got {got}")
 
     def check(self, values: Any, where: str) -> None:
-        """Refuses values that none of the parameters takes.
+        """Checks the values of all parameters.
 
         Args:
             values: Object with an attribute for each parameter.
@@ -141,5 +141,5 @@ class Table:
             row.check(getattr(values, row.name), f"{where}: {row.name}")
 
     def flag(self, name: str) -> str:
-        """Flag of a parameter; a name of another table stands as it is."""
+        """Flag of a parameter; for a name that is not in the table, the flag made from it."""
         return self[name].flag if name in self else "--" + name.replace("_", "-")

@@ -1,4 +1,4 @@
-"""Texts about parameters: a docstring's list of attributes, and tables of pages."""
+"""Texts from tables of parameters: attributes of docstrings, and tables of pages."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .table import Table
 
 #: Line length of docstrings.
 WIDTH = 100
-#: Page on which the tables stand.
+#: Page with the tables.
 PAGE = "cli.md"
 HEAD = "| flag | unit | meaning |\n|---|---|---|"
 
@@ -19,7 +19,7 @@ HEAD = "| flag | unit | meaning |\n|---|---|---|"
 def attributes(
     table: Table | Mapping[str, Parameter], names: Iterable[str], indent: str = " " * 8
 ) -> str:
-    """The attributes of a docstring, in the order of ``names``."""
+    """Makes the attributes of a docstring, in the order of ``names``."""
     return "".join(_attribute(table[name], indent) for name in names)
 
 
@@ -41,11 +41,11 @@ def _described(row: Parameter) -> str:
 
 
 def page_table(table: Table, names: Table) -> str:
-    """A table of flags for a page: names, unit and meaning.
+    """Makes a table of flags for a page: names, unit and meaning.
 
     Args:
         table: Rows of the flags.
-        names: Table of the parameters that texts name.
+        names: Table of the parameters that texts refer to.
     """
     return "\n".join([HEAD, *(_line(row, names) for row in table.flagged)])
 
@@ -63,7 +63,7 @@ def _line(row: Parameter, names: Table) -> str:
 
 
 def _link(place: str) -> str:
-    """A link to a page or a part of it, named by its name."""
+    """Makes a link to a page or a section, with its name as text."""
     page, _, part = place.partition("#")
     own = page == PAGE
     name = part if own else page.removesuffix(".md")
@@ -71,12 +71,12 @@ def _link(place: str) -> str:
 
 
 def marked(name: str) -> tuple[str, str]:
-    """The marks of a page between which a table is written."""
+    """Marks in a page between which a table is written."""
     return f"<!-- {name}: by script/docs/make-cli-reference -->", f"<!-- end of {name} -->"
 
 
 def put_between_marks(page: str, name: str, text: str) -> str:
-    """The page with the text between the marks of this name.
+    """Returns the page with the text between the marks of this name.
 
     Raises:
         ValueError: The page has no such marks.

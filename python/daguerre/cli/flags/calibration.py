@@ -1,6 +1,6 @@
-"""Flags of a calibration that stands in the place of a lens.
+"""Flags of a calibration that replaces a lens.
 
-Annotations must be real objects here (see ``flags.py``), so no ``annotations`` future.
+Annotations must be real objects here (see ``groups.py``), so no ``annotations`` future.
 """
 
 from collections.abc import Iterable
@@ -21,7 +21,7 @@ _CALIBRATION = "Calibration"
 
 @dataclass(frozen=True)
 class CalibrationFlags:
-    """Cameras that are known by their calibration."""
+    """Cameras given by their calibration."""
 
     calibration: Annotated[
         list[str] | None,
@@ -93,7 +93,7 @@ class CalibrationFlags:
 
     @cached_property
     def found(self) -> dict[str, Any]:
-        """The calibrations by name, read once; none without the flag."""
+        """Calibrations by name, read once; none without the flag."""
         from daguerre.errors import UsageError
 
         if not self.calibration:
@@ -127,7 +127,7 @@ class CalibrationFlags:
     def resolution(
         self, calibration: Any, res: str | None, default: tuple[int, int]
     ) -> tuple[int, int]:
-        """Size of the picture, px: that of the calibration, unless ``--res`` says another."""
+        """Size of the picture, px: that of ``--res``, else of the calibration."""
         size = default if calibration is None else calibration.projection.size
         if not res:
             return size
@@ -137,7 +137,7 @@ class CalibrationFlags:
         return columns, rows
 
     def check(self, changes: dict[str, Any]) -> None:
-        """A calibration takes the place of a lens.
+        """Checks that flags of a lens are not given with a calibration, which replaces it.
 
         Raises:
             UsageError: Both are given; the message names the flags.
@@ -163,7 +163,7 @@ class CalibrationFlags:
             raise UsageError(f"--calibration and {both[0]}: wanted one of them, got both")
 
     def camera(self, camera: Any, calibration: Any, changes: dict[str, Any]) -> Any:
-        """The scene's camera, calibrated (unless that is None) and changed."""
+        """Returns the scene's camera, with the calibration (if not None) and changes."""
         if calibration is not None:
             pitch = self.pixel_pitch
             um = None if pitch is None else q.pitch_um("--pixel-pitch", pitch)
@@ -198,7 +198,7 @@ class CalibrationFlags:
 
 
 def _read(text: str, options: dict[str, Any]) -> dict[str, Any]:
-    """``FILE``: its first camera; ``FILE:cam0,cam1``: these; ``FILE:all``."""
+    """Reads ``FILE`` (its first camera), ``FILE:cam0,cam1`` (these) or ``FILE:all``."""
     from daguerre.calibration import pick, read_all
     from daguerre.errors import UsageError
 
@@ -231,7 +231,7 @@ def _read(text: str, options: dict[str, Any]) -> dict[str, Any]:
 
 
 def _some(names: Iterable[str]) -> str:
-    """Names between commas; of many the first."""
+    """Names between commas; if there are many, the first of them."""
     listed = list(names)
     more = f" and {len(listed) - 8} more" if len(listed) > 8 else ""
     return ", ".join(listed[:8]) + more

@@ -1,4 +1,4 @@
-"""Flags of the camera, in a photographer's units, for every command that looks through one."""
+"""Flags of the camera, for every command that uses one."""
 
 from typing import Any
 
@@ -10,12 +10,12 @@ from .from_table import TableFlags, made_of
 
 @made_of(CAMERA_FLAGS, names=CAMERA)
 class CameraFlags(TableFlags):
-    """The camera in a photographer's units; what is not given stays as the file says."""
+    """Parameters of the camera; those not given stay as in the scene."""
 
     camera: str | None
 
     def changes(self) -> dict[str, Any]:
-        """The parameters of ``Camera.with_`` that were given."""
+        """Given parameters, for ``Camera.with_``."""
         given = self.given()
         given.pop("camera", None)
         if isinstance(given.get("sensor"), tuple):

@@ -1,4 +1,4 @@
-"""Flags of ``composite``: how objects come into a plate, and the frames of a sequence.
+"""Flags of ``composite``: placing of objects into a plate, and frames of a sequence.
 
 Annotations must be real objects here (see ``groups.py``), so no ``annotations`` future.
 """
@@ -14,7 +14,7 @@ from .groups import Text, option
 
 @dataclass(frozen=True)
 class PlacingFlags:
-    """How objects come into a plate."""
+    """Placing of objects into a plate."""
 
     like_plate: Annotated[
         Path | None,
@@ -53,7 +53,7 @@ class PlacingFlags:
     ] = 0
 
     def given(self) -> dict[str, Any]:
-        """Options of ``composite`` but the seed; the camera file is read once for all frames."""
+        """Options of ``composite`` without the seed; reads the camera file once for all frames."""
         from daguerre.plates.match.reader import read_plate_camera
 
         text, file = self.scale, self.like_plate
@@ -64,7 +64,7 @@ class PlacingFlags:
 
 @dataclass(frozen=True)
 class SequenceFlags:
-    """Frames of a sequence, and what is said of them."""
+    """Frames of a sequence, and reports on them."""
 
     frames: Annotated[
         Text,

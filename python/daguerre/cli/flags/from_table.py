@@ -1,4 +1,4 @@
-"""Flags made from tables of parameters: a row is a flag of every command that takes its table."""
+"""Flags from tables of parameters: a row is a flag of every command that uses its table."""
 
 from collections.abc import Callable
 from dataclasses import make_dataclass
@@ -15,12 +15,12 @@ _TYPES |= {"picture": Path}
 
 
 class TableFlags:
-    """Flags of a table; what is not given is None."""
+    """Flags of a table; flags not given are None."""
 
     table: ClassVar[Table]
 
     def given(self) -> dict[str, Any]:
-        """Values by the names of their parameters, read from the texts that were given."""
+        """Values of given flags by the names of their parameters, parsed from text."""
         values = {row: getattr(self, row.field) for row in self.table.flagged}
         return {row.name: _read(row, value) for row, value in values.items() if _is_given(value)}
 
@@ -34,9 +34,9 @@ def made_of(
     """Makes a data class of flags: the decorated class with a field for each row with a flag.
 
     Args:
-        table: Rows of the flags, in the order of a help.
-        names: Table of the parameters that helps name; None: the same.
-        panel: Part of a help that shows them; None: that of each row.
+        table: Rows of the flags, in the order of help.
+        names: Table of the parameters that help texts refer to; None: the same.
+        panel: Section of help that shows them; None: that of each row.
     """
 
     def make(base: type[Flags]) -> type[Flags]:

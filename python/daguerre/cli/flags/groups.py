@@ -1,6 +1,6 @@
-"""Groups of flags that several commands share: a data class each, its fields are the flags.
+"""Groups of flags that several commands share: data classes whose fields are the flags.
 
-A command names a group as one of its parameters; :func:`with_flags` puts the group's fields into
+A command has a group as one of its parameters, and :func:`with_flags` puts the group's fields into
 the signature that Typer reads. Annotations must be real objects here, so no ``annotations`` future.
 """
 
@@ -15,14 +15,14 @@ Text = str | None
 
 
 def option(*names: str, help: str, metavar: str | None = None, panel: str | None = None) -> Any:
-    """A flag."""
+    """Declares a flag."""
     return typer.Option(
         *names, help=help, metavar=metavar, rich_help_panel=panel, show_default=False
     )
 
 
 def with_flags(**groups: type) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Spreads the parameters named in ``groups`` into the flags of those data classes."""
+    """Replaces the parameters named in ``groups`` by the flags of those data classes."""
 
     def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
         parameters = []

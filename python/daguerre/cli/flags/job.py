@@ -1,4 +1,4 @@
-"""Flags of a job: which pictures are made, into which files, and how the command runs.
+"""Flags of a job: pictures, files, and how the command runs.
 
 Annotations must be real objects here (see ``groups.py``), so no ``annotations`` future.
 """

@@ -1,6 +1,6 @@
-"""Flags of maps of a camera: the ray of each pixel, and STMaps both ways.
+"""Flags of maps of a camera: the ray of each pixel, and STMaps to undistort and distort.
 
-Annotations must be real objects here (see ``flags.py``), so no ``annotations`` future.
+Annotations must be real objects here (see ``groups.py``), so no ``annotations`` future.
 """
 
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from .groups import option
 
 @dataclass(frozen=True)
 class MapFlags:
-    """Maps of a camera, beside a picture or without one."""
+    """Maps of a camera, with or without a picture."""
 
     export_raymap: Annotated[
         Path | None,
@@ -58,12 +58,12 @@ class MapFlags:
 
     @property
     def files(self) -> list[Path]:
-        """All that is written."""
+        """Files to write."""
         given = (getattr(self, f.name) for f in fields(self) if f.name.startswith("export"))
         return [path for path in given if path is not None]
 
     def renamed(self, name: Callable[[Path], Path]) -> "MapFlags":
-        """Into other files."""
+        """Returns a copy with other file names."""
         paths: dict[str, Any] = {
             f.name: name(path)
             for f in fields(self)
@@ -72,10 +72,10 @@ class MapFlags:
         return replace(self, **paths)
 
     def check(self) -> None:
-        """Refuses what is no map.
+        """Checks suffixes and coordinate frame.
 
         Raises:
-            UsageError: Another ending, or no such frame.
+            UsageError: Another suffix, or no such frame.
         """
         from daguerre.errors import UsageError
         from daguerre.maps.ray_map import check_frame
@@ -95,14 +95,14 @@ class MapFlags:
         overscan: Any,
         gt_time: str | None = None,
     ) -> None:
-        """Writes the maps that are asked for.
+        """Writes the requested maps.
 
         Args:
             scene: Scene, for its time.
-            camera: Its focus stated.
+            camera: Camera with a stated focus.
             size: Width and height of the picture, px.
             overscan: An ``Overscan``.
-            gt_time: When in the exposure rays are seen.
+            gt_time: Moment of the exposure for rays.
         """
         from daguerre.maps.ray_map import rays_of
 

@@ -1,6 +1,6 @@
-"""Texts that are made from tables of parameters: tables of flags, and docstrings of records.
+"""Texts generated from tables of parameters: tables of flags, and docstrings of records.
 
-``script/docs/make-cli-reference`` writes them; a test fails where one is stale.
+``script/docs/make-cli-reference`` writes them; a test fails if one is stale.
 """
 
 from collections.abc import Iterable
@@ -26,7 +26,7 @@ class Section:
     Attributes:
         name: Name in the marks around it.
         table: Rows of the flags.
-        names: Table of the parameters that their texts name.
+        names: Table of the parameters that their texts refer to.
     """
 
     name: str
@@ -41,12 +41,12 @@ SECTIONS = (
     Section("flags of match-plate", MATCH, MATCH),
     Section("flags of light-probe", LIGHT_PROBE, LIGHT_PROBE),
 )
-#: Files with the docstring of a record: the record's class, its fields and their table.
+#: Files with the docstring of a record: the record's class and the table of its fields.
 RECORDS = {Path("python", "daguerre", "camera", "camera.py"): (Camera, CAMERA)}
 
 
 def texts(root: Path) -> dict[Path, str]:
-    """Text of every such file, made anew, by its path below ``root``."""
+    """Generates the text of every such file, by its path below ``root``."""
     page = (root / PAGE).read_text("utf-8")
     for section in SECTIONS:
         page = put_between_marks(page, section.name, page_table(section.table, section.names))
@@ -58,7 +58,7 @@ def texts(root: Path) -> dict[Path, str]:
 
 
 def with_attributes(text: str, record: str, table: Table, names: Iterable[str]) -> str:
-    """Source with the attributes in the docstring of a class made anew."""
+    """Generates the attributes in the docstring of a class; returns the source."""
     before, start, rest = text.partition(f"\nclass {record}")
     head, begin, rest = rest.partition(_BEGIN)
     _, end, after = rest.partition(_END)

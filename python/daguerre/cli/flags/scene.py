@@ -1,6 +1,6 @@
-"""Flags of what the camera looks at: time, environment, folders.
+"""Flags of the scene: time, environment, catchers, plate, folders.
 
-Annotations must be real objects here (see ``flags.py``), so no ``annotations`` future.
+Annotations must be real objects here (see ``groups.py``), so no ``annotations`` future.
 """
 
 from collections.abc import Iterable
@@ -124,14 +124,14 @@ class SceneFlags:
 
     @property
     def start(self) -> float:
-        """Time of the scene, s: that of frame 0."""
+        """Scene time of frame 0, s."""
         return 0.0 if self.time is None else q.time_s("--time", self.time)
 
     def load(self, path: Path, taken: Any = None) -> Any:
-        """Reads the scene and lights it.
+        """Reads the scene and adds environment, catchers and plate.
 
         Args:
-            path: Its file.
+            path: Scene file.
             taken: Camera of ``--like-plate``, which took the plate; None: there is none.
         """
         import daguerre
@@ -155,15 +155,15 @@ class SceneFlags:
 
     @property
     def plate_moves(self) -> bool:
-        """Whether each frame has a plate of its own."""
+        """Whether each frame has another plate."""
         return self.plate is not None and has_frame(self.plate)
 
     def check_plates(self, frames: Iterable[int | None]) -> None:
-        """Refuses a sequence of plates of which one is missing.
+        """Checks that no plate of a sequence is missing.
 
         Raises:
             UsageError: There are no frames.
-            InputError: The message names the first frame and its file.
+            InputError: One is missing; the message names the first frame and its file.
         """
         from daguerre.errors import InputError, UsageError
 
@@ -178,7 +178,7 @@ class SceneFlags:
                 raise InputError(f"frame {frame}: {path}: wanted a photograph, got no file")
 
     def throw_plate(self, scene: Any, taken: Any, frame: int = 0) -> None:
-        """Gives the scene the photograph of its set, of a sequence that of a frame.
+        """Sets the plate of the scene, in a sequence that of a frame.
 
         Args:
             scene: The scene, at the time of the frame.

@@ -1,4 +1,4 @@
-"""Flags of how a picture is rendered: one for each row of the table of parameters that has any."""
+"""Flags of render settings, from the rows with flags in the table of parameters."""
 
 from typing import Any
 
@@ -12,13 +12,13 @@ from .from_table import TableFlags, made_of
 
 @made_of(FLAGS)
 class SettingsFlags(TableFlags):
-    """Values of the flags; what is not given has the default of the table."""
+    """Render settings; those not given have the defaults of the table."""
 
     def settings(self, **more: Any) -> RenderSettings:
-        """The settings, with parameters that come of other flags.
+        """Makes the settings, with parameters from other flags.
 
         Raises:
-            UsageError: A value is wrong, or does not go with another; the message names the flag.
+            UsageError: A value is wrong, or excludes another; the message names the flag.
         """
         given = self.given()
         waves = {

@@ -1,4 +1,4 @@
-"""Flags of the shutter, for every command that looks through a camera."""
+"""Flags of the shutter, for every command that uses a camera."""
 
 from typing import Any
 
@@ -9,10 +9,10 @@ from .from_table import TableFlags, made_of
 
 @made_of(SHUTTER, names=CAMERA)
 class ShutterFlags(TableFlags):
-    """When the film is exposed; what is not given stays as the file says, else 180 degrees."""
+    """Parameters of the shutter; those not given stay as in the scene, else 180 degrees."""
 
     def changes(self) -> dict[str, Any]:
-        """The parameters of ``Camera.with_`` that were given."""
+        """Given parameters, for ``Camera.with_``."""
         given = self.given()
         self.table.refuse_rivals(given)
         return given

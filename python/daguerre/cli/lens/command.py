@@ -1,4 +1,4 @@
-"""``daguerre lens``: one lens on the bench, its numbers, its data sheet, its PSF."""
+"""``daguerre lens``: a lens on the bench, its numbers, data sheet and PSF."""
 
 from __future__ import annotations
 
@@ -36,15 +36,15 @@ _SETTING = Table(
 
 @made_of(_SETTING, panel=BENCH)
 class SettingFlags(BenchFlags):
-    """How the lens is set; without flags wide open and focused at infinity."""
+    """Setting of the lens; without flags, wide open and focused at infinity."""
 
     @property
     def by(self) -> By:
-        """How it is focused."""
+        """Focus criterion."""
         return self.focus_by or "best"
 
     def given_mm(self) -> dict[str, Any]:
-        """Zoom, focus and stop that were given, by the names of the bench."""
+        """Given zoom, focus and stop, by the names of the bench."""
         names = {"zoom": "zoom_mm", "focus_distance": "focus_m", "f_stop": "f_stop"}
         return {names[name]: value for name, value in self.given().items() if name in names}
 
@@ -126,7 +126,7 @@ def _write_drawing(bench: Bench, path: Path) -> None:
 def _write_figures(
     item: Lens, bench: Bench, plot: Path | None, wavelength: float, *, json: bool
 ) -> None:
-    """Figures are made once, for the page and for the JSON."""
+    """Makes the figures once, for the page and for JSON."""
     from daguerre.analysis.figures import figures
 
     made = figures(bench)

@@ -1,4 +1,4 @@
-"""Files of ``daguerre lens``; with ``--export`` the lens in another program's language."""
+"""Files of ``daguerre lens``; ``--export`` writes the lens as code for other programs."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from daguerre.lenses import Lens
     from daguerre.polynomial import LensFit
 
-#: RMS error on the film that is worth a sentence, um: half a pixel of 960 over 36 mm.
+#: RMS error on the film above which a note is printed, um: half a pixel of 960 over 36 mm.
 WORTH_TELLING = 20.0
-#: Parts of the film by radius: as few as keep the error below that.
+#: Numbers of film segments by radius to try: the fewest that keep the error below that.
 SEGMENTS = (1, 2, 4)
 
 _BLADES = ("blades", "blade_rotation", "blade_curvature")
@@ -66,17 +66,17 @@ _FILES = Table(
 
 @made_of(_FILES, panel="Files written")
 class FileFlags(TableFlags):
-    """The files, and what is fitted for ``--export``; None: not given."""
+    """Files, and parameters of the fit for ``--export``; None: not given."""
 
     plot: Path | None
     drawing: Path | None
     export: Path | None
 
     def check(self, *, film_serves: bool) -> None:
-        """Says what is wrong before anything is computed.
+        """Checks the flags before anything is computed.
 
         Args:
-            film_serves: Whether ``--sensor`` serves another flag.
+            film_serves: Whether another flag uses ``--sensor``.
         """
         check_drawing("--plot", self.plot)
         check_drawing("--drawing", self.drawing, plotted=False)
@@ -93,7 +93,7 @@ class FileFlags(TableFlags):
         check_writable(self.export)
 
     def write(self, item: Lens, path: Path, setting: dict[str, Any]) -> None:
-        """Fits the lens and writes the file; one line to stderr says how good the fit is."""
+        """Fits the lens and writes the file; prints the error of the fit on stderr."""
         for segments in SEGMENTS:
             fitted = self._fitted(item, setting, segments)
             if weak_region(fitted) is None:
@@ -137,7 +137,7 @@ def _iris(given: dict[str, Any]) -> Iris:
 
 
 def weak_region(fitted: LensFit) -> str | None:
-    """Where on the film the fit does not follow the lens, if anywhere.
+    """Note on the region of the film where the fit is poor, if any.
 
     A file has no exact lens to fall back to.
     """

@@ -64,17 +64,17 @@ _FLARE = Table(
 
 @made_of(_FLARE, panel=BENCH)
 class FlareFlags(TableFlags):
-    """The flags of ``--flare``."""
+    """Flags of ``--flare``."""
 
     flare: str | None
 
     @property
     def wanted(self) -> bool:
-        """Whether ghosts are asked for."""
+        """Whether ``--flare`` is given."""
         return self.flare is not None
 
     def check(self) -> None:
-        """Refuses a value that is none, or a flag that wants ``--flare``.
+        """Checks the values, and that no flag is given that needs ``--flare``.
 
         Raises:
             UsageError: The message names the flag.
@@ -85,7 +85,7 @@ class FlareFlags(TableFlags):
         self.given()
 
     def show(self, bench: Bench, files: FileFlags, *, json: bool) -> int:
-        """Prints the ghosts, and draws what is asked for."""
+        """Prints the ghosts, and writes the requested drawings."""
         from daguerre.analysis.ghosts import Ghosts
         from daguerre.camera.camera import Camera
         from daguerre.setup.body import stack_of

@@ -1,4 +1,4 @@
-"""``daguerre lens --veiling-glare``: how much of a white world a black patch shows."""
+"""``daguerre lens --veiling-glare``: light on a black patch in a white world."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def show_glare(bench: Bench, *, json: bool) -> int:
-    """Prints the index and what makes it."""
+    """Prints the veiling glare index and its parts."""
     from daguerre.analysis.glare import VeilingGlare
 
     glare = VeilingGlare(bench)

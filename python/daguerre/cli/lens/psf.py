@@ -1,4 +1,4 @@
-"""``daguerre lens --psf``: one point of light, its figures, its pictures."""
+"""``daguerre lens --psf``: the point spread function in figures and pictures."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from daguerre.units import angle_deg, distance_m, length_mm
 if TYPE_CHECKING:
     from daguerre.analysis import Bench, Pencil
 
-STEPS = 9  # films of a series through focus
+STEPS = 9  # film positions of a series through focus
 
 
 def _point(flag: str, text: str) -> tuple[float, bool, float]:
-    """Field, whether it is an angle (deg), distance (m)."""
+    """Parses field, whether it is an angle (deg), and distance (m)."""
     field, comma, distance = text.partition(",")
     if not comma:
         raise UsageError(f"{flag}: wanted FIELD,DISTANCE such as 10mm,inf or 15deg,3, got {text!r}")
@@ -50,12 +50,12 @@ _PSF = Table(
 
 @made_of(_PSF, panel=BENCH)
 class PsfFlags(TableFlags):
-    """The flags of ``--psf``."""
+    """Flags of ``--psf``."""
 
     psf: str | None
 
     def check(self) -> None:
-        """Refuses a value that is none, and ``--through-focus`` alone.
+        """Checks the values, and that ``--through-focus`` is not given alone.
 
         Raises:
             UsageError: The message names the flag.
@@ -66,7 +66,7 @@ class PsfFlags(TableFlags):
 
     @property
     def wanted(self) -> bool:
-        """Whether a PSF is asked for."""
+        """Whether ``--psf`` is given."""
         return self.psf is not None
 
     def show(self, bench: Bench, *, plot: Path | None, json: bool) -> int:

@@ -1,1 +1,1 @@
-"""Pictures that are not complete, shown in a terminal or in a file."""
+"""Previews of pictures that are being drawn, in a terminal or in a file."""

@@ -1,4 +1,4 @@
-"""``--preview``: shows the picture as it grows, in the terminal where that can, else in a file."""
+"""``--preview``: shows a picture while it is drawn, in the terminal if it can, else in a file."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from .terminal import Way, way_of
 
 
 class Preview:
-    """Shows pictures that are not complete, until that fails.
+    """Shows previews, until that fails.
 
     Args:
-        in_terminal: Whether the terminal may be asked whether it shows pictures.
+        in_terminal: Whether to query the terminal for picture support.
 
     Attributes:
-        way: How the terminal shows pictures; None: a file does.
+        way: Picture protocol of the terminal; None: previews go to a file.
     """
 
     def __init__(self, *, in_terminal: bool) -> None:
@@ -36,11 +36,11 @@ class Preview:
         self._told: set[Path] = set()
 
     def show(self, look: Look, screen: Screen | None) -> None:
-        """Shows a picture; one that cannot be shown is the last, and no reason to stop drawing.
+        """Shows a preview; a failure ends previews, but not the render.
 
         Args:
-            look: The picture.
-            screen: Terminal that shows it; None: a file does, until the picture is complete.
+            look: The preview.
+            screen: Terminal to show it; None: a file, until the picture is complete.
         """
         try:
             if screen is not None:
@@ -61,7 +61,7 @@ class Preview:
 
 
 def _pixels(look: Look) -> Pixels:
-    """The picture as it would be in a file, (H, W, 3)."""
+    """Pixels of the picture as in a file, (H, W, 3)."""
     import OpenImageIO as oiio
 
     with TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-"""Bytes that draw a picture at the cursor, for each protocol.
+"""Bytes that draw a picture at the cursor, for each terminal protocol.
 
 Sources: sw.kovidgoyal.net/kitty/graphics-protocol; iterm2.com/documentation-images.html;
 VT330/VT340 Programmer Reference Manual, chapter 14.
@@ -18,9 +18,9 @@ from daguerre.io.png_chunks import encoded
 from .terminal import Way
 
 Pixels = NDArray[np.uint8]
-#: Number of the picture for Kitty: one that is sent again takes the place of the first.
+#: Number of the picture for Kitty; sending it again replaces the picture.
 NUMBER = 8128
-#: Most bytes of a piece for Kitty, of base64.
+#: Maximum size of a chunk for Kitty, bytes of base64.
 PIECE = 4096
 #: Steps of each colour for Sixel: 6 x 6 x 6 are a palette of 216.
 STEPS = 6
@@ -29,7 +29,7 @@ BAYER = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]])
 
 
 def drawn(way: Way, pixels: Pixels, columns: int, rows: int) -> bytes:
-    """Draws pixels (H, W, 3) over so many cells, from the cursor on; where it is then is open."""
+    """Draws pixels (H, W, 3) over a number of cells from the cursor, which may move."""
     if way is Way.SIXEL:
         return sixel(pixels)
     data = b64encode(png(pixels))
@@ -45,7 +45,7 @@ def drawn(way: Way, pixels: Pixels, columns: int, rows: int) -> bytes:
 
 
 def png(pixels: Pixels) -> bytes:
-    """A PNG, made in little time."""
+    """Encodes a PNG fast."""
     height, width = pixels.shape[:2]
     lines = np.zeros((height, 1 + 3 * width), np.uint8)  # each begins with the filter: none
     lines[:, 1:] = pixels.reshape(height, -1)
@@ -55,7 +55,7 @@ def png(pixels: Pixels) -> bytes:
 
 
 def sixel(pixels: Pixels) -> bytes:
-    """The picture in Sixel, dithered to a palette."""
+    """Encodes a picture in Sixel, dithered to a palette."""
     height, width = pixels.shape[:2]
     index = palette_index(pixels)
     out = [f'\x1bPq"1;1;{width};{height}'.encode()]
@@ -70,7 +70,7 @@ def sixel(pixels: Pixels) -> bytes:
 
 
 def palette_index(pixels: Pixels) -> NDArray[np.intp]:
-    """The nearest colours of the palette, with dither: (H, W)."""
+    """Indices of the nearest palette colours, with dither, shape (H, W)."""
     height, width = pixels.shape[:2]
     tiles = np.tile((BAYER + 0.5) / 16, (height // 4 + 1, width // 4 + 1))[:height, :width, None]
     steps = np.floor(pixels / 255 * (STEPS - 1) + tiles).clip(0, STEPS - 1).astype(np.intp)
@@ -78,13 +78,13 @@ def palette_index(pixels: Pixels) -> NDArray[np.intp]:
 
 
 def _columns(where: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """Six rows as one character a column: bit k is row k."""
+    """Encodes six rows as one character a column: bit k is row k."""
     bits = (where * (1 << np.arange(len(where)))[:, None]).sum(0)
     return np.asarray(bits + 63, np.uint8)
 
 
 def _run_lengths(characters: NDArray[np.uint8]) -> bytes:
-    """Characters with repeats as ``!count character``; empty ones at the end are left out."""
+    """Encodes repeats as ``!count character``, and drops empty characters at the end."""
     starts = np.flatnonzero(np.diff(characters, prepend=-1))
     counts = np.diff(starts, append=len(characters))
     runs = list(zip(characters[starts].tolist(), counts.tolist(), strict=True))

@@ -1,4 +1,4 @@
-"""Pictures in a terminal, in place: a picture, lines said below it, and a line of progress."""
+"""In-place display in a terminal: a picture, messages below it, and a line of progress."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from daguerre.rendering.progress import AnyStatus
 from .protocols import Pixels, drawn
 from .terminal import Way
 
-#: Size of a cell, px, where the terminal does not tell.
+#: Size of a cell, px, if the terminal does not report it.
 CELL = 8, 16
 #: Rows that a picture leaves free.
 FREE = 3
@@ -29,7 +29,7 @@ PERIOD_S = 0.2
 
 @dataclass(frozen=True)
 class Cells:
-    """Size of a terminal: columns and rows, and of a cell, px."""
+    """Size of a terminal: columns, rows, and size of a cell, px."""
 
     columns: int
     rows: int
@@ -38,7 +38,7 @@ class Cells:
 
     @classmethod
     def of(cls, out: TextIO) -> Cells:
-        """The size of the terminal as it is now."""
+        """Reads the present size of the terminal."""
         asked = fcntl.ioctl(out.fileno(), termios.TIOCGWINSZ, b"\0" * 8)
         rows, columns, width, height = struct.unpack("HHHH", asked)
         columns, rows = columns or 80, rows or 24
@@ -47,7 +47,7 @@ class Cells:
         return cls(columns, rows, width / columns, height / rows)
 
     def box(self, width: int, height: int) -> tuple[int, int]:
-        """Columns and rows of a picture of this size, px: as large as it is, if that fits."""
+        """Columns and rows for a picture of this size, px: in full size if that fits."""
         wide, high = (self.columns - 1) * self.width, (self.rows - FREE) * self.height
         scale = min(1.0, wide / width, high / height)
         columns, rows = width * scale / self.width, height * scale / self.height
@@ -64,7 +64,7 @@ class Screen(Silent):
         self._next = 0.0
 
     def picture(self, pixels: Pixels) -> None:
-        """Draws the picture where the last one is, or below what is there."""
+        """Draws the picture in place of the last one, or below the present text."""
         cells = Cells.of(self._out)
         height, width = pixels.shape[:2]
         columns, rows = cells.box(width, height)
@@ -85,16 +85,16 @@ class Screen(Silent):
         self._write(b"\r" + text.encode() + b"\x1b[K")
 
     def say(self, line: str) -> None:
-        """Writes a line that stays."""
+        """Writes a permanent line."""
         self._write(b"\r\x1b[K" + line.encode() + b"\n")
         self._below += 1 + max(len(line) - 1, 0) // Cells.of(self._out).columns
 
     def start(self) -> None:
-        """Says lines below the picture."""
+        """Starts to print messages below the picture."""
         console.writer = self.say
 
     def stop(self) -> None:
-        """Takes the line of progress away."""
+        """Removes the line of progress."""
         self._write(b"\r\x1b[K")
 
     def _write(self, data: bytes) -> None:
@@ -107,7 +107,7 @@ class Screen(Silent):
 
 
 def resized(pixels: Pixels, width: int, height: int) -> Pixels:
-    """The picture with fewer pixels."""
+    """Reduces a picture to fewer pixels."""
     import OpenImageIO as oiio
 
     if (height, width) == pixels.shape[:2]:

@@ -1,6 +1,6 @@
-"""Detection of pictures in a terminal: by a question to it, or by its environment.
+"""Detection of picture support in a terminal: by a query, or by environment variables.
 
-Three protocols are known: Kitty's graphics, iTerm2's inline images, and Sixel (DEC 1990).
+Supported protocols: Kitty's graphics, iTerm2's inline images, and Sixel (DEC 1990).
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from typing import TextIO
 
 
 class Way(Enum):
-    """A protocol of pictures."""
+    """A picture protocol."""
 
     KITTY = "kitty"
     ITERM = "iterm"
     SIXEL = "sixel"
 
 
-#: Kitty: a picture of one pixel that is only asked about; then the terminal's name (XTVERSION);
-#: then its attributes (DA1), which every terminal answers, so nobody waits for the others.
+#: Query: for Kitty, a picture of one pixel that is not shown; then the terminal's name (XTVERSION);
+#: then its attributes (DA1), which every terminal answers, so the answer always ends.
 QUESTION = b"\x1b_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\" + b"\x1b[>q" + b"\x1b[c"
 ATTRIBUTES = re.compile(rb"\x1b\[\?([0-9;]*)c")
-#: Longest wait for an answer, s: a terminal far away needs some time.
+#: Longest wait for an answer, s: remote terminals need some time.
 PATIENCE_S = 0.4
-#: Terminals that would print the question, and multiplexers, which do not hand pictures on.
+#: Terminals that would print the query, and multiplexers, which do not pass pictures on.
 DEAF = ("dumb", "linux", "screen", "tmux")
 
 
 def way_of(stdin: TextIO, out: TextIO, environment: Mapping[str, str]) -> Way | None:
-    """The protocol of the terminal that ``out`` is; None: it is none, or shows no pictures."""
+    """Protocol of the terminal ``out``; None: not a terminal, or without pictures."""
     name = environment.get("TERM", "")
     if not out.isatty() or not name or name.startswith(DEAF) or "TMUX" in environment:
         return None
@@ -46,11 +46,11 @@ def way_of(stdin: TextIO, out: TextIO, environment: Mapping[str, str]) -> Way | 
 
 
 def ask(given: int, out: int) -> bytes:
-    """The terminal's answer, as far as it comes in time.
+    """Queries the terminal; returns its answer, as far as it comes in time.
 
     Args:
-        given: File descriptor on which it answers.
-        out: File descriptor on which it is asked.
+        given: File descriptor of the answer.
+        out: File descriptor of the query.
     """
     before = termios.tcgetattr(given)
     answer, until = b"", time.monotonic() + PATIENCE_S
@@ -64,13 +64,13 @@ def ask(given: int, out: int) -> bytes:
                     break
                 answer += part
     finally:
-        # Throws away what comes too late, so that it is not typed into the shell.
+        # Discards late answers, so that they are not typed into the shell.
         termios.tcsetattr(given, termios.TCSAFLUSH, before)
     return answer
 
 
 def read_answer(answer: bytes) -> Way | None:
-    """The best protocol that an answer speaks of."""
+    """Best protocol that an answer names."""
     if b"\x1b_Gi=31;OK" in answer:
         return Way.KITTY
     if b"P>|iTerm2" in answer:
@@ -80,7 +80,7 @@ def read_answer(answer: bytes) -> Way | None:
 
 
 def guess(environment: Mapping[str, str]) -> Way | None:
-    """The protocol by what terminals say of themselves to programs, if they cannot be asked."""
+    """Guesses the protocol from environment variables, for terminals that cannot be queried."""
     program = environment.get("TERM_PROGRAM", "") or environment.get("LC_TERMINAL", "")
     if "KITTY_WINDOW_ID" in environment or program == "ghostty":
         return Way.KITTY
@@ -88,7 +88,7 @@ def guess(environment: Mapping[str, str]) -> Way | None:
 
 
 def _in_foreground(descriptor: int) -> bool:
-    """Whether this process may read from its terminal: one in the background would be stopped."""
+    """Whether this process may read from its terminal; in the background it would be stopped."""
     try:
         return os.tcgetpgrp(descriptor) == os.getpgrp()
     except OSError:

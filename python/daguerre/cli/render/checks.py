@@ -1,4 +1,4 @@
-"""Checks of a render's flags that go together, each naming the flag that is wrong."""
+"""Checks of combinations of a render's flags; messages name the flag that is wrong."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from daguerre.rendering.settings import Film, RenderSettings
 
 
 def check_files(flags: JobFlags, rows: SettingsFlags, maps: MapFlags) -> list[str]:
-    """Formats, tone and channels; the groups of channels that are asked for."""
+    """Checks formats, tone and channels; returns the requested groups of channels."""
     from daguerre.frame.frame import TONES, check_format
 
     if not flags.paths and not maps.files:
@@ -56,7 +56,7 @@ def check_files(flags: JobFlags, rows: SettingsFlags, maps: MapFlags) -> list[st
 def check_samples(
     flags: JobFlags, rows: SettingsFlags, groups: list[str]
 ) -> tuple[int, int] | None:
-    """The range of a pass, and whether a pass can have what is asked for."""
+    """Returns the range of a pass, and checks that a pass supports the other flags."""
     if not flags.samples:
         return None
     given = rows.given()
@@ -84,7 +84,7 @@ def check_samples(
 def settings_of(
     flags: JobFlags, rows: SettingsFlags, groups: list[str], size: tuple[int, int]
 ) -> RenderSettings:
-    """The settings of a picture of this size; some channels ask for ground truth by themselves."""
+    """Makes the settings of a picture of this size; some channels turn ground truth on."""
     more: dict[str, Any] = {
         "resolution": size,
         "aovs": bool(groups) or flags.denoise,
@@ -92,14 +92,14 @@ def settings_of(
         "motion": any(name in groups for name in names_of(Source.MOTION)),
     }
     if flags.like_plate is not None and "filter" not in rows.given():
-        more["filter"] = "box"  # as a photosite is: the blur of the plate is beside that
+        more["filter"] = "box"  # the shape of a photosite; the plate's blur is added to it
     if any(name in groups for name in (*EXACT_ONLY, DISPARITY)):
         more["gt_time"] = rows.given().get("gt_time", "mid")
     return rows.settings(**more)
 
 
 def check_overscan(flags: JobFlags, settings: RenderSettings) -> None:
-    """Pixels beside the picture need a file that can have them."""
+    """Checks that overscan has a file that can hold it."""
     if settings.film.overscan is None or not flags.paths:
         return
     if not any(path.suffix.lower() == ".exr" for path in flags.paths):
@@ -107,7 +107,7 @@ def check_overscan(flags: JobFlags, settings: RenderSettings) -> None:
 
 
 def check_truth(groups: list[str], rows: SettingsFlags, maps: MapFlags) -> None:
-    """Ground truth goes into channels, and some of them need means, or none."""
+    """Checks that ground truth has channels, and that they fit ``--gt-lens``."""
     given = rows.given()
     means = given.get("gt_lens", "chief") != "chief"
     if not groups and (means or ("gt_time" in given and maps.export_raymap is None)):
@@ -120,7 +120,7 @@ def check_truth(groups: list[str], rows: SettingsFlags, maps: MapFlags) -> None:
 
 
 def check_crop(film: Film) -> None:
-    """A crop lies within the picture and its overscan, as far as that is known yet."""
+    """Checks that a crop lies within picture and overscan, as far as they are known yet."""
     beside = overscan_of(film.overscan, film.resolution, "--overscan")
     if film.crop is None or beside is None:  # the camera decides
         return
@@ -134,7 +134,7 @@ def check_crop(film: Film) -> None:
 
 
 def check_writable(output: Output) -> None:
-    """Refuses files that cannot be written at all, before hours are spent."""
+    """Checks that files can be written, before hours are spent."""
     from daguerre.files.atomic import check_writable as check
 
     names = [path.resolve() for path in output.written]
@@ -149,7 +149,7 @@ def check_writable(output: Output) -> None:
 
 
 def _groups(names: list[str], *, everything: bool) -> list[str]:
-    """Groups of channels by what the flags call them; those of every picture go without saying."""
+    """Groups of channels by their names in flags, without those that every picture has."""
     film = names_of(Source.FILM)
     groups = set(film) if everything else set()
     for name in (part.strip() for text in names for part in text.split(",")):

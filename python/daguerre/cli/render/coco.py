@@ -1,4 +1,4 @@
-"""``--coco`` and ``--categories``: labels of what the pictures show, in one file."""
+"""``--coco`` and ``--categories``: labels of all pictures in one file."""
 
 from __future__ import annotations
 
@@ -21,45 +21,45 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Labels:
-    """Labels in the making.
+    """Collects labels of pictures.
 
     Attributes:
-        file: The file; None: no labels are wanted.
-        categories: Categories of things; None: their names.
+        file: The file; None: no labels.
+        categories: Categories of objects; None: names of nodes.
     """
 
     file: CocoFile | None = None
     categories: Categories | None = None
 
     def check(self, scene: Scene) -> None:
-        """Refuses categories that do not fit the scene."""
+        """Checks that the categories fit the scene."""
         if self.categories is not None:
             self.categories.things(scene)
 
     def add(self, picture: Picture, session: Session) -> None:
-        """Notes what a picture shows."""
+        """Adds the labels of a picture."""
         if self.file is None:
             return
         from daguerre.labels.annotations import annotations_of
 
         seen = annotations_of(session, self.categories)
-        # Readers of data sets want files that image libraries open.
+        # Readers of data sets need files that image libraries can open.
         files = picture.output.files
         plain = (f for f in files if f.suffix.lower() not in (".exr", ".dng"))
         self.file.add(seen, next(plain, files[0]), picture.facts)
 
     def write(self) -> None:
-        """Writes the file, if labels are wanted."""
+        """Writes the file, if there is one."""
         if self.file is not None:
             self.file.write()
             console.note(f"wrote {self.file.path}")
 
 
 def coco_of(path: Path | None, categories: Path | None, plan: Plan) -> Labels:
-    """The labels that the flags ask for.
+    """Makes the collector of labels from the flags.
 
     Raises:
-        UsageError: Flags that do not go together, or a name that is taken.
+        UsageError: Flags exclude each other, or the name of the file is taken.
         InputError: The file of categories cannot be used.
         OutputError: The file cannot be written.
     """

@@ -1,4 +1,4 @@
-"""``--frames``: which frames of a sequence, and the files that they go to."""
+"""``--frames``: frame numbers of a sequence, and names of their files."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _RANGE = re.compile(r"\s*(-?\d{1,9})(?:-(-?\d{1,9})(?:x(\d{1,9}))?)?\s*")
 
 
 def frame_numbers(flag: str, text: str) -> list[int]:
-    """``1-48``, ``1-48x2`` (every second one), ``7``, or several of them between commas."""
+    """Parses ``1-48``, ``1-48x2`` (every second one), ``7``, or several of them between commas."""
     wanted = "frames such as 1-48, 1-48x2 or 1,5,9-12"
     found: dict[int, None] = {}
     for part in text.split(","):
@@ -32,7 +32,7 @@ def frame_numbers(flag: str, text: str) -> list[int]:
 
 
 def check_names(outputs: list[Path], frames: list[int] | None) -> None:
-    """Each of several frames needs a file of its own, and # means a frame.
+    """Checks that several frames have # in their file names, and that # has frames.
 
     Raises:
         UsageError: Names without # for several frames, or with # and no frames.

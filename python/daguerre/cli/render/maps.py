@@ -1,4 +1,4 @@
-"""Maps of cameras, without their pictures."""
+"""Maps of cameras without pictures."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def write_maps(plan: Plan, job: Job) -> bool:
-    """Writes the maps of all pictures; True: all of them are there."""
+    """Writes the maps of all pictures; True: complete."""
     for view in {picture.view.name: picture.view for picture in plan.pictures}.values():
         view.camera(job.scene)
     for i, picture in enumerate(plan.pictures):
@@ -25,7 +25,7 @@ def write_maps(plan: Plan, job: Job) -> bool:
 
 
 def _write(plan: Plan, job: Job, picture: Picture) -> None:
-    """The maps of a camera: nothing is drawn, but its focus may have to be found."""
+    """Writes the maps of a camera, and finds its focus if needed."""
     from daguerre.camera.overscan import check_overscan
     from daguerre.camera.shutter import interval
     from daguerre.distortion.overscan import note, to_undistort

@@ -1,4 +1,4 @@
-"""Flags of a photograph: exposure by the triangle or by a meter, brackets, development."""
+"""Flags of a photograph: exposure set by hand or by a meter, brackets, development."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from daguerre.rendering.photograph import Photograph, offset_name
 if TYPE_CHECKING:
     from daguerre.plates.match.plate_camera import PlateCamera
 
-#: Parameters of a camera that are about exposure and development alone.
+#: Camera parameters that concern only exposure and development; any of them turns development on.
 ASKING = (
     *("sensor", "iso", "exposure_compensation", "exposure_time", "exposure_f_stop"),
     *("responsivity", "white_balance"),
@@ -27,10 +27,10 @@ def photograph_of(
     seed: int,
     plate: PlateCamera | None = None,
 ) -> Photograph:
-    """From flags, checked; ``plate``: camera of a photograph that pictures shall look like.
+    """Makes the photograph from flags; ``plate``: camera whose look pictures imitate.
 
     Raises:
-        UsageError: One is wrong, or does not go with another.
+        UsageError: A flag is wrong, or excludes another.
     """
     iso, sensor = changes.get("iso"), changes.get("sensor")
     if plate is not None and exposure is not None:

@@ -1,4 +1,4 @@
-"""Plan of a render: everything that its flags ask for, checked before anything heavy is loaded."""
+"""Plan of a render: makes and checks the pictures of all flags, before the scene is loaded."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from .views import Cameras, View, check_places
 
 @dataclass(frozen=True)
 class Plan:
-    """Pictures of a call, and how they are made.
+    """Pictures of a call, and data to render them.
 
     Attributes:
-        pictures: Frame after frame, of each all cameras.
+        pictures: Pictures, frame by frame, with all cameras of each.
         maps: Maps of each camera.
         flags: Flags of the job.
         interval_s: Time between checkpoints, s.
@@ -41,17 +41,17 @@ class Plan:
     stage: Callable[[int, Scene], None] = lambda frame, scene: None
 
     def maps_of(self, picture: Picture) -> MapFlags:
-        """The maps of a picture, in files of their own."""
+        """Maps of a picture, with its own file names."""
         several = "camera" in picture.facts
         name, frame = picture.view.name, picture.frame
         return self.maps.renamed(lambda path: path_of(path, name, frame, several=several))
 
 
 def plan_of(flags: JobFlags, rows: SettingsFlags, maps: MapFlags, cameras: Cameras) -> Plan:
-    """Checks what the flags of a render ask for.
+    """Makes the plan from the flags of a render.
 
     Raises:
-        UsageError: Some value is wrong or does not go with another; the message names the flag.
+        UsageError: A value is wrong, or excludes another; the message names the flag.
     """
     views = cameras.views(flags.stereo)
     groups = checks.check_files(flags, rows, maps)
@@ -78,7 +78,7 @@ def plan_of(flags: JobFlags, rows: SettingsFlags, maps: MapFlags, cameras: Camer
 def _output(
     flags: JobFlags, groups: list[str], settings: RenderSettings, cameras: Cameras
 ) -> Output:
-    """Files of the pictures, and how they are photographed."""
+    """Makes the output: files of the pictures, exposure and development."""
     cameras.flags.check(cameras.changes)
     if settings.light.scatter in ("off", 0) and "scatter" in cameras.changes:
         raise UsageError("--scatter-barrel, -blades, -surface-nm: wanted --scatter too")
@@ -92,7 +92,7 @@ def _output(
 
 
 def _output_of(output: Output, view: View, settings: RenderSettings) -> Output:
-    """The same for one camera, whose picture may have a size of its own."""
+    """Makes the output of one camera, whose picture may have another size."""
     checks.check_crop(settings.film)
     if DISPARITY in output.aovs and not view.shift:
         raise UsageError("--aov disparity: wanted --stereo, got no pair")
@@ -100,10 +100,10 @@ def _output_of(output: Output, view: View, settings: RenderSettings) -> Output:
 
 
 def _check_distinct(plan: Plan) -> None:
-    """Each picture has files of its own, which can be written.
+    """Checks that each picture has its own files, which can be written.
 
     Raises:
-        UsageError: Two would share one, such as of cameras whose names differ by a slash.
+        UsageError: Two share a file, for example because camera names differ by a slash only.
     """
     for picture in plan.pictures:
         checks.check_writable(picture.output)

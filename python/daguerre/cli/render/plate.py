@@ -1,4 +1,4 @@
-"""``--like-plate``: a camera that was matched to a photograph, and flags that are given over it."""
+"""``--like-plate``: a camera matched to a photograph, and flags that override it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daguerre.cli import console
 if TYPE_CHECKING:
     from daguerre.plates.match.plate_camera import PlateCamera
 
-#: Parameters of a plate's camera that go with one that was given.
+#: Parameters of a plate's camera that a given parameter overrides, too.
 _WITH = {
     "lens": ("lens", "zoom", "focal_length", "exposure_f_stop"),
     "focal_length": ("lens", "zoom"),
@@ -22,7 +22,7 @@ _WITH = {
 
 
 def read_plate(path: Path | None) -> PlateCamera | None:
-    """The camera file of the flag, if it was given, with notes of what it lacks."""
+    """Reads the camera file of the flag, if given, and notes what it lacks."""
     if path is None:
         return None
     from daguerre.plates.composite.remarks import of_camera
@@ -37,12 +37,12 @@ def read_plate(path: Path | None) -> PlateCamera | None:
 def over_plate(
     plate: PlateCamera | None, given: dict[str, Any], *, calibrated: bool
 ) -> dict[str, Any]:
-    """Parameters of the camera: the plate's, and over them those that were given.
+    """Parameters of the camera: those of the plate, overridden by given ones.
 
     Args:
         plate: The matched camera; None: there is none.
         given: Parameters from flags.
-        calibrated: Whether a calibration takes the lens's place.
+        calibrated: Whether a calibration replaces the lens.
     """
     if plate is None:
         return given

@@ -17,13 +17,13 @@ from daguerre.rendering.reporter import Finished, Look, Reporter, Stopped
 
 
 class ConsoleReporter(Reporter):
-    """Tells people, or programs with ``--json-progress``.
+    """Reports to people, or with ``--json-progress`` to programs.
 
     Args:
-        quiet: Value of the flag.
-        as_json: Whether progress is JSON lines.
-        stats: Whether counts and times are told.
-        preview: Whether pictures are shown as they grow.
+        quiet: Whether ``--quiet`` was given.
+        as_json: Whether to print progress as JSON lines.
+        stats: Whether to print counts and times.
+        preview: Whether to show previews.
     """
 
     def __init__(self, *, quiet: bool, as_json: bool, stats: bool, preview: bool = False) -> None:
@@ -34,11 +34,11 @@ class ConsoleReporter(Reporter):
 
     @property
     def previews(self) -> bool:
-        """Whether pictures are shown as they grow."""
+        """Whether previews are shown."""
         return self._preview is not None and self._preview.works
 
     def preview(self, look: Look) -> None:
-        """Shows one, in the terminal or in a file."""
+        """Shows a preview, in the terminal or in a file."""
         if self._preview is None or not self._preview.works:
             return
         if self._preview.way is not None and self._screen is None:
@@ -62,7 +62,7 @@ class ConsoleReporter(Reporter):
             self._screen = None
 
     def progress(self, status: Status) -> None:
-        """Shows how far it is."""
+        """Shows the progress."""
         self._shown.update(status)
 
     def note(self, text: str) -> None:
@@ -74,13 +74,13 @@ class ConsoleReporter(Reporter):
         console.warn(text)
 
     def saved(self, path: Path, samples: float, *, rescued: bool = False) -> None:
-        """An event; a line if it is all that is left."""
+        """Reports a checkpoint as an event, and as a line if it holds rescued samples."""
         self._shown.event("checkpoint", path=str(path), samples=samples)
         if rescued:
             console.say(f"daguerre: the samples are kept in {path}")
 
     def finished(self, result: Finished) -> None:
-        """Lines about the picture, and an event."""
+        """Reports a complete picture: lines about it, and an event."""
         count, places = result.frame.bad_samples
         if count:
             console.warn(bad_samples(count, places))
@@ -106,7 +106,7 @@ class ConsoleReporter(Reporter):
             )
 
     def stopped(self, result: Stopped) -> None:
-        """Lines on what is kept and how to go on, and an event."""
+        """Reports a stopped picture: what is kept, how to resume, and an event."""
         kept = "nothing was saved"
         if result.checkpoint is not None:
             kept = f"{'saved in' if result.saved else 'the last checkpoint is'} {result.checkpoint}"
@@ -120,7 +120,7 @@ class ConsoleReporter(Reporter):
 
 
 def bad_samples(count: int, places: list[tuple[int, int, int]]) -> str:
-    """How many samples were dropped, and the first of them by name."""
+    """Message with the number of dropped samples, and the first of them."""
     named = ", ".join(f"sample {sample} of pixel ({x}, {y})" for x, y, sample in places[:4])
     more = ", ..." if len(places) > 4 else ""
     return f"{count} samples were NaN or Inf and are left out: {named}{more}"

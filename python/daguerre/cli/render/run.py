@@ -21,14 +21,14 @@ INTERRUPTED = 75
 
 
 def run(plan: Plan, scene: Scene, path: Path, labels: Labels, launched: float) -> int:
-    """Draws pictures one after the other; the exit code.
+    """Draws the pictures one after the other; returns the exit code.
 
     Args:
-        plan: The pictures.
+        plan: Plan with the pictures.
         scene: The scene at the time of frame 0.
-        path: Its file, for messages.
-        labels: Labels of what they show.
-        launched: When the command began, by ``time.monotonic``.
+        path: File of the scene, for messages.
+        labels: Collector of labels.
+        launched: Start of the command, by ``time.monotonic``, s.
     """
     job = _job(plan, scene, path)
 
@@ -62,7 +62,7 @@ def run(plan: Plan, scene: Scene, path: Path, labels: Labels, launched: float) -
 
 
 def describe(plan: Plan, scene: Scene, path: Path) -> int:
-    """Prints what would be drawn: of a sequence its first frame, of a rig each camera."""
+    """Prints what would be drawn: the first frame of a sequence, each camera of a rig."""
     from daguerre.io.exr.write import jsonable, without_infinity
 
     job, frame = _job(plan, scene, path), plan.pictures[0].frame
@@ -100,13 +100,13 @@ def _job(plan: Plan, scene: Scene, path: Path) -> Job:
 
 
 def interrupted_between(done: int, wanted: int) -> int:
-    """Says so between two pictures, and how to go on; the exit code."""
+    """Reports an interruption between two pictures and how to resume; returns the exit code."""
     console.say(f"daguerre: interrupted after {done} of {wanted} pictures; resume with:")
     console.say(console.command_line("--resume"))
     return INTERRUPTED
 
 
 def interrupted_early() -> int:
-    """Says so; the exit code."""
+    """Reports an interruption before the first sample; returns the exit code."""
     console.say("daguerre: interrupted before the first sample; nothing was written")
     return INTERRUPTED

@@ -39,14 +39,14 @@ def stats(result: Finished) -> dict[str, str]:
 
 
 def _stopped(session: Session) -> str:
-    """The share of the camera's rays that no light comes along."""
+    """Share of the camera's rays that carry no light."""
     counters = session.counters
     share = counters.stopped_rays / max(1, counters.camera_rays)
     return f"{share:.1%} of the camera's rays, by lens, iris or edge of the field"
 
 
 def _light(session: Session) -> dict[str, str]:
-    """Light paths, and how many passed the lens and missed the frame."""
+    """Number of light paths, and of those that passed the lens and missed the frame."""
     counters, plan = session.counters, show_plan(session.light_paths)
     if plan is None:
         return {"light paths": "off"}
@@ -57,7 +57,7 @@ def _light(session: Session) -> dict[str, str]:
 
 
 def _flare(session: Session) -> dict[str, str]:
-    """Ghosts: what they were drawn from, and which of their rays came to the frame."""
+    """Ghosts: number of paths, share of rays on the frame, bright spots."""
     counters = session.counters
     if not counters.flare_rays:
         return {}
@@ -70,7 +70,7 @@ def _flare(session: Session) -> dict[str, str]:
 
 
 def _flare_maps(session: Session) -> dict[str, str]:
-    """Ghosts drawn from maps, and how far exact rays say that the maps are off."""
+    """Ghosts drawn from maps, and the error of the maps by exact rays."""
     core, arrivals = session.light_plan.core, session.counters.flare_arrivals
     if not arrivals:
         return {}
@@ -80,7 +80,7 @@ def _flare_maps(session: Session) -> dict[str, str]:
 
 
 def _scatter(session: Session) -> dict[str, str]:
-    """Light that the lens's parts scatter."""
+    """Paths of light scattered by the lens."""
     count = session.counters.scatter_paths
     if not count:
         return {}

@@ -1,6 +1,6 @@
-"""The cameras of a call: one, or those of a rig, and what their files are called.
+"""Cameras of a call: one, or those of a rig, and the names of their files.
 
-All of them draw the same random numbers, so each picture has the bits of a call with that camera
+All of them use the same random numbers, so each picture is bit-identical to a call with that camera
 alone.
 """
 
@@ -33,10 +33,10 @@ class View:
     """One camera of a call.
 
     Attributes:
-        name: Name in files and progress; empty: the only one.
-        camera: Name of the scene's camera; None: the scene's own.
+        name: Name in files and progress; empty: a single camera.
+        camera: Name of the scene's camera; None: the default camera.
         calibration: Calibration that replaces its lens.
-        shift: Shift to the right of where that camera stands, m.
+        shift: Shift to the right of that camera's position, m.
     """
 
     name: str = ""
@@ -45,7 +45,7 @@ class View:
     shift: float = 0.0
 
     def view(self, cameras: Cameras) -> picture.View:
-        """The camera for a job."""
+        """Makes the view for a job."""
 
         def camera(scene: Scene) -> Camera:
             given = scene.camera(self.camera)
@@ -70,7 +70,7 @@ class Cameras:
         names: Value of ``--camera``.
         flags: Calibrations that replace lenses.
         changes: Parameters that the command line changes.
-        plate: Camera of a photograph, whose size pictures have; None: there is none.
+        plate: Camera of a photograph, whose size is the default; None: there is none.
         start: Time of frame 0, s.
     """
 
@@ -81,17 +81,17 @@ class Cameras:
     start: float = 0.0
 
     def views(self, stereo: str | None) -> list[View]:
-        """The cameras, with those of a stereo pair."""
+        """Views of the cameras, with those of a stereo pair."""
         found = {name: one.starting(self.start) for name, one in self.flags.found.items()}
         return views_of(self.names, found, stereo)
 
     def check_frames(
         self, pictures: Sequence[picture.Picture], stereo: str | None, scene: Scene
     ) -> None:
-        """Refuses frames at which a camera that was followed is not known.
+        """Checks that tracked cameras have a pose at all frames.
 
         Raises:
-            InputError: The message names the frame.
+            InputError: One has none; the message names the frame.
         """
         calibrated = {view.name: view.calibration for view in self.views(stereo)}
         rates: dict[str, float] = {}
@@ -110,10 +110,10 @@ class Cameras:
 def views_of(
     camera: str | None, calibrations: Mapping[str, Calibration], stereo: str | None
 ) -> list[View]:
-    """Which cameras ``--camera``, ``--calibration`` and ``--stereo`` ask for.
+    """Views of ``--camera``, ``--calibration`` and ``--stereo``.
 
     Raises:
-        UsageError: More than one of them asks for several cameras.
+        UsageError: More than one of them gives several cameras.
     """
     names = [None] if camera is None else _names(camera)
     several = {
@@ -140,7 +140,7 @@ def views_of(
 
 
 def _names(text: str) -> list[str]:
-    r"""Names between commas; a comma that belongs to a name is written ``\,``."""
+    r"""Splits names at commas; a comma within a name is written ``\,``."""
     names = [part.replace("\\,", ",").strip() for part in re.split(r"(?<!\\),", text)]
     if "" in names:
         raise UsageError(f"--camera: wanted names between commas, got {text!r}")
@@ -150,10 +150,10 @@ def _names(text: str) -> list[str]:
 
 
 def check_places(outputs: list[Path], views: list[View]) -> None:
-    """``{camera}`` means a camera that has a name.
+    """Checks that ``{camera}`` in file names has named cameras.
 
     Raises:
-        UsageError: The only camera of this call was not named, or the place is misspelt.
+        UsageError: The only camera of this call has no name, or the placeholder is misspelt.
     """
     for path in outputs:
         for place in re.findall(r"\{[^{}]*\}", str(path)):
