@@ -161,7 +161,10 @@ def test_developed_plates_give_their_grain(tmp_path):
     ("words", "wanted"),
     [
         (["--like-plate", "none.json", "-o", "o.exr"], "none.json: cannot read"),
-        (["--like-plate", "plate.camera.json", "-o", "o.jpg", "--exposure", "auto"], "its ISO"),
+        (
+            ["--like-plate", "plate.camera.json", "-o", "o.jpg", "--exposure", "auto"],
+            "the plate sets the ISO",
+        ),
     ],
 )
 def test_what_like_plate_refuses(plate, tmp_path, monkeypatch, capsys, words, wanted):

@@ -230,7 +230,7 @@ def test_a_preview_that_cannot_be_written_stops_no_render(tmp_path: Path) -> Non
     [
         (("-o", "nowhere/a.png"), b"there is no folder"),
         (("-o", "a.png", "-o", "a.preview.png"), b"this name is reserved for --preview"),
-        (("--export-raymap", "a.exr"), b"wanted a file for the picture"),
+        (("--export-raymap", "a.exr"), b"wanted a picture for --aov"),
     ],
 )
 def test_a_preview_without_a_place_is_refused(flags: tuple[str, ...], words: bytes) -> None:
