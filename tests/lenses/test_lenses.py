@@ -190,6 +190,10 @@ def test_a_lens_shows_itself() -> None:
         assert root.tag == f"{space}svg"
         assert len(root.findall(f"{space}polygon")) >= 3
         assert len(root.findall(f"{space}polyline")) >= 8  # axis, film, stop and rays
+        order, page = lens.first_order(), lens._repr_html_()
+        ElementTree.fromstring(page.replace("<br>", " "))
+        assert "<svg" in page
+        assert f"{order.efl:.2f} mm  f/{order.f_number:.2f}" in page
 
 
 # Bad files ----------------------------------------------------------------------------------------

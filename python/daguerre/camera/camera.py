@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from daguerre.checks import shown
 from daguerre.errors import UsageError, suggest
+from daguerre.files.html_table import html_table, shown_numbers
 from daguerre.files.value import Value, changed
 from daguerre.motion.values import Composite, Dynamic, is_dynamic, moves
 
@@ -213,9 +214,21 @@ class Camera(Value):
 
     def __repr__(self) -> str:
         """Lists the parameters that differ from their defaults."""
-        told = [text for text in changed(self) if not text.startswith("motion=")]
+        told = [f"{name}={text}" for name, text in changed(self).items() if name != "motion"]
         moving = [f"moving: {', '.join(self.motion)}"] if self.motion else []
         return f"<Camera {', '.join(told + moving) or 'at the origin'}>"
+
+    def _repr_html_(self) -> str:
+        rows = {
+            "stands at": f"{shown_numbers(self.transform[:3, 3])} m",
+            "looks along": shown_numbers(-self.transform[:3, 2]),
+        }
+        for name, text in changed(self).items():
+            if name not in ("transform", "motion"):
+                number = isinstance(getattr(self, name), int | float | tuple)
+                rows[name] = f"{text} {CAMERA[name].unit if number else ''}".rstrip()
+        rows |= {"moving": ", ".join(self.motion)} if self.motion else {}
+        return html_table("Camera", rows)
 
     @classmethod
     def from_opencv(

@@ -107,13 +107,13 @@ def _pickled_alike(a: Any, b: Any, seen: _Seen) -> bool:
     return all(_same(x, y, seen) for x, y in parts)
 
 
-def changed(record: Any) -> list[str]:
-    """Fields of a dataclass that differ from their defaults, as ``name=value``, for printing."""
-    return [
-        f"{field.name}={_brief(value)}"
+def changed(record: Any) -> dict[str, str]:
+    """Fields of a dataclass that differ from their defaults, as texts for printing."""
+    return {
+        field.name: _brief(value)
         for field in fields(record)
         if not same(value := getattr(record, field.name), _default(field))
-    ]
+    }
 
 
 def _default(field: Field[Any]) -> Any:

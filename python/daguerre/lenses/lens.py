@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import html
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -353,6 +354,12 @@ class Lens(Value):
         from daguerre.plots.lens_section import draw
 
         return draw(self)
+
+    def _repr_html_(self) -> str:
+        """The section above name, focal length, f-number and source."""
+        name, source = (html.escape(line) for line in _headline(self))
+        caption = f"<figcaption>{name}<br>{source}</figcaption>"
+        return f"<figure>{self._repr_svg_()}{caption}</figure>"
 
 
 def _rays(

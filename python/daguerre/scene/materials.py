@@ -130,7 +130,7 @@ class Gltf:
 
     def __repr__(self) -> str:
         """Lists only fields that differ from their defaults, as there are 52 fields."""
-        return f"Gltf({', '.join(changed(self))})"
+        return f"Gltf({', '.join(f'{name}={text}' for name, text in changed(self).items())})"
 
 
 Kind = Diffuse | Conductor | Dielectric | Gltf

@@ -6,6 +6,7 @@ World frame: metres, +y up (glTF). Transforms are 4x4 matrices that act on colum
 from __future__ import annotations
 
 import operator
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -21,6 +22,7 @@ from daguerre.checks import number as check_number
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files import formats
+from daguerre.files.html_table import html_table
 from daguerre.files.value import Value
 from daguerre.motion.values import Composite, Dynamic, at, is_dynamic, moves
 from daguerre.parameters.keywords import takes
@@ -83,6 +85,25 @@ class Scene(Value):
         words += ["an environment"] if self.environment is not None else []
         words += ["moving"] if self.motion else []
         return f"<Scene {self.path.name if self.path else 'of arrays'}: {', '.join(words)}>"
+
+    def _repr_html_(self) -> str:
+        triangles = [len(mesh.indices) for mesh in self.meshes]
+        placed = sum(triangles[instance.mesh] for instance in self.instances)
+        lights = Counter(type(light).__name__ for light, _ in self.lights)
+        rows = {
+            "meshes": f"{len(self.meshes)} ({sum(triangles)} triangles)",
+            "instances": f"{len(self.instances)} ({placed} triangles)",
+            "materials": str(len(self.materials)),
+            "textures": str(len(self.textures)),
+            "lights": ", ".join(f"{count} {kind}" for kind, count in lights.items()) or "none",
+            "environment": repr(self.environment) if self.environment else "none",
+            "cameras": ", ".join(self.cameras) or "none",
+            "time": f"{self.time:g} s",
+        }
+        rows |= {"animation": f"{self.duration:g} s"} if self.duration else {}
+        rows |= {"variants": ", ".join(self.variants)} if self.variants else {}
+        rows |= {"warnings": "; ".join(self.warnings)} if self.warnings else {}
+        return html_table(f"Scene {self.path.name if self.path else 'of arrays'}", rows)
 
     def at(self, time: float) -> Scene:
         """Returns the scene at another time, s; both scenes share the parts that do not change."""
