@@ -47,6 +47,7 @@ def test_command_line_page_names_every_command():
         *("docs/gallery/README.md", "docs/gallery/calibrated.md"),
         *("docs/first-picture.md", "docs/for-photographers.md", "docs/for-look-development.md"),
         *("docs/for-vision.md", "docs/for-optics.md", "docs/units.md"),
+        *(f"docs/tutorials/{path.name}" for path in DOCS.glob("tutorials/*.md")),
     ],
 )
 def test_commands_in_texts_use_flags_that_exist(name):

@@ -20,7 +20,8 @@ from daguerre import cli, units
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 TOOLS = ROOT / "script" / "docs" / "manual"
-GUIDES = sorted([*DOCS.glob("for-*.md"), DOCS / "first-picture.md"])
+TUTORIALS = [DOCS / "first-picture.md", *DOCS.glob("tutorials/*.md")]
+GUIDES = sorted([*DOCS.glob("for-*.md"), *TUTORIALS])
 LINK = re.compile(r"\]\(([^)\s#]*)(#[^)\s]*)?(?: \"[^\"]*\")?\)")
 
 
