@@ -169,8 +169,9 @@ def test_units_page_has_every_suffix_and_size() -> None:
 def test_commands_of_guides_parse(page: Path) -> None:
     """Each command has flags that exist, and scripts that are there."""
     top: Any = typer.main.get_command(cli.app)
-    blocks = re.findall(r"^```\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE)
-    lines = [line for block in blocks for line in block.replace("\\\n", " ").splitlines()]
+    blocks = re.findall(r"^```(\w*)\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE)
+    plain = [block.replace("\\\n", " ") for kind, block in blocks if not kind]
+    lines = [line for block in plain for line in block.splitlines()]
     commands = [shlex.split(line) for line in lines if line.startswith(("daguerre ", "python "))]
     assert commands
     for program, name, *rest in commands:
