@@ -101,7 +101,7 @@ LENSES: dict[str, tuple[Any, str]] = {
     ),
     "glass table doubled": (
         change("surfaces.0.glass", {"table": [[500, 1.5], [500, 1.6]]}),
-        S + r"glass\.table: wanted one index for each wavelength",
+        S + r"glass\.table: wanted each wavelength once, got two indices",
     ),
     "glass table of 0": (
         change("surfaces.0.glass", {"table": [[500, 0], [600, 1]]}),

@@ -119,7 +119,7 @@ def test_t_stops_that_cannot_be_are_refused() -> None:
 @pytest.mark.parametrize(
     ("decenter", "wanted"),
     [
-        ((((0, 99), (0, 0)),), "wanted surfaces of 0"),
+        ((((0, 99), (0, 0)),), r"wanted surfaces \(first, last\) within 0"),
         ((((1, 2),),), r"decenter\[0\]: wanted"),
         ((((1, 2), (0, math.inf)),), "two finite numbers"),
         (5, "decenter"),

@@ -39,7 +39,7 @@ def test_they_are_marked(name: str) -> None:
     for surface in lens.surfaces:
         assert surface.semi_diameter is not None
         assert surface.derived != surface.stop  # the stop's size follows from the f-number
-    assert "* not the source's" in repr(lens)
+    assert "* not stated by the source" in repr(lens)
     assert not any(s.derived for s in lenses.load("double-gauss-50mm-f2").surfaces)
 
 

@@ -127,7 +127,10 @@ def test_formulas_in_a_file() -> None:
         ({"name": "unobtainium"}, r"lens\.json: glass\.name: glass 'unobtainium'.*\[lens-glass\]"),
         ({"nd": 1.5, "vd": 3}, r"glass\.vd: wanted an Abbe number"),
         ({"table": []}, r"glass\.table: wanted"),
-        ({"table": [[500, 1.5], [500, 1.6]]}, r"glass\.table: wanted one index"),
+        (
+            {"table": [[500, 1.5], [500, 1.6]]},
+            r"glass\.table: wanted each wavelength once, got two indices",
+        ),
         ({"table": [[500, 0.2]]}, r"glass\.table\[0\]\[1\]: out of range"),
         ({"sellmeier": {"b": [1], "c": []}}, r"glass\.sellmeier: wanted as many c as b"),
         ({"sellmeier": {"b": [-2], "c": [0.1]}}, r"glass\.sellmeier: .*refractive index"),

@@ -109,10 +109,10 @@ def test_members_that_no_one_reads_are_told(tmp_path: Path) -> None:
     path = tmp_path / "tessar.json"
     path.write_text(json.dumps(data))
     notes = lenses.load(path).notes
-    assert notes[0].startswith("coatings: not known")
+    assert notes[0].startswith("coatings: unknown member")
     assert "'coating'" in notes[0]
-    assert notes[-1] == "14 more members are not known"
+    assert notes[-1] == "14 more unknown members are ignored"
     del data["nominal"]
     path.write_text(json.dumps(data))
-    assert "surfaces[2].conicc: not known, and not read" in lenses.load(path).notes[1]
+    assert "surfaces[2].conicc: unknown member, ignored" in lenses.load(path).notes[1]
     assert "'conic'" in lenses.load(path).notes[1]

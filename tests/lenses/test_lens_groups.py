@@ -55,7 +55,9 @@ def test_turned_there_and_back_it_is_where_it_was() -> None:
 
 def test_surfaces_that_are_not_there() -> None:
     for first, last in ((-1, 2), (3, 2), (4, 99)):
-        with pytest.raises(InputError, match=r"decentered: wanted surfaces of 0 \.\. 10"):
+        with pytest.raises(
+            InputError, match=r"decentered: wanted surfaces \(first, last\) within 0 \.\. 10"
+        ):
             LENS.decentered((first, last), (1, 0))
 
 

@@ -67,7 +67,9 @@ def test_unknown_names_get_the_nearest() -> None:
 def test_a_lens_is_itself() -> None:
     lens = lenses.load("double-gauss-50mm-f2")
     assert lenses.load(lens) is lens
-    with pytest.raises(UsageError, match=r"configuration: wanted None, .* got 'far'"):
+    with pytest.raises(
+        UsageError, match=r"configuration: wanted None for a loaded lens, got 'far'"
+    ):
         lenses.load(lens, "far")
 
 
@@ -170,7 +172,7 @@ def test_trace_takes_one_or_many_and_marks_lost_rays() -> None:
     for bad in ([[0, 0]], [[np.nan, 0, 0]]):
         with pytest.raises(InputError):
             lens.trace(bad, [0, 0, 1])
-    with pytest.raises(InputError, match="length"):
+    with pytest.raises(InputError, match="directions: wanted non-zero vectors"):
         lens.trace([0, 0, -10], [0, 0, 0])
     with pytest.raises(InputError, match="wavelength"):
         lens.trace([0, 0, -10], [0, 0, 1], [500.0, 550.0])

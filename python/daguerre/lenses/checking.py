@@ -1,8 +1,8 @@
-"""Whether a lens can be built, and lets light through. Shipped and imported ones alike.
+"""Checks that a lens can be built and lets light through; for shipped and imported lenses alike.
 
-Two surfaces that cross within the beam on the axis make no lens. Where they cross only near the
-rim, the element ends there, and so do the clear diameters. Tables of patents let surfaces touch
-just within the widest beam (none of a hundred below 0.97 of it), which is taken for rounding.
+A lens whose surfaces cross within the axial beam is an error. Where they cross only near the rim,
+the element ends there, and its clear diameters are cut. Patent tables let surfaces touch just
+within the widest beam (none of a hundred below 0.97 of it), which is taken for rounding.
 """
 
 from __future__ import annotations
@@ -22,23 +22,25 @@ from .surface import LensSurface
 
 #: Surfaces that touch at the rim by this much (mm) are a patent's rounding.
 TOUCH = 2e-3
-#: And so is a crossing at this share of the beam on the axis, or farther out.
+#: A crossing at this share of the axial beam's radius, or farther out, is rounding, too.
 ROUNDING = 0.9
-#: A lens of which less of the beam on the axis passes is slower than it says.
+#: If a smaller share of the axial beam passes, the lens is slower than its stop allows.
 ENOUGH_LIGHT = 0.6
 _RADII = 129
 
 
 def checked(lens: Lens) -> Lens:
-    """The lens with clear diameters that its elements have, and notes of what was found.
+    """Returns the lens with clear diameters cut where surfaces cross, and notes on what was found.
 
     Raises:
-        LensError: It has no focal length, surfaces cross within the beam on the axis, or no light
+        LensError: The lens has no focal length, surfaces cross within the axial beam, or no light
             passes; with the index of the surface.
     """
     order = lens.first_order()
     if not all(map(math.isfinite, (order.efl, order.bfl))):
-        raise LensError(f"{lens.source}: focal length: wanted some, got {order.efl}", "lens-afocal")
+        raise LensError(
+            f"{lens.source}: focal length: wanted a finite one, got {order.efl}", "lens-afocal"
+        )
     beam = _beam(lens)
     surfaces, notes = list(lens.surfaces), list(lens.notes)
     for i, j in _neighbors(surfaces):
@@ -49,14 +51,14 @@ def checked(lens: Lens) -> Lens:
         where = f"surfaces {i} and {j}{_numbers(lens, i, j)}"
         if crossing < ROUNDING * inner:
             raise LensError(
-                f"{lens.source}: {where}: edge: wanted a gap within the beam on the axis "
-                f"({inner:.4g} mm), got a crossing {crossing:.4g} mm off the axis",
+                f"{lens.source}: {where}: edge: wanted surfaces that do not cross within the axial "
+                f"beam (radius {inner:.4g} mm), got a crossing {crossing:.4g} mm off the axis",
                 "lens-edge",
                 i,
             )
         end = max(crossing, inner)
         notes.append(
-            f"{where} cross {crossing:.4g} mm off the axis: their clear radii end at {end:.4g} mm"
+            f"{where} cross {crossing:.4g} mm off the axis: clear radii are cut to {end:.4g} mm"
         )
         for k in (i, j):
             semi = surfaces[k].semi_diameter
@@ -69,16 +71,16 @@ def checked(lens: Lens) -> Lens:
 
 
 def _numbers(lens: Lens, *indices: int) -> str:
-    """The foreign file's own numbers of surfaces, in parentheses."""
+    """Surface numbers as the imported file counts them, in parentheses."""
     rows = lens.data.get("surfaces", [])
     numbers = [rows[i].get("from") for i in indices if i < len(rows)]
     if any(n is None for n in numbers):
         return ""
-    return f" (of the file: {' and '.join(str(n) for n in numbers)})"
+    return f" (in the file: {' and '.join(str(n) for n in numbers)})"
 
 
 def _neighbors(surfaces: list[LensSurface]) -> list[tuple[int, int]]:
-    """Pairs that bound one piece of glass or one gap of air; planes of air have no body."""
+    """Pairs of surfaces that bound one element or one air gap; planes in air bound neither."""
     solid = [
         i
         for i, s in enumerate(surfaces)
@@ -89,7 +91,7 @@ def _neighbors(surfaces: list[LensSurface]) -> list[tuple[int, int]]:
 
 
 def _crossing(lens: Lens, i: int, j: int, beam: NDArray[np.float64]) -> float | None:
-    """Distance from the axis (mm) where the later surface runs into the earlier one, or None."""
+    """Distance from the axis (mm) at which two surfaces cross, or None."""
     a, b = lens.surfaces[i], lens.surfaces[j]
     gap = float(lens.vertices[j] - lens.vertices[i])
     known = [s for s in (a.semi_diameter_after, a.semi_diameter, b.semi_diameter) if s is not None]
@@ -112,7 +114,7 @@ def _crossing(lens: Lens, i: int, j: int, beam: NDArray[np.float64]) -> float | 
 
 
 def _beam(lens: Lens) -> NDArray[np.float64]:
-    """How far off the axis the beam on the axis meets each surface, mm, shape (surfaces,)."""
+    """Radius of the axial beam at each surface, mm, shape (surfaces,)."""
     order = lens.first_order()
     radius = 0.5 * order.entrance_pupil.diameter
     out = np.zeros(len(lens.surfaces))
@@ -129,7 +131,7 @@ def _beam(lens: Lens) -> NDArray[np.float64]:
 def _ray(
     lens: Lens, pupil_z: float, x: float, y: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """From the object on the axis to a point of the entrance pupil."""
+    """Ray from the object on the axis to a point of the entrance pupil."""
     start = -(50.0 + abs(pupil_z) + 10 * math.hypot(x, y))
     configuration = lens.configurations[0] if lens.configurations else None
     distance = configuration.object_distance_mm if configuration else None
@@ -140,7 +142,7 @@ def _ray(
 
 
 def _check_light(lens: Lens) -> list[str]:
-    """Some ray of the beam on the axis must reach the film; a note if most do not."""
+    """Raises an error if no ray of the axial beam reaches the film; returns a note if few do."""
     order = lens.first_order()
     radius = 0.5 * order.entrance_pupil.diameter
     if not math.isfinite(radius) or radius <= 0 or not math.isfinite(order.entrance_pupil.z):
@@ -158,15 +160,15 @@ def _check_light(lens: Lens) -> list[str]:
     passed = float((stopped < 0).mean())
     if passed > 0:
         if passed >= ENOUGH_LIGHT or not lens.prescription.is_axially_symmetric:
-            return []  # of a squeezed pupil this beam is too wide in one direction
+            return []  # this beam is too wide in one direction for an anamorphic pupil
         return [
-            f"clear diameters pass {100 * passed:.0f} % of the beam on the axis: the lens does not "
-            f"reach the f/{order.f_number:.3g} that its stop is open for"
+            f"clear diameters pass {100 * passed:.0f} % of the axial beam: the lens is slower than "
+            f"the f/{order.f_number:.3g} of its open stop"
         ]
     worst = int(np.bincount(stopped).argmax())
     raise LensError(
-        f"{lens.source}: surface {worst}{_numbers(lens, worst)}: wanted rays of the beam on the "
-        f"axis to pass, got {np.count_nonzero(stopped == worst)} of {len(rays)} stopped there",
+        f"{lens.source}: surface {worst}{_numbers(lens, worst)}: wanted rays of the axial beam "
+        f"to pass, got {np.count_nonzero(stopped == worst)} of {len(rays)} stopped there",
         "lens-no-light",
         worst,
     )
@@ -178,10 +180,10 @@ def frame_notes(
     frame_mm: tuple[float, float],
     shift_mm: tuple[float, float],
 ) -> list[str]:
-    """Notes, in one sentence, how much of the frame lies outside the image circle, if any does.
+    """Returns a note on the share of the frame outside the image circle; empty if all is inside.
 
     Raises:
-        LensError: All of it does.
+        LensError: The whole frame lies outside.
     """
     count, draws = 33, 36
     x, y = (
@@ -193,8 +195,8 @@ def frame_notes(
     frame = f"{frame_mm[0]:g} x {frame_mm[1]:g} mm"
     if not lit.any():
         raise LensError(
-            f"{lens.source}: frame: wanted some of {frame} in the light, got none of it "
-            "(a shift beyond the image circle?)",
+            f"{lens.source}: frame: wanted {frame} at least partly within the image circle, "
+            "got all of it outside (is the shift too large?)",
             "lens-no-light",
         )
     if lit.all():

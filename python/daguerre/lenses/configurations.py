@@ -17,16 +17,16 @@ from .reading import member, number
 @guarded
 @dataclass(frozen=True)
 class Configuration:
-    """One position of the moving groups. Lengths in mm.
+    """One zoom or focus position of the moving groups. Lengths in mm.
 
     Attributes:
-        name: Its name in the file.
+        name: Name in the file.
         gaps: Thickness after a surface, by the surface's index.
-        efl_mm: Focal length that the source claims.
-        f_number: f-number that the source claims.
-        object_distance_mm: The object's plane, before the first vertex; None: infinity.
-        object_to_image_mm: The object's plane, before the film; None: infinity.
-        stop_semi_diameter: Size of the open iris; None: that of the table.
+        efl_mm: Focal length that the source states.
+        f_number: F-number that the source states.
+        object_distance_mm: Distance from the object plane to the first vertex; None: infinity.
+        object_to_image_mm: Distance from the object plane to the film; None: infinity.
+        stop_semi_diameter: Semi-diameter of the open iris; None: as in the table.
     """
 
     name: str
@@ -39,27 +39,27 @@ class Configuration:
 
     @property
     def at_infinity(self) -> bool:
-        """Focused at infinity: a position of the zoom."""
+        """Whether it is focused at infinity, which makes it a zoom position."""
         return self.object_distance_mm is None and self.object_to_image_mm is None
 
     @property
     def distance_mm(self) -> float:
-        """How far the object is; from where, the fields say. To sort by."""
+        """Object distance from the first vertex or the film, as the file gives it; a sort key."""
         return self.object_to_image_mm or self.object_distance_mm or float("inf")
 
     def like(self, other: Configuration) -> int:
-        """How many gaps it has in common with another one."""
+        """Number of gaps that are the same in another configuration."""
         return sum(other.gaps.get(i) == gap for i, gap in self.gaps.items())
 
 
 def read_configurations(root: Item, count: int) -> tuple[Configuration, ...]:
-    """The list of a file whose table has ``count`` surfaces; one without gaps if it has none."""
+    """Configurations of a file with ``count`` surfaces; if it has none, one without gaps."""
     items = root.list_of("configurations")
     return tuple(_configuration(item, count) for item in items) or (Configuration("infinity"),)
 
 
 def chosen(root: Item, configurations: Sequence[Configuration], name: str | None) -> Configuration:
-    """The one of that name, the first if None."""
+    """Configuration of that name; the first if None."""
     if name is None:
         return configurations[0]
     for configuration in configurations:

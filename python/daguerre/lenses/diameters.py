@@ -1,9 +1,9 @@
-"""Clear diameters where a source gives none: those that the rays of the full field need.
+"""Derives clear diameters that a source does not give from the rays of the full field.
 
-The stop's size is known, from the table or from the f-number. From points of the film out to the
-corner, rays are aimed at the rim of the stop and traced to the scene; each surface is then as wide
-as the farthest of them, so that nothing but the mounts that the source names shades a corner; but
-no wider than where it would run into its neighbour.
+The stop's size is known, from the table or from the f-number. From film points out to the corner,
+rays are aimed at the rim of the stop and traced to the scene. Each surface becomes as wide as the
+farthest of these rays, so that only apertures that the source gives can vignette a corner. No
+surface becomes wider than where it meets its neighbour.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from .sag import sag
 from .surface import LensSurface
 from .zoom import positions, with_stop
 
-#: Fields between the axis and the corner, and points on half the rim of the stop.
+#: Number of fields between the axis and the corner, and of points on half the rim of the stop.
 FIELDS, RIM = 6, 9
-#: Mounts are wider than the light by this factor.
+#: Derived clear diameters exceed the beam by this factor.
 MARGIN = 1.01
 
 Array = NDArray[np.float64]
 
 
 def with_derived_diameters(lens: Lens) -> Lens:
-    """The lens with semi-diameters where it has none; marked as derived.
+    """Returns the lens with missing semi-diameters filled in and marked as derived.
 
-    Unchanged where that cannot be done: all are known, neither the stop's size nor an f-number is
-    known, no field is known, or the lens is not symmetric about its axis.
+    The lens is returned unchanged if all are known, if neither the stop's size nor an f-number is
+    known, if no field is known, or if the lens has no axial symmetry.
     """
     missing = [i for i, s in enumerate(lens.surfaces) if s.semi_diameter is None]
     if not missing or not lens.prescription.is_axially_symmetric:
@@ -54,7 +54,7 @@ def with_derived_diameters(lens: Lens) -> Lens:
 
 
 def image_radius(lens: Lens) -> float | None:
-    """Half the image circle, mm: the source's, or that of its field; None: it names neither."""
+    """Radius of the image circle, mm, as stated or from the stated field; None: none is stated."""
     nominal = lens.nominal
     if nominal.image_circle_mm:
         return nominal.image_circle_mm / 2
@@ -69,7 +69,7 @@ def image_radius(lens: Lens) -> float | None:
 
 
 def _with_stop(lens: Lens) -> Lens:
-    """The open iris of the f-number, where the table does not say its size."""
+    """Sizes the open iris by the f-number if the table does not give its size."""
     surfaces = list(lens.surfaces)
     (i,) = (i for i, s in enumerate(surfaces) if s.stop)
     if surfaces[i].semi_diameter is not None or lens.nominal.f_number is None:
@@ -81,12 +81,12 @@ def _with_stop(lens: Lens) -> Lens:
 
 
 def _widest(radius: float | None, conic: float) -> float:
-    """Where the surface turns vertical, and a little less."""
+    """Largest usable semi-diameter: a little less than where the surface becomes vertical."""
     return math.inf if radius is None or conic <= -1 else 0.998 * abs(radius) / math.sqrt(1 + conic)
 
 
 def _trimmed(surfaces: list[LensSurface], variants: list[Lens]) -> list[LensSurface]:
-    """Derived sizes end where a surface would run into the next one."""
+    """Cuts derived semi-diameters where a surface would cross the next one."""
     solid = [i for i, s in enumerate(surfaces) if s.kind != "stop" or s.glass]
     for i, j in itertools.pairwise(solid):
         a, b = surfaces[i], surfaces[j]
@@ -103,7 +103,7 @@ def _trimmed(surfaces: list[LensSurface], variants: list[Lens]) -> list[LensSurf
 
 
 def _heights(lens: Lens, y: float) -> Array:
-    """How far off the axis light from a film point meets each surface, shape (surfaces,)."""
+    """Largest ray height at each surface for light from a film point, shape (surfaces,)."""
     film = np.array([0.0, y, lens.image_z])
     (stop,) = (s.semi_diameter or 0.0 for s in lens.surfaces if s.stop)
     angle = np.linspace(-np.pi / 2, np.pi / 2, RIM)
@@ -129,10 +129,10 @@ def _chief_guess(lens: Lens, film: Array) -> Array:
 
 
 def _aimed(lens: Lens, film: Array, targets: Array, slopes: Array) -> tuple[Array, Array, Array]:
-    """Newton's method to points of the stop, by exact rays.
+    """Aims exact rays at points of the stop by Newton's method.
 
     Returns:
-        Slopes (N, 2), and the rays as they leave for the scene (N, 3); NaN where none gets there.
+        Slopes (N, 2), and the rays as they leave for the scene (N, 3); NaN where no ray arrives.
     """
     size = 1e-6 * (np.abs(targets).max() + 1e-3)
     points = directions = np.full((len(targets), 3), np.nan)
@@ -157,7 +157,7 @@ def _aimed(lens: Lens, film: Array, targets: Array, slopes: Array) -> tuple[Arra
 
 
 def _iris(lens: Lens, film: Array, slopes: Array) -> tuple[Array, Array, Array]:
-    """Where rays from the film cross the stop (N, 2), and how they leave; NaN if they do not."""
+    """Points where rays from the film cross the stop (N, 2), and the rays that leave; else NaN."""
     directions = -np.column_stack([slopes, np.ones(len(slopes))])
     origins = np.tile(film, (len(slopes), 1))
     nm = np.full(len(slopes), DESIGN_WAVELENGTH_NM)

@@ -1,4 +1,4 @@
-"""Errors of lenses, with codes that programs can ask for."""
+"""Lens errors, with codes that programs can test."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from contextlib import contextmanager
 import daguerre._core as _core
 from daguerre.errors import CoreError, InputError
 
-#: Every code, and what it says.
+#: Meaning of each error code.
 CODES = {
-    "lens-format": "the file is not of its format",
-    "lens-surface": "a surface of a kind or form that is not traced",
-    "lens-mirror": "a mirror: lenses that fold the light are not traced",
-    "lens-glass": "a glass that is not known",
+    "lens-format": "the file does not follow its format",
+    "lens-surface": "a surface of a kind or form that is not supported",
+    "lens-mirror": "a mirror: folded systems are not supported",
+    "lens-glass": "an unknown glass",
     "lens-overlap": "a gap along the axis is negative",
     "lens-edge": "two surfaces cross within the axial beam",
     "lens-no-stop": "no surface is the stop",
@@ -32,9 +32,9 @@ class LensError(InputError):
     """A lens that cannot be used.
 
     Attributes:
-        message: Complaint, without the code.
-        code: One of ``CODES``; the text of the error ends in it, in brackets.
-        surface: Index of the surface, as the message counts; None: the lens as a whole.
+        message: Text of the error, without the code.
+        code: One of ``CODES``; ``str(error)`` ends in it, in brackets.
+        surface: Index of the surface, as counted in the message; None: the lens as a whole.
     """
 
     def __init__(self, message: str, code: str, surface: int | None = None) -> None:
@@ -51,13 +51,13 @@ class LensError(InputError):
 def from_core(
     error: CoreError | InputError, source: str, code: str | None = None, surface: int | None = None
 ) -> InputError:
-    """Names the file in the core's complaint about a lens.
+    """Adds the file's name to the core's error about a lens.
 
     Args:
         error: Error that was raised; an ``InputError`` names its file already.
-        source: The lens's file.
-        code: Code for errors that have none of their own; None: such errors stay as they are.
-        surface: Index of the surface that is read, for such errors.
+        source: File of the lens.
+        code: Code for errors without one; None: such errors keep their type.
+        surface: Index of the surface being read, for such errors.
     """
     if isinstance(error, _core.LensError):
         return LensError(f"{source}: {error.message}", error.code, error.surface)
@@ -69,7 +69,7 @@ def from_core(
 
 @contextmanager
 def reported(source: str, code: str | None = None, surface: int | None = None) -> Iterator[None]:
-    """Raises complaints about a lens with the name of its file, and a code."""
+    """Re-raises errors about a lens with the name of its file, and a code."""
     try:
         yield
     except (CoreError, InputError) as error:

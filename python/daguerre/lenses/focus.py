@@ -1,4 +1,4 @@
-"""Focus: the groups that a file names move, or else the whole lens does."""
+"""Focuses a lens by moving the groups that its file gives, or else the whole lens."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from .lens import DESIGN_WAVELENGTH_NM, Lens
 from .setting import LensSetting
 from .zoom import Position, at_zoom, bracket, positions
 
-#: Groups may go beyond infinity by this share of their way, as those of real lenses do.
+#: Groups may move beyond infinity by this share of their travel, as in real lenses.
 BEYOND = 0.2
 
 
 @guarded
 @dataclass(frozen=True)
 class Focused:
-    """A lens whose film shows a plane of the scene sharply. Lengths in mm, z in the lens frame.
+    """A lens focused on a plane of the scene, and its film. Lengths in mm, z in the lens frame.
 
     Attributes:
-        lens: With the gaps of this focus.
-        film_z_mm: Where the film is.
-        efl_mm: Focal length at this focus: groups that move change it, and so the framing.
-        entrance_pupil_z: Centre of the entrance pupil.
+        lens: Lens with the gaps of this focus.
+        film_z_mm: Position of the film.
+        efl_mm: Focal length at this focus; moving groups change it, and so the framing (breathing).
+        entrance_pupil_z: Position of the centre of the entrance pupil.
     """
 
     lens: Lens
@@ -39,13 +39,13 @@ class Focused:
 
 @dataclass(frozen=True)
 class Path:
-    """How the gaps of a lens change from infinity (0) to its nearest focus (1)."""
+    """Gaps of a lens from focus at infinity (0) to its nearest focus (1)."""
 
     lens: Lens  # at infinity
     changes: list[dict[int, float]]  # of gaps, mm, at equal steps of the way
 
     def at(self, way: float) -> Lens:
-        """The lens at one place of the way."""
+        """Lens at one position of this path, 0 to 1."""
         step = 1 / (len(self.changes) - 1)
         k = min(max(int(way / step), 0), len(self.changes) - 2)
         share = way / step - k
@@ -68,7 +68,7 @@ def focused(lens: Lens, setting: LensSetting) -> Focused:
             "lens-focus-near",
         )
     path = path_of(lens)
-    # An f-stop is engraved for infinity: the iris stays, whatever groups do to the focal length.
+    # The f-stop is defined at infinity: the iris stays when moving groups change the focal length.
     narrowed = 1.0
     if setting.f_stop is not None and path is not None:
         narrowed = setting.f_stop / lens.first_order().f_number
@@ -81,9 +81,9 @@ def focused(lens: Lens, setting: LensSetting) -> Focused:
 
 
 def path_of(lens: Lens) -> Path | None:
-    """The way of the groups at the lens's zoom position; None: the whole lens moves.
+    """Path of the groups at the lens's zoom position; None: the whole lens moves.
 
-    A file without a configuration at infinity does not say where the way begins: the whole moves.
+    A file without a configuration at infinity gives no start of the path, so the whole lens moves.
     """
     found = positions(lens)
     if not found or all(c.at_infinity for c in lens.configurations):
@@ -107,7 +107,7 @@ def path_of(lens: Lens) -> Path | None:
 
 
 def _waypoints(lens: Lens, position: Position, found: list[Position]) -> list[dict[int, float]]:
-    """Changes of the gaps from infinity to the nearest focus that the file gives there."""
+    """Changes of the gaps from infinity to the nearest focus that the file gives at this zoom."""
     near = [c for c in lens.configurations if not c.at_infinity]
     mine = [c for c in near if max(found, key=lambda p: c.like(p.configuration)) == position]
     mine.sort(key=lambda c: -c.distance_mm)
@@ -121,9 +121,9 @@ def _along(points: list[dict[int, float]], way: float) -> dict[int, float]:
 
 
 def image_z(lens: Lens, object_z: float) -> float:
-    """The paraxial image of a plane of the scene, mm; infinite if it is not behind the lens.
+    """Position of the paraxial image of an object plane, mm; infinite if not behind the lens.
 
-    Newton's x x' = f f'. Where the sections of an anamorphic lens differ: halfway between.
+    Newton's x x' = f f'. For an anamorphic lens, halfway between the images of its two sections.
     """
     orders = [lens.prescription.first_order(DESIGN_WAVELENGTH_NM)]
     if not lens.prescription.is_axially_symmetric:
@@ -137,9 +137,9 @@ def image_z(lens: Lens, object_z: float) -> float:
 
 
 def _sharp(setting: LensSetting, narrowed: float) -> Callable[[Lens], float]:
-    """Where the film ought to be, for a lens whose film is where its table says.
+    """Returns a function that gives the sharp film position, for a lens with its table's film.
 
-    narrowed: f-stop over that of the open lens.
+    narrowed: Ratio of the f-stop to that of the open lens.
     """
 
     def film(lens: Lens) -> float:
@@ -156,7 +156,7 @@ def _sharp(setting: LensSetting, narrowed: float) -> Callable[[Lens], float]:
 
 
 def _whole(lens: Lens, setting: LensSetting) -> float:
-    """The film's place when the whole lens moves."""
+    """Position of the film when the whole lens moves."""
     distance_m, from_sensor = setting.focus_m, setting.from_sensor
     film = float(lens.prescription.film_position(distance_m, from_sensor))
     if setting.focus_by == "best":
@@ -164,7 +164,7 @@ def _whole(lens: Lens, setting: LensSetting) -> float:
         return float(lens.prescription.best_focus(stop, distance_m, from_sensor)[0])
     if lens.prescription.is_axially_symmetric:
         return film
-    for _ in range(60):  # far objects hardly feel where the film is: this converges fast
+    for _ in range(60):  # for far objects the film position matters little: this converges fast
         start = film if from_sensor else lens.first_order().entrance_pupil.z
         film, before = image_z(lens, start - 1e3 * distance_m), film
         if abs(film - before) < 1e-10:
@@ -173,7 +173,7 @@ def _whole(lens: Lens, setting: LensSetting) -> float:
 
 
 def _solved(path: Path, sharp: Callable[[Lens], float], setting: LensSetting) -> Lens:
-    """The place on the way at which the image lies on the film."""
+    """Lens at the position of the path at which the image lies on the film."""
 
     def miss(way: float) -> float:
         lens = path.at(way)
@@ -195,7 +195,7 @@ def _solved(path: Path, sharp: Callable[[Lens], float], setting: LensSetting) ->
 
 
 def _nearest(lens: Lens, *, from_sensor: bool) -> float:
-    """The distance, m, whose paraxial image lies on the film."""
+    """Object distance, m, whose paraxial image lies on the film."""
     order = lens.first_order()
     focal2 = order.efl * (order.front_principal_point - order.front_focal_point)
     object_z = order.front_focal_point - focal2 / (lens.image_z - order.back_focal_point)
@@ -223,5 +223,7 @@ def _root(function: Callable[[float], float], a: float, b: float, fa: float, fb:
 def _done(lens: Lens, film_z: float) -> Focused:
     order = lens.first_order()
     if not math.isfinite(film_z):
-        raise LensError(f"{lens.source}: focus: no image", "lens-focus-near")
+        raise LensError(
+            f"{lens.source}: focus: wanted an image behind the lens, got none", "lens-focus-near"
+        )
     return Focused(lens, film_z, order.efl, order.entrance_pupil.z)

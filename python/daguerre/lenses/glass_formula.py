@@ -1,4 +1,4 @@
-"""Numbers of a JSON glass: dispersion formula, internal transmittance."""
+"""Reads a JSON glass's dispersion formula and internal transmittance."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from daguerre.files.json_item import Item
 
 from .medium import Medium
 
-#: Members that give the index by themselves.
+#: Members that each define the index.
 FORMULAS = ("table", "sellmeier", "polynomial")
 MAX_TERMS = 32
 
 
 def formula_of(item: Item) -> tuple[Medium, str] | None:
-    """The glass of ``table``, ``sellmeier`` or ``polynomial`` and which of them; None: without.
+    """Makes the glass of ``table``, ``sellmeier`` or ``polynomial``, with that name; None: neither.
 
     Raises:
-        InputError: With file and JSON path of what cannot be used.
+        InputError: A member cannot be used; the message has the file and JSON path.
     """
     for kind, read in zip(FORMULAS, (_table, _sellmeier, _polynomial), strict=True):
         member = item.get(kind)
@@ -31,15 +31,15 @@ def formula_of(item: Item) -> tuple[Medium, str] | None:
                     glass = glass.against_vacuum()
                 return glass, kind
             except CoreError as error:
-                member.fail(str(error))  # the core's words: an index that is no index
+                member.fail(str(error))  # the core's message, such as an impossible index
     return None
 
 
 def absorption_of(item: Item) -> tuple[list[float], list[float]] | None:
-    """Nodes (nm) and coefficients (1/mm, base e) of ``internal_transmittance``; None: without.
+    """Nodes (nm) and coefficients (1/mm, base e) of ``internal_transmittance``; None: absent.
 
     Raises:
-        InputError: With file and JSON path of what cannot be used.
+        InputError: A member cannot be used; the message has the file and JSON path.
     """
     member = item.get("internal_transmittance")
     if member is None or member.value is None:
@@ -65,7 +65,7 @@ def _polynomial(member: Item) -> Medium:
 
 
 def _terms(member: Item, first: str, second: str) -> tuple[list[float], list[float]]:
-    """Two lists of one length."""
+    """Reads two lists of equal length."""
     a = [x.number(-1e6, 1e6) for x in member.need(first)]
     b = [x.number(-1e6, 1e6) for x in member.need(second)]
     if not a or len(a) != len(b) or len(a) > MAX_TERMS:
@@ -78,7 +78,7 @@ def _terms(member: Item, first: str, second: str) -> tuple[list[float], list[flo
 def _nodes(
     table: Item, what: str, *, low: float = 0, high: float, above: float | None = None
 ) -> list[tuple[float, float]]:
-    """[[nm, value], ...] in ascending order; no wavelength twice."""
+    """Reads [[nm, value], ...], sorted by wavelength; a repeated wavelength is an error."""
     nodes = []
     for row in table:
         nm, _ = row.numbers(2)
@@ -88,6 +88,6 @@ def _nodes(
         table.fail(f"wanted [[nm, {what}], ...], got an empty list")
     nodes.sort()
     if any(a[0] == b[0] for a, b in itertools.pairwise(nodes)):
-        value = "index" if what == "n" else "value"
-        table.fail(f"wanted one {value} for each wavelength, got two")
+        values = "indices" if what == "n" else "values"
+        table.fail(f"wanted each wavelength once, got two {values} for one wavelength")
     return nodes

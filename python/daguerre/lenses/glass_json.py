@@ -1,4 +1,4 @@
-"""A glass of a lens file: ``{nd, vd, name}``, ``{name}``, ``{table}``, ``{sellmeier}``, ..."""
+"""Reads a glass of a lens file: ``{nd, vd, name}``, ``{name}``, ``{table}``, ``{sellmeier}`` ..."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from .reading import member, number, text
 
 
 def glass_from_json(item: Item | None) -> tuple[Medium, str]:
-    """The glass and its label: its name, or nd/Vd. None and null are air.
+    """Returns the glass and its label (its name, or nd/Vd). None and null are air.
 
-    Numbers decide the index: a formula or a table, else nd and vd; only a name alone asks the
-    makers' catalogues. Absorption is what ``internal_transmittance`` says, else that of the
-    catalogue's glass of this name, if its nd agrees within 5e-4.
+    The index comes from a formula or a table, else from nd and vd; a name without numbers is looked
+    up in the makers' catalogues. Absorption comes from ``internal_transmittance``, else from the
+    catalogue's glass of this name if its nd agrees within 5e-4.
 
     Raises:
-        InputError: With file and JSON path of what cannot be used; LensError (lens-glass) for a
-            name that no catalogue has.
+        InputError: A member cannot be used; the message has the file and JSON path. LensError
+            (lens-glass): no catalogue has the name.
     """
     if item is None or item.value is None:
         return AIR, ""
@@ -48,7 +48,7 @@ def _abbe(item: Item) -> tuple[Medium, str]:
 
 def _of_catalogue(item: Item, label: str) -> tuple[Medium, str]:
     if member(item, "vd") is not None:
-        item.need("nd")  # says that it is missing
+        item.need("nd")  # raises: it is missing
     try:
         found = glasses.find(label, text(item, "maker"))
     except LensError as error:

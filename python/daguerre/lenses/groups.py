@@ -1,4 +1,4 @@
-"""Groups of surfaces that are shifted and tilted as one: the place of each surface."""
+"""Shifts and tilts groups of surfaces as rigid bodies."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from .surface import LensSurface, Triple
 
 @dataclass(frozen=True)
 class Group:
-    """Surfaces ``first`` to ``last`` (indices, both included), moved as a rigid body.
+    """Surfaces ``first`` to ``last``, inclusive, that move as a rigid body.
 
     Attributes:
         first: Index of the first surface.
         last: Index of the last surface.
-        decenter: Shift, mm, after the turn.
-        tilt: Degrees about x, then the turned y, then the turned z.
-        pivot_mm: The point on the axis that the turn leaves alone, from the first one's vertex.
+        decenter: Shift after the tilt, mm.
+        tilt: Rotations about x, then the turned y, then the turned z, degrees.
+        pivot_mm: Pivot of the tilt on the axis, from the vertex of the first surface, mm.
     """
 
     first: int
@@ -31,7 +31,7 @@ class Group:
 
 
 def placed(surfaces: Sequence[LensSurface], group: Group) -> list[LensSurface]:
-    """The surfaces with those of the group where its shift and tilt put them."""
+    """Returns all surfaces, with those of the group shifted and tilted."""
     out = list(surfaces)
     turn = rotation(group.tilt)
     z = np.cumsum([0.0, *(s.thickness or 0.0 for s in surfaces[:-1])])
@@ -46,7 +46,7 @@ def placed(surfaces: Sequence[LensSurface], group: Group) -> list[LensSurface]:
 
 
 def rotation(tilt: Triple) -> NDArray[np.float64]:
-    """Matrix (3, 3) of turns about x, then the turned y, then the turned z, in degrees."""
+    """Rotation matrix (3, 3) for angles about x, then the turned y, then the turned z, degrees."""
     (cx, cy, cz), (sx, sy, sz) = np.cos(np.radians(tilt)), np.sin(np.radians(tilt))
     about_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
     about_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
@@ -55,7 +55,7 @@ def rotation(tilt: Triple) -> NDArray[np.float64]:
 
 
 def angles(matrix: NDArray[np.float64]) -> Triple:
-    """The turns that make the matrix, in degrees."""
+    """Angles of a rotation matrix, degrees; the inverse of ``rotation``."""
     x = np.arctan2(-matrix[1, 2], matrix[2, 2])
     y = np.arctan2(matrix[0, 2], np.hypot(matrix[1, 2], matrix[2, 2]))
     z = np.arctan2(-matrix[0, 1], matrix[0, 0])

@@ -1,4 +1,4 @@
-"""Lens files of the schema ``daguerre-lens/0.1`` (mm): a JSON value becomes a lens."""
+"""Builds a lens from a JSON value of the schema ``daguerre-lens/0.1`` (mm)."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ SCHEMA = "daguerre-lens/0.1"
 
 
 def lens_of(data: dict[str, Any], source: str, configuration: str | None = None) -> Lens:
-    """The lens of a lens file's value, parsed or made by a program.
+    """Builds the lens from a lens file's value, parsed or made by a program.
 
     Raises:
-        InputError: With JSON path of what cannot be used.
+        InputError: A member cannot be used; the message has the JSON path.
     """
     with reported(source, "lens-format"):
         return lens_from(Item(data, source), Path(source), configuration)
 
 
 def lens_from(root: Item, path: Path, name: str | None) -> Lens:
-    """Makes a lens of a file's value, standing at a configuration by name, or the first."""
+    """Builds a lens from a file's value, at a configuration by name; None: the first."""
     schema = root.need("schema")
     if schema.text() != SCHEMA:
         schema.fail(f"wanted {SCHEMA!r}, got {schema.value!r}")
@@ -75,7 +75,7 @@ def _assembled(
     coating_name = "mgf2" if coating is None else coating.choice(COATINGS)
     name = clean(text(root, "name") or path.stem)
     nominal = _nominal(root, configuration)
-    if configuration is not configurations[0]:  # the field is that of the first
+    if configuration is not configurations[0]:  # the stated field belongs to the first one
         nominal = dataclasses.replace(nominal, full_field_deg=None)
     medium, _ = glass_from_json(member(root, "object_medium"))
     return Lens(
@@ -101,11 +101,14 @@ def _group(item: Item, count: int, configurations: Sequence[Configuration]) -> G
     span = item.need("surfaces")
     first, last = (int(v) for v in span.numbers(2, 0, count - 1))
     if last < first:
-        span.fail(f"wanted [first, last], got [{first}, {last}]")
+        span.fail(f"wanted [first, last] in ascending order, got [{first}, {last}]")
     inside = range(first, last)
     for i in inside:
         if len({c.gaps.get(i) for c in configurations}) > 1:
-            span.fail(f"wanted surfaces that keep their distances; the gap after {i} changes")
+            span.fail(
+                f"wanted a rigid group, got one whose gap after surface {i} changes between "
+                "configurations"
+            )
     return Group(
         first,
         last,

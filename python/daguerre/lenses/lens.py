@@ -1,4 +1,4 @@
-"""One lens on the bench: table, first-order properties, exact rays, drawing. Lengths in mm."""
+"""Lens: prescription, first-order properties, exact rays, drawing. Lengths in mm."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ DESIGN_WAVELENGTH_NM = LINE_D
 @guarded
 @dataclass(frozen=True)
 class Nominal:
-    """Claims of the source about the lens; None: it does not say."""
+    """Nominal values that the source states about the lens; None: not stated."""
 
     efl_mm: float | None = None
     f_number: float | None = None
     full_field_deg: float | None = None
     image_circle_mm: float | None = None
     projection: str | None = None
-    efl_x_mm: float | None = None  # in the x-z plane, of an anamorphic lens
+    efl_x_mm: float | None = None  # in the x-z plane, for an anamorphic lens
 
 
 @guarded
@@ -61,11 +61,11 @@ class Pupil:
 class FirstOrder:
     """First-order properties at one wavelength.
 
-    Lengths in mm. Points and pupils are z in the lens frame: z = 0 at the first vertex, +z to the
-    film. ``bfl`` runs from the last vertex to the rear focal point, ``ffl`` from the first vertex
-    to the front focal point (negative as a rule). ``f_number`` is efl / entrance pupil diameter,
-    wide open. ``pupil_magnification`` is exit pupil / entrance pupil, signed. Lenses with cylinders
-    have two sections, y-z and x-z, each with its own data.
+    Lengths in mm. Points and pupils are z in the lens frame: z = 0 at the first vertex, +z toward
+    the film. ``bfl`` runs from the last vertex to the rear focal point, ``ffl`` from the first
+    vertex to the front focal point (usually negative). ``f_number`` is efl / entrance pupil
+    diameter, wide open. ``pupil_magnification`` is exit pupil / entrance pupil, signed. Lenses with
+    cylinders have two sections, y-z and x-z, each with its own data.
     """
 
     wavelength_nm: float
@@ -94,18 +94,18 @@ class Lens(Value):
     toward +z.
 
     Attributes:
-        name: The lens's own name.
+        name: Name of the lens.
         source: File from which it was read.
-        patent: Patent or book of the numbers.
-        note: Remarks of the file.
-        nominal: Claims of the source: focal length, f-number, field.
+        patent: Patent or book that gives the prescription.
+        note: Remarks in the file.
+        nominal: Values that the source states: focal length, f-number, field.
         surfaces: Surfaces from the object side to the film.
         coating: Coating of surfaces between air and glass.
         data: The parsed file.
         configurations: Zoom and focus positions of the file.
         object_medium: Medium before the first surface.
-        zoom_mm: Focal length at which a zoom stands; None: not a zoom.
-        notes: Deviations from the file: what could not be honoured, what was found wrong.
+        zoom_mm: Focal length to which a zoom is set; None: not a zoom.
+        notes: Deviations from the file, such as members that are ignored or diameters that are cut.
     """
 
     name: str
@@ -123,11 +123,11 @@ class Lens(Value):
 
     def __post_init__(self) -> None:
         with reported(self.source):
-            _ = self.prescription  # a lens that the core refuses is none
+            _ = self.prescription  # raises if the core rejects the lens
 
     @cached_property
     def prescription(self) -> _core.Prescription:
-        """The core's version."""
+        """Prescription in the core, for tracing."""
         surfaces = [surface.core() for surface in self.surfaces]
         medium, f_number = self.object_medium.core, self.nominal.f_number or 0.0
         return _core.Prescription(self.name, surfaces, medium, self.coating, f_number)
@@ -139,7 +139,7 @@ class Lens(Value):
 
         Args:
             wavelength_nm: Wavelength, nm.
-            section: Plane of a lens with cylinders: y-z or x-z.
+            section: Section of a lens with cylinders: ``y`` for y-z, ``x`` for x-z.
 
         Raises:
             InputError: The lens is afocal.
@@ -167,7 +167,7 @@ class Lens(Value):
 
     @property
     def vertices(self) -> NDArray[np.float64]:
-        """Axial positions of each surface's vertex, mm, shape (surfaces,)."""
+        """Axial position of each surface's vertex, mm, shape (surfaces,)."""
         return np.asarray(self.prescription.vertices(), np.float64)
 
     @property
@@ -179,13 +179,13 @@ class Lens(Value):
         return self.first_order().back_focal_point
 
     def axial_transmittance(self, wavelength_nm: ArrayLike) -> NDArray[np.float64]:
-        """Returns the share of the light on the axis that coatings and glass let through.
+        """Returns the transmittance of coatings and glass along the axis.
 
         Args:
             wavelength_nm: Wavelengths, nm, any shape.
 
         Returns:
-            0 to 1, the shape of the wavelengths; NaN where no ray passes along the axis.
+            0 to 1, in the shape of the wavelengths; NaN where no ray passes along the axis.
         """
         nm = np.asarray(wavelength_nm, np.float64)
         check_wavelength(nm)
@@ -198,7 +198,7 @@ class Lens(Value):
     def t_stop(
         self, f_stop: float | None = None, wavelength_nm: ArrayLike = DESIGN_WAVELENGTH_NM
     ) -> float:
-        """Returns the f-number of a lens without losses that would be as bright on the axis.
+        """Returns the T-stop: the f-number of a lossless lens with the same axial brightness.
 
         Args:
             f_stop: F-stop of the iris; default: wide open.
@@ -211,7 +211,7 @@ class Lens(Value):
         return float(stop / np.sqrt(self.axial_transmittance(wavelength_nm).mean()))
 
     def rebuilt(self, surfaces: Sequence[LensSurface], **changes: Any) -> Lens:
-        """Returns the lens with another table, and other fields changed."""
+        """Returns the lens with other surfaces, and other fields changed."""
         with reported(self.source):
             return dataclasses.replace(self, surfaces=tuple(surfaces), **changes)
 
@@ -225,10 +225,7 @@ class Lens(Value):
 
     @property
     def squeeze(self) -> float:
-        """Anamorphic squeeze of the picture's width over its height; else 1.
-
-        The ratio of its focal lengths, y to x.
-        """
+        """Anamorphic squeeze: the ratio of the focal lengths, y to x; 1 for other lenses."""
         ratio = abs(self.first_order().efl / self.first_order(section="x").efl)
         return 1.0 if math.isclose(ratio, 1, rel_tol=1e-6) else ratio
 
@@ -240,10 +237,10 @@ class Lens(Value):
         return zoom_range(self)
 
     def at_zoom(self, zoom_mm: float) -> Lens:
-        """Returns the lens at one focal length, focused at infinity; film and focus by its file.
+        """Returns the zoom at one focal length, focused at infinity; film and focus as in its file.
 
         Raises:
-            LensError: A focal length that the lens does not have; code ``lens-zoom``.
+            LensError: The focal length is outside the lens's range; code ``lens-zoom``.
         """
         from .zoom import at_zoom
 
@@ -258,23 +255,23 @@ class Lens(Value):
         by: By = "paraxial",
         measured_from: MeasuredFrom = "pupil",
     ) -> Focused:
-        """Focuses the lens on a plane across the axis; returns it with its film.
+        """Focuses the lens on a plane square to the axis; returns it with its film position.
 
-        Where the file has configurations for near objects, the gaps go along their way and the
-        film stays; else the whole lens moves. An anamorphic lens is focused halfway between its
-        two sections.
+        If the file has configurations for near objects, the gaps follow them and the film stays;
+        else the whole lens moves. An anamorphic lens is focused halfway between its two sections.
 
         Args:
-            distance_m: Distance of the plane, m; infinity allowed.
-            zoom_mm: Focal length of a zoom, mm; default: as it stands.
+            distance_m: Distance of the plane, m; infinity is allowed.
+            zoom_mm: Focal length of a zoom, mm; default: the current one.
             f_stop: F-stop whose rays count for the best focus; default: wide open.
-            by: paraxial: the paraxial image; best: the smallest RMS spot on the axis.
-            measured_from: Where the distance starts: centre of the entrance pupil, or film.
+            by: ``paraxial``: the paraxial image; ``best``: the smallest RMS spot on the axis.
+            measured_from: Start of the distance: ``pupil``, the centre of the entrance pupil, or
+                ``sensor``.
 
         Raises:
-            UsageError: Another ``by`` or ``measured_from``.
-            LensError: Nearer than it can (the nearest is named, ``lens-focus-near``), or a focal
-                length that it does not have (``lens-zoom``).
+            UsageError: Unknown ``by`` or ``measured_from``.
+            LensError: The distance is too near (the message gives the nearest,
+                ``lens-focus-near``), or the focal length is out of range (``lens-zoom``).
         """
         from .focus import focused
 
@@ -290,20 +287,19 @@ class Lens(Value):
         """Returns the lens with a group of surfaces moved off its axis.
 
         Args:
-            surfaces: Indices of the first and the last one.
+            surfaces: Indices of the first and the last surface of the group.
             shift: Shift along x and y, mm.
             tilt: Tilt about x, then y, degrees.
-            pivot_mm: Where the axis of the tilt crosses that of the lens, from the first vertex of
-                the group, mm.
+            pivot_mm: Pivot of the tilt on the lens's axis, from the group's first vertex, mm.
 
         Raises:
-            InputError: Indices that the lens does not have.
+            InputError: The lens does not have these surfaces.
         """
         first, last = surfaces
         if not 0 <= first <= last < len(self.surfaces):
             raise InputError(
-                f"{self.name}: decentered: wanted surfaces of 0 .. {len(self.surfaces) - 1}, "
-                f"first to last, got {first} to {last}"
+                f"{self.name}: decentered: wanted surfaces (first, last) within 0 .. "
+                f"{len(self.surfaces) - 1}, got ({first}, {last})"
             )
         group = Group(first, last, (*shift, 0.0), (*tilt, 0.0), pivot_mm)
         return self.rebuilt(placed(self.surfaces, group))
@@ -317,21 +313,21 @@ class Lens(Value):
         clip: bool = False,
         image_z: float | None = None,
     ) -> NDArray[np.float64]:
-        """Traces rays, in double precision, from the object side to the image plane.
+        """Traces rays in double precision from the object side to the image plane.
 
         Args:
             origins: Points of the rays before the first surface, shape (N, 3) or (3,), mm.
             directions: Directions toward the film, shape (N, 3) or (3,); need not be unit.
             wavelength_nm: One wavelength, or shape (N,), nm.
             clip: Whether to stop rays outside the clear apertures and the stop.
-            image_z: Plane to end on, mm; default: the image plane of the table.
+            image_z: Plane on which rays end, z, mm; default: the lens's image plane.
 
         Returns:
             Points on the image plane, float64, shape (N, 3), mm; NaN where a ray misses a surface,
             is totally reflected, or (with ``clip``) is stopped.
 
         Raises:
-            InputError: Shapes that do not fit, or values that are not finite.
+            InputError: Shapes do not match, or values are not finite.
         """
         o, d = _rays(origins, directions)
         nm = np.asarray(wavelength_nm, np.float64)
@@ -347,7 +343,7 @@ class Lens(Value):
         return np.asarray(points)
 
     def __repr__(self) -> str:
-        """The prescription as a table."""
+        """Prescription as a table."""
         return "\n".join([*_headline(self), *_table(self)])
 
     def _repr_svg_(self) -> str:
@@ -371,19 +367,19 @@ def _rays(
         if rows.ndim != 2 or rows.shape[1] != 3:
             raise InputError(f"trace: {name}: wanted shape (N, 3), got {rows.shape}")
         if not np.isfinite(rows).all():
-            raise InputError(f"trace: {name}: wanted finite numbers")
+            raise InputError(f"trace: {name}: wanted finite numbers, got NaN or infinity")
     count = max(len(o), len(d))
     if len(o) not in (1, count) or len(d) not in (1, count):
         raise InputError(f"trace: wanted as many directions as origins, got {len(d)} and {len(o)}")
     if (d == 0).all(axis=1).any():
-        raise InputError("trace: directions: wanted vectors of some length, got (0, 0, 0)")
+        raise InputError("trace: directions: wanted non-zero vectors, got (0, 0, 0)")
     o = np.ascontiguousarray(np.broadcast_to(o, (count, 3)))
     d = np.ascontiguousarray(np.broadcast_to(d, (count, 3)))
     return o, d
 
 
 def check_wavelength(nm: NDArray[np.float64]) -> None:
-    """Glasses have an index from 200 to 2500 nm."""
+    """Checks that wavelengths lie within 200 to 2500 nm, where glasses have an index."""
     if not ((nm >= 200) & (nm <= 2500)).all():
         raise InputError(f"wavelength_nm: wanted 200 to 2500 nm, got {nm.min():g} .. {nm.max():g}")
 
@@ -407,5 +403,5 @@ def _table(lens: Lens) -> list[str]:
             f"{i:3} {mark:5} {cells[0]:>10} {cells[1]:>10} {cells[2]:>10}  {s.glass}".rstrip()
         )
     if any(s.derived for s in lens.surfaces):
-        rows.append("* not the source's: derived from rays of the full field")
+        rows.append("* not stated by the source; derived from rays of the full field")
     return rows

@@ -1,7 +1,7 @@
-"""The lenses that ship with Daguerre, by name.
+"""Library of lenses that ship with Daguerre, by name.
 
-``library/sources.csv`` has one row for each: where its numbers come from, what that source claims,
-and what the table computes to. It is the index, so that a list of names parses no lens.
+``library/sources.csv`` is the index: one row for each lens with its source, the values that the
+source states, and the computed ones. Listing names therefore parses no lens file.
 """
 
 from __future__ import annotations
@@ -25,25 +25,25 @@ FOLDER = Path(__file__).parent / "library"
 
 @dataclass(frozen=True)
 class Entry:
-    """One lens of the library, as its index says. Lengths in mm; computed unless "stated".
+    """One lens in the index of the library. Lengths in mm; computed unless "stated".
 
     Attributes:
         name: Name by which it is loaded.
-        title: Its own name.
-        maker: Empty if unknown.
+        title: Full name of the lens.
+        maker: Maker; empty if unknown.
         year: Year of product or patent.
         patent: Patent, with the example, or book.
         format: Film or sensor, mm x mm; empty if unknown.
-        type: Family of designs.
+        type: Design type.
         efl_mm: Focal length; for a zoom the shortest.
         efl_long_mm: Longest focal length of a zoom; None: not a zoom.
-        f_number: F-number wide open; for a zoom at its shortest.
-        bfl_mm: Last vertex to paraxial focus; for a zoom at its shortest.
-        efl_stated: Focal length that the source claims; None: nothing.
-        efl_long_stated: Longest focal length that the source claims.
-        f_stated: F-number that the source claims.
-        bfl_stated: Back focal length that the source claims.
-        remark: Why a number of the source is not compared.
+        f_number: F-number wide open; for a zoom at its shortest focal length.
+        bfl_mm: Last vertex to paraxial focus; for a zoom at its shortest focal length.
+        efl_stated: Focal length that the source states; None: not stated.
+        efl_long_stated: Longest focal length that the source states.
+        f_stated: F-number that the source states.
+        bfl_stated: Back focal length that the source states.
+        remark: Reason why a stated value is not compared.
     """
 
     name: str
@@ -65,20 +65,20 @@ class Entry:
 
     @property
     def focal_length(self) -> str:
-        """Such as ``50 mm`` or ``71.5-196 mm``."""
+        """Focal length as text, such as ``50 mm`` or ``71.5-196 mm``."""
         ends = [self.efl_mm] if self.efl_long_mm is None else [self.efl_mm, self.efl_long_mm]
         return "-".join(f"{end:.3g}" if end < 999 else f"{end:.0f}" for end in ends) + " mm"
 
 
 @cache
 def entries() -> tuple[Entry, ...]:
-    """The index, sorted by name."""
+    """Returns the index of the library, sorted by name."""
     with (FOLDER / "sources.csv").open(encoding="utf-8", newline="") as file:
         return tuple(_entry(row) for row in csv.DictReader(file))
 
 
 def names() -> list[str]:
-    """Names of the library's lenses, sorted."""
+    """Returns the names of the library's lenses, sorted."""
     return [entry.name for entry in entries()]
 
 
@@ -87,18 +87,19 @@ def load(name_or_path: str | Path | Lens, configuration: str | None = None) -> L
     """Loads a lens of the library or from a file.
 
     Args:
-        name_or_path: A name of ``names()``, or a file of the schema ``daguerre-lens/0.1``; a lens
-            is itself.
-        configuration: Zoom or focus position by name; default: the first of the file.
+        name_or_path: A name from ``names()``, or a lens file (``daguerre-lens/0.1``, Zemax, CODE V,
+            Optical Bench or pbrt); a ``Lens`` is returned as it is.
+        configuration: Zoom or focus position by name; default: the first in the file.
 
     Raises:
-        InputError: An unknown name (the nearest are suggested), or a file that cannot be used.
-        UsageError: A configuration of a lens that is loaded already.
+        InputError: The name is unknown (the message suggests the nearest), or the file cannot be
+            used.
+        UsageError: A configuration was given with a lens that is already loaded.
     """
     if isinstance(name_or_path, Lens):
         if configuration is not None:
             raise UsageError(
-                f"{name_or_path.name}: configuration: wanted None, as the lens is loaded already, "
+                f"{name_or_path.name}: configuration: wanted None for a loaded lens, "
                 f"got {short(configuration)}"
             )
         return name_or_path

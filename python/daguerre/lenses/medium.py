@@ -1,4 +1,4 @@
-"""Glasses and other media as plain numbers: an index by wavelength, and absorption."""
+"""Glasses and other optical media: refractive index by wavelength, and absorption."""
 
 from __future__ import annotations
 
@@ -23,16 +23,17 @@ _CORE: dict[str, Callable[..., _core.Glass]] = {
 
 @dataclass(frozen=True, eq=False)
 class Medium(Value):
-    """A glass, or another medium that light crosses.
+    """A glass or another optical medium.
 
-    The core's glass is made when a medium is, and again after a trip. Impossible numbers are a
-    ``ValueError`` in the core's words.
+    The core's glass is made with the medium, and again after unpickling. Impossible numbers raise
+    the core's ``ValueError``.
 
     Attributes:
-        formula: constant, abbe, table, sellmeier, polynomial, water or vacuum.
-        numbers: Arguments of that formula.
-        vacuum: The numbers are relative to vacuum instead of air.
-        absorption: Wavelengths (nm) and coefficients of base e (1/mm); empty: it is clear.
+        formula: ``constant``, ``abbe``, ``table``, ``sellmeier``, ``polynomial``, ``water`` or
+            ``vacuum``.
+        numbers: Arguments of the formula.
+        vacuum: Whether the index is relative to vacuum instead of air.
+        absorption: Wavelengths (nm) and absorption coefficients, base e (1/mm); empty: none.
     """
 
     formula: str
@@ -45,34 +46,34 @@ class Medium(Value):
 
     @cached_property
     def core(self) -> _core.Glass:
-        """The core's version."""
+        """Glass in the core, for tracing."""
         made = _CORE[self.formula](*self.numbers)
         made = made.against_vacuum() if self.vacuum else made
         return made.with_absorption(*self.absorption) if self.absorption else made
 
     @property
     def absorbs(self) -> bool:
-        """Whether it is known how much it absorbs."""
+        """Whether absorption coefficients are known."""
         return bool(self.absorption)
 
     def against_vacuum(self) -> Medium:
-        """The same numbers, taken as relative to vacuum instead of air."""
+        """Returns the medium with its numbers taken as relative to vacuum instead of air."""
         return replace(self, vacuum=True)
 
     def with_absorption(self, nm: Sequence[float], per_mm: Sequence[float]) -> Medium:
-        """The same glass that absorbs light: coefficients of base e, 1/mm."""
+        """Returns the medium with absorption coefficients, base e, 1/mm."""
         return replace(self, absorption=(tuple(nm), tuple(per_mm)))
 
     def with_absorption_of(self, other: Medium) -> Medium:
-        """The same glass with the absorption of another."""
+        """Returns the medium with the absorption of another."""
         return replace(self, absorption=other.absorption)
 
     def index(self, nm: float) -> float:
-        """Index relative to air at a wavelength, nm."""
+        """Returns the index relative to air at a wavelength, nm."""
         return float(self.core.index(nm))
 
     def absorption_per_mm(self, nm: float) -> float:
-        """Coefficient of base e at a wavelength (nm), 1/mm."""
+        """Returns the absorption coefficient at a wavelength (nm), base e, 1/mm."""
         return float(self.core.absorption_per_mm(nm))
 
 

@@ -22,14 +22,14 @@ MAX_BYTES = 16_000_000
 
 @guarded
 def read(path: str | Path, configuration: str | None = None) -> Lens:
-    """Reads one lens.
+    """Reads a lens file: JSON, Zemax, CODE V, Optical Bench or pbrt.
 
     Args:
-        path: The file.
-        configuration: Zoom or focus position by name; the first one if None.
+        path: Path of the file.
+        configuration: Zoom or focus position by name; default: the first.
 
     Raises:
-        InputError: With file and JSON path of what cannot be used.
+        InputError: The file cannot be used; the message has the file, and the JSON path or line.
     """
     path = Path(path)
     data = _bytes(path)
@@ -40,7 +40,7 @@ def read(path: str | Path, configuration: str | None = None) -> Lens:
 
 
 def _root(data: bytes, path: Path) -> tuple[Item, list[str]]:
-    """The file's value, and what could not be honoured of another program's."""
+    """Parses a file; returns its value, and notes on what an import ignores."""
     if formats.is_foreign(path):
         value, notes = formats.parse(data, path)
         return Item(value, str(path)), notes
@@ -53,10 +53,10 @@ def _bytes(path: Path) -> bytes:
         got = path.suffix or "no suffix"
         raise LensError(f"{path}: lens file: wanted {known}, got {got}", "lens-format")
     try:
-        if path.exists() and not path.is_file():  # a pipe or a device would never end
-            raise InputError(f"{path}: lens file: wanted an ordinary file")
+        if path.exists() and not path.is_file():  # reading a pipe or a device might never end
+            raise InputError(f"{path}: lens file: wanted a regular file, got another kind")
         if path.stat().st_size > MAX_BYTES:
-            raise InputError(f"{path}: lens file: wanted at most {MAX_BYTES} bytes")
+            raise InputError(f"{path}: lens file: wanted at most {MAX_BYTES} bytes, got more")
         return path.read_bytes()
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None

@@ -1,4 +1,4 @@
-"""Members of a lens file that may be absent or null."""
+"""Reads members of a lens file that may be absent or null."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from .surface import Triple
 
 
 def member(item: Item, key: str) -> Item | None:
-    """The member of that name, or None where it is absent or null."""
+    """Member of that name; None: absent or null."""
     found = item.get(key)
     return None if found is None or found.value is None else found
 
 
 def number(item: Item, key: str, *, above: float | None = None) -> float | None:
-    """A finite number, or None."""
+    """Reads a finite number; None: absent or null."""
     found = member(item, key)
     return None if found is None else found.number(above=above)
 
 
 def text(item: Item, key: str) -> str | None:
-    """Text that can be printed, or None."""
+    """Reads printable text; None: absent or null."""
     found = member(item, key)
     return None if found is None else clean(found.text())
 
 
 def triple(item: Item, key: str, limit: float) -> Triple:
-    """Three numbers of at most ``limit``; zeros if absent."""
+    """Reads three numbers of at most ``limit`` in magnitude; zeros if absent."""
     found = member(item, key)
     if found is None:
         return (0.0, 0.0, 0.0)

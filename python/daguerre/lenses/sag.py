@@ -1,4 +1,4 @@
-"""The height of a surface over its vertex plane, in numpy: for checks of edges, not for tracing."""
+"""Sag of surfaces in numpy; for edge checks, not for tracing."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 
 def sag(surface: LensSurface, x: Array, y: Array) -> Array:
-    """Height over the plane at the vertex, mm; NaN beyond the form."""
+    """Sag of a surface over its vertex plane, mm; NaN where the surface has none."""
     s = surface
     c = 1 / s.radius if s.radius else 0.0
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
@@ -42,7 +42,7 @@ def _biconic(s: LensSurface, c: float, x: Array, y: Array) -> Array:
 
 
 def _toroid(s: LensSurface, c: float, x: Array, y: Array) -> Array:
-    """The y-z section turned about an axis parallel to y, through its centre at radius_x."""
+    """Sag of the y-z section turned about an axis parallel to y at distance radius_x."""
     profile = _conic(c, s.conic, y)
     if not s.radius_x:
         return profile

@@ -1,4 +1,4 @@
-"""Setting of a lens: f-stop, focus and zoom in one record, from whoever asks to the lens."""
+"""Setting of a lens: f-stop, focus and zoom in one record."""
 
 from __future__ import annotations
 
@@ -18,20 +18,21 @@ MeasuredFrom = Literal["pupil", "sensor"]
 @guarded
 @dataclass(frozen=True)
 class LensSetting:
-    """Setting of a lens, as a photographer turns its rings.
+    """Setting of a lens, as on its rings.
 
-    The record refuses what is no setting of any lens. Numbers that one lens lacks are refused where
-    that lens is known: its message names its file, its range, and a code.
+    The record checks only types and choices. Ranges depend on the lens and are checked when the
+    setting is applied; the error then has the lens's file, its range and a code.
 
     Attributes:
         f_stop: F-stop as engraved, for infinity focus; None: wide open.
         focus_m: Distance in focus, m; may be infinite.
-        zoom_mm: Focal length of a zoom, mm; None: as it stands.
-        focus_by: paraxial: the paraxial image; best: the smallest RMS spot on the axis.
-        focus_from: Start of the distance: the centre of the entrance pupil, or the sensor.
+        zoom_mm: Focal length of a zoom, mm; None: the current one.
+        focus_by: ``paraxial``: the paraxial image; ``best``: the smallest RMS spot on the axis.
+        focus_from: Start of the distance: ``pupil``, the centre of the entrance pupil, or
+            ``sensor``.
 
     Raises:
-        UsageError: Another ``focus_by`` or ``focus_from``, or something else than a number.
+        UsageError: Unknown ``focus_by`` or ``focus_from``, or a value that is not a number.
     """
 
     f_stop: float | None = None

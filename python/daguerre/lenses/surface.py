@@ -1,4 +1,4 @@
-"""One surface of a lens as the file gives it, and the core's version of it. Lengths in mm."""
+"""One surface of a lens as in its file, and its conversion for the core. Lengths in mm."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .medium import Medium
 
 #: Values that ``kind`` may have.
 KINDS = ("spherical", "stop", "aspheric", "cyl-x", "cyl-y", "biconic", "toroid")
-#: Kinds whose two sections have curvatures of their own.
+#: Kinds whose two sections have different curvatures.
 TWO_SECTIONS = ("biconic", "toroid")
 
 Triple = tuple[float, float, float]
@@ -23,29 +23,30 @@ Triple = tuple[float, float, float]
 @guarded(init=True)
 @dataclass(frozen=True)
 class LensSurface:
-    """One surface and what follows it. Lengths in mm, z along the axis toward the film.
+    """One surface and the medium that follows. Lengths in mm, z along the axis toward the film.
 
     Attributes:
         kind: One of ``KINDS``. ``cyl-x``: a cylinder whose axis is along x.
         radius: Signed radius of curvature, positive when the centre lies toward the film; None: a
             plane. For a cylinder: of its curved section. For a biconic or toroid: in the y-z plane.
-        thickness: To the next vertex; of the last surface to the film, None or 0 if unknown.
-        semi_diameter: Clear half-aperture; None: unknown, the surface stops no light.
-        glass: Glass that follows it, by name or nd/Vd; empty: air.
-        stop: The iris lies here.
-        medium: Medium that follows it.
-        conic: k: 0 is a sphere, -1 a paraboloid.
-        asphere: Coefficients by power of r = hypot(x, y), added to the sag.
+        thickness: Distance to the next vertex; for the last surface to the film, None or 0 if
+            unknown.
+        semi_diameter: Clear semi-diameter; None: unknown, the surface stops no light.
+        glass: Name or nd/Vd of the glass that follows; empty: air.
+        stop: Whether the iris lies at this surface.
+        medium: Medium that follows.
+        conic: Conic constant k; 0: sphere, -1: paraboloid.
+        asphere: Coefficients added to the sag, by power of r = hypot(x, y).
         radius_x: Radius in the x-z plane of a biconic or toroid.
-        conic_x: k in the x-z plane of a biconic.
-        inner_semi_diameter: Semi-diameter of an obstruction in the middle; 0: none.
-        semi_diameter_after: Clear half-aperture of the medium that follows, where elements differ;
+        conic_x: Conic constant in the x-z plane of a biconic.
+        inner_semi_diameter: Semi-diameter of a central obstruction; 0: none.
+        semi_diameter_after: Clear semi-diameter of the medium that follows, where elements differ;
             None: the same.
-        decenter: Shift of the vertex. The axis goes on as before.
-        tilt: Degrees about x, then the turned y, then the turned z, at the vertex.
-        coating: By name; empty: the lens's.
+        decenter: Shift of the vertex; later surfaces do not move with it.
+        tilt: Rotations about x, then the turned y, then the turned z, at the vertex, degrees.
+        coating: Name of the coating; empty: the lens's.
         ripple: Grooves left by grinding: RMS height (nm), period (um), seed; height 0: none.
-        derived: The semi-diameter is not the source's: rays were traced for it.
+        derived: Whether the semi-diameter was derived by tracing rays, not given by the source.
     """
 
     kind: str
@@ -68,16 +69,16 @@ class LensSurface:
     derived: bool = False
 
     def replaced(self, **changes: Any) -> LensSurface:
-        """A copy with some fields changed."""
+        """Returns a copy with some fields changed."""
         return dataclasses.replace(self, **changes)
 
     @property
     def core_glass(self) -> _core.Glass:
-        """The medium that follows it, in the core."""
+        """Returns the medium that follows as the core's glass."""
         return self.medium.core
 
     def core(self) -> _core.Surface:
-        """The core's version."""
+        """Returns the surface for the core."""
         clear = math.inf if self.semi_diameter is None else self.semi_diameter
         return _core.Surface(
             _curvature(self.radius),

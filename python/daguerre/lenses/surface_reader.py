@@ -11,13 +11,13 @@ from .glass_json import glass_from_json
 from .reading import member, number, triple
 from .surface import KINDS, TWO_SECTIONS, LensSurface
 
-#: Coefficients of higher powers are no surfaces that anybody grinds.
+#: Highest power of r in an asphere.
 MAX_POWER = 40
 COATINGS = ("uncoated", "mgf2", "v-coat", "broadband", "perfect")
 
 
 def read_surfaces(items: list[Item], gaps: dict[int, float]) -> list[LensSurface]:
-    """The surfaces with the gaps of one configuration."""
+    """Reads the surfaces, with the gaps of one configuration."""
     last = len(items) - 1
     surfaces = []
     for i, item in enumerate(items):
@@ -57,7 +57,7 @@ def _surface(item: Item, gap: float | None, last: bool) -> LensSurface:
 
 
 def _ripple(item: Item) -> tuple[float, float, int]:
-    """Grooves left by grinding, in nm, um and a seed."""
+    """Reads grooves left by grinding: RMS height in nm, period in um, seed."""
     ripple = member(item, "ripple")
     if ripple is None:
         return 0.0, 0.0, 0

@@ -1,4 +1,4 @@
-"""Members of a lens file that the schema does not have: told, as they may be typing errors."""
+"""Reports members of a lens file that the schema does not have, as they may be typing errors."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from daguerre.files.json_item import Item, clean
 
 from .reading import member
 
-#: By place; what is for people alone is among them.
+#: Known members by place in the file, including those that no code reads, such as remarks.
 KNOWN = {
     "": (
         *("schema", "units", "name", "type", "maker", "designer", "year", "patent", "format"),
@@ -34,7 +34,7 @@ SHOWN = 8
 
 
 def unknown_members(root: Item) -> list[str]:
-    """One sentence for each member that is not read, the first few of them."""
+    """Returns a note for each of the first few unknown members, and one that counts the others."""
     found = [
         (child, KNOWN[place])
         for place in KNOWN
@@ -43,11 +43,11 @@ def unknown_members(root: Item) -> list[str]:
         if child.key not in KNOWN[place]
     ]
     notes = [
-        f"{clean(child.path)}: not known, and not read{suggest(str(child.key), known)}"
+        f"{clean(child.path)}: unknown member, ignored{suggest(str(child.key), known)}"
         for child, known in found[:SHOWN]
     ]
     more = len(found) - SHOWN
-    return [*notes, f"{more} more members are not known"] if more > 0 else notes
+    return [*notes, f"{more} more unknown members are ignored"] if more > 0 else notes
 
 
 def _items(root: Item, place: str) -> Iterator[Item]:

@@ -1,4 +1,4 @@
-"""Zoom: the gaps between the positions that a file gives, film and focus where they are there."""
+"""Sets a zoom to a focal length by interpolating between the positions that its file gives."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from .configurations import Configuration
 from .errors import LensError
 from .lens import DESIGN_WAVELENGTH_NM, Lens
 
-#: Beyond the ends of its range by this much, a zoom stands at its end: printed lengths are rounded.
+#: Focal lengths beyond the range by this share are set to its end: printed lengths are rounded.
 TOLERANCE = 0.005
-_STEP = 1e-4  # mm, of differences
+_STEP = 1e-4  # step of numerical derivatives, mm
 
 
 @dataclass(frozen=True)
 class Position:
-    """The lens as one configuration at infinity has it; lengths in mm."""
+    """The lens at one configuration focused at infinity; lengths in mm."""
 
     configuration: Configuration
     gaps: dict[int, float]
@@ -31,7 +31,7 @@ class Position:
 
 
 def positions(lens: Lens) -> list[Position]:
-    """The configurations at infinity, from the shortest focal length to the longest."""
+    """Configurations at infinity, from the shortest focal length to the longest."""
     at_infinity = [c for c in lens.configurations if c.at_infinity]
     moving = sorted({i for c in lens.configurations for i in c.gaps})
     found = []
@@ -59,13 +59,14 @@ def standing_mm(lens: Lens, configuration: Configuration) -> float | None:
 
 
 def at_zoom(lens: Lens, zoom_mm: float) -> Lens:
-    """The lens at one focal length, focused at infinity as its file has it.
+    """Returns the lens at one focal length, focused at infinity as in its file.
 
-    Between two positions of the file all moving gaps change by the least that gives the focal
-    length and leaves film and focus between theirs; so the lens is exact at each of them.
+    Between two positions of the file, all moving gaps take the smallest changes that give the focal
+    length and keep film and focus between those of the two positions. So the lens is exact at each
+    position of the file.
 
     Raises:
-        LensError: A focal length that the lens does not have; ``lens-zoom``.
+        LensError: The focal length is outside the lens's range; ``lens-zoom``.
     """
     low, high, share = bracket(lens, zoom_mm)
     if share in (0, 1):
@@ -74,13 +75,13 @@ def at_zoom(lens: Lens, zoom_mm: float) -> Lens:
     f_number = _mix(low.f_number, high.f_number, share)
     moved = lens.with_gaps(gaps)
     stop = _mix(low.stop, high.stop, share)
-    if f_number is not None and stop is not None:  # first order: the pupil grows with the iris
+    if f_number is not None and stop is not None:  # to first order, the pupil scales with the iris
         stop *= with_stop(moved, stop).first_order().f_number / f_number
     return _named(with_stop(moved, stop), zoom_mm, f_number)
 
 
 def bracket(lens: Lens, zoom_mm: float) -> tuple[Position, Position, float]:
-    """The positions around a focal length, and how far it is from the first to the second."""
+    """Positions on both sides of a focal length, and the fraction between them."""
     found = positions(lens)
     if not found:
         raise LensError(
@@ -99,8 +100,8 @@ def bracket(lens: Lens, zoom_mm: float) -> tuple[Position, Position, float]:
 
 
 def _share(lens: Lens, low: Position, high: Position, mm: float) -> float:
-    """How far a focal length is on the way between two positions, by ratios; 0: they are equal."""
-    if mm == low.efl:  # of two equal positions the first
+    """Fraction of a focal length between two positions, by ratios; 0: they are equal."""
+    if mm == low.efl:  # if both positions are equal, the first
         return 0.0
     if low.efl <= 0 <= high.efl:
         raise LensError(
@@ -112,7 +113,7 @@ def _share(lens: Lens, low: Position, high: Position, mm: float) -> float:
 
 
 def with_stop(lens: Lens, semi_diameter: float | None) -> Lens:
-    """The lens with another size of its open iris, mm."""
+    """Returns the lens with another semi-diameter of its open iris, mm."""
     if semi_diameter is None:
         return lens
     i = next(i for i, s in enumerate(lens.surfaces) if s.stop)
@@ -137,7 +138,7 @@ def _named(lens: Lens, zoom_mm: float, f_number: float | None) -> Lens:
 
 
 def _between(lens: Lens, low: Position, high: Position, zoom_mm: float) -> dict[int, float]:
-    """Newton's method in all moving gaps, with the smallest steps that meet the conditions."""
+    """Solves the moving gaps by Newton's method, with the smallest steps that fit."""
     moving = [i for i in low.gaps if low.gaps[i] != high.gaps[i]]
     ends = np.array([[p.gaps[i] for i in moving] for p in (low, high)])
     share = _share(lens, low, high, zoom_mm)
@@ -153,22 +154,22 @@ def _between(lens: Lens, low: Position, high: Position, zoom_mm: float) -> dict[
         gaps = np.maximum(gaps, 0.0)
     else:
         raise LensError(
-            f"{lens.source}: zoom: no path from {low.efl:.4g} to {high.efl:.4g} mm through "
-            f"{zoom_mm:g} mm keeps the focus",
+            f"{lens.source}: zoom: wanted a path from {low.efl:.4g} to {high.efl:.4g} mm that "
+            f"keeps the focus, got none at {zoom_mm:g} mm",
             "lens-zoom",
         )
     return {**low.gaps, **dict(zip(moving, (float(g) for g in gaps), strict=True))}
 
 
 def _state(lens: Lens, moving: list[int], gaps: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Focal length, and the paraxial focus behind the film, mm."""
+    """Focal length, and distance of the paraxial focus behind the film, mm."""
     moved = lens.with_gaps(dict(zip(moving, (float(g) for g in gaps), strict=True)))
     order = moved.prescription.first_order(DESIGN_WAVELENGTH_NM)
     return np.array([order.efl, order.bfl - (moved.surfaces[-1].thickness or 0.0)])
 
 
 def _slopes(lens: Lens, moving: list[int], gaps: NDArray[np.float64]) -> NDArray[np.float64]:
-    """By differences, shape (2, gaps)."""
+    """Derivatives of ``_state`` by differences, shape (2, gaps)."""
     columns = []
     for i in range(len(moving)):
         ahead, behind = gaps.copy(), gaps.copy()

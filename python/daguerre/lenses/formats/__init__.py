@@ -1,4 +1,4 @@
-"""Lens files of other programs, as ``daguerre-lens/0.1`` and notes of what is not honoured."""
+"""Reads lens files of other programs as ``daguerre-lens/0.1``, with notes on what is ignored."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daguerre.lenses.errors import LensError
 
 Parse = Callable[[str, str], tuple[dict[str, Any], list[str]]]
 
-#: Formats by suffix, if the text does not say otherwise. Their modules load when a file needs them.
+#: Formats by suffix, unless the text shows another. Modules load when a file needs them.
 SUFFIXES = {".zmx": "zmx", ".seq": "seq", ".txt": None, ".dat": None}
 _ZEMAX = re.compile(r"^\s*SURF\s+\d", re.MULTILINE)
 _BENCH = re.compile(r"^\s*\[lens data\]", re.MULTILINE | re.IGNORECASE)
@@ -20,15 +20,15 @@ _CODE_V = re.compile(r"^\s*(S[O0]\s+[-+.\d]|RDM\b|LEN\b)", re.MULTILINE | re.IGN
 
 
 def is_foreign(path: Path) -> bool:
-    """Whether a path is that of another program's lens file."""
+    """Whether a path has the suffix of another program's lens file."""
     return path.suffix.lower() in SUFFIXES
 
 
 def parse(data: bytes, path: Path) -> tuple[dict[str, Any], list[str]]:
-    """The lens file that a foreign file comes to, and what it could not honour.
+    """Converts another program's lens file to a lens file's value, with notes on what is ignored.
 
     Raises:
-        LensError: With the line, and the surface where there is one.
+        LensError: The file cannot be read; the message has the line, and the surface if any.
     """
     from .text import decoded
 
@@ -38,7 +38,7 @@ def parse(data: bytes, path: Path) -> tuple[dict[str, Any], list[str]]:
 
 
 def _format(text: str, path: Path) -> str:
-    """Module of a file by its text, else by its suffix: names of files are often wrong."""
+    """Name of the module that reads a file: by its text, else by its suffix (often wrong)."""
     from .pbrt import looks_like
 
     if _BENCH.search(text):
@@ -53,7 +53,7 @@ def _format(text: str, path: Path) -> str:
     if path.suffix.lower() == ".dat" or looks_like(text):
         return "pbrt"
     raise LensError(
-        f"{path}: lens file: wanted text of Zemax (SURF), CODE V (SO, S, SI), the Optical Bench "
-        "([lens data]) or pbrt (rows of four numbers), got none of them",
+        f"{path}: lens file: wanted a Zemax (SURF), CODE V (SO, S, SI), Optical Bench "
+        "([lens data]) or pbrt file (rows of four numbers), got none of them",
         "lens-format",
     )

@@ -1,4 +1,4 @@
-"""From drafts and configurations to a lens file."""
+"""Builds a lens file from drafts of surfaces and configurations."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ SCHEMA = "daguerre-lens/0.1"
 
 @dataclass
 class Configuration:
-    """A zoom or focus position of a foreign file.
+    """A zoom or focus position of an imported file.
 
     Attributes:
-        thicknesses: Thicknesses that differ, by the file's number of the surface, mm.
-        stop_semi_diameter: Semi-diameter of the stop, if it changes its size, mm.
+        thicknesses: Thicknesses that differ, mm, by the surface's number in the file.
+        stop_semi_diameter: Semi-diameter of the stop, mm, if its size changes.
     """
 
     name: str
@@ -43,16 +43,16 @@ def lens_file(
     nominal: dict[str, Any] | None = None,
     **more: Any,
 ) -> dict[str, Any]:
-    """Makes a lens file of the schema, with all configurations; the drafts' file has the first.
+    """Builds a lens file of the schema, with all configurations; the drafts have the first one's.
 
     Args:
-        file: Name of the foreign file, for messages.
+        file: Name of the imported file, for messages.
         name: Name of the lens.
         drafts: The object, the surfaces, the image.
-        configurations: At least one.
-        unread: Gets what is not honoured.
-        nominal: Claims of the file.
-        more: Further members.
+        configurations: Zoom or focus positions, at least one.
+        unread: Collects what is ignored.
+        nominal: Nominal values that the file states.
+        more: Further members of the lens file.
     """
     tables = [lay_out(with_thicknesses(drafts, c.thicknesses), file) for c in configurations]
     for c, table in zip(configurations, tables, strict=True):
@@ -68,12 +68,12 @@ def lens_file(
     data["configurations"] = []
     for c, table in zip(configurations, tables, strict=True):
         if not _same_places(base, table):
-            unread.add("a configuration that moves surfaces sideways", clean(c.name))
+            unread.add("a configuration that decentres or tilts surfaces is ignored", clean(c.name))
         else:
             data["configurations"].append(_configuration(c, table, base, data["configurations"]))
     _film_note(base, unread)
     if drafts[-1].curvature != 0:
-        unread.add("a curved image surface: the film is flat")
+        unread.add("the image surface is curved; the film is taken as flat")
     size_stops(data, file, [c.pupil for c in configurations])
     return data
 
@@ -123,22 +123,22 @@ def _same_places(a: Table, b: Table) -> bool:
 
 
 def _fit_apertures(surfaces: list[dict[str, Any]], unread: Unread) -> None:
-    """A clear diameter beyond the sphere is the sphere's."""
+    """Cuts clear diameters that exceed the sphere's diameter."""
     for row in surfaces:
         radius, semi = row["radius"], row["semi_diameter"]
         sphere = row["kind"] == "spherical" and radius is not None
         if sphere and semi is not None and semi > abs(radius):
             row["semi_diameter"] = abs(radius)
-            unread.add("a clear diameter beyond the sphere", f"surface {row['from']}")
+            unread.add("a clear diameter is cut to that of the sphere", f"surface {row['from']}")
 
 
 def _film_note(table: Table, unread: Unread) -> None:
     if table.film is not None:
         shift, tilt = table.film
         unread.add(
-            "a film off the axis, by "
+            "the film is decentred by "
             + ", ".join(f"{v:.4g}" for v in shift[:2])
-            + " mm and "
+            + " mm and tilted by "
             + ", ".join(f"{v:.4g}" for v in tilt)
-            + " degrees: here it stands across the axis of the first surface"
+            + " degrees; it is taken as square to the axis of the first surface"
         )

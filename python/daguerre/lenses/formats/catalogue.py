@@ -1,4 +1,4 @@
-"""Names of glasses as foreign files spell them, in the makers' catalogues."""
+"""Looks up glass names, as imported files spell them, in the makers' catalogues."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from daguerre.lenses import glasses
 
 
 def find(name: str, makers: tuple[str, ...] = ()) -> tuple[dict[str, Any], str] | None:
-    """Finds the glass for a name, and what was taken instead of it; None: no such glass.
+    """Finds the glass for a name, with a note if another was substituted; None: no such glass.
 
     Args:
         name: Name in a file's spelling; hyphens and spaces do not matter.
-        makers: Names of catalogues, such as ``SCHOTT`` or ``OHARA_2021-04``; they come first.
+        makers: Names of catalogues to search first, such as ``SCHOTT`` or ``OHARA_2021-04``.
     """
     known = {maker.upper(): maker for maker in glasses.MAKERS}
     keys = dict.fromkeys(maker.upper().split("_")[0] for maker in makers)
@@ -29,5 +29,5 @@ def find(name: str, makers: tuple[str, ...] = ()) -> tuple[dict[str, Any], str] 
 
 
 def nearest(name: str) -> str:
-    """A suggestion, for the end of a message."""
+    """Suggestion of the nearest name, for the end of a message."""
     return suggest(name, glasses.names())

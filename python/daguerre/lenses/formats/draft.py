@@ -1,8 +1,9 @@
-"""From the surfaces of a foreign file to a lens file's table: frames, dummies, configurations.
+"""Converts the surfaces of an imported file to a lens file's table: frames, dummies, positions.
 
-A foreign file chains local frames: each surface may move the frame before it, and after it, and its
+Other programs chain local frames: each surface may move the frame before and after it, and its
 thickness runs along the frame's own z. The lens file has one straight axis, and each surface may
-stand off it; so a frame becomes a place on the axis, a decentre and a tilt, which is exact.
+be decentred and tilted about it. So each frame becomes a position on the axis, a decentre and a
+tilt, which is exact.
 """
 
 from __future__ import annotations
@@ -18,20 +19,20 @@ from daguerre.lenses.errors import LensError
 from daguerre.lenses.groups import angles
 
 Frame = NDArray[np.float64]
-#: Objects farther away than this (mm) are at infinity: files write 1e10 for it.
+#: Objects farther away than this (mm) are at infinity: files write 1e10 for infinity.
 FAR = 1e9
 MAX_SURFACES = 1000
 
 
 @dataclass
 class Draft:
-    """One surface as the foreign file has it, in mm.
+    """One surface as the imported file has it, in mm.
 
     Attributes:
-        number: By the file's own count.
-        clips: A plane of air that stays, because its aperture stops light.
-        before: Moves the frame, before the surface; 4 x 4.
-        after: Moves the frame, after the surface.
+        number: Number of the surface in the file.
+        clips: Whether a plane in air is kept because its aperture stops light.
+        before: Move of the frame before the surface; 4 x 4.
+        after: Move of the frame after the surface; 4 x 4.
     """
 
     number: int
@@ -54,14 +55,14 @@ class Draft:
 
 @dataclass(frozen=True)
 class Table:
-    """The surfaces that matter, at one configuration.
+    """The surfaces that are kept, at one configuration.
 
     Attributes:
-        drafts: Those that refract, stop light, or are the stop.
-        gaps: After each, mm.
-        places: Decentre and tilt of each; None: on the axis.
-        object_distance: From the object to the first of them, mm.
-        film: Decentre and tilt of the film; None: across the axis.
+        drafts: Surfaces that refract, stop light, or are the stop.
+        gaps: Thickness after each surface, mm.
+        places: Decentre and tilt of each surface; None: on the axis.
+        object_distance: Distance from the object to the first surface, mm.
+        film: Decentre and tilt of the film; None: square to the axis.
     """
 
     drafts: list[Draft]
@@ -72,10 +73,10 @@ class Table:
 
 
 def moved(decenter: list[float], tilt: list[float], tilt_first: bool = False) -> Frame:
-    """A frame moved (mm) and turned (degrees, right-handed) about x, the new y, the new z.
+    """Transform that shifts (mm), then turns (degrees, right-handed) about x, the new y, the new z.
 
-    With ``tilt_first`` it is turned about z, y, x and then moved, which undoes a move whose
-    numbers have the other sign.
+    With ``tilt_first`` it turns about z, y, x and then shifts, which undoes a move whose numbers
+    have the opposite sign.
     """
     shift, turn = np.eye(4), np.eye(4)
     shift[:3, 3] = decenter
@@ -95,12 +96,15 @@ def _turn(axis: int, degrees: float) -> Frame:
 
 
 def undone(frame: Frame) -> Frame:
-    """The move that takes a frame back."""
+    """Inverse of a move."""
     return np.asarray(np.linalg.inv(frame), np.float64)
 
 
 def lay_out(drafts: list[Draft], file: str) -> Table:
-    """The table of one configuration; the first draft is the object, the last the image."""
+    """Lays out the table of one configuration; the first draft is the object, the last the image.
+
+    Dummy surfaces are left out and their thicknesses joined.
+    """
     if len(drafts) - 2 > MAX_SURFACES:
         raise LensError(
             f"{file}: surfaces: wanted at most {MAX_SURFACES}, got {len(drafts) - 2}",
@@ -109,7 +113,7 @@ def lay_out(drafts: list[Draft], file: str) -> Table:
     frame = np.eye(4)
     kept: list[tuple[Draft, Frame, float]] = []
     run = [0.0]  # thicknesses since the last surface that was kept
-    straight = True  # and whether the frame only moved along z since
+    straight = True  # whether the frame has moved only along z since then
     gaps: list[float] = []
     glass = drafts[0].glass
     ahead = drafts[0].thickness
@@ -135,7 +139,7 @@ def lay_out(drafts: list[Draft], file: str) -> Table:
         frame = frame @ moved([0, 0, draft.thickness], [0, 0, 0])
         if not np.isfinite(frame).all():
             raise LensError(
-                f"{file}: surface {draft.number}: wanted a place within reach, got {frame[2, 3]:g}",
+                f"{file}: surface {draft.number}: wanted a finite position, got {frame[2, 3]:g}",
                 "lens-format",
                 draft.number,
             )
@@ -155,7 +159,7 @@ def _place(frame: Frame) -> tuple[list[float], list[float]] | None:
 
 
 def surface(draft: Draft, gap: float, place: tuple[list[float], list[float]] | None) -> Any:
-    """The lens file's surface of a draft."""
+    """Converts a draft to a surface of the lens file."""
     flat = draft.form == "conic" and draft.curvature == 0 and not any(draft.asphere.values())
     aspheric = draft.conic != 0 or any(draft.asphere.values())
     kind = draft.form if draft.form != "conic" else "aspheric" if aspheric else "spherical"
@@ -189,7 +193,7 @@ def _radius(curvature: float) -> float | None:
 
 
 def with_thicknesses(drafts: list[Draft], thicknesses: dict[int, float]) -> list[Draft]:
-    """The drafts with other thicknesses, by the file's number of the surface."""
+    """Replaces thicknesses of drafts, by the surface's number in the file."""
     return [
         replace(d, thickness=thicknesses[d.number]) if d.number in thicknesses else d
         for d in drafts

@@ -1,4 +1,4 @@
-"""Glasses of foreign files: by name from the catalogue, by code, or by nd and Vd."""
+"""Resolves glasses of imported files: by catalogue name, by code, or by nd and Vd."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Glass = dict[str, Any]
 
 
 def model(line: Line, surface: int, nd: float, vd: float, name: str = "") -> Glass | None:
-    """A glass of nd and Vd; Vd 0 is an index without dispersion, nd 1 is air."""
+    """Makes a glass from nd and Vd; Vd 0: no dispersion, nd 1: air."""
     if nd == 1:
         return None
     if not 1 <= nd <= 5:
@@ -30,10 +30,10 @@ def model(line: Line, surface: int, nd: float, vd: float, name: str = "") -> Gla
 
 
 def coded(word: str) -> tuple[float, float] | None:
-    """Nd and Vd of ``517642`` or ``517000.642000``, or None.
+    """Nd and Vd of a glass code such as ``517642`` or ``517000.642000``, or None.
 
-    The digits before the point are those of nd - 1 behind its point, those after it are Vd with
-    two digits before its point (CODE V's fictitious glasses; the military code without a point).
+    The digits before the point are the decimals of nd - 1; those after it are Vd, with two digits
+    before Vd's own point. CODE V writes fictitious glasses so; the military code has no point.
     """
     if re.fullmatch(r"\d{6}", word):
         return 1 + int(word[:3]) / 1000, int(word[3:]) / 10
@@ -52,7 +52,7 @@ def named(
     embedded: tuple[float, float] | None = None,
     makers: tuple[str, ...] = (),
 ) -> Glass | None:
-    """A glass by name: the catalogue's, else that of its code, else the file's own nd and Vd."""
+    """Finds a glass by name in the catalogues, else by its code, else by the file's nd and Vd."""
     name = clean(name)[:60]
     if name.upper() in ("AIR", "VACUUM"):
         return None
@@ -66,6 +66,8 @@ def named(
     if numbers is not None:
         return model(line, surface, *numbers)
     if embedded is not None:
-        unread.add(f"glass {name}: in no catalogue, nd and Vd of the file", f"surface {surface}")
+        unread.add(
+            f"glass {name}: in no catalogue; nd and Vd come from the file", f"surface {surface}"
+        )
         return model(line, surface, *embedded, name)
     line.fail(f"glass: wanted a known glass, got {name!r}{nearest(name)}", "lens-glass", surface)

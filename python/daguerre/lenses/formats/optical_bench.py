@@ -1,10 +1,10 @@
-"""Text of the Optical Bench (photonstophotos.net): sections of rows, columns by tabs.
+"""Reads text files of the Optical Bench (photonstophotos.net): sections of tab-separated rows.
 
 ``[lens data]`` has id, radius (or AS stop, FS field stop, CG cover glass, Infinity), thickness (or
 the name of a variable distance), nd, diameter, Vd, glass, maker. ``[variable distances]`` has one
 column for each position. ``[aspherical data]`` has id, radius, k, and the coefficients of r^4, r^6
-...; with ``AsphericalA2`` they begin at r^2, with ``AsphericalOddCount n`` the first n odd powers
-from r^3 on stand between the even ones. Learnt from the site's published files.
+...; with ``AsphericalA2`` they begin at r^2; with ``AsphericalOddCount n`` the first n odd powers
+from r^3 on stand between the even ones. Source: the site's published files.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .glass import model, named
 from .pupil import Pupil
 from .text import Line, Unread, lines_of, number
 
-#: A zoom of more columns than this is no lens.
+#: Largest number of zoom positions that is accepted.
 MAX_POSITIONS = 64
 _KNOWN = ("descriptive data", "constants", "variable distances", "lens data", "aspherical data")
 _REMARKS = ("figure", "notes", "metadata", "group data", "patent info", "report data")
@@ -31,10 +31,10 @@ Sections = dict[str, list[Line]]
 
 
 def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
-    """An Optical Bench file as ``daguerre-lens/0.1``, and what it could not honour.
+    """Converts an Optical Bench file to ``daguerre-lens/0.1``, with notes on what is ignored.
 
     Raises:
-        LensError: With the line, and the surface where there is one.
+        LensError: The file cannot be read; the message has the line, and the surface if any.
     """
     sections = _sections(text, where)
     unread = Unread()
@@ -42,9 +42,10 @@ def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
         if name not in (*_KNOWN, *_REMARKS) and not name.startswith("!"):
             if name == "diffractive data":
                 Line(where, sections[name][0].number if sections[name] else 1, ()).fail(
-                    "diffractive data: wanted surfaces that refract", "lens-surface"
+                    "diffractive data: wanted refracting surfaces, got a diffractive one",
+                    "lens-surface",
                 )
-            unread.add(f"section [{name[:40]}]")
+            unread.add(f"section [{name[:40]}] is ignored")
     rows = sections.get("lens data", [])
     if not rows:
         Line(where, 1, ()).fail("[lens data]: wanted rows of surfaces, got none")
@@ -52,7 +53,7 @@ def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
     constants = {row.words[0]: row for row in sections.get("constants", [])}
     for name in constants:
         if name not in ("AsphericalOddCount", "AsphericalA2", "ObjectGlass", "Scaled"):
-            unread.add(f"constant {name[:40]}")
+            unread.add(f"constant {name[:40]} is ignored")
     table = _Table(variables, unread)
     drafts = [Draft(0, thickness=float("inf"), glass=_object_glass(constants))]
     drafts += [table.surface(row, i) for i, row in enumerate(rows, 1)]
@@ -124,7 +125,7 @@ class _Table:
         glass = model(row, index, nd, vd, words[6])
         if glass is None and words[6]:
             if find(words[6]) is None:
-                self.unread.add(f"remark {words[6][:40]}", f"surface {index}")
+                self.unread.add(f"remark {words[6][:40]} is ignored", f"surface {index}")
             else:
                 glass = named(row, index, words[6], self.unread, makers=(words[7],))
         self.stop_is_known |= kind == "as" and diameter > 0
@@ -172,7 +173,7 @@ class _Table:
         return row.to_number(word, "value")
 
     def configuration(self, position: int) -> Configuration:
-        """A column of the variable distances."""
+        """Makes the configuration of one column of the variable distances."""
         gaps = {i: self._distance(row, position) for i, row in self.named_gaps.items()}
         facts = {}
         for name, key in _FACTS.items():
@@ -225,8 +226,8 @@ def _asphere(
     unread: Unread,
 ) -> None:
     index = ids.get(row.words[0])
-    if index is None and row.words[0].split("(")[0] in ids:  # of a variant: 23(WX)
-        unread.add(f"aspherical data of a variant, {row.name}")
+    if index is None and row.words[0].split("(")[0] in ids:  # for a variant: 23(WX)
+        unread.add(f"aspherical data of the variant {row.name} are ignored")
         return
     if index is None:
         row.fail(f"aspherical data: wanted the id of a surface, got {row.name!r}")
@@ -234,7 +235,10 @@ def _asphere(
     radius = row.word(1, "radius")
     c = 0.0 if radius.lower() in _PLANES else _curvature(row.to_number(radius, "radius"))
     if abs(c - draft.curvature) > 1e-3 * max(abs(c), abs(draft.curvature)):
-        unread.add("radius of [aspherical data]: that of [lens data] differs", f"surface {index}")
+        unread.add(
+            "the radius in [aspherical data] differs and is ignored",
+            f"surface {index}",
+        )
     draft.conic = row.number_at(2, "k") if row.word(2, "k") else 0.0
     values = [row.to_number(word, "coefficient") if word else 0.0 for word in row.words[3:]]
     powers = _powers(constants)

@@ -1,9 +1,9 @@
-"""Lens files of pbrt: one row for each surface, front to rear: radius, thickness, index, diameter.
+"""Reads lens files of pbrt: a row per surface, front to rear: radius, thickness, index, diameter.
 
 Lengths in mm. The row of radius 0 is the stop; an index of 0 is air; ``#`` begins a comment. pbrt
-has no planes: radius 0 where the medium changes is read as one.
-Sources: pbrt-v4's user's guide, "realistic" camera; the comments of the files that come with it.
+has no planes: radius 0 where the medium changes is read as a plane.
 In an older layout (Stanford CS348b) the thickness stands before the surface: the first one is 0.
+Sources: pbrt-v4's user's guide, "realistic" camera; the comments in the files that come with pbrt.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from .text import Line, Unread, lines_of, number
 
 
 def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
-    """A pbrt lens file as ``daguerre-lens/0.1``, and what it could not honour.
+    """Converts a pbrt lens file to ``daguerre-lens/0.1``, with notes on what is ignored.
 
     Raises:
-        LensError: With the line.
+        LensError: The file cannot be read; the message has the line.
     """
     rows, comments, efl = _rows(text, where)
     unread = Unread()
@@ -28,13 +28,15 @@ def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
     for i, row in enumerate(rows, 1):
         drafts.append(_surface(row, i, drafts[-1]))
         if drafts[-1].curvature == 0 and not drafts[-1].stop:
-            unread.add("radius 0 where the index changes: a plane, not the stop", f"surface {i}")
+            unread.add(
+                "radius 0 where the index changes is read as a plane, not the stop", f"surface {i}"
+            )
     if drafts[1].thickness == 0 and drafts[-1].thickness > 0 and drafts[1].glass is not None:
-        unread.add("thicknesses stand before their surfaces (the first is 0): read that way")
+        unread.add("thicknesses are read as standing before their surfaces, as the first is 0")
         for i, draft in enumerate(drafts[1:-1], 1):
             draft.thickness = drafts[i + 1].thickness
         drafts[-1].thickness = 0
-    unread.add("indices without dispersion: no colour errors")
+    unread.add("indices have no dispersion, so the lens has no chromatic aberration")
     drafts.append(Draft(len(rows) + 1))
     nominal = {} if efl is None else {"efl_mm": efl}
     title = next((c for c in comments if c), "") or "pbrt lens"
@@ -45,7 +47,7 @@ def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
 
 
 def looks_like(text: str) -> bool:
-    """Rows of four numbers, and nothing else but comments."""
+    """Whether a text has only rows of four numbers, and comments."""
     rows = [row.split("#", 1)[0].split() for row in text[:20_000].splitlines()[:-1] or [text]]
     rows = [row for row in rows if row]
     return any(len(row) == 4 for row in rows) and all(

@@ -1,4 +1,4 @@
-"""How wide the stop is, where a file gives the size of the beam instead."""
+"""Sizes the stop of files that give the size of the beam instead."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daguerre.lenses.json_lens import lens_of
 
 @dataclass(frozen=True)
 class Pupil:
-    """The beam on the axis.
+    """Aperture of the axial beam.
 
     Attributes:
         kind: ``diameter`` of the entrance pupil (mm), ``f-number`` (focal length / diameter),
@@ -68,19 +68,20 @@ def _semi_diameter(
         diameter = f / wanted
     elif distance is None:
         raise LensError(
-            f"{file}: aperture: wanted an object at a distance, as it is one of object space, "
-            "got one at infinity",
+            f"{file}: aperture: wanted a finite object distance for an aperture in object space, "
+            "got infinity",
             "lens-f-stop",
         )
     else:
         to_pupil = distance + order.entrance_pupil.z
         if pupil.kind == "aperture":
             diameter = 2 * abs(to_pupil) * math.tan(math.asin(min(wanted, 0.999)))
-        else:  # the marginal ray leaves at 1 / (2 N), and enters at that times m = f / x
+        else:  # the marginal ray leaves with slope 1 / (2 N), and enters with m = f / x times that
             diameter = abs(to_pupil * f / (distance + order.front_focal_point)) / wanted
     size = probe * diameter / order.entrance_pupil.diameter
     if not 0 < size < 1e5:
         raise LensError(
-            f"{file}: aperture: wanted a stop of some size, got {size:g} mm", "lens-f-stop"
+            f"{file}: aperture: wanted a stop of more than 0 and less than 1e5 mm, got {size:g} mm",
+            "lens-f-stop",
         )
     return float(size)

@@ -1,8 +1,8 @@
-"""CODE V sequence files (.seq): a stream of commands that builds the lens.
+"""Reads CODE V sequence files (.seq): a stream of commands that builds the lens.
 
-Learnt from public files and readers, and from pages of the reference manual ("Sign conventions",
+Sources: public files and readers, and pages of the reference manual ("Sign conventions",
 "Coordinates": the tilts alpha and beta are left-handed, gamma right-handed, in this order, each
-about the new axis). What each command means for us is in docs/lens-import.md.
+about the new axis). docs/lens-import.md lists the commands that are read.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .text import Line, Unread, number, words
 
 MAX_POSITIONS = 64
 _UNITS = {"M": 1.0, "MM": 1.0, "C": 10.0, "CM": 10.0, "I": 25.4, "IN": 25.4}
-#: Commands of no consequence for the glass: titles, analysis, drawing, optimization.
+#: Commands that do not change the rays: titles, analysis, drawing, optimization.
 _HARMLESS = words(
     "LEN INI WTW WTF WL REF DOR GO DER CA PIM POL UID TOL SLB CCY THC KC AC BC CC DC EC FC GC "
     "HC JC CUF CWL XOB YOB DOM AFI ECH OUT VER CMP DSX DSY BTX BTY RIM VIE SUR GLC WID ACC "
@@ -34,10 +34,10 @@ _SURFACE_WORD = re.compile(r"S(\d+|[OI])", re.IGNORECASE)
 
 
 def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
-    """A CODE V sequence as ``daguerre-lens/0.1``, and what it could not honour.
+    """Converts a CODE V sequence to ``daguerre-lens/0.1``, with notes on what is ignored.
 
     Raises:
-        LensError: With the line, and the surface where there is one.
+        LensError: The file cannot be read; the message has the line, and the surface if any.
     """
     reader = _Reader(where)
     for command in commands(text, where):
@@ -47,7 +47,7 @@ def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
 
 
 class _Reader:
-    """Commands, one after the other."""
+    """Builds a lens from the commands, one after the other."""
 
     def __init__(self, file: str) -> None:
         self.file = file
@@ -114,12 +114,14 @@ class _Reader:
             self.fields[kind] = max([self.fields.get(kind, 0.0), *sizes])
         elif keyword in ("VUX", "VLX", "VUY", "VLY"):
             if any(line.to_number(word, "factor") for word in line.words[1:]):
-                self.unread.add("vignetting factors: the clear diameters decide", keyword)
+                self.unread.add("vignetting factors are ignored; clear diameters apply", keyword)
         elif keyword == "PRV":
             self.private_nm = []
         elif keyword in ("TEM", "PRE"):
             if line.number_at(1, "value") not in (20, 760, 1):
-                self.unread.add(f"{keyword} {line.words[1]}: indices are those of 20 C in air")
+                self.unread.add(
+                    f"{keyword} {line.words[1]} is ignored; indices are those at 20 C in air"
+                )
         else:
             return keyword in _HARMLESS
         return True
@@ -160,7 +162,7 @@ class _Reader:
             del words[1]
             surface = self._at(match[1], line)
         elif not self.surfaces:
-            self.unread.add(f"command {line.name}")
+            self.unread.add(f"command {line.name} is ignored")
             return
         else:
             surface = self.surfaces[-1]
@@ -186,10 +188,12 @@ class _Reader:
         elif what in _PUPILS:
             self.pupils = line
         elif what not in _HARMLESS and what not in ("TIT", "VUX", "VUY", "VLX", "VLY", *_FIELDS):
-            self.unread.add(f"positions that differ in {clean(what)[:20]}: the first one's is kept")
+            self.unread.add(
+                f"positions differ in {clean(what)[:20]}; all take the first one's value"
+            )
 
     def lens(self) -> tuple[dict[str, Any], list[str]]:
-        """Lens and notes that the commands make."""
+        """Returns the lens file's value, and notes."""
         if len(self.surfaces) < 3 or not self.surfaces[-1].is_image:
             Line(self.file, 1, ()).fail(
                 f"wanted SO, surfaces S and the image SI, got {len(self.surfaces)} surfaces"
@@ -198,7 +202,7 @@ class _Reader:
         drafts: list[Draft] = []
         for surface in self.surfaces:
             drafts.append(surface.draft(self.unit))
-        drafts[-2].thickness += drafts[-1].thickness  # the image's own is a defocus
+        drafts[-2].thickness += drafts[-1].thickness  # the image surface's thickness is a defocus
         nominal: dict[str, float] = {}
         if 0 < self.fields.get("angle", 0) < 180:
             nominal["full_field_deg"] = 2 * self.fields["angle"]
@@ -225,7 +229,9 @@ class _Reader:
 
     def _pupil(self, index: int) -> Pupil | None:
         if self.pupil is None and self.pupils is None:
-            self.unread.add("no EPD, FNO or NAO: the stop's clear diameter decides")
+            self.unread.add(
+                "no EPD, FNO or NAO: the f-number follows from the stop's clear diameter"
+            )
             return None
         keyword, line = self.pupil or ("", self.pupils)
         assert line is not None

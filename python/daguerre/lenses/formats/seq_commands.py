@@ -1,4 +1,4 @@
-"""The command stream of a CODE V sequence file: one command at a time, with its line."""
+"""Splits a CODE V sequence file into commands, each with its line."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ _WORD = re.compile(r"'[^']*'|\"[^\"]*\"|[^\s;]+|;")
 
 
 def commands(text: str, where: str) -> Iterator[Line]:
-    """Commands, their first word in capitals.
+    """Yields commands, with the first word in capitals.
 
-    ``!`` begins a comment, ``&`` at the end goes on with the next line, ``;`` parts commands, and
-    quotes hold them together.
+    ``!`` begins a comment, ``&`` at the end continues on the next line, ``;`` separates commands,
+    and quotes protect text from being split.
     """
     held: list[str] = []
     begin = 0

@@ -1,4 +1,4 @@
-"""One surface of a CODE V sequence, and the commands that follow it."""
+"""Reads one surface of a CODE V sequence, and the commands that follow it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _FORMS = ("SPH", "CON", "ASP", "CYL", "XTO", "YTO", "AAS")
 _PLACES = ("XDE", "YDE", "ZDE", "ADE", "BDE", "CDE")
 _NUMBERS = ("RDX", "CUX", "RDY", "CUY", "K", "KX", "KY", "THI", *_POWERS, *_PLACES)
 _TERMS = ("AR", "BR", "CR", "DR")
-#: Tolerances, drawing, optimization: nothing for the glass.
+#: Commands that do not change the rays: tolerances, drawing, optimization.
 _HARMLESS = words(
     "SLB CCY CCX THC KC AC BC CC DC EC FC GC HC JC CUF GLC XDC YDC ZDC ADC BDC CDC MAT COM "
     "UID CRT PIM IND"
@@ -42,7 +42,7 @@ _REFUSED = {
 
 
 class Surface:
-    """``S radius thickness glass``, and what follows."""
+    """A surface: ``S radius thickness glass``, and the commands that follow."""
 
     def __init__(
         self,
@@ -58,10 +58,10 @@ class Surface:
         self.curvature = (1 / first if first else 0.0) if radius_mode else first
         far = number_ == 0 and line.word(2, "thickness").upper() in ("INF", "INFINITY")
         self.thickness = math.inf if far else line.number_at(2, "thickness", default=0)
-        self.private = private  # PRV may stand behind the surfaces
+        self.private = private  # PRV may come after the surfaces
         self.form = "SPH"
         self.values: dict[str, float] = {}
-        self.how = ""  # how the frame goes on behind the surface: DAR, REV
+        self.how = ""  # how the frame continues behind the surface: DAR, REV
         self.stop = False
         self.circle: float | None = None
         self.inner = 0.0
@@ -69,7 +69,7 @@ class Surface:
 
     @property
     def place(self) -> str:
-        """For notes."""
+        """Name of the surface, for notes."""
         return f"surface {self.number}"
 
     def _glass(self) -> Glass | None:
@@ -106,7 +106,7 @@ class Surface:
         return named(line, self.number, name, self.unread, makers=(maker,) if maker else ())
 
     def take(self, line: Line) -> None:
-        """A command for this surface."""
+        """Applies a command to this surface."""
         keyword = line.words[0]
         if keyword in _FORMS:
             self.form = keyword
@@ -119,9 +119,11 @@ class Surface:
         elif keyword == "CIR":
             self._circle(line)
         elif keyword in ("REX", "REY", "ELX", "ELY", "ADX", "ADY", "ARO", "CIX", "CIY"):
-            self.unread.add(f"aperture {keyword}: the clear diameter is round", self.place)
+            self.unread.add(
+                f"aperture {keyword} is ignored; the clear diameter stays round", self.place
+            )
         elif keyword in ("PIK", "PKC"):
-            self.unread.add("pickups: the numbers of the file", self.place)
+            self.unread.add("pickups are ignored; stored values apply", self.place)
         elif keyword in _REFUSED:
             line.fail(
                 f"{keyword}: wanted a surface of {', '.join(_FORMS)}",
@@ -129,18 +131,20 @@ class Surface:
                 self.number,
             )
         elif keyword not in _HARMLESS:
-            self.unread.add(f"command {clean(keyword)[:20]}", self.place)
+            self.unread.add(f"command {clean(keyword)[:20]} is ignored", self.place)
 
     def _number(self, line: Line, keyword: str) -> None:
         if len(line.words) < 2 or number(line.words[1]) is None:
             word = line.words[1].upper() if len(line.words) > 1 else ""
             if keyword == "THI" and word[:1].isalpha():  # THI S3 OAL S1..4 45: a solve
                 self.unread.add(
-                    f"solve THI {clean(word)[:20]}: the numbers of the file", self.place
+                    f"solve THI {clean(word)[:20]} is ignored; stored values apply", self.place
                 )
                 return
             if keyword in ("CUY", "RDY") and word[:1].isalpha():
-                self.unread.add(f"solve {keyword} {clean(word)[:20]}: the number of the file")
+                self.unread.add(
+                    f"solve {keyword} {clean(word)[:20]} is ignored; the stored value applies"
+                )
                 return
         value = line.number_at(1, "value")
         if keyword == "THI":
@@ -167,7 +171,7 @@ class Surface:
             self.circle = size if self.circle is None else min(self.circle, size)
 
     def draft(self, unit: float) -> Draft:
-        """The surface in mm."""
+        """Converts the surface to a draft in mm."""
         v = self.values
         semi = self.circle if self.circle is not None else self.edge
         draft = Draft(
@@ -190,7 +194,7 @@ class Surface:
     def _form(
         self, draft: Draft, v: dict[str, float], terms: dict[int, float], unit: float
     ) -> bool:
-        """Writes the form; true if it is to be turned by 90 degrees about z."""
+        """Sets the form; returns whether the surface must be turned by 90 degrees about z."""
         across = v.get("CUX", 0.0) / unit
         if self.form in ("CON", "ASP"):
             draft.conic = v.get("K", 0.0)

@@ -1,4 +1,4 @@
-"""Text of other programs' lens files: bytes to lines that know their place, and numbers."""
+"""Decodes text of other programs' lens files to lines with their numbers, and parses words."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daguerre.lenses.errors import LensError
 
 MAX_LINES = 200_000
 MAX_LINE = 100_000
-#: No lens is a light year long; powers of such numbers stay finite.
+#: Largest magnitude of a number; powers of such numbers stay finite.
 MAX_NUMBER = 1e15
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([edED][+-]?\d+)?")
@@ -21,12 +21,12 @@ _BINARY = re.compile(r"[\x00-\x08\x0e-\x19\x1b-\x1f\x7f]")
 
 @dataclass(frozen=True)
 class Line:
-    """One line, or one command of it.
+    """One line, or one command of a line.
 
     Attributes:
-        file: The file's name.
-        number: From 1.
-        words: Words in it.
+        file: Name of the file.
+        number: Line number, from 1.
+        words: Words of the line or command.
     """
 
     file: str
@@ -34,7 +34,7 @@ class Line:
     words: tuple[str, ...]
 
     def fail(self, message: str, code: str = "lens-format", surface: int | None = None) -> NoReturn:
-        """Raises ``LensError`` for this line, and the surface by the file's own count."""
+        """Raises ``LensError`` for this line, and a surface by its number in the file."""
         where = "" if surface is None else f" surface {surface}:"
         message = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in message)
         raise LensError(f"{self.file}: line {self.number}:{where} {message}", code, surface)
@@ -47,7 +47,7 @@ class Line:
 
     @property
     def name(self) -> str:
-        """The first word, fit to be printed."""
+        """First word, in printable form."""
         return clean(self.words[0])[:20] if self.words else "line"
 
     def number_at(
@@ -86,7 +86,7 @@ class Line:
 
 
 def number(word: str) -> float | None:
-    """A finite number as these programs write it (``1.5D-3`` too), or None."""
+    """Parses a finite number as these programs write it (``1.5D-3`` too); None: not a number."""
     if not _NUMBER.fullmatch(word) or len(word) > 400:
         return None
     value = float(word.replace("D", "e").replace("d", "e"))
@@ -94,10 +94,10 @@ def number(word: str) -> float | None:
 
 
 def decoded(data: bytes, file: str) -> str:
-    """The text of UTF-8, UTF-16 (also without a mark) or Latin-1 bytes.
+    """Decodes UTF-8, UTF-16 (also without a byte order mark) or Latin-1.
 
     Raises:
-        LensError: Nothing is in it, it is no text, or it has too many lines.
+        LensError: The file is empty, is not text, or has too many lines.
     """
     text = _decoded(data, file)
     if not text.strip("\x1a \t\r\n\f\v"):
@@ -131,7 +131,7 @@ def _decoded(data: bytes, file: str) -> str:
 
 
 def lines_of(text: str, file: str) -> list[str]:
-    """The lines, without their ends; too many or too long ones are refused."""
+    """Splits text into lines; too many or too long lines are an error."""
     if text.count("\n") + text.count("\r") > 2 * MAX_LINES:
         raise LensError(
             f"{file}: lens file: wanted at most {MAX_LINES} lines, got {text.count(chr(10))}",
@@ -148,23 +148,23 @@ def lines_of(text: str, file: str) -> list[str]:
 
 
 def words(text: str) -> frozenset[str]:
-    """The words of a text: keywords, many to the line."""
+    """Splits a text into a set of words."""
     return frozenset(text.split())
 
 
 class Unread:
-    """Collects what a file says and the lens cannot express, so that each thing is one note."""
+    """Collects what an import ignores or changes, so that each thing becomes one note."""
 
     def __init__(self) -> None:
         self._places: dict[str, list[str]] = {}
 
     def add(self, what: str, place: str = "") -> None:
-        """Remembers a thing, and where it stands."""
+        """Adds a note, and a place where it applies."""
         places = self._places.setdefault(clean(what), [])
         if place and place not in places and len(places) < 12:
             places.append(place)
 
     def notes(self) -> list[str]:
-        """One sentence for each thing; of very many, the first."""
+        """Notes, each with its places; at most 40, then their number."""
         rows = [f"{what} ({', '.join(p)})" if p else what for what, p in self._places.items()]
         return rows[:40] + ([f"{len(rows) - 40} more such notes"] if len(rows) > 40 else [])

@@ -1,8 +1,8 @@
-"""Zemax lens files (.zmx), sequential: records by keyword, surfaces in blocks.
+"""Reads sequential Zemax lens files (.zmx): records by keyword, surfaces in blocks.
 
-The format has no public description today. Learnt from chapter 29 of the ZEMAX user's guide of 2000
-(keywords and their arguments), the OpticStudio help (surface types, tilts are right-handed, first
-about x, then y, then z) and published files. What each record means here: docs/lens-import.md.
+The format has no current public description. Sources: chapter 29 of the ZEMAX user's guide of 2000
+(keywords and their arguments), the OpticStudio help (surface types; tilts are right-handed, first
+about x, then y, then z) and published files. docs/lens-import.md lists the records that are read.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from .zmx_positions import Positions
 from .zmx_surface import Block, draft_of
 
 _WORDS = re.compile(r'"[^"]*"|\S+')
-#: Millimetres.
+#: Units of length, mm.
 _UNITS = {"MM": 1.0, "CM": 10.0, "IN": 25.4, "METER": 1000.0, "M": 1000.0}
 _VIGNETTING = ("VDXN", "VDYN", "VCXN", "VCYN", "VANN")
-#: Records of no consequence for the glass: display, analysis, tolerances, catalogue data.
+#: Records that do not change the rays: display, analysis, tolerances, catalogue data.
 _HARMLESS = words(
     "VERS PFIL LANG GFAC RAIM PUSH SDMA OMMA ROPD HYPR PICB FWGN WAVM WAVL WWGT PWAV POLS "
     "GLRS GSTD NSCD COFN LUID EERA DBDT AUTH IWDP ZVDX ZVDY ZVCX ZVCY ZVAN TOL BLNK XFLD YFLD "
@@ -31,10 +31,10 @@ _HARMLESS = words(
 
 
 def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
-    """A Zemax file as ``daguerre-lens/0.1``, and what it could not honour.
+    """Converts a Zemax file to ``daguerre-lens/0.1``, with notes on what is ignored.
 
     Raises:
-        LensError: With the line, and the surface where there is one.
+        LensError: The file cannot be read; the message has the line, and the surface if any.
     """
     reader = _Reader(where)
     for i, content in enumerate(lines_of(text, where), 1):
@@ -45,7 +45,7 @@ def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
 
 
 class _Reader:
-    """Records, one after the other."""
+    """Builds a lens from the records, one after the other."""
 
     def __init__(self, file: str) -> None:
         self.file = file
@@ -61,7 +61,7 @@ class _Reader:
         self.in_surfaces = False
 
     def take(self, line: Line, content: str, indented: bool) -> None:
-        """Takes a record; those behind the surfaces that are not indented are analyses."""
+        """Applies a record; records after the surfaces that are not indented belong to analyses."""
         keyword = line.words[0].upper()
         if keyword == "SURF":
             self._begin_surface(line)
@@ -76,10 +76,10 @@ class _Reader:
             _HEADER[keyword](self, line, content)
         elif keyword in _VIGNETTING:
             if any(line.to_number(w, "factor") for w in line.words[1:]):
-                self.unread.add("vignetting factors: the clear diameters decide", keyword)
+                self.unread.add("vignetting factors are ignored; clear diameters apply", keyword)
         elif keyword not in _HARMLESS and (indented or not self.blocks):
             place = f"surface {self.blocks[-1].number}" if self.in_surfaces else ""
-            self.unread.add(f"record {keyword[:20]}", place)
+            self.unread.add(f"record {keyword[:20]} is ignored", place)
 
     def _begin_surface(self, line: Line) -> None:
         number = line.whole_at(1, "number", 0, 10_000)
@@ -124,12 +124,12 @@ class _Reader:
     def _environment(self, line: Line, content: str) -> None:
         del content
         if line.number_at(1, "temperature", default=20) != 20:
-            self.unread.add(f"temperature {line.words[1]} C: indices are those of 20 C")
+            self.unread.add(f"temperature {line.words[1]} C is ignored; indices are those at 20 C")
         if line.number_at(2, "pressure", default=1) != 1:
-            self.unread.add(f"pressure {line.words[2]}: indices are those in air")
+            self.unread.add(f"pressure {line.words[2]} is ignored; indices are those in air")
 
     def lens(self) -> tuple[dict[str, Any], list[str]]:
-        """Lens and notes that the records make."""
+        """Returns the lens file's value, and notes."""
         if len(self.blocks) < 3:
             Line(self.file, 1, ()).fail(
                 f"SURF: wanted an object, surfaces and an image, got {len(self.blocks)} surfaces"
@@ -137,7 +137,7 @@ class _Reader:
         drafts: list[Draft] = []
         for block in self.blocks:
             draft = draft_of(block, self.unit, self.makers, self.unread)
-            if block.kind == "COORDBRK" and drafts:  # a frame is no boundary
+            if block.kind == "COORDBRK" and drafts:  # a coordinate break bounds no medium
                 draft.glass = drafts[-1].glass
             drafts.append(draft)
         positions = self.positions or Positions(None, self.unread)
@@ -149,7 +149,7 @@ class _Reader:
         return data, self.unread.notes()
 
     def _pupil(self, value: float | None) -> Pupil | None:
-        """The aperture; ``value`` is that of a configuration, None: the file's."""
+        """Aperture of the beam; ``value`` is a configuration's, None: the file's."""
         if self.pupil is None or self.pupil[0] == "FLOA":
             return None
         keyword, line = self.pupil

@@ -1,4 +1,4 @@
-"""Multi-configuration operands of a Zemax file: zoom and focus positions."""
+"""Reads multi-configuration operands of a Zemax file: zoom and focus positions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .text import Line, Unread, number, words
 from .zmx_surface import Block
 
 MAX_POSITIONS = 64
-#: Operands that do not touch the glass: fields, wavelengths, vignetting, weights, titles.
+#: Operands that do not change the rays: fields, wavelengths, vignetting, weights, titles.
 _HARMLESS = words(
     "MOFF MCOM WAVE WLWT YFIE XFIE FLTP FLWT FVCX FVCY FVDX FVDY FVAN PRWV CWGT LTTL MCSD"
 )
@@ -24,7 +24,7 @@ _DIFFERENT = words(
 
 
 class Positions:
-    """``MNUM`` and the operands behind it."""
+    """Configurations of a file: ``MNUM`` and the operands that follow it."""
 
     def __init__(self, line: Line | None, unread: Unread) -> None:
         self.count, self.current, self.unread = 1, 1, unread
@@ -39,7 +39,7 @@ class Positions:
                 line.fail(f"MNUM: wanted a configuration of 1 .. {self.count}")
 
     def take(self, line: Line) -> bool:
-        """Takes an operand; false if it is none."""
+        """Applies an operand; returns false if the line is not one."""
         keyword = line.words[0].upper()
         if keyword == "THIC":
             surface = line.whole_at(1, "surface", 0, 10_000)
@@ -64,18 +64,20 @@ class Positions:
     def configurations(
         self, blocks: list[Block], unit: float, pupil: Callable[[float | None], Pupil | None]
     ) -> list[Configuration]:
-        """All of them, the file's current one first."""
+        """All configurations, the file's current one first."""
         for (keyword, surface), values in self.others.items():
             if len({number(v) if number(v) is not None else v for v in values}) > 1:
                 place = f"surface {surface[:8]}"
                 self.unread.add(
-                    f"configurations that differ in {keyword}: the current one's is kept", place
+                    f"configurations differ in {keyword}; all take the current one's value", place
                 )
         if self.count > 1:
             for block in blocks[1:]:
                 for solve in block.solves:
                     place = f"surface {block.number}"
-                    self.unread.add(f"solve {solve}: the stored thickness in all positions", place)
+                    self.unread.add(
+                        f"solve {solve} is ignored; all positions take the stored thickness", place
+                    )
         order = [self.current, *(i for i in range(1, self.count + 1) if i != self.current)]
         return [self._configuration(i, blocks, unit, pupil) for i in order]
 
@@ -99,7 +101,7 @@ class Positions:
 
 
 def _solve(blocks: list[Block], gaps: dict[int, float]) -> None:
-    """Thicknesses that make up for others: TCOM i sum: t = sum - t_i; TOLE: all from i to here."""
+    """Solves thicknesses that depend on others: TCOM i sum: t = sum - t_i; TOLE: from i to here."""
     for block in blocks:
         for keyword in ("TCOM", "TOLE"):
             line = block.records.get(keyword)

@@ -1,4 +1,4 @@
-"""One surface block of a Zemax file."""
+"""Reads one surface block of a Zemax file."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from .draft import Draft, moved
 from .glass import Glass, model, named
 from .text import Line, Unread, words
 
-#: Records that say nothing of the glass: names, drawing, mechanics, hints for solvers.
+#: Records that do not change the rays: names, drawing, mechanics, hints for solvers.
 _HARMLESS = words("COMM HIDE MIRR SLAB POPS FIMP SSID MEMA OEMA BLNK LOCK CFSR")
-#: One each.
+#: Records that a surface has once.
 _SINGLE = words("TYPE CURV DISZ GLAS DIAM CONI STOP TCOM TOLE COAT OBDC")
 _APERTURES = words("CLAP OBSC FLAP SQAP SQOB ELAP ELOB SPID USAP UOBS")
 _FORMS = ("STANDARD", "EVENASPH", "ODDASPHE", "XASPHERE", "XOSPHERE", "BICONICX", "TOROIDAL")
@@ -31,7 +31,7 @@ class Block:
         self.solves: list[str] = []
 
     def take(self, line: Line) -> bool:
-        """Takes a record of a surface; false if it is none."""
+        """Adds a record; returns false if it is not one of a surface."""
         keyword = line.words[0].upper()
         if keyword in _SINGLE:
             self.records[keyword] = line
@@ -48,7 +48,7 @@ class Block:
 
     @property
     def kind(self) -> str:
-        """Such as STANDARD."""
+        """Type of the surface, such as STANDARD."""
         line = self.records.get("TYPE")
         return "STANDARD" if line is None else line.word(1, "type").upper()
 
@@ -58,17 +58,17 @@ class Block:
         return default if line is None else line.number_at(index, "value", default=default)
 
     def parameter(self, number: int) -> float:
-        """``PARM``; 0 if absent."""
+        """Value of a ``PARM`` record; 0 if absent."""
         line = self.parameters.get(number)
         return 0.0 if line is None else line.number_at(2, "value", default=0)
 
     def extra_value(self, number: int) -> float:
-        """``XDAT``; 0 if absent."""
+        """Value of an ``XDAT`` record; 0 if absent."""
         line = self.extra.get(number)
         return 0.0 if line is None else line.number_at(2, "value", default=0)
 
     def thickness(self) -> float:
-        """In the file's unit; the object's may be infinite."""
+        """Thickness in the file's unit; infinite is allowed for the object."""
         line = self.records.get("DISZ")
         if line is None:
             return 0.0
@@ -81,7 +81,7 @@ class Block:
 
 
 def draft_of(block: Block, unit: float, makers: tuple[str, ...], unread: Unread) -> Draft:
-    """The surface of a block, in mm."""
+    """Converts a block to a draft in mm."""
     kind, place = block.kind, f"surface {block.number}"
     if kind not in (*_FORMS, *_FORMS_OF_AIR):
         block.records["TYPE"].fail(
@@ -103,7 +103,7 @@ def draft_of(block: Block, unit: float, makers: tuple[str, ...], unread: Unread)
     draft.glass = _glass(block, makers, unread)
     _aperture(block, draft, unit, unread)
     if "COAT" in block.records:
-        unread.add("coatings of the file: the lens's own", place)
+        unread.add("coatings are ignored; the lens's coating applies", place)
     return draft
 
 
@@ -134,7 +134,7 @@ def _form(block: Block, draft: Draft, kind: str, unit: float) -> None:
         draft.curvature_x = 1 / radius if radius else 0.0
         if any(block.parameter(i) for i in range(2, 9)) or block.extra_value(1) > 0:
             block.line.fail(
-                "TOROIDAL: wanted no terms in y (PARM 2-8, XDAT), got some",
+                "TOROIDAL: wanted terms in y (PARM 2-8, XDAT) of 0, got others",
                 "lens-surface",
                 block.number,
             )
@@ -156,11 +156,14 @@ def _glass(block: Block, makers: tuple[str, ...], unread: Unread) -> Glass | Non
     place = f"surface {block.number}"
     if how == 1 or name == "___BLANK":
         if line.number_at(6, "dPgF", default=0) != 0:
-            unread.add("partial dispersion dPgF of model glass: the normal line's", place)
+            unread.add(
+                "partial dispersion dPgF of model glass is ignored; the normal line's applies",
+                place,
+            )
         return model(line, block.number, nd, vd)
     if how == 4 and any(line.number_at(i, "offset", default=0) for i in (10, 11)):
-        unread.add("offsets of nd and Vd", place)
-    # 1.5 and 40 are what the program writes when it has nothing to say.
+        unread.add("offsets of nd and Vd are ignored", place)
+    # Zemax writes 1.5 and 40 when it has no values.
     said = nd > 1 and (nd, vd) != (1.5, 40.0)
     return named(line, block.number, name, unread, (nd, vd) if said else None, makers)
 
@@ -172,7 +175,7 @@ def _aperture(block: Block, draft: Draft, unit: float, unread: Unread) -> None:
         block.records["DIAM"].fail(f"DIAM: wanted at least 0, got {semi:g}", surface=block.number)
     draft.semi_diameter = semi or None
     if any(block.value("OBDC", i, 0.0) for i in (1, 2)):
-        unread.add("an aperture off the axis of its surface", place)
+        unread.add("a decentred aperture is ignored", place)
         return
     for line in block.apertures:
         _cut(line, line.words[0].upper(), block, draft, unit, unread)
@@ -181,12 +184,12 @@ def _aperture(block: Block, draft: Draft, unit: float, unread: Unread) -> None:
 def _cut(line: Line, keyword: str, block: Block, draft: Draft, unit: float, unread: Unread) -> Any:
     place = f"surface {block.number}"
     if keyword not in ("CLAP", "OBSC", "FLAP"):
-        unread.add(f"aperture {keyword}: the clear diameter is round", place)
+        unread.add(f"aperture {keyword} is ignored; the clear diameter stays round", place)
         return
     inner, outer = (line.number_at(i, "radius", 0, default=0) * unit for i in (1, 2))
     if keyword == "OBSC":
         if inner:
-            unread.add("a ring that stops light", place)
+            unread.add("an obscuration ring is ignored", place)
         elif outer:
             draft.inner, draft.clips = outer, True
         return

@@ -1,6 +1,6 @@
-"""The makers' glasses by name: ``find("N-BK7").index(587.56)``.
+"""Glasses of the makers' catalogues, by name: ``find("N-BK7").index(587.56)``.
 
-Indices are relative to air of 20 C and 101.325 kPa, as the catalogues state them; Ohara measures
+Indices are relative to air at 20 C and 101.325 kPa, as the catalogues state them; Ohara measures
 at 25 C, Hikari at 23 C. Data: refractiveindex.info (CC0), see ``script/make-glass-catalogue``.
 """
 

@@ -22,9 +22,9 @@ from daguerre.lenses.glass_formula import absorption_of, formula_of
 from daguerre.lenses.medium import AIR, Medium
 
 FOLDER = Path(__file__).parent
-#: In the order in which an ambiguous name is looked up.
+#: Catalogues, in the order in which names are looked up.
 MAKERS = ("Schott", "Ohara", "Hoya", "Hikari", "CDGM", "Sumita", "Corning", "LZOS", "materials")
-#: Prefixes that makers put before the names of newer melts; the first that exists is taken.
+#: Prefixes of newer glass types; the first that exists is taken.
 PREFIXES = ("N", "S", "J", "H", "E", "K", "L", "P", "M", "Q", "D")
 _OTHER_NAMES = {"FLUORITE": "CaF2", "CALCIUMFLUORIDE": "CaF2", "FUSEDSILICA": "SiO2"} | {
     "SILICA": "SiO2",
@@ -49,10 +49,10 @@ class GlassData:
     Attributes:
         name: Name in its maker's spelling.
         maker: One of ``MAKERS``, or ``core`` for air, water and vacuum.
-        core: Its medium: index and absorption.
-        stated_nd: Index at 587.56 nm in the maker's own words; None: not stated.
-        stated_vd: Abbe number likewise.
-        note: Substitution for the name that was asked for; empty: that very glass.
+        core: Medium of the core: index and absorption.
+        stated_nd: Index at 587.56 nm as the maker states it; None: not stated.
+        stated_vd: Abbe number as the maker states it; None: not stated.
+        note: Substitution for the requested name; empty: none.
     """
 
     name: str
@@ -64,47 +64,52 @@ class GlassData:
 
     @property
     def nd(self) -> float:
-        """Index at 587.56 nm by the formula."""
+        """Index at 587.56 nm, from the dispersion formula."""
         return float(self.core.index(LINE_D))
 
     @property
     def vd(self) -> float:
-        """Abbe number (nd - 1) / (nF - nC) by the formula."""
+        """Abbe number (nd - 1) / (nF - nC), from the dispersion formula."""
         spread = self.core.index(LINE_F) - self.core.index(LINE_C)
         return float((self.nd - 1) / spread) if spread else float("inf")
 
     def index(self, wavelength_nm: ArrayLike) -> NDArray[np.float64]:
-        """Index relative to air, the shape of the wavelengths (nm)."""
+        """Returns the index relative to air, in the shape of the wavelengths (nm)."""
         return np.asarray(np.vectorize(self.core.index, [float])(wavelength_nm), np.float64)
 
     def internal_transmittance(
         self, wavelength_nm: ArrayLike, thickness_mm: float = 10.0
     ) -> NDArray[np.float64]:
-        """Transmittance of a plate between its faces, 0 to 1, the shape of the wavelengths."""
+        """Returns the internal transmittance of a plate, 0 to 1, in the shape of the wavelengths.
+
+        Args:
+            wavelength_nm: Wavelengths, nm, any shape.
+            thickness_mm: Thickness of the plate, mm.
+        """
         per_mm = np.vectorize(self.core.absorption_per_mm, [float])(wavelength_nm)
         return np.asarray(np.exp(-thickness_mm * per_mm), np.float64)
 
 
 @guarded
 def names(maker: str | None = None) -> list[str]:
-    """Names of all glasses, or of one maker's, sorted."""
+    """Returns the names of all glasses, or of one maker's, sorted."""
     found = {entry.name for entry in _entries(maker)}
     return sorted(found)
 
 
 @guarded
 def find(name: str, maker: str | None = None) -> GlassData:
-    """A glass by name; case, spaces and hyphens do not matter.
+    """Finds a glass by name; case, spaces and hyphens do not matter.
 
-    A name with its maker in parentheses is taken apart. A name of an older catalogue that is
-    gone finds its successor (BK7: N-BK7), and ``note`` says so.
+    The name may end in its maker in parentheses. The name of a discontinued glass finds its
+    successor (BK7: N-BK7), with a ``note``.
 
     Args:
-        name: Such as ``N-BK7``, ``SF6 (Schott)``, ``CaF2``, ``water``.
-        maker: One of ``MAKERS``; any if None, in that order.
+        name: Name such as ``N-BK7``, ``SF6 (Schott)``, ``CaF2``, ``water``.
+        maker: One of ``MAKERS``; default: any, in that order.
 
     Raises:
-        LensError: No glass has this name (lens-glass); the nearest are suggested.
+        LensError: No glass has this name (lens-glass); the message suggests the nearest names.
     """
     maker = _maker(name, maker)
     found = _found(name, maker)
@@ -120,7 +125,7 @@ def find(name: str, maker: str | None = None) -> GlassData:
 
 @guarded
 def lookup(name: str, maker: str | None = None) -> GlassData | None:
-    """Finds like :func:`find`, but returns None for no such glass, and spends no time on hints."""
+    """Finds a glass like :func:`find`, but returns None if there is none; makes no suggestions."""
     return _found(name, _maker(name, maker))
 
 
@@ -142,10 +147,10 @@ def _found(name: str, maker: str | None) -> GlassData | None:
 
 @guarded
 def similar(label: str, nd: float, tolerance: float = 5e-4) -> GlassData | None:
-    """The catalogue's glass that a label of a lens file names, if its nd agrees.
+    """Finds the catalogue's glass that a lens file's label names, if its nd agrees; else None.
 
-    Labels hold more than names (``N-SK16 / SK16 class (Schott, 620/603)``): the words are tried
-    one after the other.
+    Labels hold more than names (``N-SK16 / SK16 class (Schott, 620/603)``), so each word is tried
+    in turn.
     """
     for word in _WORD.findall(label):
         key = _key(word)
@@ -177,7 +182,7 @@ def _maker(name: str, maker: str | None) -> str | None:
         if known.upper() == maker.upper():
             return known
     raise LensError(
-        f"glass {name!r}: no catalogue of the maker {short(maker)}{suggest(maker, MAKERS)}",
+        f"glass {name!r}: there is no catalogue of {short(maker)}{suggest(maker, MAKERS)}",
         "lens-glass",
     )
 
