@@ -86,18 +86,21 @@ def test_patterns_have_the_shares_of_their_makers() -> None:
     ("change", "message"),
     [
         ({"pattern": "xtranz"}, "pattern: wanted one of .*did you mean 'xtrans'"),
-        ({"pattern": "mono"}, "mono needs the channels Y, and this sensor has R, G, B"),
+        ({"pattern": "mono"}, "pattern: mono: wanted a sensor with channels Y, got R, G, B"),
         ({"full_well": 0}, "full_well: wanted a number of at least 1"),
         ({"full_well": float("nan")}, "full_well: wanted a number"),
         ({"quantum_efficiency": -np.ones((3, 401))}, "quantum_efficiency: R: wanted 0 to 1"),
         ({"quantum_efficiency": np.ones((2, 401))}, "wanted a curve for each of R, G, B, got 2"),
         ({"quantum_efficiency": np.ones((3, 7))}, "wanted 401 numbers, .* got 7"),
-        ({"wavelengths": np.zeros(401)}, "wavelengths: wanted at least two .* that rise"),
-        ({"quantum_efficiency": np.full((3, 401), 0.5)}, "wanted curves of R, G, B that differ"),
+        ({"wavelengths": np.zeros(401)}, "wavelengths: wanted at least two .* in ascending order"),
+        (
+            {"quantum_efficiency": np.full((3, 401), 0.5)},
+            "wanted linearly independent curves of R, G, B",
+        ),
         ({"read_noise": ((400, 2), (100, 3))}, "read_noise: iso: wanted a number above 400"),
         ({"iso_range": (400, 100)}, "iso_range: highest"),
         ({"black_level": 65535}, "black_level"),
-        ({"quantum": 1}, "no 'quantum'"),
+        ({"quantum": 1}, "sensor: wanted one of name, .*; got 'quantum'"),
     ],
 )
 def test_bad_values_are_named(change: dict[str, object], message: str) -> None:
@@ -169,7 +172,10 @@ def test_a_file_is_read(tmp_path) -> None:
     ("change", "message"),
     [
         ({"quantum_efficiency": None}, "quantum_efficiency: .*an object"),
-        ({"quantum_efficiency": {"R": [0, 1, 0], "G": [0, 1, 0]}}, "needs the channels B, G, R"),
+        (
+            {"quantum_efficiency": {"R": [0, 1, 0], "G": [0, 1, 0]}},
+            "wanted a sensor with channels B, G, R",
+        ),
         (
             {"quantum_efficiency": {**FILE["quantum_efficiency"], "B": [1, 2]}},  # type: ignore[dict-item]
             r"quantum_efficiency.B: wrong length: wanted 3 numbers, .* got 2",

@@ -173,9 +173,12 @@ def test_a_lamp_has_a_red_halo_on_film_without_backing() -> None:
         ({"schema": "daguerre-stock/9"}, "wanted 'daguerre-stock/0.1'"),
         ({"halation": {"base_mm": 0.1, "share": [0.1]}}, "share: wanted 3 numbers"),
         ({"halation": {"base_mm": -1, "share": [0, 0, 0]}}, "base"),
-        ({"wavelengths_nm": [400, 390]}, "rise"),
+        ({"wavelengths_nm": [400, 390]}, "in ascending order"),
         ({"balance_k": 20}, "balance"),
-        ({"wavelengths_nm": list(range(800, 980, 10))}, "see light between 380 and 780 nm"),
+        (
+            {"wavelengths_nm": list(range(800, 980, 10))},
+            "wanted layers sensitive between 380 and 780 nm",
+        ),
     ],
 )
 def test_bad_stock_files_name_the_field(
@@ -202,7 +205,7 @@ def test_wrong_numbers_in_layers_are_named(tmp_path: Path) -> None:
         stocks.load(path)
     data["layers"]["G"] = data["layers"]["R"]
     path.write_text(json.dumps(data))
-    with pytest.raises(InputError, match="each another than the others"):
+    with pytest.raises(InputError, match="with linearly independent curves"):
         stocks.load(path)
     data["layers"]["G"] = data["layers"]["R"] | {"sensitivity": [0.1]}
     path.write_text(json.dumps(data))

@@ -1,4 +1,4 @@
-"""Sensors: the library, files of the schema ``daguerre-sensor/0.1``, one sensor in numbers."""
+"""Image sensors: the library, files of the schema ``daguerre-sensor/0.1``, and ``Sensor``."""
 
 from .curve import Curve
 from .data import DarkCurrent, DualGain, HotPixels

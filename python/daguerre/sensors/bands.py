@@ -1,4 +1,4 @@
-"""Bands of wavelengths, and the weights by which a sensor's channels follow from them."""
+"""Wavelength bands of a frame, and the weights that convert them to a sensor's channels."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ MOST_CHANNELS = 4
 
 
 def check_bands(value: Any, where: str = "bands") -> int:
-    """A number of bands; 0: none."""
+    """Checks a number of bands; 0: none."""
     if value is None or (isinstance(value, int) and value == 0):
         return 0
     return whole(value, where, LEAST_BANDS, MOST_BANDS, f"{LEAST_BANDS} .. {MOST_BANDS}")
 
 
 def responses(sensor: Seeing) -> FloatArray:
-    """Weights of light on the film: at 380, 381 .. 780 nm, per nm, shape (C, 401).
+    """Response of each channel at 380, 381 .. 780 nm, per nm, shape (C, 401).
 
     Raises:
-        InputError: There are more channels than a film holds, or one that sees nothing.
+        InputError: There are more channels than a film can hold, or one has no sensitivity.
     """
     nm = np.arange(FIRST_NM, LAST_NM + 1)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -54,27 +54,27 @@ def responses(sensor: Seeing) -> FloatArray:
     totals = np.array([np.interp(fine, nm, row) @ white for row in rows])
     if not (totals > 0).all():
         raise InputError(
-            f"sensor: channel {np.flatnonzero(~(totals > 0))[0]}: wanted some sensitivity between "
-            f"{FIRST_NM:g} and {LAST_NM:g} nm, got none"
+            f"sensor: channel {np.flatnonzero(~(totals > 0))[0]}: wanted sensitivity above 0 "
+            f"between {FIRST_NM:g} and {LAST_NM:g} nm, got none"
         )
     return np.ascontiguousarray(rows / totals[:, None])
 
 
 def weights_of_bands(sensor: Seeing, bands: int) -> FloatArray:
-    """Channels of unit mean radiance in each band, shape (bands, C)."""
+    """Channel values for unit mean radiance in each band, shape (bands, C)."""
     nm = np.arange(FIRST_NM, LAST_NM + 1)
     rows = responses(sensor)
     return band_weights(bands, lambda at: np.stack([np.interp(at, nm, r) for r in rows], axis=1))
 
 
 def channels_from_bands(bands: NDArray[np.float32], sensor: Seeing) -> NDArray[np.float32]:
-    """Converts a frame's bands to a sensor's channels, as if it had been named before the render.
+    """Converts a frame's bands to a sensor's channels, as if rendered for that sensor.
 
     Args:
         bands: Bands of a frame, shape (H, W, N).
-        sensor: Sensor whose channels are wanted.
+        sensor: Sensor or film stock that defines the channels.
 
     Returns:
-        Channels, shape (H, W, C): D65 of luminance 1 is 1 in each.
+        Channels, shape (H, W, C), scaled so that D65 of luminance 1 is 1 in each.
     """
     return np.asarray(bands @ weights_of_bands(sensor, bands.shape[2]).astype(np.float32))

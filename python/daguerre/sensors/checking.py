@@ -1,4 +1,4 @@
-"""Whether a sensor's values are those of a sensor; what is not is named as in its file."""
+"""Checks a sensor's values; errors name each value as in the sensor file."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from .curve import FloatArray, rising, table
 from .data import SensorData
 
 MOST_SIDE, MOST_BITS = 65536, 16
-#: Condition of curves of size 1; the bodies of the library have 1.2 to 3.
+#: Largest condition number of normalised curves; the cameras of the library have 1.2 to 3.
 _MOST_ALIKE = 1e4
 
 
 def check(sensor: SensorData) -> None:
-    """Raises ``InputError`` for the first value that cannot be."""
+    """Raises ``InputError`` for the first invalid value."""
     where = f"sensor {sensor.name}"
     _light(sensor, where)
     _within(where, "pixel_pitch", sensor.pixel_pitch, 0.1, 1000)
@@ -61,19 +61,23 @@ def _light(sensor: SensorData, where: str) -> None:
         curve = table(f"{where}: quantum_efficiency: {name}", nm, row)
         if not ((nm > 380) & (nm < 780) & (curve > 0)).any():
             raise InputError(
-                f"{where}: quantum_efficiency: {name}: wanted light between 380 and 780 nm to make "
-                "electrons, got 0"
+                f"{where}: quantum_efficiency: {name}: wanted values above 0 between 380 and "
+                "780 nm, got only 0"
             )
     object.__setattr__(sensor, "wavelengths", nm)
     all_rows = table(f"{where}: quantum_efficiency", nm, rows)
     object.__setattr__(sensor, "quantum_efficiency", all_rows)
     if not tells_colors(all_rows, nm):
         raise InputError(
-            f"{where}: quantum_efficiency: wanted curves of {', '.join(sensor.channels)} that "
-            "differ between 380 and 780 nm, got some that are sums of others"
+            f"{where}: quantum_efficiency: wanted linearly independent curves of "
+            f"{', '.join(sensor.channels)} between 380 and 780 nm, got one that is nearly a sum of "
+            "others"
         )
     if sensor.pattern.cells.max() >= len(sensor.channels):
-        raise InputError(f"{where}: pattern: {sensor.pattern.name} has channels that are missing")
+        raise InputError(
+            f"{where}: pattern: wanted a pattern of the channels {', '.join(sensor.channels)}, got "
+            f"{sensor.pattern.name}"
+        )
     for name in ("infrared_cut", "cover_glass"):
         curve = getattr(sensor, name)
         if curve is not None:
@@ -82,7 +86,7 @@ def _light(sensor: SensorData, where: str) -> None:
 
 
 def tells_colors(curves: FloatArray, nm: FloatArray) -> bool:
-    """Whether no curve is a sum of the others: else nothing leads from channels back to XYZ."""
+    """Whether the curves are linearly independent, which the conversion to XYZ needs."""
     fine = np.array([np.interp(illuminants.NM, nm, row, left=0, right=0) for row in curves])
     sizes = np.linalg.norm(fine, axis=1, keepdims=True)
     return bool((sizes > 0).all() and np.linalg.cond(fine / sizes) < _MOST_ALIKE)
@@ -94,7 +98,7 @@ def _iso(sensor: SensorData, where: str) -> None:
     _within(where, "iso_range: highest", high, low, 1e7)
     _within(where, "base_iso", sensor.base_iso, low, high)
     if not sensor.read_noise:
-        raise InputError(f"{where}: read_noise: wanted at least one ISO with its noise")
+        raise InputError(f"{where}: read_noise: wanted at least one ISO with its noise, got none")
     last = 0.0
     for iso, noise in sensor.read_noise:
         _within(where, "read_noise: iso", iso, last, 1e7, above=last)

@@ -1,4 +1,4 @@
-"""A number by wavelength, as a table."""
+"""Tabulated curves by wavelength."""
 
 from __future__ import annotations
 
@@ -18,31 +18,31 @@ FloatArray = NDArray[np.float64]
 @guarded
 @dataclass(frozen=True, eq=False)
 class Curve(Value):
-    """A transmittance by wavelength, linear in between, and beyond its ends as there.
+    """A transmittance by wavelength, interpolated linearly, constant beyond its ends.
 
     Attributes:
-        wavelengths: nm, rising, shape (L,).
-        values: 0 to 1, shape (L,).
+        wavelengths: Wavelengths in ascending order, nm, shape (L,).
+        values: Transmittance, 0 to 1, shape (L,).
     """
 
     wavelengths: FloatArray
     values: FloatArray
 
     def at(self, nm: FloatArray) -> FloatArray:
-        """At other wavelengths, nm."""
+        """Returns the transmittance at wavelengths, nm."""
         return np.interp(np.asarray(nm, np.float64), self.wavelengths, self.values)
 
 
 def table(where: str, wavelengths: Any, values: Any, most: float = 1.0) -> FloatArray:
-    """Numbers of 0 to ``most``, one for each wavelength along the last axis.
+    """Checks a table: numbers of 0 to ``most``, one for each wavelength along the last axis.
 
     Raises:
-        InputError: They are not that; the message says which.
+        InputError: A number is missing or out of range; the message has its wavelength.
     """
     try:
         numbers = np.array(values, np.float64)
     except (TypeError, ValueError):
-        raise InputError(f"{where}: wanted numbers of equal count for each channel") from None
+        raise InputError(f"{where}: wanted equally many numbers for each channel") from None
     count = len(wavelengths)
     if numbers.ndim == 0 or numbers.shape[-1] != count:
         got = numbers.shape[-1] if numbers.ndim else "one number"
@@ -58,16 +58,16 @@ def table(where: str, wavelengths: Any, values: Any, most: float = 1.0) -> Float
 
 
 def rising(where: str, wavelengths: Any) -> FloatArray:
-    """At least two wavelengths, nm, each above the one before.
+    """Checks that there are at least two wavelengths, nm, in ascending order.
 
     Raises:
-        InputError: They are not that.
+        InputError: There are fewer, or they do not ascend.
     """
     try:
         nm = np.array(wavelengths, np.float64)
     except (TypeError, ValueError):
-        raise InputError(f"{where}: wanted a list of wavelengths, nm") from None
+        raise InputError(f"{where}: wanted a list of wavelengths in nm") from None
     if nm.ndim != 1 or nm.size < 2 or not np.isfinite(nm).all() or (np.diff(nm) <= 0).any():
-        raise InputError(f"{where}: wanted at least two wavelengths in nm that rise")
+        raise InputError(f"{where}: wanted at least two wavelengths in nm in ascending order")
     nm.flags.writeable = False
     return nm

@@ -1,4 +1,4 @@
-"""Values of a sensor as its file has them, checked."""
+"""Values of a sensor file, checked."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ FloatArray = NDArray[np.float64]
 @guarded
 @dataclass(frozen=True)
 class DarkCurrent:
-    """Electrons that heat makes in a photosite without light.
+    """Dark current of a photosite by temperature.
 
     Attributes:
-        rate: e-/s at that temperature.
-        temperature: deg C.
-        doubling: Kelvin in which the rate doubles.
+        rate: Dark current at ``temperature``, e-/s.
+        temperature: Temperature at which ``rate`` holds, deg C.
+        doubling: Temperature rise that doubles the rate, K.
     """
 
     rate: float = 0.0
@@ -33,7 +33,7 @@ class DarkCurrent:
     doubling: float = 6.0
 
     def factor(self, temperature: float | None) -> float:
-        """How much faster it is at a temperature (deg C; None: as stated)."""
+        """Returns the ratio to ``rate`` at a temperature (deg C; None: ``temperature``)."""
         if temperature is None:
             return 1.0
         number(temperature, "sensor: temperature", -273.15, 1000)
@@ -43,12 +43,12 @@ class DarkCurrent:
 @guarded
 @dataclass(frozen=True)
 class HotPixels:
-    """Photosites with much dark current.
+    """Hot pixels: photosites with a high dark current.
 
     Attributes:
-        share: Share of all photosites.
-        rate: Mean of theirs, e-/s at the temperature of the dark current; exponentially
-            distributed.
+        share: Share of all photosites, 0 to 1.
+        rate: Mean dark current of hot pixels, e-/s, at the temperature of the dark current. Their
+            rates have an exponential distribution.
     """
 
     share: float = 0.0
@@ -58,10 +58,10 @@ class HotPixels:
 @guarded
 @dataclass(frozen=True)
 class DualGain:
-    """The second, higher conversion gain of a photosite.
+    """Second, higher conversion gain of a photosite.
 
     Attributes:
-        iso: Lowest ISO at which it is used; the table of read noise may step there.
+        iso: Lowest ISO at which it is used; the read noise table may have a step there.
         full_well: Full well with this gain, e-.
     """
 
@@ -71,7 +71,7 @@ class DualGain:
 
 @dataclass(frozen=True, eq=False)
 class SensorData(Value):
-    """Values of a sensor; :class:`~daguerre.sensors.sensor.Sensor` names each with its unit."""
+    """Values of a sensor; :class:`~daguerre.sensors.sensor.Sensor` lists each with its unit."""
 
     name: str
     make: str
@@ -107,10 +107,10 @@ class SensorData(Value):
 
     @property
     def where(self) -> str:
-        """For messages."""
+        """Name of the sensor for messages."""
         return f"sensor {self.name}"
 
     @property
     def photosite_area(self) -> float:
-        """Area of a photosite, without fill factor, um2."""
+        """Area of a photosite (pixel pitch squared, without fill factor), um2."""
         return self.pixel_pitch**2

@@ -1,4 +1,4 @@
-"""Facts of a sensor as plain values: for JSON, and for the page on the terminal."""
+"""Facts about a sensor as plain values, for JSON and for the terminal."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .sensor import GREY_LX_S, SATURATION_LX_S, Sensor
 
 
 def isos(sensor: Sensor) -> list[float]:
-    """Whole stops from the base ISO to both ends of the range."""
+    """ISO values in whole stops from the base ISO to both ends of the range."""
     low, high = sensor.iso_range
     first = -math.floor(math.log2(sensor.base_iso / low) + 1e-9)
     last = math.floor(math.log2(high / sensor.base_iso) + 1e-9)
@@ -22,9 +22,9 @@ def isos(sensor: Sensor) -> list[float]:
 
 
 def snr_db(sensor: Sensor, iso: float, lux_s: float) -> float:
-    """SNR of the strongest channel in even D65 light, with PRNU: 20 log10 of signal over noise.
+    """SNR of the strongest channel in uniform D65 light, with PRNU, dB: 20 log10(signal / noise).
 
-    EMVA 1288 4.0 Linear, equation 18; NaN where it saturates.
+    EMVA 1288 4.0 Linear, equation 18; NaN where the channel saturates.
     """
     electrons = lux_s * float(sensor.white_electrons().max())
     if electrons > min(sensor.full_well_at(iso), SATURATION_LX_S / iso * electrons / lux_s):
@@ -36,7 +36,7 @@ def snr_db(sensor: Sensor, iso: float, lux_s: float) -> float:
 
 
 def row(sensor: Sensor, iso: float) -> dict[str, float]:
-    """Facts of a sensor at an ISO."""
+    """Facts about a sensor at one ISO."""
     gain = sensor.gain(iso)
     return {
         "iso": iso,
@@ -51,7 +51,7 @@ def row(sensor: Sensor, iso: float) -> dict[str, float]:
 
 
 def facts(sensor: Sensor) -> dict[str, Any]:
-    """All of a sensor."""
+    """All facts about a sensor."""
     names = sensor.channels
     per_lux_s = sensor.electrons_per_lux_s()
     peaks = sensor.efficiency(illuminants.NM)

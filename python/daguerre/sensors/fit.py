@@ -1,8 +1,8 @@
-"""Colour of a sensor: the matrix that best turns XYZ into its channels.
+"""Fits the matrices between XYZ and a sensor's channels.
 
-Channels are sums over the spectrum that XYZ does not have, so a matrix between them is a fit over
-some reflectances. Ours are the two kinds that meet Daguerre's cameras: those that renders make of
-RGB (Mallett and Yuksel 2019), a grid of them, and smooth ones as nature has: sigmoids of parabolas
+XYZ does not determine a sensor's channels, so a matrix between them is a least-squares fit over
+reflectances. Two kinds are used, as Daguerre's cameras see both: a grid of the reflectances that
+renders make from RGB (Mallett and Yuksel 2019), and smooth, natural ones: sigmoids of parabolas
 over wavelength (Jakob and Hanika 2019). White is kept exactly.
 """
 
@@ -25,7 +25,7 @@ FloatArray = NDArray[np.float64]
 
 @cache
 def reflectances() -> FloatArray:
-    """The surfaces of the fit at ``illuminants.NM``, shape (N, L)."""
+    """Reflectances of the fit at ``illuminants.NM``, shape (N, L)."""
     return np.concatenate([_upsampled(), _smooth()])
 
 
@@ -36,7 +36,7 @@ def _upsampled() -> FloatArray:
 
 
 def _smooth() -> FloatArray:
-    """Sigmoids of parabolas: slopes, bumps and dips of several heights and places."""
+    """Sigmoids of parabolas: slopes, bumps and dips of several heights and positions."""
     x = (illuminants.NM - 560) / 100
     rows = []
     for bend in (-2.0, -0.7, 0.0, 0.7, 2.0):
@@ -48,46 +48,46 @@ def _smooth() -> FloatArray:
 
 
 def _fitted(curves: FloatArray, light: FloatArray) -> FloatArray:
-    """The matrix (C, 3) from XYZ to sums with curves (C, L), exact for the light itself."""
+    """Fits the matrix (C, 3) from XYZ to sums with curves (C, L); exact for the light itself."""
     seen = reflectances() * light
     xyz, sums = seen @ illuminants.observer(), seen @ curves.T
     white, white_sums = illuminants.observer().T @ light, curves @ light
     normal = xyz.T @ xyz
-    # Least squares under one condition, by a multiplier (Boyd and Vandenberghe 2018, 16.2).
+    # Constrained least squares, by a Lagrange multiplier (Boyd and Vandenberghe 2018, 16.2).
     system = np.block([[normal, white[:, None]], [white[None], np.zeros((1, 1))]])
     right = np.vstack([xyz.T @ sums, white_sums[None]])
     return np.asarray(np.linalg.solve(system, right)[:3].T)
 
 
 class Seeing(Protocol):
-    """A sensor or a film stock: what sees light by wavelength."""
+    """Interface of a sensor or a film stock: sensitivity by wavelength."""
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Their names."""
+        """Names of the channels."""
 
     @property
     def hash(self) -> str:
-        """Hash of all that a frame's channels depend on."""
+        """Hash of all values on which a frame's channels depend."""
 
     def sensitivity(self, nm: ArrayLike) -> FloatArray:
-        """Sensitivity like that of ``Sensor``: D65 of Y = 1 is 1 in each channel, shape (C, L)."""
+        """Returns the sensitivity, scaled so that D65 of Y = 1 is 1 in each channel, (C, L)."""
 
 
 def channels_from_xyz(sensor: Seeing) -> FloatArray:
-    """Frame channels (D65 white is 1 in each) from XYZ (D65 white has Y = 1), shape (C, 3)."""
+    """Matrix from XYZ (D65 white has Y = 1) to frame channels (D65 white is 1 in each), (C, 3)."""
     curves = sensor.sensitivity(illuminants.NM) * illuminants.STEP
     return _fitted(curves, illuminants.d65())
 
 
 def _raw_curves(sensor: Response) -> FloatArray:
-    """Raw response with crosstalk; the strongest of D65 of Y = 1 is 1, as sums."""
+    """Raw response with crosstalk; summed with D65 of Y = 1, the strongest channel is 1."""
     curves = sensor.mixing @ (sensor.efficiency(illuminants.NM) * illuminants.NM)
     return np.asarray(curves / (curves @ illuminants.d65()).max())
 
 
 def colour_matrix(sensor: Response, xy: tuple[float, float]) -> FloatArray:
-    """Raw values from XYZ for a white."""
+    """Matrix from XYZ to raw values for a white, shape (C, 3)."""
     curves = _raw_curves(sensor)
     day = _fitted(curves, illuminants.d65())
     if xy == illuminants.D65_XY:
@@ -99,7 +99,7 @@ def colour_matrix(sensor: Response, xy: tuple[float, float]) -> FloatArray:
 
 
 def rgb_from_channels(sensor: Response, xy: tuple[float, float]) -> FloatArray:
-    """Linear Rec.709 from frame channels, balanced for a white."""
+    """Matrix from frame channels to linear Rec.709, balanced for a white, shape (3, C)."""
     if len(sensor.channels) == 1:
         return np.ones((3, 1))
     raw_from_channels = sensor.mixing @ np.diag(sensor.electrons_per_lux_s())

@@ -1,4 +1,4 @@
-"""The ideal sensors: no noise but that of light itself, and no error of colour."""
+"""Ideal sensors: no noise except shot noise, and no colour error."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ _SOURCE = "computed: CIE 1931 colour matching functions"
 
 @guarded
 def ideal(name: str = "ideal") -> Sensor:
-    """A full-frame sensor of 24 MP whose channels are X, Y and Z of the CIE, or one that sees all.
+    """Returns an ideal full-frame sensor of 24 MP, with colour or monochrome.
 
     Args:
-        name: ``ideal``: red, green and blue respond as the colour matching functions x, y, z, each
-            with one electron per photon at its peak, so a matrix turns raw values into exact
-            colours (Luther's condition). ``ideal-mono``: one electron per photon everywhere.
+        name: ``ideal``: red, green and blue respond as the CIE colour matching functions x, y, z,
+            each with one electron per photon at its peak. So a matrix converts raw values to exact
+            colours (Luther's condition). ``ideal-mono``: one electron per photon at all
+            wavelengths.
     """
     nm = np.arange(380.0, 781.0)
     if name == "ideal-mono":
@@ -50,5 +51,5 @@ def ideal(name: str = "ideal") -> Sensor:
         base_iso=100,
         iso_range=(1, 1e6),
     )
-    # The well is as deep as makes the speed by saturation 100.
+    # The full well gives a saturation-based speed of ISO 100.
     return sensor.with_(full_well=SATURATION_LX_S / 100 * float(sensor.white_electrons().max()))

@@ -1,4 +1,4 @@
-"""The sensors that ship with Daguerre, by name."""
+"""Library of sensors that ship with Daguerre, by name."""
 
 from __future__ import annotations
 
@@ -15,20 +15,21 @@ FOLDER = Path(__file__).parent / "library"
 
 
 def names() -> list[str]:
-    """Names of the library's sensors, sorted."""
+    """Returns the names of the library's sensors, sorted."""
     return sorted([*NAMES, *stems(FOLDER)])
 
 
 @guarded
 def load(name_or_path: str | Path | Sensor) -> Sensor:
-    """A sensor of the library or of a file.
+    """Loads a sensor of the library or from a file.
 
     Args:
-        name_or_path: A name of ``names()``, or a file of the schema ``daguerre-sensor/0.1``; a
-            sensor is itself.
+        name_or_path: A name from ``names()``, or a file of the schema ``daguerre-sensor/0.1``; a
+            ``Sensor`` is returned as it is.
 
     Raises:
-        InputError: An unknown name (the nearest are suggested), or a file that cannot be used.
+        InputError: The name is unknown (the message suggests the nearest), or the file cannot be
+            used.
     """
     if isinstance(name_or_path, Sensor):
         return name_or_path

@@ -1,4 +1,4 @@
-"""Colour filter arrays: which channel each photosite has."""
+"""Colour filter arrays: the channel of each photosite."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.files.value import Value
 
-#: Rows of the cell that repeats, by name; the first letter is the top left photosite of a picture.
+#: Rows of the repeating cell, by name; the first letter is the top left photosite of a picture.
 PATTERNS = {
     "mono": ("Y",),
     "bayer-rggb": ("RG", "GB"),
@@ -33,8 +33,8 @@ class Mosaic(Value):
     Attributes:
         name: ``bayer-rggb``, ``bayer-bggr``, ``bayer-grbg``, ``bayer-gbrg``, ``quad-bayer-rggb``,
             ``xtrans`` or ``mono``.
-        cells: Index of the channel of each photosite of the cell that repeats from the top left
-            corner, shape (h, w).
+        cells: Channel index of each photosite of the cell, which repeats from the top left corner,
+            shape (h, w).
     """
 
     name: str
@@ -42,10 +42,10 @@ class Mosaic(Value):
 
     @classmethod
     def of(cls, name: str, channels: tuple[str, ...], where: str = "sensor") -> Mosaic:
-        """The pattern of a name, for a sensor's channels.
+        """Returns the pattern of a name, for a sensor's channels.
 
         Raises:
-            UsageError: No such pattern, or one with channels that the sensor lacks.
+            UsageError: The pattern is unknown, or needs channels that the sensor lacks.
         """
         if name not in PATTERNS:
             raise UsageError(
@@ -56,19 +56,19 @@ class Mosaic(Value):
         letters = sorted(set("".join(rows)))
         if set(letters) != set(channels):
             raise UsageError(
-                f"{where}: pattern: {name} needs the channels {', '.join(letters)}, "
-                f"and this sensor has {', '.join(channels)}"
+                f"{where}: pattern: {name}: wanted a sensor with channels {', '.join(letters)}, "
+                f"got {', '.join(channels)}"
             )
         cells = [[channels.index(letter) for letter in row] for row in rows]
         return cls(name, np.array(cells, np.uint8))
 
     @property
     def shares(self) -> NDArray[np.float64]:
-        """Share of the photosites that each channel has, shape (C,)."""
+        """Share of the photosites of each channel, shape (C,)."""
         return np.bincount(self.cells.ravel()) / self.cells.size
 
     def neighbors(self) -> NDArray[np.float64]:
-        """Which channels stand around: share of channel j at the four sides of i, shape (C, C)."""
+        """Share of channel j among the four neighbours of channel i, shape (C, C)."""
         count = int(self.cells.max()) + 1
         out = np.zeros((count, count))
         for axis in (0, 1):
@@ -77,7 +77,7 @@ class Mosaic(Value):
         return np.asarray(out / out.sum(axis=1, keepdims=True))
 
     def channel_map(self, height: int, width: int) -> NDArray[np.uint8]:
-        """Index of the channel of every photosite, shape (height, width)."""
+        """Channel index of every photosite, shape (height, width)."""
         rows, columns = self.cells.shape
         tiles = (-(-height // rows), -(-width // columns))
         return np.tile(self.cells, tiles)[:height, :width]

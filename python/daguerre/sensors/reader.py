@@ -26,10 +26,10 @@ MEMBERS = (
 
 @guarded
 def read(path: str | Path) -> Sensor:
-    """Reads one sensor.
+    """Reads a sensor file.
 
     Raises:
-        InputError: With file and JSON path of what cannot be used.
+        InputError: The file cannot be used; the message has the file and JSON path.
     """
     return read_json_file(path, "sensor", SCHEMA, MEMBERS, _sensor)
 

@@ -1,4 +1,4 @@
-"""Response of a sensor: electrons that light makes in each photosite."""
+"""Response of a sensor: conversion of light to electrons."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ FloatArray = NDArray[np.float64]
 
 
 class Response(SensorData):
-    """Light to electrons, by the values of a sensor."""
+    """Conversion of light to electrons, from a sensor's values."""
 
     def efficiency(self, nm: ArrayLike) -> FloatArray:
-        """Electrons per photon on the photosite's whole area, with all filters, (C, L).
+        """Returns electrons per photon on the photosite's whole area, with all filters, (C, L).
 
         Args:
-            nm: Wavelengths, shape (L,).
+            nm: Wavelengths, nm, shape (L,).
         """
         at = line(nm, "efficiency: nm")
         curves = [
@@ -34,10 +34,10 @@ class Response(SensorData):
         return out
 
     def electrons_per_lux_s(self, white: FloatArray | None = None) -> FloatArray:
-        """Electrons that 1 lux s of a light makes in each channel's photosites, shape (C,).
+        """Returns the electrons per photosite for 1 lux s of a light, by channel, shape (C,).
 
         Args:
-            white: Radiance at ``illuminants.NM``, of any scale; None is D65.
+            white: Radiance at ``illuminants.NM``, of any scale; None: D65.
         """
         return self._of_d65.copy() if white is None else self._electrons_of(white)
 
@@ -52,10 +52,10 @@ class Response(SensorData):
 
     @property
     def mixing(self) -> FloatArray:
-        """Crosstalk of even light: channels from channels, shape (C, C)."""
+        """Matrix of crosstalk in uniform light, from channels to channels, shape (C, C)."""
         unmixed = np.eye(len(self.channels))
         return (1 - self.crosstalk) * unmixed + self.crosstalk * self.pattern.neighbors()
 
     def white_electrons(self, white: FloatArray | None = None) -> FloatArray:
-        """Electrons per lux s with crosstalk; see :meth:`electrons_per_lux_s`."""
+        """Returns electrons per lux s, with crosstalk; see :meth:`electrons_per_lux_s`."""
         return self.mixing @ self.electrons_per_lux_s(white)

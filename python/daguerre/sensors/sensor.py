@@ -1,4 +1,4 @@
-"""A sensor: how many electrons light makes in each photosite, and what number is read of them."""
+"""Sensor: conversion of light to electrons, and of electrons to digital numbers."""
 
 from __future__ import annotations
 
@@ -22,51 +22,52 @@ from .mosaic import Mosaic
 from .response import Response
 
 FloatArray = NDArray[np.float64]
-#: ISO 12232: the luminance exposure that just saturates is 78 / S lux s, half a stop above that of
-#: a white surface; that of middle grey of a developed picture is 10 / S.
+#: ISO 12232: the exposure that just saturates is 78 / S lux s, half a stop above that of a white
+#: surface; middle grey of a developed picture has 10 / S lux s.
 SATURATION_LX_S, GREY_LX_S = 78.0, 10.0
 
 
 @guarded(init=True)
 @dataclass(frozen=True, eq=False)
 class Sensor(Response):
-    """An image sensor, with the numbers of its maker or of a laboratory.
+    """An image sensor, with values from its maker or from measurements.
 
     Attributes:
         name: Name by which it is loaded.
         make: Make of the camera or sensor.
         model: Model of the camera or sensor.
-        source: Source of the numbers.
-        licence: Licence of the numbers.
+        source: Source of the values.
+        licence: Licence of the values.
         pixel_pitch: Pixel pitch, um.
-        resolution: Photosites, columns and rows.
-        pattern: The colour filter array.
-        channels: Names, ``("R", "G", "B")`` or ``("Y",)``.
-        wavelengths: Wavelengths of the quantum efficiency, nm, shape (L,); 0 beyond its ends.
-        quantum_efficiency: Electrons per photon that falls on the photosite's area (its fill
-            factor times that area, if one is stated), shape (C, L).
-        full_well: Electrons that a photosite holds, e-.
-        bit_depth: Bits of the digital numbers.
+        resolution: Number of photosites, columns and rows.
+        pattern: Colour filter array.
+        channels: Names of the channels, ``("R", "G", "B")`` or ``("Y",)``.
+        wavelengths: Wavelengths of the quantum efficiency, nm, shape (L,); beyond them it is 0.
+        quantum_efficiency: Electrons per photon on the photosite's area (times the fill factor, if
+            one is stated), shape (C, L).
+        full_well: Full-well capacity of a photosite, e-.
+        bit_depth: Bits of the digital numbers (DN).
         base_iso: Lowest ISO that the maker recommends.
         iso_range: Lowest and highest ISO that can be set.
         size: Width and height of the light-sensitive area, mm; default: resolution times pitch.
-        fill_factor: Share of a photosite's area that the quantum efficiency is about.
-        infrared_cut: Transmittance of the filter before the sensor; None: none, or in the quantum
-            efficiency already.
-        cover_glass: Transmittance of the cover glass, likewise.
-        read_noise: (ISO, e-) in rising order, linear in log ISO in between.
-        dual_gain: The second conversion gain, if there is one.
+        fill_factor: Share of a photosite's area to which the quantum efficiency applies.
+        infrared_cut: Transmittance of the infrared-cut filter; None: no filter, or included in the
+            quantum efficiency.
+        cover_glass: Transmittance of the cover glass; None: no glass, or included in the quantum
+            efficiency.
+        read_noise: Read noise as (ISO, e-), ascending by ISO, interpolated linearly in log ISO.
+        dual_gain: Second conversion gain; None: there is none.
         dark_current: Dark current by temperature.
-        prnu: Standard deviation of the photosites' response, relative.
-        dsnu: Standard deviation of the photosites' offsets, e-.
-        hot_pixels: Photosites with much dark current.
-        black_level: DN of no light.
+        prnu: Photo response non-uniformity: relative standard deviation of the response.
+        dsnu: Dark signal non-uniformity: standard deviation of the offsets, e-.
+        hot_pixels: Photosites with a high dark current.
+        black_level: DN without light.
         crosstalk: Share of the electrons that go to the four neighbours.
-        low_pass: Distance of the two images that the optical low-pass filter makes of each point
-            along either axis, um; 0: there is none.
-        serial: Serial number; it seeds PRNU, DSNU and hot pixels.
+        low_pass: Separation of the two images that the optical low-pass filter makes along each
+            axis, um; 0: no filter.
+        serial: Serial number, which seeds PRNU, DSNU and hot pixels.
         assumed: Names of the values without a source.
-        note: A remark.
+        note: Remark.
     """
 
     def __post_init__(self) -> None:
@@ -83,16 +84,16 @@ class Sensor(Response):
     def with_(self, **changes: Any) -> Sensor:
         """Returns a copy with other values, such as ``serial`` or ``infrared_cut=None``.
 
-        ``pattern`` may be a name; ``read_noise`` one number for every ISO.
+        ``pattern`` may be a name, ``read_noise`` one number for all ISO values.
 
         Raises:
-            UsageError: There is no such value.
-            InputError: A value that no sensor has.
+            UsageError: Unknown name of a value.
+            InputError: A value is out of range.
         """
         known = [field.name for field in dataclasses.fields(self)]
         for name in changes:
             if name not in known:
-                raise UsageError(f"sensor: no {name!r}; there are {', '.join(known)}")
+                raise UsageError(f"sensor: wanted one of {', '.join(known)}; got {name!r}")
         if isinstance(changes.get("pattern"), str):
             channels = changes.get("channels", self.channels)
             changes["pattern"] = Mosaic.of(changes["pattern"], channels, self.where)
@@ -103,9 +104,13 @@ class Sensor(Response):
         return dataclasses.replace(self, **changes)
 
     def sensitivity(self, nm: ArrayLike) -> FloatArray:
-        """Weights by which a frame's channels sum light: efficiency times wavelength, shape (C, L).
+        """Returns the spectral weights of a frame's channels, shape (C, L).
 
-        Scaled so that the integral (nm) with D65 of Y = 1, ``illuminants.d65()``, is 1.
+        They are efficiency times wavelength, scaled so that the integral over nm with D65 of
+        Y = 1, ``illuminants.d65()``, is 1.
+
+        Args:
+            nm: Wavelengths, nm, shape (L,).
         """
         at = np.asarray(nm, np.float64)
         fine = illuminants.NM
@@ -114,14 +119,14 @@ class Sensor(Response):
         return np.asarray(self.efficiency(at) * at / totals[:, None])
 
     def band_weights(self, count: int) -> FloatArray:
-        """Channels of a frame from its ``bands``, shape (count, C): ``daguerre.color.spectra``."""
+        """Returns the matrix from a frame's ``bands`` to channels, shape (count, C)."""
         from .bands import weights_of_bands
 
         return weights_of_bands(self, count)
 
     @property
     def hash(self) -> str:
-        """Hash of all that a frame's channels depend on: sensors with one hash see the same."""
+        """Hash of all values on which a frame's channels depend; equal hashes, equal channels."""
         digest = hashlib.sha256(" ".join(self.channels).encode())
         curves = self.sensitivity(illuminants.NM)
         digest.update(np.round(curves, 9).tobytes())
@@ -131,33 +136,33 @@ class Sensor(Response):
 
     @property
     def highest_dn(self) -> int:
-        """Highest number of the analogue-digital converter, DN."""
+        """Highest digital number of the analogue-digital converter, DN."""
         return int(2**self.bit_depth - 1)
 
     @property
     def saturation_iso(self) -> float:
-        """ISO 12232's speed by saturation: D65 of 78 / S lux s just fills a photosite."""
+        """Saturation-based speed S of ISO 12232: D65 of 78 / S lux s just fills a photosite."""
         return float(SATURATION_LX_S * self.white_electrons().max() / self.full_well)
 
     def gain(self, iso: float) -> float:
-        """DN per electron: D65 of 78 / ISO lux s reaches the highest number."""
+        """Returns the gain, DN/e-, with which D65 of 78 / ISO lux s reaches the highest DN."""
         self.check_iso(iso)
         electrons = SATURATION_LX_S / iso * float(self.white_electrons().max())
         return (self.highest_dn - self.black_level) / electrons
 
     def full_well_at(self, iso: float) -> float:
-        """Full well of a photosite at an ISO, e-."""
+        """Returns the full well of a photosite at an ISO, e-."""
         if self.dual_gain is not None and iso >= self.dual_gain.iso:
             return self.dual_gain.full_well
         return self.full_well
 
     def white_level(self, iso: float) -> int:
-        """Number of a full photosite, DN: the limit of the converter or of the full well."""
+        """Returns the DN at which a photosite saturates, by the converter or by the full well."""
         full = self.black_level + self.gain(iso) * self.full_well_at(iso)
         return int(min(self.highest_dn, math.floor(full + 0.5)))
 
     def read_noise_at(self, iso: float) -> float:
-        """Standard deviation of the noise that reading adds, e-."""
+        """Returns the read noise at an ISO: its standard deviation, e-."""
         number(iso, "sensor: iso", above=0)
         rows = self.read_noise
         if self.dual_gain is not None:
@@ -167,7 +172,7 @@ class Sensor(Response):
         return float(np.interp(math.log2(iso), np.log2(isos), noises))
 
     def dynamic_range(self, iso: float) -> float:
-        """Stops between saturation and a signal as strong as the noise in the dark."""
+        """Returns the dynamic range in stops, from signal equal to dark noise to saturation."""
         gain = self.gain(iso)
         most = (self.white_level(iso) - self.black_level) / gain
         dark = math.hypot(self.read_noise_at(iso), math.sqrt(1 / 12) / gain)
@@ -186,26 +191,28 @@ class Sensor(Response):
     # Colour -----------------------------------------------------------------------------------
 
     def channels_from_xyz(self) -> FloatArray:
-        """Matrix from XYZ to a frame's channels, (C, 3), fitted; D65 is exact. See ``fit``."""
+        """Returns the fitted matrix from XYZ to a frame's channels, (C, 3); exact for D65."""
         return fit.channels_from_xyz(self)
 
     def colour_matrix(self, white: Any = None) -> FloatArray:
-        """ColorMatrix of DNG: raw values from XYZ under a white, shape (C, 3).
+        """Returns DNG's ColorMatrix: the matrix from XYZ to raw values under a white, (C, 3).
 
-        Scaled so that the strongest channel of D65 white is 1; crosstalk is in it.
+        It is scaled so that the strongest channel of D65 white is 1, and includes crosstalk. The
+        matrix is fitted for D65 and for illuminant A, and interpolated by reciprocal colour
+        temperature, as in DNG.
 
         Args:
-            white: D65 (None), or K or (x, y) as in ``illuminants.white_xy``. Fitted for D65 and for
-                illuminant A; between them by reciprocal colour temperature, as DNG does.
+            white: Colour temperature, K, or chromaticity (x, y), as in ``illuminants.white_xy``;
+                None: D65.
         """
         return fit.colour_matrix(self, illuminants.white_xy(white))
 
     def neutral(self, white: Any = None) -> FloatArray:
-        """Raw values of a white surface in a light, its strongest channel 1, shape (C,)."""
+        """Returns the raw values of a white surface in a light, strongest channel 1, shape (C,)."""
         xy = illuminants.white_xy(white)
         raw = fit.colour_matrix(self, xy) @ illuminants.xyz_of_xy(xy)
         return np.asarray(raw / raw.max())
 
     def rgb_from_channels(self, white: Any = None) -> FloatArray:
-        """Matrix from channels to linear Rec.709, (3, C), balanced: white is (1, 1, 1)."""
+        """Returns the matrix from channels to linear Rec.709, (3, C); white becomes (1, 1, 1)."""
         return fit.rgb_from_channels(self, illuminants.white_xy(white))

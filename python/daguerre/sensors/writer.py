@@ -16,7 +16,7 @@ from .sensor import Sensor
 
 
 def write(path: str | os.PathLike[str], sensor: Sensor) -> None:
-    """Writes one sensor, whole or not at all. Its serial number stays behind.
+    """Writes a sensor file atomically, without the serial number.
 
     Raises:
         OutputError: The file cannot be written.

@@ -1,7 +1,4 @@
-"""Film: stocks, what light makes of them, and the way from there to a picture.
-
-See ``docs/film-stocks.md``.
-"""
+"""Film stocks: exposure, development, printing and scanning; see ``docs/film-stocks.md``."""
 
 from .curve import CharacteristicCurve
 from .library import load, names

@@ -1,4 +1,4 @@
-"""The characteristic curve of film: density by exposure (Hurter and Driffield 1890)."""
+"""Characteristic curve of film: density by exposure (Hurter and Driffield 1890)."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ from daguerre.doors import guarded
 from daguerre.errors import InputError
 
 FloatArray = NDArray[np.float64]
-#: log10 of exposure times ISO (lux s) of middle grey: 10 / S lux s, as of ISO 12232.
+#: log10 of exposure (lux s) times ISO for middle grey, 10 / S lux s by ISO 12232.
 GREY = 1.0
 
 
 @guarded
 @dataclass(frozen=True)
 class CharacteristicCurve:
-    """A straight line between a toe and a shoulder, which is what three numbers and two bends make.
+    """Characteristic curve: a straight line with a soft toe and a soft shoulder.
 
         D(x) = least + gamma (s(x - toe; toe_bend) - s(x - shoulder; shoulder_bend)),
         s(x; a) = a ln(1 + exp(x / a)),
 
-    x the log10 of exposure (lux s) times ISO. With a negative gamma density falls from
-    least - gamma (shoulder - toe): reversal film.
+    where x is log10 of exposure (lux s) times ISO. For reversal film gamma is negative, and density
+    falls from least - gamma (shoulder - toe).
 
     Attributes:
-        least: Density of base and fog.
+        least: Density of base plus fog.
         gamma: Slope of the straight line.
-        toe: Where the straight line would leave the base, x.
-        shoulder: Where it would end.
-        toe_bend: How soft it begins, in x.
-        shoulder_bend: How soft it ends, in x.
+        toe: Exposure x at which the straight line starts from the base.
+        shoulder: Exposure x at which the straight line ends.
+        toe_bend: Softness of the toe, in x.
+        shoulder_bend: Softness of the shoulder, in x.
     """
 
     least: float
@@ -44,10 +44,10 @@ class CharacteristicCurve:
     shoulder_bend: float = 0.3
 
     def check(self, where: str) -> None:
-        """Refuses what is no curve.
+        """Checks the values of the curve.
 
         Raises:
-            InputError: The message names the value.
+            InputError: A value is out of range; the message has its name.
         """
         for name in ("least", "gamma", "toe", "shoulder"):
             number(getattr(self, name), f"{where}: {name}", error=InputError)
@@ -55,21 +55,20 @@ class CharacteristicCurve:
         for name in ("toe_bend", "shoulder_bend"):
             number(getattr(self, name), f"{where}: {name}", 0, 10, above=0, error=InputError)
         if self.gamma == 0:
-            raise InputError(f"{where}: gamma: wanted another number than 0")
+            raise InputError(f"{where}: gamma: wanted a number other than 0, got 0")
         if not self.toe < self.shoulder:
             raise InputError(
-                f"{where}: shoulder: wanted more than the toe at {self.toe:g}, got "
-                f"{self.shoulder:g}"
+                f"{where}: shoulder: wanted more than the toe, {self.toe:g}, got {self.shoulder:g}"
             )
 
     def density(self, x: ArrayLike) -> FloatArray:
-        """Density at log exposures, of any shape."""
+        """Returns the density at log exposures x, of any shape."""
         at = np.asarray(x, np.float64)
         rise = _soft(at - self.toe, self.toe_bend) - _soft(at - self.shoulder, self.shoulder_bend)
         return np.asarray(self._start + self.gamma * rise)
 
     def exposure(self, density: ArrayLike) -> FloatArray:
-        """The log exposure that made a density; the nearest for what the curve does not reach."""
+        """Returns the log exposure x of a density; the nearest for densities beyond the curve."""
         x = np.linspace(self.toe - 3, self.shoulder + 3, 4096)
         d = self.density(x)
         order = slice(None) if self.gamma > 0 else slice(None, None, -1)
@@ -77,7 +76,7 @@ class CharacteristicCurve:
 
     @property
     def _start(self) -> float:
-        """Density of no light."""
+        """Density without light."""
         return self.least + max(0.0, -self.gamma * (self.shoulder - self.toe))
 
 

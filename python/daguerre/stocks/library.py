@@ -1,4 +1,4 @@
-"""The stocks that ship with Daguerre, by name."""
+"""Library of film stocks that ship with Daguerre, by name."""
 
 from __future__ import annotations
 
@@ -14,20 +14,21 @@ FOLDER = Path(__file__).parent / "library"
 
 
 def names() -> list[str]:
-    """Names of the library's stocks, sorted."""
+    """Returns the names of the library's stocks, sorted."""
     return stems(FOLDER)
 
 
 @guarded
 def load(name_or_path: str | Path | Stock) -> Stock:
-    """A stock of the library or of a file.
+    """Loads a film stock of the library or from a file.
 
     Args:
-        name_or_path: A name of ``names()``, or a file of the schema ``daguerre-stock/0.1``; a stock
-            is itself.
+        name_or_path: A name from ``names()``, or a file of the schema ``daguerre-stock/0.1``; a
+            ``Stock`` is returned as it is.
 
     Raises:
-        InputError: An unknown name (the nearest are suggested), or a file that cannot be used.
+        InputError: The name is unknown (the message suggests the nearest), or the file cannot be
+            used.
     """
     if isinstance(name_or_path, Stock):
         return name_or_path

@@ -1,4 +1,4 @@
-"""Exposed and developed film: densities, and the ways to a picture, by print or by scan."""
+"""Exposed and developed film: densities, and printing or scanning them to a picture."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ if TYPE_CHECKING:
 
 #: Density of middle grey on paper or in a slide, above white: -log10(0.18).
 GREY_DENSITY = 0.745
-_DARKEST = 1e-12  # exposures are logarithms
+_DARKEST = 1e-12  # smallest exposure, so that its logarithm is finite
 _STRIPE = 128  # rows
 
 
 @guarded
 @dataclass(eq=False)
 class Negative:
-    """Film after its bath; reversal stock gives a slide.
+    """Developed film: a negative, or a slide from reversal stock.
 
     Attributes:
         density: Density of each layer, shape (H, W, C).
-        stock: The film stock.
-        metadata: Facts of the frame.
+        stock: Film stock.
+        metadata: Metadata of the frame.
     """
 
     density: NDArray[np.float32]
@@ -53,9 +53,10 @@ class Negative:
         return f"<Negative {width}x{height}, {self.stock.name}>"
 
     def positive(self) -> NDArray[np.float32]:
-        """Linear Rec.709 of the print, or of the slide, white 1, middle grey 0.18: (H, W, 3).
+        """Returns the print or slide in linear Rec.709, white 1, middle grey 0.18: (H, W, 3).
 
-        A print is balanced by its lights: middle grey of the film's own light is neutral.
+        The printer lights balance a print: middle grey in the light of the stock's balance becomes
+        neutral.
         """
         out = np.empty((*self.density.shape[:2], 3), np.float32)
         matrix = _rgb_from_layers(self.stock)
@@ -76,9 +77,10 @@ class Negative:
         return light
 
     def scan(self) -> Frame:
-        """A frame of the light that made the densities, scene-linear, for any look.
+        """Returns a scene-linear frame of the light that made the densities, for any look.
 
-        Light on the toe or shoulder comes back as it went, noisier; grain stays.
+        The curve is inverted, so light on the toe or shoulder is recovered with more noise. Grain
+        stays.
         """
         from daguerre.frame.frame import Frame
 
@@ -91,13 +93,13 @@ class Negative:
         return Frame(rgb=rgb, metadata={**self.metadata, "exposure_compensation": None})
 
     def develop(self, **look: Any) -> Picture:
-        """The print, or the slide, for a screen; see ``daguerre.development.develop``."""
+        """Develops the print or slide for a display; see ``daguerre.development.develop``."""
         from daguerre.development import develop
 
         return develop(self.shown(), **look)
 
     def shown(self) -> Frame:
-        """The print, or the slide, as a frame: lit so that its white is developed to white."""
+        """Returns the print or slide as a frame, lit so that its white develops to white."""
         from daguerre.frame.frame import Frame
 
         facts = {**self.metadata, "luminance_exposure": GREY_LX_S / 0.18 / self.stock.iso}
@@ -106,7 +108,7 @@ class Negative:
 
 
 def exposed(stock: Stock, frame: Frame, ev: float, seed: int) -> Negative:
-    """Exposes a stock, see ``Stock.expose``."""
+    """Exposes a stock; see ``Stock.expose``."""
     seed = whole(seed, "stock: seed", 0, 2**53)
     number(ev, "stock: ev", -64, 64)
     facts = {**frame.metadata, "isoSpeed": stock.iso, "stock": stock.name}
@@ -128,18 +130,18 @@ def exposed(stock: Stock, frame: Frame, ev: float, seed: int) -> Negative:
 
 
 def layers_of(stock: Stock, frame: Frame) -> NDArray[np.float32]:
-    """Light on each layer: that of the stock's balance is 1; shape (H, W, C), none below 0.
+    """Light on each layer, shape (H, W, C), at least 0; white in the stock's balance is 1.
 
-    It takes the best that the frame has: channels of this stock, bands, or XYZ by a fitted matrix.
+    Uses the best data of the frame: this stock's channels, else bands, else XYZ by a fitted matrix.
     """
     seen = seen_of(frame, stock)
     matrix = (seen.channels / stock.white()[:, None]).astype(np.float32)
-    with np.errstate(invalid="ignore"):  # light that is no number is refused later
+    with np.errstate(invalid="ignore"):  # NaN in the light is an error later
         return np.asarray(np.maximum(seen.planes @ matrix.T, np.float32(0)), np.float32)
 
 
 def _spread(light: NDArray[np.float32], kernel: NDArray[np.float32] | None) -> NDArray[np.float32]:
-    """Light by way of the film; beyond the edges of the frame it is taken to go on as inside."""
+    """Convolves light with the film's kernels, as if the light continued beyond the frame."""
     if kernel is None:
         return light
     from daguerre.convolution.convolve import convolve
@@ -151,7 +153,7 @@ def _spread(light: NDArray[np.float32], kernel: NDArray[np.float32] | None) -> N
 
 
 def _rgb_from_layers(stock: Stock) -> NDArray[np.float64]:
-    """Linear Rec.709 from light of the layers, white from white, shape (3, C)."""
+    """Matrix from light on the layers to linear Rec.709, exact for white, shape (3, C)."""
     if len(stock.layers) == 1:
         return np.ones((3, 1))
     return np.asarray(rgb_from_xyz() @ np.linalg.inv(channels_from_xyz(stock)))
@@ -165,7 +167,7 @@ def _pitch_um(frame: Frame) -> float:
 
 
 def _add_grain(density: NDArray[np.float32], stock: Stock, pitch: float, seed: int) -> None:
-    """Grains by chance: the variance of density is in proportion to it (``Stock.grain_area``)."""
+    """Adds grain noise: the variance of density is proportional to it (``Stock.grain_area``)."""
     height, width = density.shape[:2]
     area = stock.grain_area()
     radius = np.sqrt(area / np.pi) / pitch

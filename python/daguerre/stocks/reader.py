@@ -23,10 +23,10 @@ MEMBERS = (
 
 @guarded
 def read(path: str | Path) -> Stock:
-    """Reads one stock.
+    """Reads a film stock file.
 
     Raises:
-        InputError: With file and JSON path of what cannot be used.
+        InputError: The file cannot be used; the message has the file and JSON path.
     """
     return read_json_file(path, "stock", SCHEMA, MEMBERS, _stock)
 

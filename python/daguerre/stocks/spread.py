@@ -1,10 +1,10 @@
-"""How light spreads in film: within the emulsion, and by way of the back of its base.
+"""Spread of light in film: within the emulsion, and by reflection at the back of the base.
 
-Light that the emulsion lets through, scattered in all directions, meets the back of the base at an
-angle theta, is sent back there with Fresnel's reflectance (all of it beyond the critical angle),
-and comes to the emulsion again at r = 2 d tan(theta). A patch that shines into all directions alike
-(Lambert) so brings the film, per area, cos^4(theta) R(theta) / (pi (2 d)^2): a disc within the
-critical angle that is nearly dark, and a bright ring from there on, the halo about lamps on film.
+Light that passes the emulsion is scattered and meets the back of the base at an angle theta. There
+it is reflected with Fresnel's reflectance (all of it beyond the critical angle) and returns to the
+emulsion at r = 2 d tan(theta), for a base of thickness d. A Lambertian patch thus adds, per area,
+cos^4(theta) R(theta) / (pi (2 d)^2): nearly nothing within the critical angle, and a bright ring
+from there on, the halo around lamps on film.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from daguerre.post.kernels import delta, radial
 from .stock import Halation, Stock
 
 Floats = NDArray[np.float32]
-#: Radius to which the halo is followed, in the ring's; 98 % of what comes back is within.
+#: Radius of the kernel, in radii of the ring; it holds 98 % of the returned light.
 _REACH = 8.0
 
 
 def halo(halation: Halation, pitch_um: float) -> tuple[Floats, float]:
-    """The kernel of what comes back (sum 1), and the share of the scattered light that does.
+    """Returns the kernel of the reflected light (sum 1), and the share that is reflected.
 
     Args:
         halation: Base and index.
@@ -42,7 +42,7 @@ def halo(halation: Halation, pitch_um: float) -> tuple[Floats, float]:
 
 
 def reflectance(cosine: NDArray[np.float64], index: float) -> NDArray[np.float64]:
-    """Fresnel's, from within the base to air, of light without polarization."""
+    """Fresnel reflectance from the base to air, for unpolarized light."""
     sine2 = index**2 * (1 - cosine**2)
     total = sine2 >= 1
     outside = np.sqrt(np.where(total, 0, 1 - np.minimum(sine2, 1)))
@@ -52,7 +52,7 @@ def reflectance(cosine: NDArray[np.float64], index: float) -> NDArray[np.float64
 
 
 def kernels(stock: Stock, pitch_um: float) -> Floats | None:
-    """Kernels of light in each layer, (h, w, C); sums above 1 by the back. None: no spread."""
+    """Kernels of each layer, (h, w, C); halation makes sums exceed 1. None: no spread."""
     spread = _emulsion(stock.spread / pitch_um)
     if stock.halation is None:
         if len(spread) == 1:
@@ -68,7 +68,7 @@ def kernels(stock: Stock, pitch_um: float) -> Floats | None:
 
 
 def _emulsion(sigma_px: float) -> Floats:
-    if sigma_px < 0.1:  # less than a hundredth of the light leaves its pixel
+    if sigma_px < 0.1:  # less than 1 % of the light leaves its pixel
         return delta(1)
     size = 2 * int(np.ceil(4 * sigma_px)) + 1
     return radial(size, lambda r: np.exp(-0.5 * (r / sigma_px) ** 2))

@@ -1,4 +1,4 @@
-"""A film stock: what its layers see, how dense light makes them, its spread and its grain."""
+"""Film stock: sensitivity, characteristic curves, spread of light and grain."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 KINDS = ("negative", "reversal")
-#: RMS granularity is measured through a round hole of 48 um (ISO 10505), so far above base.
+#: RMS granularity is measured with a round aperture of 48 um (ISO 10505), at density 1 above base.
 HOLE_UM, GRAIN_DENSITY = 48.0, 1.0
 
 
 @guarded(init=True)
 @dataclass(frozen=True)
 class Halation:
-    """Light that comes through the emulsion, is sent back behind it and exposes again.
+    """Halation: light that passes the emulsion is reflected at the back and exposes it again.
 
     Attributes:
         base: Thickness of the film's base, mm.
         index: Refractive index of the base.
-        share: Share of the light on each layer that the emulsion lets through, scattered, and the
-            backing does not swallow; one number for each layer.
+        share: Share of the light on each layer that passes the emulsion, scattered, and is not
+            absorbed by the backing; one number for each layer.
     """
 
     base: float
@@ -54,9 +54,9 @@ class Layer(Value):
     """A layer of emulsion.
 
     Attributes:
-        name: R, G, B, or Y of black-and-white film.
-        sensitivity: At the stock's wavelengths: response per watt, of any scale, shape (L,).
-        curve: Density by exposure.
+        name: ``R``, ``G`` or ``B``; ``Y`` for black-and-white film.
+        sensitivity: Response per watt at the stock's wavelengths, of any scale, shape (L,).
+        curve: Characteristic curve.
     """
 
     name: str
@@ -72,16 +72,17 @@ class Stock(Value):
     Attributes:
         name: Name by which it is loaded.
         kind: ``negative`` or ``reversal``.
-        source: Source of the numbers.
+        source: Source of the values.
         iso: Film speed, ISO.
         wavelengths: Wavelengths of the sensitivities, nm, shape (L,).
         layers: Three layers (R, G, B) or one (Y).
-        balance: Colour temperature of the light that it draws neutral, K.
-        granularity: RMS granularity x 1000: standard deviation of density behind a hole of 48 um,
-            1 above base.
-        spread: Standard deviation of light's way in the emulsion, um.
-        halation: Halation by the back; None: the backing absorbs all light.
-        paper: Curve of the paper that negatives are printed on, x in log10 of its own exposure.
+        balance: Colour temperature of the light that the film renders neutral, K.
+        granularity: RMS granularity: 1000 times the standard deviation of density through an
+            aperture of 48 um, at density 1 above base.
+        spread: Standard deviation of the spread of light in the emulsion, um.
+        halation: Halation; None: the backing absorbs all light.
+        paper: Characteristic curve of the paper for printing negatives; x is log10 of the paper's
+            exposure.
     """
 
     name: str
@@ -103,7 +104,7 @@ class Stock(Value):
         return f"<Stock {self.name}: {self.kind}, ISO {self.iso:g}>"
 
     def with_(self, **changes: Any) -> Stock:
-        """Returns a copy with other values, such as ``balance`` or ``halation=None``."""
+        """Returns a copy with other values, such as ``balance=3200`` or ``halation=None``."""
         return replace(self, **changes)
 
     @property
@@ -112,7 +113,7 @@ class Stock(Value):
         return tuple(layer.name for layer in self.layers)
 
     def sensitivity(self, nm: ArrayLike) -> FloatArray:
-        """Sensitivity of the layers: D65 of Y = 1 is 1 in each, (C, L); see ``Sensor``."""
+        """Returns the sensitivity, scaled so that D65 of Y = 1 is 1 in each layer, shape (C, L)."""
         fine = illuminants.NM
         rows, at = [], np.asarray(nm, np.float64)
         for layer in self.layers:
@@ -123,13 +124,13 @@ class Stock(Value):
 
     @property
     def hash(self) -> str:
-        """Hash of all that a frame's channels depend on."""
+        """Hash of all values on which a frame's channels depend."""
         digest = hashlib.sha256(" ".join(self.channels).encode())
         digest.update(np.round(self.sensitivity(illuminants.NM), 9).tobytes())
         return digest.hexdigest()[:16]
 
     def white(self) -> FloatArray:
-        """Light of its balance in channels that D65 has 1 in, shape (C,)."""
+        """Channels of white in the stock's balance, where D65 white is 1, shape (C,)."""
         if self.balance == illuminants.D65_KELVIN:
             return np.ones(len(self.layers))
         light = illuminants.planck(self.balance)
@@ -137,10 +138,11 @@ class Stock(Value):
         return np.array([illuminants.integral(row) for row in rows])
 
     def grain_area(self) -> float:
-        """Area of a grain or cloud of dye that makes the granularity, um2, if grains lie by chance.
+        """Area of a grain or dye cloud that gives the granularity, um2, for randomly placed grains.
 
-        Nutting's law has the mean density of N grains of area a on an area A as log10(e) N a / A;
-        their number's variance is its mean, so that of density is log10(e) a D / A (Siedentopf).
+        By Nutting's law, N grains of area a on an area A have the mean density
+        D = log10(e) N a / A. The variance of N is its mean, so the variance of D is
+        log10(e) a D / A (Siedentopf).
         """
         hole = math.pi * (HOLE_UM / 2) ** 2
         return (self.granularity / 1000) ** 2 * hole / (math.log10(math.e) * GRAIN_DENSITY)
@@ -150,11 +152,11 @@ class Stock(Value):
 
         Args:
             frame: Frame with exposure metadata.
-            ev: Exposure compensation: light times 2^ev.
+            ev: Exposure compensation, EV.
             seed: Seed of the grain.
 
         Raises:
-            InputError: The frame does not say how it was exposed.
+            InputError: The frame has no exposure metadata.
         """
         from .negative import exposed
 
@@ -181,19 +183,26 @@ def _check(stock: Stock) -> None:
                 f"wavelength, got {seen.size}"
             )
         if not (np.isfinite(seen).all() and (seen >= 0).all() and seen.any()):
-            raise InputError(f"{here}: sensitivity: wanted numbers of at least 0, and some above")
+            raise InputError(
+                f"{here}: sensitivity: wanted numbers of at least 0, at least one of them above 0"
+            )
         layer.curve.check(here)
         if (layer.curve.gamma < 0) != (stock.kind == "reversal"):
             wanted = "below 0" if stock.kind == "reversal" else "above 0"
-            raise InputError(f"{here}: gamma: of {stock.kind} film wanted {wanted}")
+            raise InputError(
+                f"{here}: gamma: wanted a number {wanted} for {stock.kind} film, got "
+                f"{layer.curve.gamma:g}"
+            )
     if not tells_colors(np.array([layer.sensitivity for layer in stock.layers]), nm):
         raise InputError(
-            f"{where}: sensitivity: wanted layers that see light between 380 and 780 nm, each "
-            "another than the others"
+            f"{where}: sensitivity: wanted layers sensitive between 380 and 780 nm, with linearly "
+            "independent curves"
         )
     if stock.kind == "negative":
         if stock.paper is None:
-            raise InputError(f"{where}: paper: wanted its curve; negatives are printed on it")
+            raise InputError(
+                f"{where}: paper: wanted the curve of the paper to print a negative, got none"
+            )
         stock.paper.check(f"{where}: paper")
         number(stock.paper.gamma, f"{where}: paper: gamma", above=0, error=InputError)
     if stock.halation is not None:
