@@ -96,7 +96,7 @@ def test_cases_are_the_same_in_each_run() -> None:
         (lambda: dg.load("a\0b"), "load: path: wanted a path"),
         (
             lambda: dg.post.star(np.ones((6, 8, 3)), f_number=8, sensor=(36, 24)),
-            "star: wanted a picture wide enough",
+            "star: wanted a kernel that reaches beyond the star's core",
         ),
         (
             lambda: analysis.lateral_colour(bench(), [5.0], [0.0, 550.0]),

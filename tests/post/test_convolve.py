@@ -185,5 +185,5 @@ def test_an_own_kernel_must_fit_into_the_picture(tmp_path: object) -> None:
     image = RNG.random((40, 40, 3)).astype(np.float32)
     out = dg.post.spread_by(image, file=path)
     np.testing.assert_allclose(out[:, 2:], image[:, :-2], atol=1e-6)
-    with pytest.raises(InputError, match=r"wanted no more than the picture's 40 x 20 px, got 5 x"):
+    with pytest.raises(InputError, match=r"wanted at most the picture's size, 40 x 20 px, got 5 x"):
         dg.post.spread_by(image[:20], file=path)

@@ -124,7 +124,7 @@ def test_ends_that_a_lens_does_not_show_are_unknown_and_counted():
     found = motion.turned(planes, Warp.of(canvas, place), Rows(0, HEIGHT))
     assert np.isnan(found["motion.U"]).all()
     assert motion.remarks() == [
-        f"{WIDTH * HEIGHT} motions, whose ends the map does not show, were set to NaN"
+        f"{WIDTH * HEIGHT} motion vectors that end outside the map's result are set to NaN"
     ]
 
 

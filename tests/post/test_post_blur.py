@@ -137,7 +137,9 @@ def test_sky_and_large_blur_are_said_and_negative_depth_is_refused() -> None:
 
 def test_wrong_lenses_and_shapes_are_named() -> None:
     image, depth = spots(), np.full(SHAPE, 4.0)
-    with pytest.raises(UsageError, match=r"focus: wanted more than the focal length, 100 mm"):
+    with pytest.raises(
+        UsageError, match=r"focus: wanted a distance beyond the focal length of 100 mm"
+    ):
         dg.post.depth_of_field(image, depth, **{**LENS, "focus": 0.1}, **FILM)
     with pytest.raises(UsageError, match="f_stop: wanted"):
         dg.post.depth_of_field(image, depth, focal_length=100, focus=4, **FILM)

@@ -65,7 +65,7 @@ def test_where_no_light_is_left_nothing_comes_back(tmp_path, capsys):
     source = write(tmp_path / "in.exr", planes())
     word = "vignetting:model=polynomial,k1=-2,inverse=1"
     assert dg.cli.main(["post", str(source), "-o", str(source), "--effect", word]) == 0
-    assert "pixels, which get no light, were set to 0" in capsys.readouterr().err
+    assert "pixels that get no light are set to 0" in capsys.readouterr().err
     found = read(source)[0]["R"]
     assert found[0, 0] == 0
     assert np.isfinite(found).all()

@@ -75,7 +75,7 @@ def test_a_map_of_a_part_leaves_the_rest_black(tmp_path, capsys):
     assert dg.cli.main(words) == 0
     alpha = read(source)[0]["A"]
     assert np.array_equal(np.flatnonzero(alpha.any(axis=1)), np.arange(20, 30))
-    assert f"{54 * 64} pixels, for which" in capsys.readouterr().err
+    assert f"{54 * 64} pixels where the distortion model is not defined" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -150,7 +150,9 @@ def test_the_model_s_end_is_exact_and_said(tmp_path, capsys):
     source = write(tmp_path / "in.exr", planes())
     word = "distortion:k1=-0.5,fx=30,inverse=1"
     assert dg.cli.main(["post", str(source), "-o", str(source), "--effect", word]) == 0
-    assert "pixels, for which the model has no answer" in capsys.readouterr().err
+    assert (
+        "pixels where the distortion model is not defined are set to 0" in capsys.readouterr().err
+    )
     assert read(source)[0]["A"][0, 0] == 0
 
 
@@ -167,7 +169,8 @@ def test_an_anamorphic_lens_bends_files_and_straightens_them(tmp_path, capsys):
         word = f"distortion:{SQUEEZED},inverse={inverse}"
         assert dg.cli.main(["post", str(one), "-o", str(other), "--effect", word]) == 0
     assert (
-        "motion.U: moved with their pixels, not turned: a motion has two" in capsys.readouterr().err
+        "motion.U: the other coordinate is missing, so the values are moved with the pixels"
+        in capsys.readouterr().err
     )
     first, middle, last = (read(path)[0]["G"] for path in (source, bent, back))
     inner = np.s_[10:-10, 12:-12]
@@ -206,11 +209,11 @@ def test_a_lens_bends_each_colour_its_own_way():
 @pytest.mark.parametrize(
     ("word", "message"),
     [
-        ("model=division,k3=1,fx=9", "k3: division has k1, k2"),
-        ("model=equisolid,k1=1,fx=9", "k1: equisolid has no coefficients"),
-        ("k4=1,fx=9", "k4: brown-conrady has k1, k2, k3, p1, p2"),
+        ("model=division,k3=1,fx=9", "wanted a coefficient of division (k1, k2), got k3"),
+        ("model=equisolid,k1=1,fx=9", "wanted a coefficient of equisolid (it has none), got k1"),
+        ("k4=1,fx=9", "wanted a coefficient of brown-conrady (k1, k2, k3, p1, p2), got k4"),
         ("model=lens,sensor=36x24", "lens: wanted a name"),
-        ("k1=0.1", "focal_length: wanted a number of mm"),
+        ("k1=0.1", "focal_length: wanted a focal length in mm"),
         ("k1=0.1,fx=0", "fx: wanted a number of px of at least 0.001"),
         ("k1=0.1,fx=9,filter=nearest", "filter: wanted one of cubic, linear"),
     ],

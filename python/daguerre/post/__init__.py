@@ -1,7 +1,7 @@
-"""The darkroom: imperfections of a lens in 2D, for scene-linear pictures of any renderer.
+"""The darkroom: 2D lens and film effects for scene-linear pictures of any renderer.
 
 Each effect is a function on arrays of shape (H, W, C), and an entry of ``daguerre post --list``
-with the same parameters. None changes its argument.
+with the same parameters. Functions return a new array and do not change their arguments.
 """
 
 from __future__ import annotations

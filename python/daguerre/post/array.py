@@ -1,4 +1,4 @@
-"""Effects on arrays: one band that is the whole picture."""
+"""Applies effects to whole pictures in memory."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def on_array(
     """Applies an effect to a whole picture.
 
     Args:
-        effect: An effect of the list.
-        image: Scene-linear, shape (H, W, C); it is not changed.
-        values: Parameters by name; those that are None count as not given.
-        planes: Planes that the effect needs besides colour, by usual channel names, shape (H, W).
+        effect: Effect of the catalogue.
+        image: Scene-linear picture, shape (H, W, C); it is not changed.
+        values: Parameters by name; None: the default.
+        planes: Further planes that the effect needs, by usual channel names, shape (H, W).
 
     Raises:
-        UsageError: A wrong shape, or a wrong parameter.
+        UsageError: A shape or a parameter is wrong.
     """
     given = {name: value for name, value in values.items() if value is not None}
     known = effect.values(given, effect.name, UsageError)
@@ -45,18 +45,18 @@ def step_on_array(
     make: Callable[[Canvas], Step],
     planes: Mapping[str, NDArray[Any]] | None = None,
 ) -> Image:
-    """A step on a whole picture; ``name`` is for messages."""
+    """Applies a step to a whole picture; ``name`` is for messages."""
     array = to_numbers(image, name, "image", "numbers of shape (H, W, C)", UsageError)
     if array.ndim != 3 or array.dtype.kind not in "fiu" or 0 in array.shape:
         raise UsageError(
-            f"{name}: image: wanted numbers of shape (H, W, C), got {array.shape} {array.dtype}"
+            f"{name}: image: wanted numbers of shape (H, W, C), got {array.dtype} of {array.shape}"
         )
     planes = {key: np.asarray(plane) for key, plane in (planes or {}).items()}
     for channel, plane in planes.items():
         if plane.shape != array.shape[:2] or plane.dtype.kind not in "fiu":
             raise UsageError(
                 f"{name}: {channel}: wanted numbers of shape {array.shape[:2]}, "
-                f"got {plane.shape} {plane.dtype}"
+                f"got {plane.dtype} of {plane.shape}"
             )
     canvas = Canvas.of(array.shape, tuple(planes or ()), name)
     whole = Rows(0, canvas.height)

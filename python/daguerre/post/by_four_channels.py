@@ -1,4 +1,4 @@
-"""Pictures of any number of channels for code that takes four at a time."""
+"""Splits pictures of any number of channels for code that takes four at a time."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from .picture import Image
 
 
 def by_four_channels(image: Image, spread: Callable[[Image], Image]) -> Image:
-    """Applies ``spread`` to a picture (H, W, C), four channels at a time: shape (rows, W, C).
+    """Applies ``spread`` to a picture (H, W, C), four channels at a time; returns (rows, W, C).
 
     Args:
-        image: Any number of channels.
-        spread: From (H, W, 4) to (rows, W, 4), channel by channel.
+        image: Picture with any number of channels.
+        spread: Function from (H, W, 4) to (rows, W, 4) that does not mix channels.
     """
     parts = []
     count = image.shape[2]

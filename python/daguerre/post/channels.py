@@ -1,4 +1,4 @@
-"""Which channel of a file holds depth or motion: every renderer has names of its own."""
+"""Finds the channels of a file that hold depth or motion; renderers name them differently."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from daguerre.errors import InputError
 
 from .picture import Canvas
 
-#: Usual names by role, ours first; compared without regard to case.
+#: Usual names by role, Daguerre's first; case does not matter.
 USUAL = {
     "depth": ("depth.Z", "Z", "depth.V", "depth.R", "depth", "ViewLayer.Depth.Z"),
     "motion.u": ("motion.U", "motion.X", "Vector.X", "velocity.X", "forward.u", "motionvector.R"),
@@ -17,15 +17,15 @@ PARTS = {"motion": ("motion.u", "motion.v")}
 
 
 def roles_of(need: str) -> tuple[str, ...]:
-    """The channels that a need stands for: "motion" is two."""
+    """Roles of the channels for a need; "motion" needs two."""
     return PARTS.get(need, (need,))
 
 
 def find(canvas: Canvas, role: str) -> str:
-    """The channel for a role: the one that the user named, or one of a usual name.
+    """Finds the channel for a role: the one that the user named, or one with a usual name.
 
     Raises:
-        InputError: There is none; the message says what there is.
+        InputError: There is no such channel; the message lists the channels of the file.
     """
     given = canvas.roles.get(role)
     wanted = (given,) if given is not None else USUAL[role]
@@ -33,8 +33,8 @@ def find(canvas: Canvas, role: str) -> str:
     for name in wanted:
         if name.lower() in names:
             return names[name.lower()]
-    have = ", ".join(canvas.planes[:24]) or "none besides colour"
+    have = ", ".join(canvas.planes[:24]) or "only colour"
     raise InputError(
         f"{canvas.where}: channel for {role}: wanted {' or '.join(wanted)}, got {have} "
-        f"(--channel {role}=NAME names another)"
+        f"(--channel {role}=NAME sets another)"
     )

@@ -1,4 +1,4 @@
-"""A picture for the eye of what the darkroom made."""
+"""Writes results of the darkroom as PNG for viewing."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .picture import Canvas, Image
 
 
 class Display:
-    """Writes a PNG row by row: sRGB, clipped at 1, as ``Frame.save`` does."""
+    """Writes a PNG row by row: sRGB, clipped at 1, like ``Frame.save``."""
 
     def __init__(self, path: Path, canvas: Canvas, target: str | os.PathLike[str]) -> None:
         """Begins a file at ``path``; messages call it ``target``."""
@@ -23,7 +23,7 @@ class Display:
         self._writer = PngWriter(path, canvas.width, canvas.height, target=target)
 
     def write(self, image: Image) -> None:
-        """The next rows, shape (rows, W, C); alpha is left out."""
+        """Writes the next rows, shape (rows, W, C), without alpha."""
         colors = image[:, :, : image.shape[2] - self._alpha]
         rgb = np.broadcast_to(colors, (*colors.shape[:2], 3))
         self._writer.write(Frame(np.ascontiguousarray(rgb)).display())

@@ -1,4 +1,4 @@
-"""Effects: by which name, with which parameters, and how one is put to work on a picture."""
+"""Effects: names, parameters, and the steps that apply them to a picture."""
 
 from __future__ import annotations
 
@@ -17,45 +17,45 @@ Values = Mapping[str, Any]
 
 
 class Step:
-    """One effect with its parameters, made for one picture: the base of all.
+    """Base class of steps: one effect with its parameters, prepared for one picture.
 
-    A step is a function of rows: what it makes of them must not depend on how a picture is cut.
+    A step computes rows. Its result must not depend on how the picture is cut into bands.
 
     Attributes:
-        reach: How many rows above and below it reads; see also :meth:`reads`.
-        block: Rows that it makes at a time; None: as the engine likes; 0: all at once.
+        reach: Number of rows above and below that it reads; see also :meth:`reads`.
+        block: Number of rows that it computes at a time; None: any; 0: all at once.
     """
 
     reach: int = 0
     block: int | None = None
 
     def reads(self, rows: Rows) -> Rows:
-        """Which rows it needs to make these; may go beyond the picture."""
+        """Returns the source rows needed for these rows; they may lie beyond the picture."""
         return rows.grown(self.reach)
 
     def prepare(self, source: Source) -> None:
-        """Before the first row is made: to look at the whole picture, band by band."""
+        """Reads the whole picture, band by band, before the first row is computed, if needed."""
 
     def apply(self, band: Band, rows: Rows) -> Band:
-        """Makes ``rows`` from a band that has those that ``reads`` asked for."""
+        """Computes ``rows`` from a band with the rows that ``reads`` returned."""
         raise NotImplementedError
 
     def remarks(self) -> list[str]:
-        """Remarks for the user when the picture is done."""
+        """Returns notes for the user after the picture is done."""
         return []
 
 
 @dataclass(frozen=True)
 class Effect:
-    """An entry of the list of effects.
+    """An entry of the catalogue of effects.
 
     Attributes:
-        name: On the command line and in recipes.
-        summary: One line.
-        parameters: With units and defaults.
-        make: A step for a picture, from all values by name.
-        needs: Channels besides colour: "depth", "motion".
-        last: Whether it belongs behind all others, wherever it is named.
+        name: Name on the command line and in recipes.
+        summary: Help text of one line.
+        parameters: Parameters with units and defaults.
+        make: Function that makes the step for a picture from all values by name.
+        needs: Further channels that it needs: "depth", "motion".
+        last: Whether it is applied after all others, wherever the user names it.
     """
 
     name: str
@@ -66,11 +66,11 @@ class Effect:
     last: bool = False
 
     def values(self, given: Values, where: str, error: type[InputError | UsageError]) -> Values:
-        """All parameters: those given, checked, and defaults for the others.
+        """Checks the given parameters and adds defaults for the others.
 
         Args:
-            given: By name, as text or as values of JSON.
-            where: For messages, such as ``--effect grain``.
+            given: Values by name, as text or as JSON values.
+            where: Place for messages, such as ``--effect grain``.
             error: Type of error to raise.
         """
         return Table(*self.parameters).values(given, where, error)

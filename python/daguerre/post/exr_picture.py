@@ -1,4 +1,4 @@
-"""Pictures in OpenEXR files as sources of rows; what is no colour passes through as it is."""
+"""Reads pictures in OpenEXR files by rows; channels other than colour pass through unchanged."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from .picture import Band, Canvas, Image
 
 
 class ExrPicture:
-    """The first part of an OpenEXR file; counts values that are NaN or infinite, and keeps them."""
+    """First part of an OpenEXR file; NaN and infinite values are counted and kept."""
 
     def __init__(self, path: str | os.PathLike[str], roles: Mapping[str, str] = {}) -> None:
         """Opens a file.
 
         Raises:
-            UsageError: Not an .exr by its name.
-            InputError: It cannot be read, or has no colour.
+            UsageError: The name does not end in .exr.
+            InputError: The file cannot be read, or has no colour channels.
         """
         check_linear(path)
         self.reader = ExrReader(path)
@@ -56,7 +56,7 @@ class ExrPicture:
         return Band(rows, image, {name: found[name] for name in self.canvas.planes})
 
     def planes(self, band: Band) -> Planes:
-        """A band as channels of the file, in its types; halves end at their largest value."""
+        """Converts a band to channels of the file, in their types; halves are clamped."""
         types = self.reader.channels
         out = dict(band.planes)
         for k, name in enumerate(self.canvas.colors):
@@ -65,30 +65,30 @@ class ExrPicture:
 
 
 def check_linear(path: str | os.PathLike[str]) -> None:
-    """Only scene-linear light can be bent, blurred or darkened as a lens does it.
+    """Checks that a source is OpenEXR, as effects need scene-linear light.
 
     Raises:
-        UsageError: Another format than OpenEXR.
+        UsageError: The source has another format.
     """
     suffix = os.path.splitext(path)[1].lower()  # noqa: PTH122 - may be any path-like
     if suffix != ".exr":
         raise UsageError(
-            f"{path}: wanted a scene-linear .exr, got {suffix or 'no suffix'!r}: pictures for "
-            "screens follow a curve and end at white, so their values are no amounts of light; "
-            "convert it to linear OpenEXR first"
+            f"{path}: wanted a scene-linear .exr, got {suffix or 'no suffix'!r}: display-referred "
+            "pictures are not proportional to light and are clipped at white; "
+            "convert the picture to linear OpenEXR first"
         )
 
 
 def check_target(path: str | os.PathLike[str]) -> None:
-    """Checks that a picture of light goes into a file of light.
+    """Checks that a target is .exr, or .png for viewing.
 
     Raises:
-        UsageError: Another format.
+        UsageError: The target has another format.
     """
     suffix = os.path.splitext(path)[1].lower()  # noqa: PTH122 - may be any path-like
     if suffix != ".exr":
         raise UsageError(
-            f"{path}: wanted .exr, or .png for the eye alone, got {suffix or 'no suffix'!r}"
+            f"{path}: wanted .exr, or .png for viewing only, got {suffix or 'no suffix'!r}"
         )
 
 
@@ -102,7 +102,7 @@ def _colors(names: list[str], where: str) -> tuple[str, ...]:
 
 
 def _typed(plane: Image, dtype: str) -> Image:
-    """float16 ends at 65504: beyond it light stays bright, rather than becoming infinite."""
+    """Converts to a type; float16 is clamped to 65504, so that light does not become infinite."""
     if dtype == "float16" and plane.dtype == np.float32:
         finite = np.isfinite(plane)
         plane = np.where(finite, np.clip(plane, -65504, 65504), plane)

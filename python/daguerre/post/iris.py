@@ -1,4 +1,4 @@
-"""The shape of an iris for blurs: an outline, or a picture."""
+"""Shape of the iris for blurs: an outline, or a picture."""
 
 from __future__ import annotations
 
@@ -20,19 +20,26 @@ BLADES = (
     Parameter("blades", "number of iris blades; 0: round", "", 0, "whole", low=0),
     Parameter("blade_rotation", "rotation of the iris; 0: a corner points right", "deg", 0.0),
     Parameter(
-        "blade_curvature", "blades: 1 round, 0 straight, -1 bent inward", "", 0.0, low=-1, high=1
+        "blade_curvature",
+        "curvature of the blades; 1: round, 0: straight, -1: bent inward",
+        "",
+        0.0,
+        low=-1,
+        high=1,
     ),
-    Parameter("aperture_image", "grey picture of the opening, in place of blades", kind="text"),
+    Parameter(
+        "aperture_image", "path of a grey picture of the opening, instead of blades", kind="text"
+    ),
 )
-_ROUND = 256  # corners that stand for a circle: 0.04 px off at a radius of 500 px
-_LARGEST = 512  # px of a picture's side: more than a blur shows
+_ROUND = 256  # corners of a circle: 0.04 px off at a radius of 500 px
+_LARGEST = 512  # px, largest side of a picture: more than a blur shows
 
 
 def iris_shape(values: Values) -> IrisShape:
-    """The iris of an effect's parameters ``BLADES``.
+    """Makes the iris from an effect's parameters ``BLADES``.
 
     Raises:
-        UsageError: Blades that are none, or blades and a picture.
+        UsageError: The number of blades is invalid, or both blades and a picture are given.
         InputError: The picture cannot be read.
     """
     image = values["aperture_image"]
@@ -46,10 +53,10 @@ def iris_shape(values: Values) -> IrisShape:
 
 
 def outline(blades: int, rotation_deg: float, curvature: float) -> NDArray[np.float64]:
-    """Corners of a line around the opening, counterclockwise, y up, shape (N, 2); of any size.
+    """Outline of the opening as corners, counterclockwise, y up, shape (N, 2), in any unit.
 
-    Blades are straight (curvature 0), arcs of a circle whose radius is 1 / curvature times that of
-    the corners, or as much bent inward.
+    Blades are straight (curvature 0), or arcs of a circle whose radius is 1 / curvature times that
+    of the corners; negative curvature bends them inward.
     """
     if blades == 0:
         angle = np.linspace(0, 2 * math.pi, _ROUND, endpoint=False)
@@ -76,7 +83,7 @@ def outline(blades: int, rotation_deg: float, curvature: float) -> NDArray[np.fl
 
 
 def _smaller(picture: NDArray[np.float32]) -> NDArray[Any]:
-    """Means over blocks of pixels, so that no side is too long; its edge is cut to whole blocks."""
+    """Reduces a picture by means over blocks of pixels; its edges are cut to whole blocks."""
     block = math.ceil(max(picture.shape) / _LARGEST)
     height, width = (side // block for side in picture.shape)
     cut = picture[: height * block, : width * block].reshape(height, block, width, block)

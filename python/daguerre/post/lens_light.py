@@ -1,4 +1,4 @@
-"""Falloff of light over a picture by a lens of the library, by colour."""
+"""Relative illumination of a lens over a picture, by colour."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ if TYPE_CHECKING:
     from daguerre.analysis.bench import Bench
 
 FloatArray = NDArray[np.float64]
-#: Falloff of some rows, shape (rows, W), or (rows, W, C) by channel.
+#: Function that returns the falloff of some rows, shape (rows, W), or (rows, W, C) by channel.
 Falloff = Callable[[Rows], NDArray[np.float32]]
 
-HEIGHTS = 33  # at which the light of a lens is measured that is the same on all sides
-ACROSS, DOWN = 13, 9  # points of the frame at which that of others is,
-RAYS = 64  # and rays across the pupil of each
+HEIGHTS = 33  # image heights sampled for lenses with axial symmetry
+ACROSS, DOWN = 13, 9  # points of the frame sampled for other lenses
+RAYS = 64  # rays across the pupil for each of these points
 WAVELENGTHS = 5
 
 
 def lens_light(canvas: Canvas, film: Plane, lens: Bench, *, color: bool) -> Falloff:
-    """Light on the film relative to the axis, from exact rays through the whole pupil.
+    """Illumination of the film relative to the axis, from exact rays through the whole pupil.
 
-    By colour, white on the axis stays white: each channel is what is left of white there. Pictures
-    without red, green and blue get its luminance.
+    By colour, each channel is relative to white on the axis, so that white stays white there.
+    Pictures without red, green and blue get the falloff of luminance.
     """
     mixes = _mixes(by_channel=color and canvas.colors[:3] == ("R", "G", "B"))
     if lens.lens.prescription.is_axially_symmetric:
@@ -41,7 +41,7 @@ def lens_light(canvas: Canvas, film: Plane, lens: Bench, *, color: bool) -> Fall
 
 
 def _mixes(*, by_channel: bool) -> tuple[FloatArray, FloatArray]:
-    """Wavelengths (L,), nm, and what each brings to the channels of a white light, (L, C)."""
+    """Wavelengths (L,), nm, and the contribution of each to the channels of white light, (L, C)."""
     from daguerre.color.spectra import rgb_mixes
 
     nm, mixes = rgb_mixes(WAVELENGTHS)
@@ -52,7 +52,7 @@ def _mixes(*, by_channel: bool) -> tuple[FloatArray, FloatArray]:
 def _relative(
     lens: Bench, film_mm: FloatArray, mixes: tuple[FloatArray, FloatArray], rays: int
 ) -> NDArray[np.float32]:
-    """Light at film points (N, 2) against the axis, shape (N, C)."""
+    """Illumination at film points (N, 2) relative to the axis, shape (N, C)."""
     from daguerre.analysis.illumination import spectral_illumination
 
     nm, white = mixes
@@ -66,7 +66,7 @@ def _relative(
 def _around_axis(
     canvas: Canvas, film: Plane, lens: Bench, mixes: tuple[FloatArray, FloatArray]
 ) -> Falloff:
-    """A function of the distance from the axis."""
+    """Falloff as a function of the distance from the axis."""
     ends = [film.radii(canvas, Rows(y, y + 1))[0, [0, -1]] for y in (0, canvas.height - 1)]
     heights = np.linspace(0, float(np.max(ends)), HEIGHTS)
     light = _relative(lens, np.column_stack([0 * heights, heights]), mixes, 96)
@@ -82,46 +82,46 @@ def _around_axis(
 def _over_frame(
     canvas: Canvas, film: Plane, lens: Bench, mixes: tuple[FloatArray, FloatArray]
 ) -> Falloff:
-    """A surface over points of the frame, from edge to edge."""
+    """Falloff interpolated between points of the frame, from edge to edge."""
     x, y = (
         offset.ravel()[[0, -1]] * film.pitch_mm
         for offset in offsets(canvas, Rows(0, canvas.height), film.center)
     )
-    # The picture stands upside down on the film, whose y is up: so turned twice.
+    # The picture is upside down on the film, and the film's y is up: both signs flip.
     points = np.meshgrid(-np.linspace(x[0], x[1], ACROSS), np.linspace(y[0], y[1], DOWN))
     light = _relative(lens, np.stack(points, axis=-1).reshape(-1, 2), mixes, RAYS)
     return Surface(light.reshape(DOWN, ACROSS, -1), canvas.width, canvas.height)
 
 
 class Surface:
-    """Cubics between nodes, the outer of which are the middles of the outer pixels.
+    """Cubic interpolation between nodes; the outer nodes are the centres of the outer pixels.
 
-    Keys' cubic, a = -1/2, is exact for parabolas; it goes on as one beyond the nodes.
+    Keys' cubic, a = -1/2, is exact for parabolas, and continues as a parabola beyond the nodes.
     """
 
     def __init__(self, nodes: NDArray[np.float32], width: int, height: int) -> None:
-        """Nodes have shape (rows, columns, C)."""
+        """Takes nodes of shape (rows, columns, C)."""
         self._down = _cubic_weights(height, nodes.shape[0])
         self._across = _cubic_weights(width, nodes.shape[1])
         taller = _continued(nodes)
         self._nodes = _continued(taller.swapaxes(0, 1)).swapaxes(0, 1)
 
     def __call__(self, rows: Rows) -> NDArray[np.float32]:
-        """At pixels of rows, shape (rows, W, C); never below 0."""
+        """Returns the values of rows, shape (rows, W, C); at least 0."""
         lines = np.tensordot(self._down[rows.begin : rows.end], self._nodes, 1)
         found = np.tensordot(lines, self._across, (1, 1)).swapaxes(1, 2)
         return np.asarray(np.maximum(found, 0))
 
 
 def _continued(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    """One more on either side, by the parabola through three."""
+    """Adds a node on either side, by the parabola through three."""
     first = 3 * values[:1] - 3 * values[1:2] + values[2:3]
     last = 3 * values[-1:] - 3 * values[-2:-1] + values[-3:-2]
     return np.concatenate([first, values, last])
 
 
 def _cubic_weights(pixels: int, nodes: int) -> NDArray[np.float32]:
-    """Weights of nodes and one more on either side, for pixels between, (pixels, nodes + 2)."""
+    """Weights of the nodes, with one more on either side, for each pixel, (pixels, nodes + 2)."""
     at = np.linspace(0, nodes - 1, pixels)
     d = np.abs(at[:, None] - np.arange(-1, nodes + 1))
     near, far = (1.5 * d - 2.5) * d * d + 1, ((-0.5 * d + 2.5) * d - 4) * d + 2

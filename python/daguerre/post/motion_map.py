@@ -1,8 +1,8 @@
-"""Motion vectors through a map: the end of a motion is mapped as well as its start.
+"""Maps motion vectors when a picture is warped.
 
-A pixel of the result shows the source at s, whose motion m leads to s + m; so its own motion leads
-to where the map puts that. Where only the map from result to source is known (an STMap), its
-derivative turns motion, to first order.
+A pixel of the result shows the source at s, whose motion m leads to s + m. Its mapped motion leads
+to the position of s + m in the result. If only the map from result to source is known (an STMap),
+its derivative transforms motion, to first order.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from .picture import Canvas
 from .warp import CELL, FloatArray, PointMap, Warp, displacements
 
 MOTION = (
-    Parameter("motion_scale", "px per unit of motion; -1: motion from the last frame", "", 1.0),
-    Parameter("v_up", "whether motion counts upward, not down", kind="flag", default=False),
+    Parameter("motion_scale", "px per unit of motion; -1: motion from the previous frame", "", 1.0),
+    Parameter("v_up", "whether v is positive upward, not downward", kind="flag", default=False),
 )
 CHUNK = 1 << 20  # points at a time
 
 
 class MotionMap:
-    """The motion channels of a picture, on their way through a map."""
+    """Transforms the motion channels of a picture by a map."""
 
     def __init__(
         self, canvas: Canvas, forward: PointMap | None, values: Mapping[str, Any] = {}
@@ -37,9 +37,9 @@ class MotionMap:
         """Finds the channels.
 
         Args:
-            canvas: The picture.
-            forward: Where the light of a point of the source goes, px; None if that is not known.
-            values: Those of ``MOTION``, or some of them.
+            canvas: Facts about the picture.
+            forward: Map from points of the source to the result, px; None: unknown.
+            values: Values of the parameters ``MOTION``, all or some.
         """
         self.pairs, self.single = _pairs(canvas)
         self._canvas, self._forward = canvas, forward
@@ -50,7 +50,7 @@ class MotionMap:
     def turned(
         self, planes: Mapping[str, NDArray[Any]], warp: Warp, rows: Rows
     ) -> dict[str, NDArray[Any]]:
-        """Motion of rows of the result, of pixels that were moved there as they are."""
+        """Transforms the motion of rows of the result whose pixels are already moved."""
         if not self.pairs:
             return {}
         moved = warp.core.displacements(self._canvas.width, *rows)
@@ -68,21 +68,23 @@ class MotionMap:
         return out
 
     def remarks(self) -> list[str]:
-        """Remarks on motions that could not be turned."""
+        """Notes on motion vectors that could not be transformed."""
         said = []
         if self._lost:
-            said.append(f"{self._lost} motions, whose ends the map does not show, were set to NaN")
+            said.append(
+                f"{self._lost} motion vectors that end outside the map's result are set to NaN"
+            )
         if self.single:
             said.append(
-                f"{', '.join(self.single)}: moved with their pixels, not turned: a motion has two "
-                "coordinates"
+                f"{', '.join(self.single)}: the other coordinate is missing, so the values are "
+                "moved with the pixels, but not transformed"
             )
         return said
 
     def _by_ends(
         self, motion: FloatArray, moved: NDArray[np.float32], goes: NDArray[np.bool_], rows: Rows
     ) -> FloatArray:
-        """Computes m + d(s + m) - d(s): errors of the displacement d that both have cancel."""
+        """Computes m + d(s + m) - d(s); common errors of the displacement d cancel."""
         y, x = np.nonzero(goes)
         start = np.column_stack([x, y + rows.begin]).astype(np.float64) + moved[goes]
         out = np.empty_like(motion)
@@ -97,7 +99,7 @@ class MotionMap:
         return Warp.of(self._canvas, self._forward)
 
     def _displaced(self, points: FloatArray) -> FloatArray:
-        """How far the map moves points of the source; outside of the picture, too."""
+        """Displacement of source points by the map, also outside the picture."""
         assert self._forward is not None
         out = np.asarray(self._warp.core.displacements_at(points), np.float64)
         rest = np.isnan(out).any(axis=1)
@@ -108,7 +110,7 @@ class MotionMap:
     def _by_derivative(
         self, motion: FloatArray, moved: NDArray[np.float32], goes: NDArray[np.bool_], rows: Rows
     ) -> FloatArray:
-        """By the inverse of the derivative of where light comes from."""
+        """Transforms motion by the inverse derivative of the map from result to source."""
         across, down = (_difference(moved, axis)[goes].astype(np.float64) for axis in (1, 0))
         a, c = across[:, 0] + 1, across[:, 1]
         b, d = down[:, 0], down[:, 1] + 1
@@ -119,7 +121,7 @@ class MotionMap:
 
 
 def _pairs(canvas: Canvas) -> tuple[list[tuple[str, str]], list[str]]:
-    """Channels that are two coordinates of a motion, and those whose other one is missing."""
+    """Pairs of channels that hold a motion, and channels whose other coordinate is missing."""
     names = {name.lower(): name for name in canvas.planes}
     wanted: list[Sequence[str]] = list(zip(*(USUAL[role] for role in PARTS["motion"]), strict=True))
     given = [canvas.roles.get(role) for role in PARTS["motion"]]
@@ -136,7 +138,7 @@ def _pairs(canvas: Canvas) -> tuple[list[tuple[str, str]], list[str]]:
 
 
 def _difference(values: NDArray[np.float32], axis: int) -> NDArray[np.float32]:
-    """From pixel to pixel, within each cell, so that no other band of rows has a say."""
+    """Differences between pixels within each cell, so that they do not depend on other bands."""
     count = values.shape[axis]
     at = np.arange(count)
     first = np.minimum(at - (at % CELL == CELL - 1), max(count - 2, 0))

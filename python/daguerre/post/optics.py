@@ -1,4 +1,4 @@
-"""Millimetres and pixels: what effects that come from a lens need to know of the camera."""
+"""Camera geometry for lens effects: conversion between millimetres and pixels."""
 
 from __future__ import annotations
 
@@ -19,26 +19,26 @@ from .picture import Canvas
 if TYPE_CHECKING:
     from daguerre.analysis.bench import Bench
 
-FOCAL_LENGTH = Parameter("focal_length", "focal length; the file's if it says one", "mm", low=1e-3)
-SENSOR = Parameter("sensor", "sensor width x height; the file's if it says one", "mm", kind="size")
+FOCAL_LENGTH = Parameter("focal_length", "focal length; default: from the file", "mm", low=1e-3)
+SENSOR = Parameter("sensor", "sensor width x height; default: from the file", "mm", kind="size")
 LENS = (
-    Parameter("lens", "a name of `daguerre lenses`, or a lens file", kind="text"),
-    Parameter("focus", "distance in focus, from the entrance pupil", "m", math.inf, low=1e-3),
-    Parameter("zoom", "focal length at which a zoom stands", "mm", low=1e-3),
+    Parameter("lens", "a name from `daguerre lenses`, or a lens file", kind="text"),
+    Parameter("focus", "focus distance from the entrance pupil", "m", math.inf, low=1e-3),
+    Parameter("zoom", "focal length of a zoom", "mm", low=1e-3),
     Parameter(
-        "focus_by", "focus where rays near the axis meet, or at the smallest spot", kind="choice",
+        "focus_by", "focus by the paraxial image, or by the smallest spot", kind="choice",
         default="paraxial", choices=("paraxial", "best"),
     ),
-    Parameter("f_stop", "f-stop of the lens; wide open if absent", low=1e-2),
+    Parameter("f_stop", "f-stop of the lens; default: wide open", low=1e-2),
 )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Plane:
-    """The film behind a picture.
+    """Film plane of a picture.
 
     Attributes:
-        center: Where the axis meets it, px.
+        center: Point at which the axis meets it, px.
         pitch_mm: Pixel pitch, mm.
     """
 
@@ -46,7 +46,7 @@ class Plane:
     pitch_mm: float
 
     def radii(self, canvas: Canvas, rows: Rows) -> NDArray[np.float32]:
-        """Distances of pixels from the axis, mm, shape (rows, W)."""
+        """Distance of pixels from the axis, mm, shape (rows, W)."""
         x, y = offsets(canvas, rows, self.center)
         return np.hypot(x, y) * np.float32(self.pitch_mm)
 
@@ -54,32 +54,32 @@ class Plane:
 def offsets(
     canvas: Canvas, rows: Rows, center: tuple[float, float]
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Columns (1, W) and rows (rows, 1) of pixels from a point of the display window, px."""
+    """Offsets of pixel columns (1, W) and rows (rows, 1) from a point of the display window, px."""
     x = np.arange(canvas.width) + (canvas.corner[0] + 0.5 - center[0])
     y = np.arange(rows.begin, rows.end) + (canvas.corner[1] + 0.5 - center[1])
     return x[None, :].astype(np.float32), y[:, None].astype(np.float32)
 
 
 def film_plane(canvas: Canvas, values: Values) -> Plane:
-    """The film from ``sensor``, or from what the file says; the picture spans its width.
+    """Returns the film plane from ``sensor``, else from the file; the picture spans its width.
 
     Raises:
-        UsageError: Neither says how large it is.
+        UsageError: Neither gives its size.
     """
     pitch_mm = _pitch_mm(canvas, values)
     if pitch_mm is None:
         raise UsageError(
-            f"{canvas.where}: sensor: wanted its size, such as sensor=36x24 (mm): "
-            "the file does not say it"
+            f"{canvas.where}: sensor: wanted its size, such as sensor=36x24 (mm), "
+            "as the file has none"
         )
     return Plane(axis(canvas, values), pitch_mm)
 
 
 def axis(canvas: Canvas, values: Values) -> tuple[float, float]:
-    """Where the lens's axis meets the picture, px: its middle, or beside it if the file says so.
+    """Point at which the lens's axis meets the picture, px: its middle, less the file's offset.
 
-    ``sensorCenterOffset`` is how far the sensor's middle lies to the right and up, um, as the
-    picture is seen; it needs the size of pixels.
+    ``sensorCenterOffset`` is the offset of the sensor's middle to the right and up, um, as the
+    picture is seen; converting it needs the pixel pitch.
     """
     offset, pitch_mm = canvas.facts.get("sensorCenterOffset"), _pitch_mm(canvas, values)
     x, y = canvas.center
@@ -89,7 +89,7 @@ def axis(canvas: Canvas, values: Values) -> tuple[float, float]:
 
 
 def _pitch_mm(canvas: Canvas, values: Values) -> float | None:
-    """Pixel pitch, mm; None: nobody says it."""
+    """Pixel pitch, mm; None: unknown."""
     size, pitch = values.get("sensor"), canvas.facts.get("sensorPhotositePitch")
     if size is None and _positive(pitch):
         return pitch[0] * 1e-3
@@ -98,10 +98,10 @@ def _pitch_mm(canvas: Canvas, values: Values) -> float | None:
 
 
 def focal_length_mm(canvas: Canvas, values: Values) -> float:
-    """The focal length from ``focal_length``, or from what the file says.
+    """Returns the focal length from ``focal_length``, else from the file.
 
     Raises:
-        UsageError: Neither says it.
+        UsageError: Neither gives it.
     """
     if values.get("focal_length"):
         return float(values["focal_length"])
@@ -110,15 +110,15 @@ def focal_length_mm(canvas: Canvas, values: Values) -> float:
         if isinstance(found, float) and 0 < found < math.inf:
             return found
     raise UsageError(
-        f"{canvas.where}: focal_length: wanted a number of mm: the file does not say it"
+        f"{canvas.where}: focal_length: wanted a focal length in mm, as the file has none"
     )
 
 
 def bench(values: Values) -> Bench:
-    """The lens at its focus, zoom and f-stop.
+    """Returns the lens at its focus, zoom and f-stop.
 
     Raises:
-        InputError: No such lens, or it cannot be set so.
+        InputError: The lens is unknown, or the setting is out of its range.
     """
     from daguerre import lenses
     from daguerre.analysis.bench import on_bench

@@ -1,4 +1,4 @@
-"""Parameters of effects: physical, each with its unit, from a command line or from JSON."""
+"""Parameters of effects, each with its unit; values come from a command line or from JSON."""
 
 from daguerre.parameters.parameter import REQUIRED, Kind, Parameter
 

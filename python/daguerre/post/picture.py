@@ -1,7 +1,7 @@
-"""Pictures that effects work on: bands of rows, and facts about the whole.
+"""Pictures for effects: bands of rows, and facts about the whole.
 
-Places are in px of the display window: x to the right, y down, (0, 0) its top left corner, so that
-the middle of its first pixel is (0.5, 0.5). Rows are counted from the first row that there is.
+Positions are in px of the display window: x to the right, y down, (0, 0) its top left corner, so
+that the centre of its first pixel is (0.5, 0.5). Rows are counted from the first row of pixels.
 """
 
 from __future__ import annotations
@@ -23,16 +23,15 @@ class Canvas:
     """Facts about a picture before its pixels are read.
 
     Attributes:
-        width: Width of its pixels (the data window), px.
-        height: Height of its pixels, px.
-        corner: Their first pixel in the display window, px.
-        full_size: Width and height of the display window, px: what effects are centred on.
+        width: Width of the data window, px.
+        height: Height of the data window, px.
+        corner: First pixel of the data window in the display window, px.
+        full_size: Width and height of the display window, px, on which effects are centred.
         colors: Names of the color channels; the last one may be alpha.
         planes: Names of all other channels, as in the file.
         facts: Attributes of the file by name.
-        where: Its name, for messages.
-        roles: The channels that stand for "depth", "motion.u", "motion.v", where they are not
-            found under a usual name.
+        where: Name of the picture, for messages.
+        roles: Channels for "depth", "motion.u", "motion.v" that have unusual names.
     """
 
     width: int
@@ -61,7 +60,7 @@ class Canvas:
 
     @classmethod
     def of(cls, shape: tuple[int, ...], planes: tuple[str, ...], where: str) -> Canvas:
-        """That of an array of shape (H, W, C): 1 or 3 colours, one more is alpha."""
+        """Returns the facts of an array of shape (H, W, C): 1 or 3 colours, one more is alpha."""
         height, width, count = shape
         names = {1: ("Y",), 2: ("Y", "A"), 3: ("R", "G", "B"), 4: ("R", "G", "B", "A")}
         colors = names.get(count, tuple(f"C{k}" for k in range(count)))
@@ -73,10 +72,10 @@ class Band:
     """Some rows of a picture.
 
     Attributes:
-        rows: Which.
-        image: Colours, scene-linear, and alpha if there is one: float32 (rows, W, C). Not to be
+        rows: Rows of the band.
+        image: Scene-linear colours, and alpha if there is one: float32 (rows, W, C). Must not be
             changed in place.
-        planes: The other channels by name, (rows, W), in the types of the file.
+        planes: Other channels by name, (rows, W), in the types of the file.
     """
 
     rows: Rows
@@ -84,7 +83,7 @@ class Band:
     planes: Mapping[str, NDArray[Any]] = field(default_factory=dict)
 
     def cut(self, rows: Rows) -> Band:
-        """Fewer of its rows."""
+        """Returns some of its rows."""
         if rows == self.rows:
             return self
         part = slice(rows.begin - self.rows.begin, rows.end - self.rows.begin)
@@ -92,22 +91,22 @@ class Band:
         return Band(rows, self.image[part], planes)
 
     def with_image(self, image: Image) -> Band:
-        """The same rows with other colours."""
+        """Returns the band with other colours."""
         return replace(self, image=np.ascontiguousarray(image, np.float32))
 
 
 class Source(Protocol):
-    """A picture that gives any of its rows when it is asked."""
+    """Interface of a picture that can be read by rows."""
 
     @property
     def canvas(self) -> Canvas:
         """Facts about the picture."""
 
     def rows(self, rows: Rows) -> Band:
-        """These rows, all of which the picture has."""
+        """Returns these rows, all of which must lie in the picture."""
 
 
 def bands(source: Source, height: int) -> Iterator[Band]:
-    """All rows of a picture from top to bottom, so many at a time."""
+    """Yields all rows of a picture from top to bottom, ``height`` at a time."""
     for begin in range(0, source.canvas.height, height):
         yield source.rows(Rows(begin, min(begin + height, source.canvas.height)))

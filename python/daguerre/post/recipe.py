@@ -1,4 +1,4 @@
-"""Which effects in which order: ``NAME:key=value,...`` on a command line, or a JSON recipe."""
+"""Parses lists of effects: ``NAME:key=value,...`` on a command line, or a JSON recipe."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ def from_words(words: Sequence[str]) -> list[Planned]:
     """Parses the words of ``--effect``.
 
     Args:
-        words: Such as ``vignetting:model=natural,inverse=1``.
+        words: Words such as ``vignetting:model=natural,inverse=1``.
 
     Raises:
-        UsageError: An unknown effect or parameter, or a value that it cannot have.
+        UsageError: An effect or parameter is unknown, or a value is invalid.
     """
     planned = []
     for word in words:
@@ -56,10 +56,11 @@ def from_words(words: Sequence[str]) -> list[Planned]:
 
 
 def from_file(path: Path) -> list[Planned]:
-    """A recipe: a list of objects such as ``{"effect": "vignetting", "model": "natural"}``.
+    """Reads a recipe: a list of objects such as ``{"effect": "vignetting", "model": "natural"}``.
 
     Raises:
-        InputError: It cannot be read, or asks for something unknown; with the place in the file.
+        InputError: The file cannot be read, or an effect, parameter or value is invalid; the
+            message has its place in the file.
     """
     from daguerre.files.json_text import parse
 
@@ -81,10 +82,10 @@ def from_file(path: Path) -> list[Planned]:
 def plan(
     name: Any, given: Values, where: str, error: type[InputError | UsageError] = UsageError
 ) -> Planned:
-    """An effect of the list with values for all its parameters."""
+    """Returns an effect of the catalogue with values for all its parameters."""
     if not isinstance(name, str) or name not in EFFECTS:
         raise error(
-            f"{where}: effect: wanted a name of `daguerre post --list`, got {short(name)}"
+            f"{where}: effect: wanted a name from `daguerre post --list`, got {short(name)}"
             f"{suggest(short(name), EFFECTS)}"
         )
     effect = EFFECTS[name]
@@ -92,7 +93,7 @@ def plan(
 
 
 def in_order(planned: Sequence[Planned]) -> tuple[list[Planned], list[str]]:
-    """Effects of the film behind those of the lens; and what was moved, for a note."""
+    """Moves film effects after lens effects; also returns the names of those that moved."""
     first = [p for p in planned if not p.effect.last]
     last = [p for p in planned if p.effect.last]
     done = [*first, *last]
@@ -101,6 +102,6 @@ def in_order(planned: Sequence[Planned]) -> tuple[list[Planned], list[str]]:
 
 
 def as_json(planned: Sequence[Planned]) -> str:
-    """A recipe again, as it is kept in the metadata of what it made."""
+    """Formats effects as a recipe, for the metadata of the result."""
     entries: list[Mapping[str, Any]] = [{"effect": p.effect.name, **p.given} for p in planned]
     return json.dumps(entries)

@@ -1,4 +1,4 @@
-"""A file through a chain of effects into another file."""
+"""Applies a chain of effects to a file and writes another file."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ HISTORY = "daguerre:post"
 
 @dataclass(frozen=True)
 class Report:
-    """Report on a file that was made.
+    """Report on a written file.
 
     Attributes:
-        width: px.
-        height: px.
-        bad_pixels: Pixels of the input with a value that is NaN or infinite.
-        remarks: Remarks of the effects.
+        width: Width, px.
+        height: Height, px.
+        bad_pixels: Number of input pixels with a NaN or infinite value.
+        remarks: Notes from the effects.
     """
 
     width: int
@@ -46,22 +46,22 @@ def process(
     roles: Mapping[str, str] = {},
     progress: Callable[[int, int, int], None] = lambda done, height, width: None,
 ) -> Report:
-    """Applies effects to an OpenEXR file, in bands: memory does not grow with its height.
+    """Applies effects to an OpenEXR file in bands, so that memory does not grow with its height.
 
-    Channels that no effect changes, attributes and windows are kept; the effects are written down
-    in the attribute ``daguerre:post``.
+    Channels that no effect changes, attributes and windows are kept. The attribute
+    ``daguerre:post`` records the effects.
 
     Args:
-        source: An .exr; its first part is used.
-        target: The .exr to write, whole or not at all; may be the same file. Or a .png: the colours
-            alone, as a screen shows them.
-        planned: From ``recipe.from_words`` or ``recipe.plan``.
+        source: Path of an .exr; its first part is used.
+        target: Path of the .exr to write, atomically; may be the source. A .png gets the colours
+            only, for viewing.
+        planned: Effects from ``recipe.from_words`` or ``recipe.plan``.
         roles: Channels by role (``depth``, ``motion.u``, ``motion.v``) where names are unusual.
-        progress: Called with rows done, of how many, and their width.
+        progress: Function that is called with the rows done, all rows, and the width.
 
     Raises:
-        InputError: The file cannot be read, or has not what an effect needs.
-        UsageError: A value that does not fit this picture.
+        InputError: The file cannot be read, or lacks a channel that an effect needs.
+        UsageError: A value does not fit this picture.
         OutputError: The target cannot be written.
     """
     shown = Path(target).suffix.lower() == ".png"
@@ -94,7 +94,7 @@ def process(
 
 
 def step_of(planned: Planned, picture: ExrPicture) -> Step:
-    """The step for this picture, which has the channels that the effect needs."""
+    """Makes the step for this picture, and checks that it has the channels that are needed."""
     for need in planned.effect.needs:
         for role in channels.roles_of(need):
             channels.find(picture.canvas, role)

@@ -1,4 +1,4 @@
-"""Light that is spread, in bands of rows: by kernels, or as a veil over all of the picture."""
+"""Spreads light, in bands of rows, by kernels or as a veil over the whole picture."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ SCAN = 256  # rows
 
 
 class Spreading(Step):
-    """The colours of a picture, spread; alpha stays.
+    """Spreads the colours of a picture; alpha is not changed.
 
     Args:
-        canvas: The picture.
-        spread: Spreader of its colours.
-        stays: Share of the light that stays where it is, beside what is spread; one, or by colour.
+        canvas: Facts about the picture.
+        spread: Convolution of its colours.
+        stays: Share of the light that is added unspread; one number, or one by colour.
     """
 
     def __init__(
@@ -41,12 +41,12 @@ class Spreading(Step):
 
 
 class Veil(Step):
-    """A share of the light over the whole picture, by a kernel for a smaller picture.
+    """Spreads a share of the light over the whole picture, by a kernel for a reduced picture.
 
     Args:
-        canvas: The picture.
-        kernel: Kernel for the smaller picture.
-        factor: How many times it is smaller.
+        canvas: Facts about the picture.
+        kernel: Kernel for the reduced picture.
+        factor: Reduction factor.
         share: Share of the light to spread.
     """
 
@@ -55,7 +55,7 @@ class Veil(Step):
         self._kernel, self._factor, self._share = kernel, factor, np.float32(share)
 
     def prepare(self, source: Source) -> None:
-        """Makes the veil from a small picture of all rows."""
+        """Computes the veil from a reduced picture of all rows."""
         height = max(SCAN // self._factor, 1) * self._factor
         found = [
             reduced(band.image[:, :, : self._colors], self._factor)
@@ -64,7 +64,7 @@ class Veil(Step):
         self._veil = convolve(np.concatenate(found), self._kernel)
 
     def apply(self, band: Band, rows: Rows) -> Band:
-        """Mixes the veil in; a pixel that is no number stays."""
+        """Blends the veil in; NaN pixels are not changed."""
         light = band.image[:, :, : self._colors]
         veil = enlarged(self._veil, self._factor, rows, light.shape[1])
         finite = np.isfinite(light)
@@ -74,7 +74,7 @@ class Veil(Step):
 
 
 def reduced(light: Image, factor: int) -> Image:
-    """Means over squares of pixels; the picture goes on as darkness beyond its edges."""
+    """Means over squares of pixels; beyond its edges the picture is black."""
     finite = np.where(np.isfinite(light), light, np.float32(0))
     pad = [(0, -n % factor) for n in light.shape[:2]]
     padded = np.pad(finite, [*pad, (0, 0)])
@@ -84,7 +84,7 @@ def reduced(light: Image, factor: int) -> Image:
 
 
 def enlarged(small: Image, factor: int, rows: Rows, width: int) -> Image:
-    """Rows of the large picture, linear between the middles of squares."""
+    """Rows of the full picture, linear between the centres of squares."""
     for axis, wanted in enumerate((np.arange(*rows), np.arange(width))):
         at = (wanted + 0.5) / factor - 0.5
         low = np.clip(np.floor(at).astype(int), 0, small.shape[axis] - 1)

@@ -1,4 +1,4 @@
-"""Stars: kernels of RGB that diffraction at an iris makes."""
+"""Diffraction stars: RGB kernels of an iris."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ STRETCH = 1 << 14  # pixels that are mixed at a time, to save memory
 def starburst(
     pupil: Pupil, pitch_mm: float, size: int, *, wavelengths: int = 24, threads: int = 0
 ) -> Floats:
-    """Star of RGB light by diffraction, shape (size, size, 3, 3): from last axis to axis 2.
+    """Diffraction kernel for RGB, shape (size, size, 3, 3): from channels of axis 3 to axis 2.
 
-    Each of R, G and B is taken as its emitter's spectrum, so a white lamp's star has the colours of
-    white light; in the sum over the window each colour stays what it is.
+    R, G and B each have their emitter's spectrum, so the star of a white lamp has the colours of
+    white light. Summed over the window, each colour is unchanged.
     """
     nm, mixes = rgb_mixes(wavelengths)
     spreads = far_fields(pupil, nm.tolist(), pitch_mm, size, threads=threads)
@@ -34,7 +34,7 @@ def starburst(
         shares = np.zeros((AT_ONCE, 9), np.float32)
         for k, kernel in enumerate(islice(spreads, AT_ONCE)):
             group[k] = kernel.ravel()
-            # Light outside of the window is given to all of it: nothing is lost.
+            # Light outside the window is spread evenly over it, so that none is lost.
             light = light_of(kernel) if pupil.perfect else kernel.sum(dtype=np.float64)
             shares[k] = mixes[first + k].ravel() / light
         for pixels in range(0, size * columns, STRETCH):
@@ -45,14 +45,14 @@ def starburst(
 
 
 def tail_only(kernel: Floats, core_px: float) -> Floats:
-    """A kernel (h, w, 3, 3) without its middle, each colour's sum 1 again."""
+    """Kernel (h, w, 3, 3) without its core, scaled to sum 1 in each colour."""
     h, w = kernel.shape[:2]
     r = np.hypot(np.arange(h)[:, None] - h // 2, np.arange(w) - w // 2)
     fade = np.clip(r / core_px - 1, 0, 1)[:, :, None, None].astype(np.float32)
     rest = kernel * fade
     if not rest.any():
         raise UsageError(
-            "star: wanted a picture wide enough for light beside the star's middle, "
-            f"{math.ceil(core_px)} px from it, got a kernel of {w} x {h} px"
+            "star: wanted a kernel that reaches beyond the star's core of "
+            f"{math.ceil(core_px)} px, got {w} x {h} px: the picture is too small"
         )
     return np.asarray(rest @ np.linalg.inv(rest.sum(axis=(0, 1), dtype=np.float64)), np.float32)

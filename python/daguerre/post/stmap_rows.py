@@ -1,4 +1,4 @@
-"""Rows of an STMap, computed from displacements and written block by block."""
+"""Computes rows of an STMap from displacements, and writes STMaps block by block."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .warp import Warp
 
 
 def st_rows(warp: Warp, canvas: Canvas, rows: Rows) -> Image:
-    """S and t of rows, shape (rows, W, 2)."""
+    """Returns s and t of rows, shape (rows, W, 2)."""
     moved = warp.core.displacements(canvas.width, *rows).astype(np.float64)
     width, height = canvas.full_size
     s = (moved[:, :, 0] + np.arange(canvas.width) + canvas.corner[0] + 0.5) / width
@@ -33,18 +33,18 @@ def write_stmap(
     canvas: Canvas,
     attributes: Mapping[str, str] = {},
 ) -> None:
-    """Writes a map for a picture, in bands, whole or not at all: R is s, G is t.
+    """Writes the STMap of a picture, in bands, atomically: R is s, G is t.
 
-    B is 1 where there is something, and 0 elsewhere, as in the UV passes of renderers.
+    B is 1 where the map is defined, else 0, as in UV passes of renderers.
 
     Args:
-        path: An .exr.
-        warp: The map.
-        canvas: Its windows.
+        path: Path of an .exr.
+        warp: Map to write.
+        canvas: Facts about the picture, for its windows.
         attributes: Attributes of the file.
 
     Raises:
-        OutputError: It cannot be written.
+        OutputError: The file cannot be written.
     """
     header = new_header(
         ("B", "G", "R"), canvas.corner, (canvas.width, canvas.height), canvas.full_size

@@ -1,9 +1,9 @@
-"""A chain of effects over a picture, a band of rows at a time: it is never whole in memory.
+"""Runs a chain of effects over a picture, a band of rows at a time, to save memory.
 
-Rows are pulled: whoever writes asks the last effect for a band, which asks the one before it for
-the rows that it reads, and so on down to the file. Each effect keeps the blocks of its last
-request, so that rows which two bands have in common are made once; blocks begin at fixed rows, so
-that no bit depends on who asks for what.
+Rows are pulled: the writer requests a band from the last effect, which requests the rows that it
+reads from the one before, and so on down to the file. Each effect keeps the blocks of its last
+request, so that rows common to two bands are computed once. Blocks begin at fixed rows, so that no
+bit of the result depends on the requests.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ BLOCK = 256  # rows
 
 
 class Stage:
-    """A step and the picture that it is applied to: a picture again."""
+    """A step and its source, which together are a source again."""
 
     def __init__(self, step: Step, source: Source) -> None:
         self.step, self.source = step, source
@@ -32,11 +32,11 @@ class Stage:
 
     @property
     def canvas(self) -> Canvas:
-        """Effects change no window."""
+        """Facts about the picture, which are those of the source."""
         return self.source.canvas
 
     def rows(self, rows: Rows) -> Band:
-        """Makes the blocks that these rows lie in, but for those that are still there."""
+        """Computes the blocks that contain these rows, except those that are still kept."""
         wanted = range(rows.begin // self._block, (rows.end - 1) // self._block + 1)
         self._kept = {k: band for k, band in self._kept.items() if k in wanted}
         for k in wanted:
@@ -55,18 +55,18 @@ class Stage:
 
 
 class WholeImage:
-    """A picture that is whole in memory, as a source."""
+    """A picture in memory, as a source."""
 
     def __init__(self, canvas: Canvas, band: Band) -> None:
         self.canvas, self._band = canvas, band
 
     def rows(self, rows: Rows) -> Band:
-        """A view of these rows."""
+        """Returns a view of these rows."""
         return self._band.cut(rows)
 
 
 def chained(steps: Sequence[Step], source: Source) -> Source:
-    """The picture after all steps, each of which has had its look at what it is applied to."""
+    """Chains steps on a source; each step is prepared with the picture before it."""
     for step in steps:
         step.prepare(source)
         source = Stage(step, source)
@@ -74,7 +74,7 @@ def chained(steps: Sequence[Step], source: Source) -> Source:
 
 
 def joined(parts: Sequence[Band], rows: Rows) -> Band:
-    """Bands below each other, cut to some rows."""
+    """Joins bands vertically and cuts them to some rows."""
     cut = [p.cut(Rows(max(p.rows.begin, rows.begin), min(p.rows.end, rows.end))) for p in parts]
     if len(cut) == 1:
         return cut[0]

@@ -1,8 +1,8 @@
-"""Where the light of each pixel lies in the source of a picture.
+"""Maps from pixels of a result to points of its source.
 
-A map is a function of points, px of the display window. It is asked at nodes 16 px apart, and at
-every pixel of the cells where a cubic between nodes would be off by more than TOLERANCE; the core
-does the rest (``core/post/source_map.h``).
+A map is a function of points, px of the display window. It is evaluated at nodes 16 px apart, and
+at every pixel of cells in which cubic interpolation between nodes would be off by more than
+TOLERANCE. The core does the rest (``core/post/source_map.h``).
 """
 
 from __future__ import annotations
@@ -22,24 +22,25 @@ from daguerre.convolution.rows import Rows
 from .picture import Canvas
 
 FloatArray = NDArray[np.float64]
-PointMap = Callable[[FloatArray], FloatArray]  # (N, 2) -> (N, 2), px; NaN: nothing is there
+PointMap = Callable[[FloatArray], FloatArray]  # (N, 2) -> (N, 2), px; NaN: not defined
 
 CELL = 16
 TOLERANCE = 1e-4  # px
-CHUNK = 2048  # cells whose pixels are computed at a time
+CHUNK = 2048  # cells computed at a time
 MARGIN = 8  # rows that filters read around a point
 
 
 @dataclass(frozen=True)
 class Warp:
-    """A map, known for all pixels of a picture.
+    """A map evaluated for all pixels of a picture.
 
     Attributes:
-        nodes: Displacements, px, shape (rows + 3, columns + 3, 2), from one cell before the first.
-        exact: Which of ``cells`` a cell is, or -1, shape (rows, columns).
-        cells: Displacements at each pixel, shape (N, 16, 16, 2).
+        nodes: Displacements at nodes, px, shape (rows + 3, columns + 3, 2), from one cell before
+            the first.
+        exact: Index into ``cells`` for each cell, or -1, shape (rows, columns).
+        cells: Displacements at each pixel of a cell, px, shape (N, 16, 16, 2).
         height: Height of the picture, px.
-        top: Row at which the first cell begins, a multiple of 16.
+        top: First row of the first cell, a multiple of 16.
     """
 
     nodes: NDArray[np.float32]
@@ -50,7 +51,7 @@ class Warp:
 
     @classmethod
     def of(cls, canvas: Canvas, place: PointMap) -> Warp:
-        """Asks a map for all that is needed of it."""
+        """Evaluates a map for a picture."""
         columns, rows = -(-canvas.width // CELL), -(-canvas.height // CELL)
         x = (np.arange(columns + 3) - 1.0) * CELL
         y = (np.arange(rows + 3) - 1.0) * CELL
@@ -69,18 +70,18 @@ class Warp:
 
     @classmethod
     def of_each(cls, canvas: Canvas, places: Sequence[PointMap]) -> list[Warp]:
-        """Several maps, side by side."""
+        """Evaluates several maps in parallel."""
         with ThreadPoolExecutor(len(places)) as pool:
             return list(pool.map(lambda place: cls.of(canvas, place), places))
 
     @classmethod
     def of_pixels(cls, moved: NDArray[np.float32], height: int, top: int) -> Warp:
-        """One that is known at every pixel of some rows.
+        """Makes a warp from displacements at every pixel of some rows.
 
         Args:
-            moved: Displacements, px, shape (rows, width, 2); NaN: nothing is there.
+            moved: Displacements, px, shape (rows, width, 2); NaN: not defined.
             height: Height of the whole picture, px.
-            top: The first row, a multiple of 16.
+            top: First row, a multiple of 16.
         """
         rows, columns = (-(-n // CELL) for n in moved.shape[:2])
         padded = np.full((rows * CELL, columns * CELL, 2), np.nan, np.float32)
@@ -96,7 +97,7 @@ class Warp:
         return SourceMap(self.nodes, self.exact, self.cells, self.top)
 
     def reads(self, rows: Rows) -> Rows:
-        """The rows of the source that these rows of the result are made of."""
+        """Returns the rows of the source that these rows of the result need."""
         low, high = self._reach
         cells = slice((rows.begin - self.top) // CELL, (rows.end - 1 - self.top) // CELL + 1)
         if not (low[cells] <= high[cells]).any():
@@ -105,13 +106,13 @@ class Warp:
 
     @cached_property
     def _reach(self) -> tuple[FloatArray, FloatArray]:
-        """Least and greatest row that each row of cells reads; inf, -inf: nothing."""
+        """First and last source row that each row of cells reads; inf, -inf: none."""
         rows, columns = self.exact.shape
         first = (np.arange(rows + 3) - 1.0)[:, None] * CELL + self.top
         y = np.asarray(self.nodes[:, :, 1] + first, np.float64)
         wide = 2 * _stretch(y, CELL)
         low, high = np.full(rows, np.inf), np.full(rows, -np.inf)
-        for j in range(2):  # the nodes above and below, and those to the left and right of cells
+        for j in range(2):  # nodes above and below, and to the left and right of cells
             part = slice(1 + j, 1 + j + rows)
             here, more = y[part, 1 : columns + 2], wide[part, 1 : columns + 2]
             seen = (here > -2 * CELL) & (here < self.height + 2 * CELL)
@@ -128,15 +129,15 @@ class Warp:
 
 
 def displacements(points: NDArray[Any], canvas: Canvas, place: PointMap) -> FloatArray:
-    """By a map, px, of pixels by index; the middle of the first is at corner + 0.5."""
+    """Displacements by a map, px, at pixel indices; the centre of the first is at corner + 0.5."""
     flat = points.reshape(-1, 2) + (np.array(canvas.corner) + 0.5)
     return np.asarray((place(flat) - flat).reshape(points.shape))
 
 
 def _bad_cells(nodes: FloatArray) -> NDArray[np.bool_]:
-    """Cells where Lagrange's cubic is not good enough, or where the map ends; (rows, columns).
+    """Cells in which Lagrange's cubic is not accurate enough, or the map ends; (rows, columns).
 
-    Its error is at most 3/128 of the fourth difference.
+    The error of the cubic is at most 3/128 of the fourth difference.
     """
     known = np.isfinite(nodes[..., 0]) & np.isfinite(nodes[..., 1])
     whole, some = _folded(known, np.logical_and), _folded(known, np.logical_or)
@@ -154,7 +155,7 @@ def _bad_cells(nodes: FloatArray) -> NDArray[np.bool_]:
 
 
 def _folded(values: NDArray[Any], fold: np.ufunc) -> NDArray[Any]:
-    """Over all windows of 4 x 4: first along columns, then along rows."""
+    """Reduces over all windows of 4 x 4: first along columns, then along rows."""
     for _ in range(2):
         parts = [values[k : len(values) - 3 + k] for k in range(4)]
         values = fold(fold(parts[0], parts[1]), fold(parts[2], parts[3])).T
@@ -162,7 +163,7 @@ def _folded(values: NDArray[Any], fold: np.ufunc) -> NDArray[Any]:
 
 
 def _stretch(y: FloatArray, step: int) -> FloatArray:
-    """How many rows of the source a pixel covers, 1 .. 16; y: rows at points ``step`` px apart."""
+    """Source rows that a pixel covers, 1 .. 16; y: source rows at points ``step`` px apart."""
     with np.errstate(invalid="ignore"):
         most = np.hypot(*np.gradient(y, axis=(-2, -1))) / step
     return np.asarray(np.clip(np.nan_to_num(most, nan=16.0), 1, 16))

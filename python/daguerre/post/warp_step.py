@@ -1,4 +1,4 @@
-"""Pictures through maps."""
+"""Warps pictures by maps."""
 
 from __future__ import annotations
 
@@ -25,7 +25,12 @@ FILTER = (
         default="cubic",
         choices=("cubic", "linear"),
     ),
-    Parameter("antialias", "whether to average where the map shrinks", kind="flag", default=True),
+    Parameter(
+        "antialias",
+        "whether to average where the map shrinks the picture",
+        kind="flag",
+        default=True,
+    ),
     *MOTION,
 )
 
@@ -37,15 +42,15 @@ def how(values: Values) -> dict[str, Any]:
 
 
 class WarpStep(Step):
-    """Each pixel takes its light from elsewhere; what is no colour, from the nearest pixel there.
+    """Warps colours by interpolation, and all other channels by the nearest pixel.
 
     Args:
-        canvas: The picture.
-        warps: One for all channels, or one each for red, green and blue.
-        filter: cubic or linear.
-        antialias: Whether to average where a map shrinks.
-        forward: Where the light of a point of the source goes, if that is known: motion follows it.
-        motion: Meaning of motion channels, in the form of ``MOTION``.
+        canvas: Facts about the picture.
+        warps: One map for all channels, or one each for red, green and blue.
+        filter: Interpolation: ``cubic`` or ``linear``.
+        antialias: Whether to average where a map shrinks the picture.
+        forward: Map from points of the source to the result, for motion channels; None: unknown.
+        motion: Values of the parameters ``MOTION``, which define motion channels.
     """
 
     def __init__(
@@ -69,16 +74,16 @@ class WarpStep(Step):
         self._motion = MotionMap(canvas, forward, motion)
 
     def warps(self, rows: Rows) -> Sequence[Warp]:
-        """The maps for some rows."""
+        """Returns the maps for some rows."""
         return self._warps
 
     def reads(self, rows: Rows) -> Rows:
-        """Where the maps lead."""
+        """Returns the source rows that the maps need."""
         parts = [warp.reads(rows) for warp in self.warps(rows)]
         return Rows(min(p.begin for p in parts), max(p.end for p in parts))
 
     def apply(self, band: Band, rows: Rows) -> Band:
-        """All channels, so that they stay one above the other."""
+        """Warps all channels alike, so that they stay aligned."""
         warps = self.warps(rows)
         maps, middle = [warp.core for warp in warps], warps[len(warps) // 2]
         image, undefined = remap(
@@ -98,10 +103,10 @@ class WarpStep(Step):
         return np.asarray(moved.view(words.dtype).astype(plane.dtype, copy=False))
 
     def remarks(self) -> list[str]:
-        """Where a model had no answer, and which motion could not be turned."""
+        """Notes on pixels where the model is not defined, and on motion that was not mapped."""
         said = []
         if self._undefined:
             said.append(
-                f"{self._undefined} pixels, for which the model has no answer, were set to 0"
+                f"{self._undefined} pixels where the distortion model is not defined are set to 0"
             )
         return said + self._motion.remarks()

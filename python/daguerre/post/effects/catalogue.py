@@ -1,4 +1,4 @@
-"""The list of effects: a line for each."""
+"""Catalogue of effects, one line for each."""
 
 from __future__ import annotations
 

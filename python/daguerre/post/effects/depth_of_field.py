@@ -1,4 +1,4 @@
-"""Depth of field from depth: a picture through a pinhole as a lens would have taken it."""
+"""Depth of field for pinhole pictures, from a depth channel."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ SCAN = 256  # rows
 
 @dataclass(frozen=True)
 class ThinLens:
-    """A thin lens: all that the size of a blur depends on.
+    """A thin lens: the quantities that set the size of the blur.
 
     Attributes:
         aperture_mm: Diameter of the entrance pupil.
-        film_mm: Distance of the film: that of a pinhole with the same field of view.
-        focus_m: From the entrance pupil along the axis.
+        film_mm: Distance of the film, as for a pinhole with the same field of view.
+        focus_m: Distance in focus, from the entrance pupil along the axis.
     """
 
     aperture_mm: float
@@ -41,12 +41,12 @@ class ThinLens:
     focus_m: float
 
     def radius_mm(self, depth_m: Floats) -> Floats:
-        """Radius of the circle of confusion on the film; negative behind the focus.
+        """Radius of the circle of confusion on the film, mm; negative behind the focus.
 
-        A point at the distance s along the axis has A F (1/s - 1/s_f) / 2, by similar triangles;
-        where F is the image distance f s_f / (s_f - f), its diameter is
-        |s - s_f| / s  f^2 / (N (s_f - f)). Counted from its entrance pupil, a thick lens obeys the
-        same law.
+        A point at distance s along the axis has the radius A F (1/s - 1/s_f) / 2, by similar
+        triangles. If F is the image distance f s_f / (s_f - f), the diameter is
+        |s - s_f| / s  f^2 / (N (s_f - f)). A thick lens follows the same law with distances from
+        its entrance pupil.
         """
         scale = 0.5e-3 * self.aperture_mm * self.film_mm
         with np.errstate(divide="ignore"):
@@ -54,17 +54,17 @@ class ThinLens:
 
 
 def thin_lens(canvas: Canvas, values: Values) -> ThinLens:
-    """The lens of the parameters, or of the file where they are silent.
+    """Makes the lens from the parameters, else from the file's metadata.
 
     Raises:
-        UsageError: Something that neither says, or a focus within the focal length.
+        UsageError: A value is in neither, or the focus is within the focal length.
     """
     focal = focal_length_mm(canvas, values)
     f_stop = _given(canvas, values, "f_stop", "aperture", "the f-number, such as f_stop=2.8")
     focus = _given(canvas, values, "focus", "focus", "the distance in focus, such as focus=2.5m")
     if focus * 1e3 <= focal:
         raise UsageError(
-            f"depth-of-field: focus: wanted more than the focal length, {focal:g} mm, "
+            f"depth-of-field: focus: wanted a distance beyond the focal length of {focal:g} mm, "
             f"got {focus * 1e3:g} mm"
         )
     breathes = values["focus_breathing"] and math.isfinite(focus)
@@ -76,7 +76,7 @@ def _given(canvas: Canvas, values: Values, name: str, fact: str, wanted: str) ->
     value = values[name] if values[name] is not None else canvas.facts.get(fact)
     if isinstance(value, int | float) and value > 0:
         return float(value)
-    raise UsageError(f"{canvas.where}: {name}: wanted {wanted}: the file does not say it")
+    raise UsageError(f"{canvas.where}: {name}: wanted {wanted}, as the file has none")
 
 
 class _DepthOfField(Step):
@@ -92,7 +92,7 @@ class _DepthOfField(Step):
         self._held = self._unknown = 0
 
     def prepare(self, source: Source) -> None:
-        """Finds how far light goes, and depths that are none."""
+        """Finds the largest blur, and counts pixels without a depth."""
         low = high = 0.0
         for band in bands(source, SCAN):
             radius = self._radii(band)
@@ -101,7 +101,7 @@ class _DepthOfField(Step):
             low = min(low, float(np.nanmin(radius, initial=0)))
             high = max(high, float(np.nanmax(radius, initial=0)))
         rim = self._iris.outer_radius
-        deepest = rim * (high - low) + 2  # behind edges; what is there is seen in a mirror
+        deepest = rim * (high - low) + 2  # behind edges, where the background is mirrored
         self.reach = math.ceil(rim * max(high, -low) + 2 * deepest) + 4
         self.block = max(SCAN, self.reach // SCAN * SCAN)
 
@@ -112,13 +112,13 @@ class _DepthOfField(Step):
         if wrong.size:
             y, x = wrong[0]
             raise InputError(
-                f"{self._canvas.where}: {self._plane}: wanted distances in front of the camera "
-                f"in m (0 or infinite: the sky), got {depth[y, x]:g} at pixel "
+                f"{self._canvas.where}: {self._plane}: wanted distances of at least 0 m "
+                f"(0 or infinity: the sky), got {depth[y, x]:g} at pixel "
                 f"{x}, {band.rows.begin + y}"
             )
 
     def _radii(self, band: Band) -> Floats:
-        """Radius of the blur, px; 0 and no number of depth stand for the sky."""
+        """Radius of the blur, px; a depth of 0 or NaN is the sky."""
         depth = np.asarray(band.planes[self._plane], np.float32)
         depth = np.where(np.isnan(depth) | (depth == 0), np.float32(np.inf), depth)
         if self._along_ray:
@@ -138,37 +138,37 @@ class _DepthOfField(Step):
         said = []
         if self._held:
             said.append(
-                f"{self._held} pixels are blurred less than the lens would: their radius was held "
-                f"at {self._largest:g} px (largest=)"
+                f"{self._held} pixels are blurred less than by the lens: their blur radius was "
+                f"limited to {self._largest:g} px (largest=)"
             )
         if self._unknown:
-            said.append(f"{self._unknown} pixels without a depth (NaN) were taken for the sky")
+            said.append(f"{self._unknown} pixels without a depth (NaN) are taken as sky")
         return said
 
 
 DEPTH_OF_FIELD = Effect(
     "depth-of-field",
-    "blurs what is out of focus, by the depth of each pixel; a pinhole's picture is wanted",
+    "depth of field from a depth channel, for pinhole pictures",
     (
-        Parameter("f_stop", "f-stop; the file's if it says one", low=1e-2, high=1e9),
-        Parameter("focus", "distance in focus along the axis; the file's if absent", "m", low=1e-6),
+        Parameter("f_stop", "f-stop; default: from the file", low=1e-2, high=1e9),
+        Parameter("focus", "focus distance along the axis; default: from the file", "m", low=1e-6),
         FOCAL_LENGTH,
         SENSOR,
         *BLADES,
         Parameter(
             "depth_along",
-            "direction of depth: along the axis (like depth.Z), or along the ray (distance.Z)",
+            "how depth is measured: along the axis (as in depth.Z) or along the ray (distance.Z)",
             kind="choice",
             default="axis",
             choices=("axis", "ray"),
         ),
         Parameter(
             "focus_breathing",
-            "whether focusing narrowed the field, as in cameras",
+            "whether the field of view narrows with focus, as in real cameras",
             kind="flag",
             default=False,
         ),
-        Parameter("largest", "largest blur radius; a tenth of the width if absent", "px", low=0),
+        Parameter("largest", "largest blur radius; default: a tenth of the width", "px", low=0),
     ),
     _DepthOfField,
     needs=("depth",),
@@ -177,21 +177,22 @@ DEPTH_OF_FIELD = Effect(
 
 @guarded(arrays=False)
 def depth_of_field(image: Image, depth: NDArray[Any], **parameters: Any) -> Image:
-    """Blurs a pinhole's scene-linear picture as a lens does, by the depth of its pixels.
+    """Adds depth of field to a scene-linear pinhole picture, by the depth of its pixels.
 
-    Near surfaces hide far ones, as much of the lens as they cover; behind their blurred edges shows
-    what lies beside them. A plane at one depth is convolved with the iris.
+    Near surfaces hide far ones by the share of the lens that they cover. The background behind
+    their blurred edges is filled in from beside them. A plane at one depth is convolved with the
+    iris.
 
     Args:
-        image: Shape (H, W, C), any channels.
-        depth: Shape (H, W), m; 0, infinity and NaN stand for the sky.
-        **parameters: Those of the effect ``depth-of-field``: ``focal_length`` (mm), ``f_stop``,
-            ``focus`` (m), ``sensor`` (mm, mm), ``blades``, ``blade_rotation`` (deg),
+        image: Picture, shape (H, W, C), any channels.
+        depth: Depth, shape (H, W), m; 0, infinity and NaN mean sky.
+        **parameters: Parameters of the effect ``depth-of-field``: ``focal_length`` (mm),
+            ``f_stop``, ``focus`` (m), ``sensor`` (mm, mm), ``blades``, ``blade_rotation`` (deg),
             ``blade_curvature``, ``aperture_image``, ``depth_along`` ("axis" or "ray"),
             ``focus_breathing``, ``largest`` (px).
 
     Raises:
-        UsageError: A parameter that is missing or wrong, or a depth of another shape.
-        InputError: Negative depths.
+        UsageError: A parameter is missing or wrong, or ``depth`` has another shape.
+        InputError: A depth is negative.
     """
     return on_array(DEPTH_OF_FIELD, image, parameters, {"depth.Z": np.asarray(depth)})

@@ -1,4 +1,4 @@
-"""Distortion and its removal: pictures bent as a lens bends them."""
+"""Adds or removes geometric distortion."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ from daguerre.post.picture import Canvas, Image
 from daguerre.post.warp import FloatArray, PointMap, Warp
 from daguerre.post.warp_step import FILTER, WarpStep, how
 
-#: Wavelengths that stand for the red, green and blue of linear Rec.709 under D65: their means of
-#: 1 / wavelength^2, which dispersion follows to first order (Cauchy). Colours that are as broad as
-#: these blur as well; a map moves them by their mean.
+#: Wavelengths for red, green and blue of linear Rec.709 under D65: the means of 1 / wavelength^2,
+#: which dispersion follows to first order (Cauchy). Such broad channels also blur; a map moves each
+#: by its mean only.
 CHANNEL_NM = (650.0, 545.0, 443.0)
 
 MODELS: dict[str, type[Distortion]] = {
@@ -61,21 +61,21 @@ def distort(
     antialias: bool = True,
     inverse: bool = False,
 ) -> Image:
-    """Bends an ideal picture as a lens does.
+    """Distorts an ideal (rectilinear) picture.
 
     Args:
-        image: Scene-linear, shape (H, W, C).
+        image: Scene-linear picture, shape (H, W, C).
         model: One model, or one each for red, green and blue.
-        focal_px: Focal length, px, or those across and down.
+        focal_px: Focal length, px; one, or horizontal and vertical.
         centre: Centre of the distortion, px from the top left corner of the picture; default: its
             middle. OpenCV counts from the middle of the first pixel: add 0.5 to its cx and cy.
-        scale: Scale of the ideal picture: above 1 it shows less of the scene, larger.
-        filter: cubic or linear.
-        antialias: Whether to average where the map shrinks.
-        inverse: Straightens instead.
+        scale: Magnification of the ideal picture; above 1 it shows less of the scene, larger.
+        filter: Interpolation: ``cubic`` or ``linear``.
+        antialias: Whether to average where the map shrinks the picture.
+        inverse: Whether to undistort instead.
 
     Returns:
-        The same shape; 0 where the source has nothing, or the model no answer.
+        Picture of the same shape; 0 where the source has no pixel or the model is not defined.
     """
     given = [model] if isinstance(model, Distortion) else list(model)
     focal = pair_px(focal_px)
@@ -91,18 +91,20 @@ def distort(
 
 @guarded(arrays=False)
 def undistort(image: Image, model: Distortion | Sequence[Distortion], **parameters: Any) -> Image:
-    """Straightens what a lens has bent; see :func:`distort`."""
+    """Undistorts a picture; takes the parameters of :func:`distort` except ``inverse``."""
     known = inspect.signature(distort).parameters
     for name in parameters:
         if name not in known or name in ("image", "model", "inverse"):
-            raise UsageError(f"undistort: no parameter {name!r}{suggest(name, known)}")
+            raise UsageError(
+                f"undistort: wanted a parameter of distort, got {name!r}{suggest(name, known)}"
+            )
     return distort(image, model, **parameters, inverse=True)
 
 
 def pair_px(focal_px: float | tuple[float, float]) -> tuple[float, float]:
-    """Focal lengths across and down; one number is both."""
+    """Horizontal and vertical focal lengths; one number is both."""
     given: Any = (focal_px, focal_px) if np.ndim(focal_px) == 0 else focal_px
-    across, down = numbers(given, "focal_px", 2, "a focal length in px, or two")
+    across, down = numbers(given, "focal_px", 2, "one or two focal lengths in px")
     return across, down
 
 
@@ -114,12 +116,12 @@ def point_map(
     scale: float = 1.0,
     inverse: bool = False,
 ) -> PointMap:
-    """Where the light of points of the result lies in the source, px.
+    """Returns the map from points of the result to points of the source, px.
 
-    To bend a picture is to ask at each of its points which ideal point it shows.
+    To distort, it maps each point of the result to its ideal point.
     """
-    focal = np.array(numbers(focal_px, "focal_px", 2, "a focal length in px, or two"))
-    middle = np.array(numbers(centre, "centre", 2, "a point (x, y), px"))
+    focal = np.array(numbers(focal_px, "focal_px", 2, "one or two focal lengths in px"))
+    middle = np.array(numbers(centre, "centre", 2, "a point (x, y) in px"))
 
     def straight_from_bent(points: FloatArray) -> FloatArray:
         ideal = model.undistort((points - middle) / focal)
@@ -151,7 +153,7 @@ def _make(canvas: Canvas, values: Values) -> Step:
 def camera(
     canvas: Canvas, values: Values
 ) -> tuple[list[Distortion], tuple[float, float], tuple[float, float]]:
-    """The models (one, or one per colour), focal lengths and centre (px) of a set of values."""
+    """Returns the models (one, or one per colour), focal lengths and centre (px) of the values."""
     middle = axis(canvas, values)
     centre = tuple(
         middle[k] if values[name] is None else values[name] + 0.5
@@ -172,15 +174,15 @@ def camera(
 def lens_models(
     canvas: Canvas, values: Values, wavelengths_nm: Sequence[float]
 ) -> tuple[list[Distortion], tuple[float, float]]:
-    """Models of a lens of the library, one per wavelength, and focal lengths of the picture, px.
+    """Returns the models of a lens, one per wavelength, and the picture's focal lengths, px.
 
-    Those are the lens's own, across and down: near the axis nothing moves.
+    The focal lengths are the lens's, horizontal and vertical, so that nothing moves near the axis.
     """
     from daguerre.distortion.lens import LensDistortion
     from daguerre.distortion.lens_map import LensMap
 
     if values["lens"] is None:
-        raise UsageError("lens: wanted a name or a file with model=lens, got nothing")
+        raise UsageError("lens: wanted a name or a file for model=lens, got none")
     film = film_plane(canvas, values)
     corners = np.array([(x, y) for x in (0, canvas.width) for y in (0, canvas.height)])
     reach = 1.02 * film.pitch_mm * np.abs(corners + canvas.corner - film.center).max(axis=0)
@@ -203,34 +205,38 @@ def _model(values: Values) -> Distortion:
     for name in given:
         if name not in known:
             raise UsageError(
-                f"distortion: {name}: {values['model']} has "
-                f"{', '.join(sorted(known)) or 'no coefficients'}"
+                f"distortion: wanted a coefficient of {values['model']} "
+                f"({', '.join(sorted(known)) or 'it has none'}), got {name}"
             )
     return kind(**given)
 
 
 DISTORTION = Effect(
     "distortion",
-    "bends a picture as a lens does, or straightens it",
+    "lens distortion, or its removal",
     (
         Parameter(
-            "model", "model of the distortion", kind="choice", default="brown-conrady",
+            "model", "distortion model", kind="choice", default="brown-conrady",
             choices=(*MODELS, "lens"),
         ),
         *(Parameter(name, "tilt of the sensor" if "tau" in name else "coefficient of OpenCV",
                     "rad" if "tau" in name else "") for name in COEFFICIENTS),
         FOCAL_LENGTH,
         SENSOR,
-        Parameter("fx", "focal length across, instead of mm", "px", low=1e-3),
-        Parameter("fy", "focal length down, where pixels are not square", "px", low=1e-3),
-        Parameter("cx", "centre across; 0 is the middle of the first pixel, as in OpenCV", "px"),
-        Parameter("cy", "centre down, likewise", "px"),
+        Parameter("fx", "horizontal focal length, instead of focal_length", "px", low=1e-3),
+        Parameter("fy", "vertical focal length; default: fx", "px", low=1e-3),
+        Parameter("cx", "centre, x; 0 is the middle of the first pixel, as in OpenCV", "px"),
+        Parameter("cy", "centre, y; 0 is the middle of the first pixel, as in OpenCV", "px"),
         *LENS,
-        Parameter("lateral_colour", "use the lateral colour of a lens", kind="flag", default=True),
-        Parameter("scale", "scale of the ideal picture; below 1 shows more", default=1.0, low=1e-3),
+        Parameter(
+            "lateral_colour", "whether model=lens includes lateral colour", kind="flag",
+            default=True,
+        ),
+        Parameter("scale", "magnification of the ideal picture; below 1 shows more of the scene",
+                  default=1.0, low=1e-3),
         *FILTER,
-        Parameter("stmap", "an .exr to write the map to as well (of green)", kind="text"),
-        Parameter("inverse", "straighten instead of bending", kind="flag", default=False),
+        Parameter("stmap", "path of an .exr for the map of green, written as well", kind="text"),
+        Parameter("inverse", "undistort instead of distorting", kind="flag", default=False),
     ),
     _make,
 )  # fmt: skip

@@ -1,10 +1,10 @@
-"""Lens flare drawn from the highlights of a picture: a fake, for pictures without a scene.
+"""Made-up lens flare from the highlights of a picture, for pictures without a scene.
 
 After King 2000 (2D lens flare) and Chapman 2013 (Pseudo lens flare): each highlight makes spots on
 the line through the middle of the picture, with the shape of the iris, and a ring around itself.
-Where the spots lie, how large and of which tint they are is made up; how bright is not: two
-reflections at surfaces of the given reflectance. Light from outside the frame makes none. Ghosts
-of a real lens, from all of the scene's light, are those of ``daguerre render --flare``.
+Positions, sizes and tints of the spots are made up. Their brightness is not: it follows from two
+reflections at surfaces of the given reflectance. Light from outside the frame makes no flare.
+``daguerre render --flare`` traces the ghosts of a real lens from all of the scene's light.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ from daguerre.post.parameter import Parameter
 from daguerre.post.picture import Band, Canvas, Image, Source, bands
 
 SCAN = 256  # rows
-LARGEST = 512  # px, of the small picture in which flare is drawn
+LARGEST = 512  # px, size of the reduced picture in which flare is drawn
 
 
 @dataclass(frozen=True)
 class Ghost:
-    """A spot that each highlight makes.
+    """A ghost: one spot for each highlight.
 
     Attributes:
-        place: Place of the spot, as a multiple of the highlight's own from the picture's middle.
-        radius: In halves of the picture's diagonal.
+        place: Position relative to the middle of the picture, as a multiple of the highlight's.
+        radius: Radius, in half diagonals of the picture.
         tint: Factors on R, G, B; their mean is 1.
     """
 
@@ -46,7 +46,7 @@ class Ghost:
 
 
 def ghosts(count: int, seed: int) -> list[Ghost]:
-    """Made up: mirrored ones and others, small and large, with the pale tints of coatings."""
+    """Makes up ghosts on both sides of the middle, small and large, with pale coating tints."""
     rng = np.random.default_rng(seed)
     found = []
     for k in range(count):
@@ -100,7 +100,7 @@ class _FakeFlare(Step):
             outer, inner = (rounded_blur(scale * ring) for scale in (1.05, 0.95))
             whole, hole = (r * r * _spread(light, 1, r, disc) for r in (outer, inner))
             out += values["halo"] * (whole - hole) / (outer**2 - inner**2)
-        return np.maximum(out, 0)  # rounding where the discs of the ring cancel
+        return np.maximum(out, 0)  # rounding errors where the discs of the ring cancel
 
     def apply(self, band: Band, rows: Rows) -> Band:
         image = band.image.copy()
@@ -111,9 +111,9 @@ class _FakeFlare(Step):
 
 
 def _spread(light: Image, place: float, radius: float, iris: IrisShape) -> Image:
-    """Light at a multiple of its place, as spots of a radius in px; the sum stays, in the frame."""
+    """Light moved to a multiple of its position and spread to spots of a radius in px; same sum."""
     height, width, count = light.shape
-    rim = math.ceil(radius * iris.outer_radius) + 2  # spots that lie outside reach in
+    rim = math.ceil(radius * iris.outer_radius) + 2  # spots outside reach into the frame
     y, x = np.nonzero(light.max(axis=2) > 0)
     to_y = (y + 0.5 - 0.5 * height) * place + 0.5 * height - 0.5 + rim
     to_x = (x + 0.5 - 0.5 * width) * place + 0.5 * width - 0.5 + rim
@@ -135,7 +135,7 @@ def _spread(light: Image, place: float, radius: float, iris: IrisShape) -> Image
 
 
 def _between(small: Image, at: NDArray[Any], axis: int) -> Image:
-    """Values between the pixels of a picture along one axis, linearly; its edge goes on."""
+    """Interpolates a picture linearly along one axis; edge values continue."""
     last = small.shape[axis] - 1
     at = np.clip(at, 0, last)
     low = np.minimum(np.floor(at).astype(int), max(last - 1, 0))
@@ -147,17 +147,17 @@ def _between(small: Image, at: NDArray[Any], axis: int) -> Image:
 
 FAKE_FLARE = Effect(
     "fake-flare",
-    "made-up ghosts and a ring from the highlights of a picture",
+    "made-up lens flare (ghosts and a ring) from a picture's highlights",
     (
-        Parameter("threshold", "light from which on a pixel is a highlight", "", 4.0, low=0),
+        Parameter("threshold", "value above which a pixel is a highlight", "", 4.0, low=0),
         Parameter(
-            "reflectance", "reflectance of a surface; a ghost has two", "", 0.01, low=0, high=1
+            "reflectance", "reflectance of each of a ghost's two surfaces", "", 0.01, low=0, high=1
         ),
         Parameter("ghosts", "number of ghosts", "", 8, "whole", low=0, high=200),
-        Parameter("halo", "share of the light in a ring around it", "", 0.0, low=0, high=1),
+        Parameter("halo", "share of a highlight's light in the ring", "", 0.0, low=0, high=1),
         Parameter(
             "halo_radius",
-            "radius of the ring, in halves of the diagonal",
+            "radius of the ring, in half diagonals",
             "",
             0.4,
             low=0.01,
@@ -172,15 +172,15 @@ FAKE_FLARE = Effect(
 
 @guarded(arrays=False)
 def fake_flare(image: Image, **parameters: Any) -> Image:
-    """Adds made-up lens flare to a scene-linear picture, from its own highlights.
+    """Adds made-up lens flare to a scene-linear picture, from its highlights.
 
     Args:
-        image: Shape (H, W, C): 1 or 3 colours, and perhaps alpha, which stays.
-        **parameters: Those of the effect ``fake-flare``: ``threshold``, ``reflectance``,
+        image: Picture, shape (H, W, C): 1 or 3 colours; alpha, if present, is not changed.
+        **parameters: Parameters of the effect ``fake-flare``: ``threshold``, ``reflectance``,
             ``ghosts``, ``halo``, ``halo_radius``, ``blades``, ``blade_rotation`` (deg),
             ``blade_curvature``, ``aperture_image``, ``seed``.
 
     Raises:
-        UsageError: A parameter that is wrong.
+        UsageError: A parameter is wrong.
     """
     return on_array(FAKE_FLARE, image, parameters)

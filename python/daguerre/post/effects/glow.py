@@ -1,4 +1,4 @@
-"""Light that is spread: bloom, halos, stars, diffraction, veiling glare, and any kernel."""
+"""Effects that spread light: bloom, halation, stars, diffraction, veiling glare, any kernel."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ from daguerre.post.spreading import Spreading, Veil
 if TYPE_CHECKING:
     from daguerre.analysis.iris import Iris
 
-LARGEST = 2049  # px across, of kernels that could be larger
-COARSE = 768  # px, of the smaller side of a picture on which veils are spread
+LARGEST = 2049  # px, largest width of a kernel
+COARSE = 768  # px, shorter side of the reduced picture on which veils are spread
 
 IRIS = (
-    Parameter("f_number", "working f-number, seen from the film", default=REQUIRED, low=0.3),
+    Parameter("f_number", "working f-number (image side)", default=REQUIRED, low=0.3),
     Parameter("blades", "number of iris blades; 0: round", default=0, kind="whole", low=0, high=64),
     Parameter("rotation", "rotation of the blades", "deg", 0.0),
     Parameter(
-        "curvature", "curvature of the blades; 1: round, 0: straight", default=0.0, low=-1, high=1
+        "curvature", "curvature of the blades; 0: straight, 1: round", default=0.0, low=-1, high=1
     ),
-    Parameter("dust", "picture of dust on the iris: white lets light through", kind="text"),
+    Parameter("dust", "path of a picture of dust on the iris; white is clear", kind="text"),
 )
 
 
 def _shared(canvas: Canvas, share: float | Floats, kernel: Floats) -> Step:
-    """(1 - share) of the light stays, share is spread: their sum is what it was."""
+    """Step that spreads a share of the light and keeps the rest; the sum does not change."""
     shares = np.asarray(share, np.float32)
     return Spreading(canvas, spreader_of(kernel * shares, _shape(canvas)), 1 - shares)
 
@@ -49,7 +49,7 @@ def _shape(canvas: Canvas) -> tuple[int, int, int]:
 
 
 def _window(canvas: Canvas, wanted_px: float) -> int:
-    """An odd size of a kernel: what is wanted, no more than matters."""
+    """Odd size of a kernel: the wanted size, limited to what can matter."""
     most = min(LARGEST, 2 * max(canvas.width, canvas.height) - 1)
     return max(1, min(math.ceil(wanted_px), most)) | 1
 
@@ -68,7 +68,9 @@ def _halo(canvas: Canvas, values: Values) -> Step:
     shares = np.array([values["red"], values["green"], values["blue"]], np.float32)
     shares = values["share"] * (shares if colors == 3 else shares[:1])
     if (shares > 1).any():
-        raise UsageError(f"{canvas.where}: halo: share: wanted at most 1 of each colour")
+        raise UsageError(
+            f"{canvas.where}: halo: wanted share times red, green and blue of at most 1, got more"
+        )
 
     return _shared(canvas, shares, kernel[:, :, None])
 
@@ -107,7 +109,7 @@ def _star(canvas: Canvas, values: Values) -> Step:
 
 
 def iris_of(values: Values) -> Iris:
-    """The iris that parameters describe."""
+    """Makes the iris from the parameters."""
     from daguerre.analysis.iris import Iris
 
     if values["blades"] in (1, 2):
@@ -133,7 +135,7 @@ def _psf(canvas: Canvas, values: Values) -> Step:
     height, width = kernel.shape[:2]
     if height > canvas.height or width > canvas.width:
         raise InputError(
-            f"{values['file']}: point spread: wanted no more than the picture's "
+            f"{values['file']}: point spread: wanted at most the picture's size, "
             f"{canvas.width} x {canvas.height} px, got {width} x {height}"
         )
     if not (np.isfinite(kernel).all() and (kernel.sum(axis=(0, 1)) > 0).all()):
@@ -149,7 +151,7 @@ SHARE = Parameter("share", "share of the light that is spread", default=0.05, lo
 
 BLOOM = Effect(
     "bloom",
-    "a soft glow about bright things",
+    "a soft glow around bright areas",
     (
         Parameter(
             "radius", "radius within which half of the spread light falls", "px", 12.0, low=0.1
@@ -160,23 +162,23 @@ BLOOM = Effect(
 )
 HALO = Effect(
     "halo",
-    "halation of film: a ring about lamps, by reflection at the back of the base",
+    "halation of film: a ring around lamps, by reflection at the back of the base",
     (
         Parameter("thickness", "thickness of the base", "mm", 0.13, low=1e-3),
         Parameter("index", "refractive index of the base", default=1.48, low=1.01, high=3),
         SHARE,
-        Parameter("red", "share of red that takes part", default=1.0, low=0),
-        Parameter("green", "share of green that takes part", default=0.3, low=0),
-        Parameter("blue", "share of blue that takes part", default=0.05, low=0),
+        Parameter("red", "factor on share for red", default=1.0, low=0),
+        Parameter("green", "factor on share for green", default=0.3, low=0),
+        Parameter("blue", "factor on share for blue", default=0.05, low=0),
         SENSOR,
     ),
     _halo,
 )
 GLARE = Effect(
     "glare",
-    "veiling glare: light that glass, barrel and dust scatter over the whole picture",
+    "veiling glare: light scattered over the whole picture by glass, barrel and dust",
     (
-        Parameter("share", "veiling glare index, of the light", default=0.02, low=0, high=1),
+        Parameter("share", "share of the light (veiling glare index)", default=0.02, low=0, high=1),
         Parameter("shoulder", "radius at which the power law begins", "mm", 0.5, low=1e-3),
         Parameter("slope", "exponent of the power law", default=2.0, low=0, high=6),
         SENSOR,
@@ -185,7 +187,7 @@ GLARE = Effect(
 )
 DIFFRACTION = Effect(
     "diffraction",
-    "diffraction of light by an iris: softness, rings and stars",
+    "diffraction at the iris: softness, rings and stars",
     (
         *IRIS,
         SENSOR,
@@ -203,18 +205,26 @@ DIFFRACTION = Effect(
 )
 STAR = Effect(
     "star",
-    "the star of an iris alone, as strong as wanted: sharpness stays",
+    "the diffraction star of an iris with any strength, without loss of sharpness",
     (Parameter("share", "share of the light in the star", default=0.02, low=0, high=1),
      *DIFFRACTION.parameters),
     _star,
 )  # fmt: skip
 PSF = Effect(
     "psf",
-    "a point spread of one's own, the same everywhere",
+    "convolution with a point spread function from a file, the same everywhere",
     (
-        Parameter("file", "a picture, linear if it is .exr or .hdr", kind="text", default=REQUIRED),
         Parameter(
-            "normalise", "whether to keep the light of each colour", kind="flag", default=True
+            "file",
+            "path of the kernel, a picture; linear if .exr or .hdr",
+            kind="text",
+            default=REQUIRED,
+        ),
+        Parameter(
+            "normalise",
+            "whether to scale the kernel to sum 1 in each colour",
+            kind="flag",
+            default=True,
         ),
     ),
     _psf,
@@ -223,40 +233,69 @@ PSF = Effect(
 
 @guarded(arrays=False)
 def bloom(image: Image, **parameters: Any) -> Image:
-    """A soft glow: ``radius`` (px) holds half of the ``share`` of the light that is spread.
+    """Adds bloom: a ``share`` of the light is spread, half of it within ``radius`` (px).
 
     Args:
-        image: Scene-linear, shape (H, W, C).
-        **parameters: Those of the effect ``bloom``.
+        image: Scene-linear picture, shape (H, W, C).
+        **parameters: Parameters of the effect ``bloom``.
     """
     return on_array(BLOOM, image, parameters)
 
 
 @guarded(arrays=False)
 def halo(image: Image, **parameters: Any) -> Image:
-    """Halation: ``thickness`` (mm) and ``index`` of the base, ``share``, ``sensor`` (mm, mm)."""
+    """Adds halation of film.
+
+    Args:
+        image: Scene-linear picture, shape (H, W, C).
+        **parameters: Parameters of the effect ``halo``: ``thickness`` (mm) and ``index`` of the
+            base, ``share``, ``red``, ``green``, ``blue``, ``sensor`` (mm, mm).
+    """
     return on_array(HALO, image, parameters)
 
 
 @guarded(arrays=False)
 def glare(image: Image, **parameters: Any) -> Image:
-    """Veiling glare: ``share``, ``shoulder`` (mm), ``slope``, ``sensor`` (mm, mm)."""
+    """Adds veiling glare.
+
+    Args:
+        image: Scene-linear picture, shape (H, W, C).
+        **parameters: Parameters of the effect ``glare``: ``share``, ``shoulder`` (mm), ``slope``,
+            ``sensor`` (mm, mm).
+    """
     return on_array(GLARE, image, parameters)
 
 
 @guarded(arrays=False)
 def diffract(image: Image, **parameters: Any) -> Image:
-    """Diffraction at an iris, of RGB: ``f_number``, ``blades``, ``rotation`` (deg), ``sensor``."""
+    """Adds diffraction at an iris.
+
+    Args:
+        image: Scene-linear RGB picture, shape (H, W, C).
+        **parameters: Parameters of the effect ``diffraction``, such as ``f_number``, ``blades``,
+            ``rotation`` (deg), ``sensor`` (mm, mm).
+    """
     return on_array(DIFFRACTION, image, parameters)
 
 
 @guarded(arrays=False)
 def star(image: Image, **parameters: Any) -> Image:
-    """The star alone, with a ``share`` of the light; else as :func:`diffract`."""
+    """Adds only the diffraction star, with a ``share`` of the light.
+
+    Args:
+        image: Scene-linear RGB picture, shape (H, W, C).
+        **parameters: ``share``, and the parameters of :func:`diffract`.
+    """
     return on_array(STAR, image, parameters)
 
 
 @guarded(arrays=False)
 def spread_by(image: Image, **parameters: Any) -> Image:
-    """Convolution with the picture ``file``; its sum is 1 unless ``normalise`` is False."""
+    """Convolves a picture with a point spread function from a file.
+
+    Args:
+        image: Scene-linear picture, shape (H, W, C).
+        **parameters: ``file``, the path of the kernel, and ``normalise``: whether to scale it to
+            sum 1 in each colour (default: True).
+    """
     return on_array(PSF, image, parameters)

@@ -1,17 +1,17 @@
-"""Film grain: light turned into grains that lie by chance, and seen again.
+"""Film grain, from randomly placed grains.
 
 The film is a Boolean model (Newson, Delon and Galerne 2017, A stochastic film grain model for
-resolution-independent rendering): round grains at random places, their number in proportion to the
-light, overlapping where there are many. With q the mean number of grains over a point, 1 - exp(-q)
-of the film is covered. The covered share of a pixel of area A, read back as light, has the relative
+resolution-independent rendering): round grains at random positions, their number proportional to
+the light; they may overlap. If q is the mean number of grains over a point, 1 - exp(-q) of the film
+is covered. The covered share of a pixel of area A, converted back to light, has the relative
 variance
 
     (a / A) G(q) / q^2,   G(q) = 2 Integral_0^2 (exp(q k(s)) - 1) s ds,
 
-a the area of a grain and k(s) the part that two grains share at s radii from each other. Few grains
-make shadows coarse; it falls to a least at q = 2.9, after which the film saturates. Grains
-are taken to be many per pixel, so that the noise is normal, and lognormal in light: light stays
-positive and its mean what it was.
+where a is the area of a grain and k(s) the overlap of two grains at a distance of s radii. The
+variance is largest in shadows, where grains are few, and smallest at q = 2.9; beyond, the film
+saturates. Many grains per pixel are assumed, so that the noise is normal, and lognormal in light:
+light stays positive and keeps its mean.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class _Grain(Step):
         return band.with_image(image)
 
     def _factor(self, light: Image, pattern: Image) -> Image:
-        """Factor of grain on light: lognormal, of mean 1."""
+        """Factor of grain on light: lognormal, with mean 1."""
         with np.errstate(invalid="ignore"):
             variance = relative_variance(np.maximum(light, 0) / self._white)
         variance *= math.pi * self._radius**2 * sharpness(self._radius)
@@ -65,11 +65,11 @@ class _Grain(Step):
 
 
 def relative_variance(grains: NDArray[Any]) -> Floats:
-    """Relative variance of light read from film, times the pixel's area over a grain's: G(q) / q^2.
+    """Relative variance of light read from film, times pixel area over grain area: G(q) / q^2.
 
     Args:
-        grains: Mean number of grains over a point, q. Where film would saturate the least variance
-            is kept: film has finer grains for such light.
+        grains: Mean number of grains over a point, q. Beyond q of the smallest variance, that
+            variance is kept, as film has finer grains for such light.
     """
     q, variance = _table()
     least = int(np.argmin(variance))
@@ -87,9 +87,9 @@ def _table() -> tuple[Floats, Floats]:
 
 @functools.cache
 def sharpness(radius: float) -> float:
-    """Share of the variance that is left where grains reach over pixels' edges.
+    """Share of the variance that remains when grains extend over pixel edges.
 
-    The squares of the parts of a grain of this radius (px) that lie on pixels, summed.
+    It is the sum over pixels of the squared shares of a grain of this radius (px).
     """
     reach, fine = math.ceil(radius + 0.5), 32
     at = (np.arange((2 * reach + 1) * fine) + 0.5) / fine - reach - 0.5
@@ -101,12 +101,12 @@ def sharpness(radius: float) -> float:
 
 GRAIN = Effect(
     "grain",
-    "grain of photographic film; it comes after all other effects",
+    "grain of photographic film; applied after all other effects",
     (
-        Parameter("size", "diameter of a grain on the film", "um", 2.0, low=0.01, high=1000),
-        Parameter("white", "light that covers 63 % of the film with grains", "", 1.0, low=1e-6),
+        Parameter("size", "grain diameter on the film", "um", 2.0, low=0.01, high=1000),
+        Parameter("white", "value that covers 63 % of the film with grains", "", 1.0, low=1e-6),
         SENSOR,
-        Parameter("colour", "whether each colour has a pattern of its own", "", True, "flag"),
+        Parameter("colour", "whether each colour has its own pattern", "", True, "flag"),
         Parameter("seed", "random seed of the pattern", "", 0, "whole", low=0, high=2**53),
     ),
     _Grain,
@@ -116,16 +116,16 @@ GRAIN = Effect(
 
 @guarded(arrays=False)
 def grain(image: Image, **parameters: Any) -> Image:
-    """Gives a scene-linear picture the grain of film; the mean of light stays what it is.
+    """Adds film grain to a scene-linear picture; the mean of the light does not change.
 
-    The same pixel has the same grain in each crop of a picture.
+    A pixel has the same grain in every crop of a picture.
 
     Args:
-        image: Shape (H, W, C): 1 or 3 colours, and perhaps alpha, which stays.
-        **parameters: Those of the effect ``grain``: ``size`` of a grain (um), ``sensor`` (mm, mm),
+        image: Picture, shape (H, W, C): 1 or 3 colours; alpha, if present, is not changed.
+        **parameters: Parameters of the effect ``grain``: ``size`` (um), ``sensor`` (mm, mm),
             ``white``, ``colour``, ``seed``.
 
     Raises:
-        UsageError: A parameter that is wrong or missing.
+        UsageError: A parameter is wrong or missing.
     """
     return on_array(GRAIN, image, parameters)

@@ -1,4 +1,4 @@
-"""Lateral chromatic aberration: each colour has a size of its own, so that edges get fringes."""
+"""Lateral chromatic aberration: magnification differs by colour, so that edges get fringes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ MAX_RADIUS = 2.0  # half diagonals
 
 @dataclass(frozen=True)
 class Magnification(Radial):
-    """Radius times 1 + size + growth r^2; r is 1 in the corners."""
+    """Scales the radius by 1 + size + growth r^2; r is 1 in the corners."""
 
     size: float
     growth: float
@@ -49,7 +49,7 @@ class Magnification(Radial):
 
 @dataclass(frozen=True)
 class Between(Distortion):
-    """From where a lens shows points in one colour to where it shows them in another."""
+    """Maps points as a lens shows them in one colour to those in another colour."""
 
     one: Distortion
     other: Distortion
@@ -82,29 +82,29 @@ def _make(canvas: Canvas, values: Values) -> Step:
 
 
 def _of_lens(canvas: Canvas, values: Values) -> tuple[list[Distortion], tuple[float, float]]:
-    """Red and blue of a lens against its green, and the units of its models, px."""
+    """Models of red and blue relative to a lens's green, and their focal lengths, px."""
     (red, green, blue), focal_px = lens_models(canvas, values, CHANNEL_NM)
     return [Between(green, red), Between(green, blue)], focal_px
 
 
 LATERAL_COLOR = Effect(
     "lateral-colour",
-    "red and blue in another size than green, or that taken away",
+    "lateral chromatic aberration of red and blue against green, or its removal",
     (
         Parameter(
-            "model", "numbers, or those of a lens", kind="choice", default="numbers",
-            choices=("numbers", "lens"),
+            "model", "source of the magnifications: numbers or a lens", kind="choice",
+            default="numbers", choices=("numbers", "lens"),
         ),
-        Parameter("red", "excess of red's size over green's", "%", 0.0, low=-50, high=50),
-        Parameter("red_corner", "excess added in the corners, as r^2", "%", 0.0,
+        Parameter("red", "magnification of red over green", "%", 0.0, low=-50, high=50),
+        Parameter("red_corner", "further magnification of red in the corners, as r^2", "%", 0.0,
                   low=-30, high=30),
-        Parameter("blue", "excess of blue's size over green's", "%", 0.0, low=-50, high=50),
-        Parameter("blue_corner", "excess added in the corners, as r^2", "%", 0.0,
+        Parameter("blue", "magnification of blue over green", "%", 0.0, low=-50, high=50),
+        Parameter("blue_corner", "further magnification of blue in the corners, as r^2", "%", 0.0,
                   low=-30, high=30),
         SENSOR,
         *LENS,
         *FILTER,
-        Parameter("inverse", "take the effect away", kind="flag", default=False),
+        Parameter("inverse", "remove the effect instead", kind="flag", default=False),
     ),
     _make,
 )  # fmt: skip
@@ -112,18 +112,19 @@ LATERAL_COLOR = Effect(
 
 @guarded(arrays=False)
 def lateral_colour(image: Image, **parameters: Any) -> Image:
-    """Gives red and blue another size than green.
+    """Adds lateral chromatic aberration: red and blue are scaled relative to green.
 
     Args:
-        image: Scene-linear, shape (H, W, 3), or 4 with alpha, which stays.
-        **parameters: Those of the effect ``lateral-colour``: ``red``, ``blue`` (percent larger
+        image: Scene-linear picture, shape (H, W, 3), or (H, W, 4) with alpha, which is not changed.
+        **parameters: Parameters of the effect ``lateral-colour``: ``red``, ``blue`` (percent larger
             than green), ``red_corner``, ``blue_corner`` (percent more in the corners, growing as
-            r^2); or ``model="lens"`` with ``lens``, ``focus`` (m), ``zoom`` (mm), ``sensor`` (mm).
+            r^2); or ``model="lens"`` with ``lens``, ``focus`` (m), ``zoom`` (mm), ``sensor``
+            (mm, mm).
     """
     return on_array(LATERAL_COLOR, image, parameters)
 
 
 @guarded(arrays=False)
 def remove_lateral_colour(image: Image, **parameters: Any) -> Image:
-    """Takes away what :func:`lateral_colour` with the same parameters did."""
+    """Removes the effect of :func:`lateral_colour` with the same parameters."""
     return on_array(LATERAL_COLOR, image, {**parameters, "inverse": True})

@@ -1,4 +1,4 @@
-"""A picture through a lens of the library: its spread of points, which changes over the frame."""
+"""Blur by the point spread functions of a lens, which change over the frame."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
     from daguerre.analysis.iris import Iris
     from daguerre.analysis.pencils import Pencil
 
-WAVES = 257  # px across a kernel: what is wider is made of rays,
-FRINGES = 500.0  # and what is wider than so many wavelengths x f-number
-RAYS = 96  # across a pupil
+WAVES = 257  # px; wider kernels are computed with rays
+FRINGES = 500.0  # wavelengths x f-number; wider kernels are computed with rays
+RAYS = 96  # rays across the pupil
 
 
 def _make(canvas: Canvas, values: Values) -> Step:
-    """Kernels of a grid of points from edge to edge of the picture, blended between them."""
+    """Step with kernels at a grid of points from edge to edge of the picture, blended between."""
     if len(canvas.colors) - canvas.alpha != 3:
         listed = ", ".join(canvas.colors)
         raise InputError(f"{canvas.where}: lens-psf: wanted channels R, G and B, got {listed}")
@@ -42,7 +42,9 @@ def _make(canvas: Canvas, values: Values) -> Step:
     lights = [[_light(lens, point) for point in row] for row in points]
     found = [light for row in lights for light in row if light is not None]
     if not found:
-        raise InputError(f"{canvas.where}: lens-psf: {lens.lens.name}: no light arrives")
+        raise InputError(
+            f"{canvas.where}: lens-psf: wanted light on the film from {lens.lens.name}, got none"
+        )
     size = _size(canvas, found, film.pitch_mm)
     narrow = size <= WAVES and size * film.pitch_mm <= FRINGES * 0.55e-3 * lens.f_stop
     waves, count = values["waves"] and narrow, values["wavelengths"]
@@ -55,7 +57,7 @@ def _make(canvas: Canvas, values: Values) -> Step:
 
 
 def _points(canvas: Canvas, film: Plane, zones: int) -> list[list[tuple[float, float]]]:
-    """Film points (mm) of the grid; the picture stands upside down on the film."""
+    """Film points (mm) of the grid; the picture is upside down on the film."""
     share = np.linspace(0, 1, zones) if zones > 1 else np.array([0.5])
     x, y = (
         (corner + share * extent - center) * film.pitch_mm
@@ -73,7 +75,7 @@ def _light(lens: Bench, film_mm: tuple[float, float]) -> Pencil | None:
 
 
 def _size(canvas: Canvas, lights: list[Pencil], pitch: float) -> int:
-    """Pixels that hold all spreads, and some rings of diffraction, odd."""
+    """Odd size, px, that holds all point spreads and some diffraction rings."""
     from daguerre.analysis.spots import spot
 
     reach = 0.0
@@ -86,7 +88,7 @@ def _size(canvas: Canvas, lights: list[Pencil], pitch: float) -> int:
     if size > most:
         raise UsageError(
             f"{canvas.where}: lens-psf: wanted a point spread of at most {most} px, got {size} px: "
-            "the lens is that far out of focus"
+            "the lens is too far out of focus"
         )
     return size
 
@@ -94,7 +96,7 @@ def _size(canvas: Canvas, lights: list[Pencil], pitch: float) -> int:
 def _kernel(
     lens: Bench, light: Pencil | None, iris: Iris, pitch: float, size: int, count: int, waves: bool
 ) -> Floats:
-    """From channel to channel, shape (size, size, 3, 3); where no light arrives it stays."""
+    """Kernel from channel to channel, shape (size, size, 3, 3); identity where no light arrives."""
     from daguerre.analysis.lens_pupil import lens_pupil
     from daguerre.color.spectra import rgb_mixes
     from daguerre.post.starburst import starburst
@@ -112,7 +114,7 @@ def _kernel(
 
 
 def _of_rays(light: Pencil, iris: Iris, pitch: float, size: int, count: int) -> Floats:
-    """The same by rays alone, where the blur is far wider than diffraction's."""
+    """Kernel by rays alone, for blur far wider than diffraction."""
     from daguerre.color.spectra import rgb_mixes
 
     wide = replace(light.bench, iris_radius=light.bench.iris_radius * iris.outer_radius)
@@ -134,16 +136,16 @@ def _of_rays(light: Pencil, iris: Iris, pitch: float, size: int, count: int) -> 
 
 LENS_PSF = Effect(
     "lens-psf",
-    "how sharp a lens of the library would have drawn it, from the middle to the corners",
+    "sharpness of a lens from centre to corners, by its point spread functions",
     (
         replace(LENS[0], default=REQUIRED),
         *LENS[1:],
-        Parameter("defocus", "shift of the film from the focus, away from the lens", "mm", 0.0),
-        Parameter("zones", "points along each side with a spread of their own", default=5,
+        Parameter("defocus", "film shift from the focus, positive away from the lens", "mm", 0.0),
+        Parameter("zones", "number of point spread functions along each side", default=5,
                   kind="whole", low=1, high=17),
         Parameter("wavelengths", "number of wavelengths, 400 to 700 nm", default=9,
                   kind="whole", low=3, high=64),
-        Parameter("waves", "light as waves; 0: rays alone, far faster for wide blur",
+        Parameter("waves", "whether to include diffraction; 0 is far faster for wide blur",
                   kind="flag", default=True),
         *IRIS[1:],
         SENSOR,
@@ -154,11 +156,12 @@ LENS_PSF = Effect(
 
 @guarded(arrays=False)
 def through_lens(image: Image, **parameters: Any) -> Image:
-    """The picture as a lens would have drawn it: its spreads of points, without distortion.
+    """Blurs a picture by the point spread functions of a lens; distortion is not applied.
 
     Args:
-        image: Scene-linear RGB, shape (H, W, 3), or with alpha, which stays.
-        **parameters: Those of the effect ``lens-psf``: ``lens``, ``focus`` (m), ``zoom`` (mm),
-            ``f_stop``, ``defocus`` (mm), ``zones``, ``sensor`` (mm, mm).
+        image: Scene-linear RGB picture, shape (H, W, 3), or (H, W, 4) with alpha, which is not
+            changed.
+        **parameters: Parameters of the effect ``lens-psf``, such as ``lens``, ``focus`` (m),
+            ``zoom`` (mm), ``f_stop``, ``defocus`` (mm), ``zones``, ``sensor`` (mm, mm).
     """
     return on_array(LENS_PSF, image, parameters)

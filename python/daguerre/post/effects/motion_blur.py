@@ -1,8 +1,8 @@
-"""Motion blur from motion vectors: an instant as an open shutter would have taken it.
+"""Motion blur of an instant, from motion vectors.
 
 McGuire, Hennessy, Bukowski and Osman 2012 (A reconstruction filter for plausible motion blur)
-gather along the fastest motion nearby; here each pixel is spread along its own, and nearer ones
-hide farther ones for as long as they are before them.
+gather along the fastest motion nearby. Here each pixel is spread along its own motion, and near
+pixels hide far ones for as long as they cover them.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ from daguerre.post.picture import Band, Canvas, Image, Source, bands
 Floats = NDArray[np.float32]
 SCAN = 256  # rows
 SKY = 1e9  # m
-DEPTH_STEP = 0.08  # ratio of depths, less 1, of surfaces of which one hides the other
-SPEED_STEP = 0.5  # without depth: of asinh(px)
-#: When in the exposure a picture of ground truth was taken.
+DEPTH_STEP = 0.08  # relative depth difference from which one surface hides another
+SPEED_STEP = 0.5  # without depth: difference of asinh(speed in px)
+#: Start of the exposure relative to the instant of a ground-truth picture, in exposure times.
 OPENS = {"open": 0.0, "mid": -0.5, "close": -1.0}
 
 
@@ -50,7 +50,7 @@ class _MotionBlur(Step):
         self._missing = 0
 
     def prepare(self, source: Source) -> None:
-        """Finds how far pixels go."""
+        """Finds the longest motion."""
         farthest = 0.0
         for band in bands(source, SCAN):
             ahead, back = self._motion(band)
@@ -61,17 +61,17 @@ class _MotionBlur(Step):
         largest = 1e4
         if farthest > largest:
             raise InputError(
-                f"{self._where}: motion: wanted at most {largest:g} px while the shutter is open, "
+                f"{self._where}: motion: wanted at most {largest:g} px during the exposure, "
                 f"got {farthest:.4g} px"
             )
-        self.reach = 5 * math.ceil(farthest) + 8  # behind edges, and what is seen in a mirror there
+        self.reach = 5 * math.ceil(farthest) + 8  # incl. the mirrored background behind edges
         self.block = max(SCAN, self.reach // SCAN * SCAN)
 
     def _ends(self, ahead: Floats, back: Floats) -> list[tuple[Floats, float]]:
         return [(ahead if t > 0 else back, t) for t in (self._open, self._close)]
 
     def _motion(self, band: Band) -> tuple[Floats, Floats]:
-        """To the next frame and from here to the last one, px; what is not known stands still."""
+        """Motion to the next frame and to the previous one, px; 0 where it is unknown."""
         ahead = self._flow(band, self._next)
         back = self._flow(band, self._last) if len(self._last) == 2 else -ahead
         ahead = np.where(np.isfinite(ahead), ahead, -back)
@@ -86,7 +86,7 @@ class _MotionBlur(Step):
         return np.asarray(flow * self._scale, np.float32)
 
     def _nearness(self, band: Band, ahead: Floats, back: Floats) -> tuple[Floats, float]:
-        """Nearness, and the difference that hides: by depth, else the faster hides the slower."""
+        """Nearness, and the difference that hides; by depth, else faster pixels hide slower."""
         if self._depth is None:
             way = sum(abs(t) * np.hypot(*flow.T).T for flow, t in self._ends(ahead, back))
             return np.asarray(np.arcsinh(way), np.float32), SPEED_STEP
@@ -112,16 +112,18 @@ class _MotionBlur(Step):
         said = []
         if self._depth is None:
             said.append(
-                "no channel for depth: what moves faster was taken to be before what is slower "
-                "(--channel depth=NAME names one)"
+                "no depth channel: faster pixels are taken to be in front of slower ones "
+                "(--channel depth=NAME sets one)"
             )
         if self._missing:
-            said.append(f"{self._missing} pixels have no motion to the next frame (NaN)")
+            said.append(
+                f"{self._missing} pixels have no motion to the next frame (NaN) and are not moved"
+            )
         return said
 
 
 def _depth_channel(canvas: Canvas) -> str | None:
-    """Depth helps where there is some; a name that was given must be there."""
+    """Depth channel if there is one; a channel that the user named must exist."""
     try:
         return channels.find(canvas, "depth")
     except InputError:
@@ -131,10 +133,10 @@ def _depth_channel(canvas: Canvas) -> str | None:
 
 
 def _arrived(values: Values) -> list[float]:
-    """Share of the light that has come after equal parts of the time."""
+    """Share of the light that has arrived after equal parts of the exposure time."""
     if values["shutter_curve"] == "box":
         return [0.0, 1.0]
-    ramp = 1 - values["efficiency"]  # a trapezoid whose flanks are so long has that mean
+    ramp = 1 - values["efficiency"]  # length of the flanks that gives this mean opening
     t = np.linspace(0, 1, 513)
     opening = np.clip(np.minimum(t, 1 - t) / max(ramp, 1e-9), 0, 1)
     total = np.concatenate([[0], np.cumsum(0.5 * (opening[1:] + opening[:-1]))])
@@ -143,14 +145,14 @@ def _arrived(values: Values) -> list[float]:
 
 MOTION_BLUR = Effect(
     "motion-blur",
-    "blurs what moves, by the motion of each pixel; a picture of one instant is wanted",
+    "motion blur from motion vectors, for pictures of one instant",
     (
         Parameter(
-            "shutter_angle", "exposure time; 360 is a frame", "deg", 180.0, low=0, high=36000
+            "shutter_angle", "exposure time; 360 is one frame", "deg", 180.0, low=0, high=36000
         ),
         Parameter(
             "shutter_offset",
-            "time from the picture's moment to the opening; exposure around it if absent",
+            "start of the exposure after the picture's instant; default: centred on it",
             "frames",
         ),
         Parameter(
@@ -161,8 +163,10 @@ MOTION_BLUR = Effect(
             choices=("box", "trapezoid"),
         ),
         Parameter("efficiency", "mean opening of a trapezoid", "", 0.8, low=0.5, high=1),
-        Parameter("scale", "px per frame and unit of motion; -1: from the last frame", "", 1.0),
-        Parameter("v_up", "whether motion counts upward, not down", kind="flag", default=False),
+        Parameter(
+            "scale", "px per frame and unit of motion; -1: motion from the previous frame", "", 1.0
+        ),
+        Parameter("v_up", "whether v is positive upward, not downward", kind="flag", default=False),
     ),
     _MotionBlur,
     needs=("motion",),
@@ -173,22 +177,22 @@ MOTION_BLUR = Effect(
 def motion_blur(
     image: Image, motion: NDArray[Any], depth: NDArray[Any] | None = None, **parameters: Any
 ) -> Image:
-    """Blurs a scene-linear picture of one instant as an open shutter does.
+    """Adds motion blur to a scene-linear picture of one instant.
 
     Args:
-        image: Shape (H, W, C), any channels.
-        motion: From this frame to the next, px to the right and down, shape (H, W, 2), or (H, W, 4)
-            with the way from here back to where it was in the last frame. Pixels whose motion is
-            not finite stand still.
-        depth: Shape (H, W), m, along the axis or the ray; 0, infinity and NaN stand for the sky.
-            Without it, what moves faster hides what is slower.
-        **parameters: Those of the effect ``motion-blur``: ``shutter_angle`` (deg of a frame),
-            ``shutter_offset`` (frames), ``shutter_curve`` ("box" or "trapezoid"), ``efficiency``,
-            ``scale``, ``v_up``.
+        image: Picture, shape (H, W, C), any channels.
+        motion: Motion to the next frame, px to the right and down, shape (H, W, 2); with motion
+            back to the previous frame, shape (H, W, 4). Pixels with motion that is not finite do
+            not move.
+        depth: Depth along the axis or the ray, shape (H, W), m; 0, infinity and NaN mean sky.
+            Without it, faster pixels hide slower ones.
+        **parameters: Parameters of the effect ``motion-blur``: ``shutter_angle`` (deg; 360 is one
+            frame), ``shutter_offset`` (frames), ``shutter_curve`` ("box" or "trapezoid"),
+            ``efficiency``, ``scale``, ``v_up``.
 
     Raises:
-        UsageError: A parameter or a shape that is wrong.
-        InputError: Motion over more than 10000 px.
+        UsageError: A parameter or a shape is wrong.
+        InputError: ``motion`` has another shape, or moves pixels by more than 10000 px.
     """
     flow = np.asarray(motion)
     names = ("motion.U", "motion.V", "motion_back.U", "motion_back.V")

@@ -1,4 +1,4 @@
-"""Vignetting of saturation: colours that grow paler toward the edge, and their return."""
+"""Vignetting of saturation: colours that fade toward the edge, and its removal."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .vignetting import radial_polynomial, reciprocal
 
 
 class _Saturation(Step):
-    """Colours move along the line to the grey of their own luminance, which stays."""
+    """Moves colours toward the grey of the same luminance."""
 
     def __init__(self, canvas: Canvas, falloff: Falloff, *, inverse: bool) -> None:
         self._falloff, self._inverse = falloff, inverse
@@ -39,7 +39,7 @@ class _Saturation(Step):
         return band.with_image(image)
 
     def remarks(self) -> list[str]:
-        found = [f"{self._pale} pixels had lost all their colour and stay grey"]
+        found = [f"{self._pale} pixels have no colour left and stay grey"]
         return found if self._pale else []
 
 
@@ -50,12 +50,12 @@ def _make(canvas: Canvas, values: Values) -> Step:
 
 SATURATION = Effect(
     "saturation-vignetting",
-    "colours paler toward the edge, or that taken away",
+    "saturation that falls toward the edge, or its removal",
     (
-        Parameter("k1", "saturation is 1 + k1 r^2 + ..., r = 1 in the corners", default=-0.5),
+        Parameter("k1", "factor of r^2 in 1 + k1 r^2 + ...; r is 1 in the corners", default=-0.5),
         Parameter("k2", "factor of r^4", default=0.0),
         Parameter("k3", "factor of r^6", default=0.0),
-        Parameter("inverse", "take the effect away", kind="flag", default=False),
+        Parameter("inverse", "remove the effect instead", kind="flag", default=False),
     ),
     _make,
 )
@@ -63,10 +63,11 @@ SATURATION = Effect(
 
 @guarded(arrays=False)
 def vignette_saturation(image: Image, **parameters: Any) -> Image:
-    """Makes colours paler toward the edge; luminance stays.
+    """Reduces saturation toward the edge; luminance does not change.
 
     Args:
-        image: Scene-linear Rec.709, shape (H, W, 3), or 4 with alpha, which stays.
+        image: Scene-linear Rec.709 picture, shape (H, W, 3), or (H, W, 4) with alpha, which is not
+            changed.
         **parameters: ``k1``, ``k2``, ``k3``: saturation is 1 + k1 r^2 + k2 r^4 + k3 r^6, r = 1 in
             the corners.
     """
@@ -75,5 +76,5 @@ def vignette_saturation(image: Image, **parameters: Any) -> Image:
 
 @guarded(arrays=False)
 def unvignette_saturation(image: Image, **parameters: Any) -> Image:
-    """Takes away what :func:`vignette_saturation` with the same parameters did."""
+    """Removes the effect of :func:`vignette_saturation` with the same parameters."""
     return on_array(SATURATION, image, {**parameters, "inverse": True})

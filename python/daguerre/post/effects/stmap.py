@@ -1,7 +1,7 @@
-"""STMaps: for each pixel, where in the source its light is, as Nuke and others exchange it.
+"""STMaps: the source position of each pixel, as Nuke and other programs exchange it.
 
 Red is s, from 0 at the left edge of the source to 1 at its right edge; green is t, from 0 at the
-bottom to 1 at the top. Edges, and not middles of pixels: the map that changes nothing has
+bottom edge to 1 at the top edge. These are edges, not pixel centres, so the identity map has
 s = (column + 0.5) / width and t = 1 - (row + 0.5) / height, rows counted from the top.
 """
 
@@ -30,7 +30,7 @@ from .distortion import pair_px, point_map
 
 
 class _FileStep(WarpStep):
-    """Reads the map as it goes."""
+    """Step that reads the map band by band."""
 
     def __init__(self, canvas: Canvas, reader: ExrReader, **how: Any) -> None:
         super().__init__(canvas, [], **how)
@@ -38,7 +38,7 @@ class _FileStep(WarpStep):
         self._last: tuple[Rows, Warp] | None = None
 
     def warps(self, rows: Rows) -> list[Warp]:
-        """From the file; whole cells, so that no row depends on how the picture is cut."""
+        """Reads the map in whole cells, so that no row depends on how the picture is cut."""
         if self._last is None or self._last[0] != rows:
             top = rows.begin // CELL * CELL
             end = min(-(-rows.end // CELL) * CELL, self._canvas.height)
@@ -48,7 +48,7 @@ class _FileStep(WarpStep):
         return [self._last[1]]
 
     def _read(self, rows: Rows) -> Image:
-        """S and t of rows of the picture; NaN where the map has no pixels."""
+        """Returns s and t for rows of the picture; NaN where the map has no pixels."""
         canvas, reader = self._canvas, self._reader
         st = np.full((rows.end - rows.begin, canvas.width, 2), np.nan, np.float32)
         down = canvas.corner[1] - (reader.corner[1] - reader.full_corner[1])
@@ -63,7 +63,7 @@ class _FileStep(WarpStep):
 
 
 def _displacements(st: Image, canvas: Canvas, rows: Rows) -> NDArray[np.float32]:
-    """Px; what is far outside counts as nothing, so that no number overflows."""
+    """Displacements, px; NaN far outside, so that no number overflows."""
     width, height = canvas.full_size
     x = st[:, :, 0].astype(np.float64) * width - (np.arange(canvas.width) + canvas.corner[0] + 0.5)
     row = np.arange(rows.begin, rows.end) + canvas.corner[1] + 0.5
@@ -85,8 +85,8 @@ def _make(canvas: Canvas, values: Values) -> Step:
 
 STMAP = Effect(
     "stmap",
-    "moves pixels by an STMap: R and G are s and t, from 0 at the left and at the bottom",
-    (Parameter("file", "STMap, an .exr", kind="text", default=REQUIRED), *FILTER),
+    "warp by an STMap: R is s from the left, G is t from the bottom",
+    (Parameter("file", "path of the STMap, an .exr", kind="text", default=REQUIRED), *FILTER),
     _make,
 )
 
@@ -104,17 +104,17 @@ def stmap(
     """Returns the STMap of a distortion; see :func:`daguerre.post.distort`.
 
     Args:
-        model: The distortion.
+        model: Distortion model.
         size: Width and height of the picture, px.
-        focal_px: Focal length, px, or those across and down.
+        focal_px: Focal length, px; one, or horizontal and vertical.
         centre: Centre of the distortion, px; default: the middle.
-        scale: Scale of the ideal picture.
-        inverse: The map that straightens.
+        scale: Magnification of the ideal picture.
+        inverse: Whether the map undistorts instead.
 
     Returns:
-        S and t, shape (H, W, 2), NaN where the model has no answer.
+        s and t, shape (H, W, 2); NaN where the model is not defined.
     """
-    for side in numbers(size, "stmap: size", 2, "width and height, px"):
+    for side in numbers(size, "stmap: size", 2, "width and height in px"):
         number(side, "stmap: size", 1, MAX_RESOLUTION)
     size = int(size[0]), int(size[1])
     canvas = Canvas(*size)
@@ -126,13 +126,13 @@ def stmap(
 
 @guarded(arrays=False)
 def apply_stmap(image: Image, st: Image, *, filter: str = "cubic", antialias: bool = True) -> Image:
-    """Moves pixels by an STMap.
+    """Warps a picture by an STMap.
 
     Args:
-        image: Scene-linear, shape (H, W, C).
-        st: S and t, shape (H, W, 2); NaN: nothing is there.
-        filter: cubic or linear.
-        antialias: Whether to average where the map shrinks.
+        image: Scene-linear picture, shape (H, W, C).
+        st: s and t, shape (H, W, 2); NaN: the result is 0 there.
+        filter: Interpolation: ``cubic`` or ``linear``.
+        antialias: Whether to average where the map shrinks the picture.
     """
     given = to_numbers(st, "stmap", "st", "shape (H, W, 2)", UsageError)
     values = np.asarray(given, np.float32)

@@ -1,4 +1,4 @@
-"""Vignetting: light that grows less toward the edge of the picture, and its removal."""
+"""Vignetting: light that falls off toward the edge of the picture, and its removal."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from daguerre.post.optics import (
 from daguerre.post.parameter import Parameter
 from daguerre.post.picture import Band, Canvas, Image
 
-DARK = 1e-4  # of the light on the axis: less cannot be undone
+DARK = 1e-4  # smallest relative illumination that can be undone
 
 
 def reciprocal(share: NDArray[np.float32]) -> tuple[NDArray[np.float32], int]:
-    """One over what is left; 0 where that is too little to undo, and the number of such pixels.
+    """Returns 1 / share, 0 where that is too dark to undo, and the number of such pixels.
 
-    ``share`` has shape (rows, W), or (rows, W, C): a pixel is lost with any of its channels.
+    ``share`` has shape (rows, W) or (rows, W, C); a pixel counts if any channel is too dark.
     """
     lost = np.asarray(share < DARK)
     if share.ndim == 3:
@@ -42,7 +42,7 @@ def reciprocal(share: NDArray[np.float32]) -> tuple[NDArray[np.float32], int]:
 
 
 class _Vignetting(Step):
-    """Colours times what is left of the light; alpha stays."""
+    """Multiplies colours by the relative illumination; alpha is not changed."""
 
     def __init__(self, canvas: Canvas, falloff: Falloff, *, inverse: bool) -> None:
         self._colors = len(canvas.colors) - canvas.alpha
@@ -61,12 +61,12 @@ class _Vignetting(Step):
         return band.with_image(image)
 
     def remarks(self) -> list[str]:
-        found = [f"{self._dark} pixels, which get no light, were set to 0"]
+        found = [f"{self._dark} pixels that get no light are set to 0"]
         return found if self._dark else []
 
 
 def _natural(canvas: Canvas, values: Values) -> Falloff:
-    """cos^4 of the angle from the axis (Kolb, Mitchell and Hanrahan 1995)."""
+    """Natural falloff: cos^4 of the angle from the axis (Kolb, Mitchell and Hanrahan 1995)."""
     film, focal_length = film_plane(canvas, values), focal_length_mm(canvas, values)
 
     def falloff(rows: Rows) -> NDArray[np.float32]:
@@ -77,7 +77,7 @@ def _natural(canvas: Canvas, values: Values) -> Falloff:
 
 
 def radial_polynomial(canvas: Canvas, k1: float, k2: float, k3: float) -> Falloff:
-    """1 + k1 r^2 + k2 r^4 + k3 r^6, r = 1 in the corners; never below 0."""
+    """Polynomial falloff: 1 + k1 r^2 + k2 r^4 + k3 r^6, r = 1 in the corners; at least 0."""
     half_diagonal = 0.5 * math.hypot(*canvas.full_size)
 
     def falloff(rows: Rows) -> NDArray[np.float32]:
@@ -96,7 +96,9 @@ def _make(canvas: Canvas, values: Values) -> Step:
             falloff = radial_polynomial(canvas, values["k1"], values["k2"], values["k3"])
         case _:
             if values["lens"] is None:
-                raise UsageError("vignetting: lens: wanted a name with model=lens, got nothing")
+                raise UsageError(
+                    "vignetting: lens: wanted a name or a file for model=lens, got none"
+                )
             film, lens = film_plane(canvas, values), bench(values)
             falloff = lens_light(canvas, film, lens, color=values["colour"])
     return _Vignetting(canvas, falloff, inverse=values["inverse"])
@@ -104,11 +106,11 @@ def _make(canvas: Canvas, values: Values) -> Step:
 
 VIGNETTING = Effect(
     "vignetting",
-    "darkens toward the edge, or takes that away",
+    "light falloff toward the edge, or its removal",
     (
         Parameter(
             "model",
-            "falloff: cos^4 of the angle, 1 + k1 r^2 + ..., or a lens of the library",
+            "falloff: cos^4 of the angle, 1 + k1 r^2 + ..., or that of a lens",
             kind="choice",
             default="natural",
             choices=("natural", "polynomial", "lens"),
@@ -120,9 +122,9 @@ VIGNETTING = Effect(
         SENSOR,
         *LENS,
         Parameter(
-            "colour", "whether a lens darkens red, green and blue each", kind="flag", default=True
+            "colour", "whether model=lens has a falloff for each colour", kind="flag", default=True
         ),
-        Parameter("inverse", "take the effect away", kind="flag", default=False),
+        Parameter("inverse", "remove the effect instead", kind="flag", default=False),
     ),
     _make,
 )
@@ -130,18 +132,18 @@ VIGNETTING = Effect(
 
 @guarded(arrays=False)
 def vignette(image: Image, **parameters: Any) -> Image:
-    """Darkens a scene-linear picture toward its edge, as a lens does.
+    """Darkens a scene-linear picture toward its edge.
 
     Args:
-        image: Shape (H, W, C): 1 or 3 colours, and perhaps alpha, which stays.
-        **parameters: Those of the effect ``vignetting``: ``model`` (natural, polynomial, lens);
-            ``focal_length`` (mm) and ``sensor`` (mm, mm); ``k1``, ``k2``, ``k3``; ``lens``,
-            ``focus`` (m), ``zoom`` (mm), ``f_stop``, ``colour``.
+        image: Picture, shape (H, W, C): 1 or 3 colours; alpha, if present, is not changed.
+        **parameters: Parameters of the effect ``vignetting``: ``model`` ("natural", "polynomial" or
+            "lens"); ``focal_length`` (mm) and ``sensor`` (mm, mm); ``k1``, ``k2``, ``k3``;
+            ``lens``, ``focus`` (m), ``zoom`` (mm), ``f_stop``, ``colour``.
     """
     return on_array(VIGNETTING, image, parameters)
 
 
 @guarded(arrays=False)
 def unvignette(image: Image, **parameters: Any) -> Image:
-    """Takes away what :func:`vignette` with the same parameters did."""
+    """Removes the effect of :func:`vignette` with the same parameters."""
     return on_array(VIGNETTING, image, {**parameters, "inverse": True})
