@@ -60,7 +60,7 @@ def test_camera_of_another_plate(folder, capfd):
         put(folder, "ok.png", "object.exr", "--like-plate", str(folder / "weave.camera.json")) == 0
     )
     text = told(capfd)
-    assert "ok.png: the matched camera is that of weave.png, another file" in text
+    assert "ok.png: the camera was matched to another file, weave.png" in text
     assert "no noise was measured in weave.png: objects get no grain" in text
     assert (
         put(folder, "weave.png", "object.exr", "--like-plate", str(folder / "weave.camera.json"))
@@ -71,7 +71,10 @@ def test_camera_of_another_plate(folder, capfd):
 
 def test_objects_without_alpha(folder, capfd):
     assert put(folder, "ok.png", "covers.exr") == 0
-    assert "covers.exr: has no alpha, or 1 everywhere: it covers the whole plate" in told(capfd)
+    assert (
+        "covers.exr: alpha is missing or 1 everywhere, so the render covers the whole plate"
+        in told(capfd)
+    )
 
 
 def test_alpha_of_the_plate(folder, capfd):
@@ -79,7 +82,7 @@ def test_alpha_of_the_plate(folder, capfd):
     picture.putalpha(128)
     picture.save(folder / "alpha.png")
     assert put(folder, "alpha.png", "object.exr") == 0
-    assert "alpha was left out: 38400 of 38400 pixels are not opaque" in told(capfd)
+    assert "alpha is ignored: 38400 of 38400 pixels are not opaque" in told(capfd)
 
 
 def test_render_without_grain(folder, capfd):

@@ -107,7 +107,7 @@ def test_what_is_missing_is_named_before_anything_is_made(
     Path("object.0002.exr").unlink()
     assert composite("plate.png", "object.####.exr", "out.#.png", "--frames", "1-3") == 3
     said = capsys.readouterr().err
-    assert "frame 2: object.0002.exr: wanted a picture, got no file (it alone is missing)" in said
+    assert "frame 2: object.0002.exr: wanted a picture, got no file (only this frame)" in said
     assert not list(Path().glob("out.*"))
     assert composite("plate.#.png", "object.####.exr", "out.#.png", "--frames", "1-3") == 3
     assert "frame 1: plate.1.png: wanted a picture, got no file (3 of 3" in capsys.readouterr().err
@@ -121,10 +121,20 @@ def test_what_is_missing_is_named_before_anything_is_made(
     ("objects", "out", "flags", "message"),
     [
         ("object.####.exr", "out.png", ("--frames", "1-3"), "wanted a name with # for 3 frames"),
-        ("object.####.exr", "out.png", (), "# stands for the number of a frame; wanted --frames"),
-        ("object.0001.exr", "out.#.png", ("--frames", "1-3"), "wanted a plate or objects with #"),
+        ("object.####.exr", "out.png", (), "wanted --frames for # in the name, got none"),
+        (
+            "object.0001.exr",
+            "out.#.png",
+            ("--frames", "1-3"),
+            "wanted # for the frame number in the name",
+        ),
         ("object.0001.exr", "out.png", ("--resume",), "--resume: needs --frames"),
-        ("object.####.exr", "object.####.exr", ("--frames", "1-3"), "wanted another file"),
+        (
+            "object.####.exr",
+            "object.####.exr",
+            ("--frames", "1-3"),
+            "wanted an output file that is not an input",
+        ),
         ("object.####.exr", "out.#.png", ("--frames", "3-1"), "--frames: wanted frames such as"),
     ],
 )

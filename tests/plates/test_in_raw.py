@@ -148,7 +148,7 @@ def test_bad_plates_are_refused() -> None:
     )
     with pytest.raises(dg.InputError, match="wanted the plate's 36 x 24 px, got 72 x 48 px"):
         composite_raw(small.expose(), made["caught"])
-    with pytest.raises(dg.UsageError, match="wanted auto or ratio in raw"):
+    with pytest.raises(dg.UsageError, match="wanted auto or ratio for a raw plate"):
         composite_raw(made["empty"].expose(), made["caught"], form="difference")
     alone = replace(made["caught"], channels=None, catcher_channels=None)
     with pytest.raises(dg.InputError, match="render with --sensor"):

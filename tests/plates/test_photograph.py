@@ -105,7 +105,7 @@ def test_alpha_is_noted(tmp_path, count):
     found = read(path)
     assert found.pixels.shape == (8, 8, 3)
     assert found.pixels[5, 5].tolist() == [200] * 3
-    told = ("alpha was left out: 3 of 64 pixels are not opaque",)
+    told = ("alpha is ignored: 3 of 64 pixels are not opaque",)
     assert found.notes == (told if count in (2, 4) else ())
 
 

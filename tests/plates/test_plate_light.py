@@ -85,7 +85,7 @@ def test_the_matched_camera_says_what_exif_lacks(tmp_path: Path) -> None:
     light, notes = photo_light(path)
     assert light.max() == pytest.approx(1, rel=1e-3)
     assert "EXIF lacks exposure time, f-number, ISO" in notes[0]
-    assert "--plate-scale gives one" in notes[0]
+    assert "--plate-scale sets it" in notes[0]
     taken = dg.Camera(f_stop=2.8, shutter_time=1 / 60, iso=400)
     light, notes = photo_light(path, taken=taken)
     assert light.max() == pytest.approx(70.7355 * 2.8**2 * 60 / 400, rel=1e-3)

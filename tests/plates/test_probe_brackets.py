@@ -115,7 +115,7 @@ def test_linear_files_with_ev(tmp_path):
     made = dg.light_probe(paths, ev=(-2, 2), sun="off")
     fine = light.max(axis=2) < 30
     assert made.image[fine] == pytest.approx(light[fine], rel=1e-4)
-    with pytest.raises(InputError, match=r"linear files do not say it; wanted --ev"):
+    with pytest.raises(InputError, match=r"wanted --ev, such as .*, as linear files have none"):
         dg.light_probe(paths)
 
 
@@ -146,7 +146,7 @@ def test_missing_exposures(tmp_path):
 def test_other_sizes_and_kinds(tmp_path):
     paths = shots(tmp_path, radiance(), seconds=SECONDS[:2])
     save(paths[1], np.full((60, 128, 3), 90, np.uint8), exposure(0.1))
-    with pytest.raises(InputError, match=r"1.png: size: wanted 256x128 px as .*got 128x60"):
+    with pytest.raises(InputError, match=r"1.png: size: wanted 256x128 px like .*got 128x60"):
         dg.light_probe(paths)
     light = save(tmp_path / "l.exr", np.ones((128, 256, 3), np.float32))
     with pytest.raises(InputError, match="photographs of one kind"):
@@ -183,7 +183,7 @@ def test_turned_photographs_stand_upright(tmp_path):
 
 def test_clipped_everywhere(tmp_path):
     path = save(tmp_path / "white.jpg", np.full((64, 128, 3), 255, np.uint8), exposure(1))
-    with pytest.raises(InputError, match="wanted light that is not clipped, got none"):
+    with pytest.raises(InputError, match="wanted light that is not clipped, got hardly any"):
         dg.light_probe(path)
     path = save(tmp_path / "black.jpg", np.zeros((64, 128, 3), np.uint8), exposure(1))
     with pytest.raises(InputError, match="wanted light, got a black picture"):
@@ -192,5 +192,5 @@ def test_clipped_everywhere(tmp_path):
 
 def test_recovery_needs_brackets(tmp_path):
     path = save(tmp_path / "one.png", np.full((64, 128, 3), 90, np.uint8), exposure(1))
-    with pytest.raises(UsageError, match=r"recover wants photographs at least 0.3 EV apart"):
+    with pytest.raises(UsageError, match=r"wanted photographs at least 0.3 EV apart for recover"):
         dg.light_probe(path, response="recover")

@@ -122,5 +122,5 @@ def test_camera_yaw_turns_the_sun(tmp_path):
 
 def test_one_side_alone(tmp_path):
     path = save(tmp_path / "grey.exr", ball_picture(matt()))
-    with pytest.raises(UsageError, match="wanted one side of a grey ball"):
+    with pytest.raises(UsageError, match="wanted one value for a grey ball"):
         dg.light_probe([path, path], ball="grey", ball_direction=(0, 90), ev=(0, 0))

@@ -98,7 +98,7 @@ def test_clipped_sun_is_warned_of(tmp_path, bright):
     made = dg.light_probe(save(tmp_path / "clipped.exr", np.minimum(bright, 30000)))
     assert made.sun is None or made.sun.clipped
     (text,) = made.warnings
-    assert "of the sphere is clipped in every photograph, about azimuth 34" in text
+    assert "of the sphere is clipped in every photograph, around azimuth 34" in text
     inner = (1 - math.cos(math.radians(0.4))) / 2
     assert inner < made.facts["clipped"]["share"] < 2.5 * inner
 
@@ -171,7 +171,7 @@ def test_meter_that_does_not_fit(tmp_path, bright):
 def test_meter_needs_units(tmp_path, bright):
     codes = np.clip(bright / 30000, 0, 1) ** (1 / 2.2)
     path = save(tmp_path / "clipped.png", np.rint(255 * codes).astype(np.uint8))
-    with pytest.raises(InputError, match=r"--illuminance: the map has no known unit"):
+    with pytest.raises(InputError, match=r"--illuminance: wanted light in a known unit"):
         dg.light_probe(path, illuminance=100000)
     scaled = dg.light_probe(path, illuminance=ground_illuminance(bright), scale=30000)
     assert scaled.sun.lux == pytest.approx(80000, rel=0.03)

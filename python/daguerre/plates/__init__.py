@@ -1,1 +1,1 @@
-"""Photographs as plates: their light, and what is put into them."""
+"""Photographs as plates: matching their camera, compositing into them, and lighting by them."""

@@ -1,4 +1,4 @@
-"""Developed photographs: JPEG, PNG, TIFF and WebP, decoded by OpenImageIO."""
+"""Reads developed photographs (JPEG, PNG, TIFF, WebP) with OpenImageIO."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ _WHOLE = (np.dtype(np.uint8), np.dtype(np.uint16))
 
 
 def read_display(path: Path) -> Photograph:
-    """Reads a developed photograph; colours are taken for sRGB.
+    """Reads a developed photograph; colours are taken as sRGB.
 
     Raises:
-        InputError: It cannot be decoded, or is no picture of whole numbers.
+        InputError: The file cannot be decoded, or its pixels are not integers.
     """
     pixels, spec = read_file(path)
     if pixels.dtype not in _WHOLE:
         raise InputError(
-            f"{path}: pixels: wanted 8 or 16 bits, or linear light as .exr; got {pixels.dtype}"
+            f"{path}: pixels: wanted 8 or 16 bits (linear light only as .exr), got {pixels.dtype}"
         )
     tags = {str(a.name).rpartition(":")[2]: a.value for a in spec.extra_attribs}
     turn = int(exif_number(tags.get("Orientation")) or 1)
@@ -34,14 +34,14 @@ def read_display(path: Path) -> Photograph:
     colors, more = colors_of(pixels, str(path))
     facts = shot_facts(tags, (pixels.shape[1], pixels.shape[0]))
     if exif_number(tags.get("ColorSpace")) == 65535:
-        notes.append("colours: the file says that they are not sRGB's; taken for sRGB")
+        notes.append("colours: the file has another colour space; it is read as sRGB")
     return Photograph(
         path, "display", upright(colors, turn), None, turned(facts, turn), (*notes, *more)
     )
 
 
 def colors_of(pixels: NDArray[Any], where: str) -> tuple[NDArray[Any], list[str]]:
-    """Red, green and blue, (H, W, 3), of 1 to 4 channels, and what became of alpha."""
+    """Returns red, green and blue, (H, W, 3), from 1 to 4 channels, and a note on alpha."""
     count = pixels.shape[2]
     if not 1 <= count <= 4:
         raise InputError(f"{where}: channels: wanted grey or red, green and blue, got {count}")
@@ -52,20 +52,20 @@ def colors_of(pixels: NDArray[Any], where: str) -> tuple[NDArray[Any], list[str]
 
 
 def alpha_notes(alpha: NDArray[Any]) -> list[str]:
-    """Tells that alpha was left out: what is not opaque is no part of the scene."""
+    """Returns a note that alpha is ignored, and how many pixels are not opaque."""
     top = np.iinfo(alpha.dtype).max if np.issubdtype(alpha.dtype, np.integer) else 1
     clear = int(np.count_nonzero(alpha < top))
     share = f"{clear} of {alpha.size} pixels are not opaque" if clear else "all pixels are opaque"
-    return [f"alpha was left out: {share}"]
+    return [f"alpha is ignored: {share}"]
 
 
 def turn_notes(orientation: int) -> list[str]:
-    """Tells that a photograph did not lie upright in its file."""
+    """Returns a note if a photograph was turned upright."""
     return [] if orientation == 1 else [f"turned upright: EXIF orientation {orientation}"]
 
 
 def turned(facts: dict[str, Any], orientation: int) -> dict[str, Any]:
-    """Facts of a photograph that was turned: the sides of its sensor change places."""
+    """Metadata of a turned photograph, with the sides of its sensor swapped if needed."""
     size = facts.get("sensorOverallDimensions")
     if orientation < 5 or size is None:
         return facts

@@ -1,4 +1,4 @@
-"""Photographs from files, by the end of their names."""
+"""Reads photographs by the suffix of their file names."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ DISPLAY = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp")
 
 
 def read(path: str | os.PathLike[str]) -> Photograph:
-    """Reads a photograph by the end of its name.
+    """Reads a photograph; the suffix of its name sets the format.
 
     Args:
-        path: ``.jpg``, ``.png``, ``.tif``: developed; ``.exr``: linear light; others are raw files,
-            ``.dng`` and what else LibRaw reads.
+        path: ``.jpg``, ``.png``, ``.tif``: developed; ``.exr``: linear light; any other suffix,
+            such as ``.dng``: a raw file that LibRaw reads.
 
     Raises:
-        InputError: It is no such file, or holds no picture of red, green and blue, or grey.
+        InputError: There is no such file, or it has no RGB or grey picture.
     """
     file = Path(path)
     if not file.is_file():

@@ -1,4 +1,4 @@
-"""Photographs as linear light: OpenEXR with the standard's attributes."""
+"""Reads photographs in linear light: OpenEXR with standard attributes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def read_linear(path: Path) -> Photograph:
     """Reads a picture in linear light, Rec.709.
 
     Raises:
-        InputError: It cannot be read, has no colours, or a pixel is not finite.
+        InputError: The file cannot be read, has no colours, or a pixel is not finite.
     """
     frame = read_frame(path).without_overscan()
     bad = np.argwhere(~np.isfinite(frame.rgb).all(axis=2))

@@ -1,4 +1,4 @@
-"""The light that a photograph shows, for a scene that it is thrown onto."""
+"""Reads the light of a photograph, for a scene onto which it is projected."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ def photo_light(
 
     Args:
         path: JPEG, PNG, TIFF, raw file, ``.exr`` or ``.hdr``.
-        scale: Luminance of a value of 1, cd/m2; None: by the exposure, 1 for linear files.
-        taken: Camera that took it, whose exposure stands in for what EXIF lacks.
+        scale: Luminance of a value of 1, cd/m2; None: from the exposure, 1 for linear files.
+        taken: Camera whose exposure replaces values that EXIF lacks.
 
     Returns:
-        Linear Rec.709, cd/m2, shape (H, W, 3), and remarks: what EXIF lacks, how much is clipped.
+        Linear Rec.709, cd/m2, shape (H, W, 3), and notes on missing EXIF values and clipping.
 
     Raises:
-        InputError: It cannot be read.
+        InputError: The file cannot be read.
     """
     notes = Notes()
     shot = read_shot(path, None, notes)
@@ -46,12 +46,12 @@ def photo_light(
     unit = exposures_of([shot], None, scale, notes, "--plate-scale").luminance[0]
     said = notes.sentences()
     if share := float((shot.top >= CLIPPED).mean()):
-        said.append(f"{share:.2%} of the plate is clipped: lights in it are darker than they were")
+        said.append(f"{share:.2%} of the plate is clipped, so its lights are too dark")
     return np.ascontiguousarray(light * np.float32(unit)), said
 
 
 def _exposure(taken: Camera | None) -> dict[str, Any]:
-    """Exposure of a camera by the names of EXIF's facts."""
+    """Exposure of a camera under the names of metadata."""
     if taken is None:
         return {}
     stop = taken.exposure_f_stop or taken.f_stop

@@ -1,4 +1,4 @@
-"""A photograph as its file has it: pixels as they stand, upright, and the facts of the shot."""
+"""A photograph as in its file: upright pixels and metadata of the shot."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ XY = tuple[float, float]
 
 @dataclass(frozen=True, eq=False)
 class RawNumbers:
-    """Numbers of a mosaic, upright.
+    """Digital numbers of a mosaic, upright.
 
     Attributes:
         mosaic: Digital numbers of the photosites, uint16, shape (H, W).
-        cells: Index of the channel of each photosite of the cell that repeats, shape (h, w).
-        channels: Names, ``("R", "G", "B")`` or ``("Y",)``.
-        black: DN of no light by channel, shape (C,).
+        cells: Channel index of each photosite of the repeating cell, shape (h, w).
+        channels: Names of the channels, ``("R", "G", "B")`` or ``("Y",)``.
+        black: DN without light by channel, shape (C,).
         white: DN from which on a photosite is saturated.
-        white_balance: White that the camera was set to, chromaticity (x, y).
+        white_balance: White balance of the camera, chromaticity (x, y).
     """
 
     mosaic: NDArray[np.uint16]
@@ -42,13 +42,13 @@ class Photograph:
     """A photograph.
 
     Attributes:
-        path: Its file.
-        kind: ``raw``: numbers of a mosaic; ``display``: encoded for screens; ``linear``: light.
-        pixels: Red, green and blue, upright, shape (H, W, 3): uint8 or uint16 of ``display``,
-            float32 of ``linear``; None of ``raw``.
-        raw: Numbers of ``raw``; None of others.
-        facts: Facts of the shot by the names of OpenEXR, such as ``expTime`` (s), ``aperture``.
-        notes: Decisions that were made on reading, a sentence each.
+        path: Path of its file.
+        kind: ``raw``: values of a mosaic; ``display``: display-encoded; ``linear``: linear light.
+        pixels: Red, green and blue, upright, shape (H, W, 3): uint8 or uint16 for ``display``,
+            float32 for ``linear``; None for ``raw``.
+        raw: Values of the mosaic for ``raw``; else None.
+        facts: Metadata of the shot by OpenEXR's names, such as ``expTime`` (s), ``aperture``.
+        notes: Assumptions made on reading, a sentence each.
     """
 
     path: Path
@@ -60,7 +60,7 @@ class Photograph:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height, upright, px."""
+        """Width and height of the upright picture, px."""
         shape = self._array.shape
         return int(shape[1]), int(shape[0])
 
@@ -73,20 +73,20 @@ class Photograph:
     def linear(
         self, rows: slice = slice(None), columns: slice = slice(None)
     ) -> NDArray[np.float32]:
-        """Light of a part of a developed photograph, linear, shape (h, w, 3)."""
+        """Returns linear light of a part of a developed photograph, shape (h, w, 3)."""
         part = self._array[rows, columns]
         if self.kind == "linear":
             return np.asarray(part, np.float32)
         return np.asarray(srgb.to_linear(encoded(part)), np.float32)
 
     def sha256(self) -> str:
-        """Hash of the file."""
+        """SHA-256 of the file."""
         with self.path.open("rb") as stream:
             return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def encoded(pixels: NDArray[Any]) -> NDArray[np.float32]:
-    """Whole numbers of pictures as 0 .. 1; float numbers stay."""
+    """Scales integer pixels to 0 .. 1; float pixels are not changed."""
     if not np.issubdtype(pixels.dtype, np.integer):
         return np.asarray(pixels, np.float32)
     return np.asarray(pixels, np.float32) / np.float32(np.iinfo(pixels.dtype).max)

@@ -1,4 +1,4 @@
-"""Raw photographs: the numbers of the mosaic as they are, by LibRaw."""
+"""Reads raw photographs with LibRaw: unprocessed values of the mosaic."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _PERIOD = 12
 
 
 def read_raw(path: Path) -> Photograph:
-    """Reads a raw file, DNG or a camera's own.
+    """Reads a raw file: DNG or a camera's format.
 
     Raises:
-        InputError: LibRaw does not know it, or it has no mosaic.
+        InputError: LibRaw cannot read the file, or it has no mosaic.
     """
     tags = tags_of(path)
     with opened_raw(path) as opened:
@@ -41,8 +41,8 @@ def read_raw(path: Path) -> Photograph:
 def _numbers(path: Path, opened: Any, tags: Mapping[str, Any], turn: int) -> RawNumbers:
     if opened.raw_image is None or opened.num_colors not in (1, 3):
         raise InputError(
-            f"{path}: mosaic: wanted one of red, green and blue, or grey; got "
-            f"{opened.num_colors} colours without one"
+            f"{path}: mosaic: wanted a mosaic of red, green and blue, or grey; got "
+            f"{opened.num_colors} colours without a mosaic"
         )
     grey = opened.num_colors == 1
     channels = ("Y",) if grey else ("R", "G", "B")

@@ -1,4 +1,4 @@
-"""Facts of a shot from EXIF: its names and units to those of OpenEXR.
+"""Converts EXIF metadata of a shot to the names and units of OpenEXR.
 
 Tags and units: Exif 3.0 (CIPA DC-008-2023), 4.6.
 """
@@ -32,15 +32,15 @@ _UNITS_MM = {2: 25.4, 3: 10.0, 4: 1.0, 5: 1e-3}
 
 
 def shot_facts(tags: Mapping[str, Any], size: tuple[int, int]) -> dict[str, Any]:
-    """Facts by the names of OpenEXR.
+    """Returns metadata by OpenEXR's names.
 
     Args:
         tags: Values by EXIF's names; rationals as numbers or as pairs.
-        size: Width and height of the picture as it lies in the file, px.
+        size: Width and height of the picture as stored in the file, px.
 
     Returns:
-        Those that are there; ``sensorOverallDimensions`` (mm) where the resolution of the focal
-        plane or the equivalent focal length tells it.
+        Values that are present; ``sensorOverallDimensions`` (mm) if the resolution of the focal
+        plane or the equivalent focal length determines it.
     """
     facts: dict[str, Any] = {}
     for theirs, ours in _NUMBERS.items():

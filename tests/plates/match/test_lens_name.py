@@ -40,12 +40,14 @@ def test_lenses_that_the_library_lacks(model):
 
 def test_several_are_asked_about():
     facts = {"lensModel": "50.0 mm f/1.2", "cameraMake": "Canon"}
-    wanted = r"a\.jpg: lens: .* may be canon-new-fd-50mm-f1.2, canon-rf-50mm-f1.2; --lens says"
+    wanted = (
+        r"a\.jpg: lens: wanted one lens .* got canon-new-fd-50mm-f1.2, canon-rf-50mm-f1.2; .*--lens"
+    )
     with pytest.raises(InputError, match=wanted):
         library_lens(facts, "a.jpg")
     found, notes = library_lens(facts | {"lensModel": "85.0 mm f/1.8"}, "a.jpg")
     assert found == "canon-ef-85mm-f1.8"
-    assert "was taken for" in notes[0]
+    assert "is taken as" in notes[0]
 
 
 def test_every_lens_is_found_by_its_own_name():

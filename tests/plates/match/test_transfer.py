@@ -142,7 +142,7 @@ def test_colours_that_tell_another_gain_are_no_sensor():
         return variance * random.chisquare(count, 8000) / count
 
     found = Blocks(level, squares(9), squares(16), 2 * squares(2), channel)
-    with pytest.raises(InputError, match="tell each colour another gain"):
+    with pytest.raises(InputError, match="give each colour a different gain"):
         transfer.transfer_of(found, (0, 1e5), 2, "x.dng")
     one = found.only(channel == 0)
     assert transfer.transfer_of(one, (0, 1e5), 2, "x.dng").gain == pytest.approx(1, rel=0.03)

@@ -1,1 +1,1 @@
-"""Objects into a photograph: over light, and in the electrons of a raw picture."""
+"""Composites rendered objects into photographs: in linear light, or in electrons of a raw file."""

@@ -1,4 +1,4 @@
-"""Objects into a plate, from files or values: in light, or in the electrons of a raw picture."""
+"""Composites objects into a plate: in linear light, or in the electrons of a raw picture."""
 
 from __future__ import annotations
 
@@ -46,25 +46,25 @@ def composite(
     scale: float | None = None,
     seed: int = 0,
 ) -> Composite:
-    """Puts rendered objects into a photograph.
+    """Composites rendered objects into a photograph.
 
     Args:
-        plate: The photograph. A raw one is composited in its electrons.
-        objects: The render, with alpha and what catchers caught.
-        like_plate: The plate's matched camera: objects get its blur and noise. A raw plate from a
-            file needs it.
+        plate: Photograph. A raw one is composited in electrons.
+        objects: Render of the objects, with alpha and catcher channels.
+        like_plate: Matched camera of the plate, which gives objects its blur and noise. Required
+            for a raw plate from a file.
         form: How catchers change the plate: ``auto``, ``ratio`` or ``difference``.
-        scale: Light of the render that a plate's 1 stands for; default: by the exposure of both for
+        scale: Light of the render for a plate value of 1; default: from both exposures for
             developed plates, 1 for linear ones.
-        seed: Seed of the noise of what is added.
+        seed: Seed of the noise of added objects.
 
     Returns:
-        A frame of a linear plate, a raw picture of a raw one, a picture of a developed one; each
-        has ``save``.
+        A frame for a linear plate, a raw picture for a raw one, a picture for a developed one;
+        each has ``save``.
 
     Raises:
         InputError: A file cannot be read, sizes differ, or a raw plate has no matched camera.
-        UsageError: No such form, or a scale that is not positive.
+        UsageError: ``form`` is unknown, or ``scale`` is not positive.
     """
     look = _look(like_plate)
     frame = objects if isinstance(objects, Frame) else read_frame(objects)
@@ -74,7 +74,7 @@ def composite(
         source = _raw(source, look)
     if isinstance(source, Raw):
         if scale is not None:
-            raise UsageError("scale: a raw plate has its own: the electrons of its sensor")
+            raise UsageError("scale: wanted none for a raw plate, which counts electrons, got one")
         return composite_raw(source, seen, form=form, seed=seed)
     if isinstance(source, Frame):
         return _linear(source, seen, form, 1.0 if scale is None else _positive(scale))
@@ -90,8 +90,8 @@ def _look(like_plate: PathLike | PlateCamera | None) -> PlateLook | None:
 def _raw(source: Photograph, look: PlateLook | None) -> Raw:
     if look is None:
         raise InputError(
-            f"{source.path}: composite: a raw plate needs its matched camera "
-            "(daguerre match-plate, then --like-plate)"
+            f"{source.path}: composite: wanted the matched camera of a raw plate, got none "
+            "(run daguerre match-plate, then use --like-plate)"
         )
     return raw_of(source, look.plate)
 
@@ -101,10 +101,10 @@ def _positive(scale: float) -> float:
 
 
 def check_size(frame: Frame, size: tuple[int, int]) -> None:
-    """Refuses objects of another size than the plate.
+    """Checks that objects have the plate's size.
 
     Raises:
-        InputError: The message has both sizes.
+        InputError: The sizes differ; the message has both.
     """
     if (frame.width, frame.height) != size:
         raise InputError(
@@ -114,7 +114,7 @@ def check_size(frame: Frame, size: tuple[int, int]) -> None:
 
 
 def _linear(plate: Frame, seen: Frame, form: str, scale: float) -> Frame:
-    """A frame in the units of the plate."""
+    """Composites into a linear plate; returns a frame in the units of the plate."""
     shown = plate.without_overscan()
     check_size(seen, (shown.width, shown.height))
     rgb = change_of_rgb(seen, form).of(shown.rgb * np.float32(scale)) / np.float32(scale)
@@ -130,7 +130,7 @@ def _developed(
     scale: float | None,
     seed: int,
 ) -> Picture | Frame:
-    """A picture, encoded as the plate is; of a linear photograph a frame."""
+    """Composites into a developed plate; returns a picture encoded like the plate."""
     check_size(seen, plate.size)
     linear = plate.kind == "linear"
     unit = _positive(scale) if scale is not None else 1.0 if linear else white_of(seen)
@@ -145,9 +145,9 @@ def _developed(
 
 
 def white_of(frame: Frame) -> float:
-    """Light of a frame that a developed picture of its exposure shows as 1.
+    """Light of a frame that becomes 1 in a developed picture of its exposure.
 
-    ISO 12232: 10 / ISO lux s are middle grey, 0.18.
+    By ISO 12232, middle grey (0.18) is 10 / ISO lux s.
     """
     facts = frame.metadata
     iso = float(facts.get("isoSpeed") or 100.0)
@@ -162,7 +162,7 @@ def _noisy(
     look: PlateLook | None,
     seed: int,
 ) -> NDArray[np.float32]:
-    """Adds the plate's noise where its own is gone: variances add up to that of the plate."""
+    """Adds the plate's noise where objects removed it, so that variances add up to the plate's."""
     if look is None:
         return shown
     whole = look.finished(Picture(shown, "srgb", dict(plate.facts)), seed).pixels
@@ -176,14 +176,14 @@ def _unchanged(
     factor: NDArray[np.float32],
     light: NDArray[np.float32],
 ) -> NDArray[np.float32]:
-    """Keeps the plate's own numbers where objects change nothing."""
+    """Keeps the plate's exact values where objects change nothing."""
     assert plate.pixels is not None
     same = (np.abs(1 - factor) < 1e-4) & (np.abs(light) < 1e-6)
     return np.asarray(np.where(same, encoded(plate.pixels), np.clip(pixels, 0, 1)), np.float32)
 
 
 def _facts(seen: Frame, plate: dict[str, Any]) -> dict[str, Any]:
-    """Facts of the plate; of the render what it does not know."""
+    """Metadata of the plate, completed from the render."""
     names = ("expTime", "aperture", "isoSpeed", "nominalFocalLength", "lensModel", "lensMake")
     known = {name: seen.metadata[name] for name in names if name in seen.metadata}
     size = {"resolution": (seen.width, seen.height), "crop": (0, 0, seen.width, seen.height)}
@@ -191,11 +191,13 @@ def _facts(seen: Frame, plate: dict[str, Any]) -> dict[str, Any]:
 
 
 def save(made: Composite, path: Path, **look: Any) -> None:
-    """Writes a composite by the end of the name.
+    """Writes a composite in the format of the file name's suffix.
 
     Raises:
-        UsageError: A DNG is wanted of what is no raw picture.
+        UsageError: A DNG is requested, but the composite is not a raw picture.
     """
     if path.suffix.lower() == ".dng" and not isinstance(made, Raw):
-        raise UsageError(f"{path}: a DNG is made of a raw plate, got {short(type(made).__name__)}")
+        raise UsageError(
+            f"{path}: wanted a composite of a raw plate for a DNG, got {short(type(made).__name__)}"
+        )
     made.save(path, **look)

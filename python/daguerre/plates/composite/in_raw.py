@@ -1,13 +1,13 @@
-"""Objects into a raw picture: in electrons, before noise and before the mosaic is undone.
+"""Composites objects into a raw picture: in electrons of the mosaic, with matching noise.
 
-A plate's photosite has N electrons, a number of the Poisson distribution of mean L, and read noise
-of deviation r. Objects leave the share k of its light and add E electrons on average. Their picture
-would have had a number of mean k L + E, with one read noise. From the plate's own number that is
+A photosite of the plate has N electrons, Poisson distributed with mean L, plus read noise of
+standard deviation r. Objects leave the share k of its light and add E electrons on average. A real
+shot of plate and objects has mean k L + E and read noise once. The plate's value is converted to
 
-    k (N + read) + noise of variance k (1 - k) L + (1 - k^2) r^2 + a number of mean E,
+    k (N + read) + noise of variance k (1 - k) L + (1 - k^2) r^2 + a Poisson number of mean E,
 
-with N in the place of L: mean and variance are those of such a shot (thinning of a Poisson process;
-Kingman 1993, Poisson Processes, 5.1). Where nothing changes, the plate's numbers stay as they are.
+with N in place of L. Mean and variance are those of a real shot (thinning of a Poisson process;
+Kingman 1993, Poisson Processes, 5.1). Where nothing changes, the plate keeps its values exactly.
 """
 
 from __future__ import annotations
@@ -27,29 +27,29 @@ from daguerre.frame.raw import Raw
 from daguerre.sensors.sensor import Sensor
 
 Mosaic = NDArray[np.float32]
-#: Effect below which a photosite keeps its number: that share of its light, or of an electron.
+#: Change below which a photosite keeps its value, as a share of its light or in electrons.
 NOTHING = 1e-4
 
 
 def composite_raw(plate: Raw, frame: Frame, *, form: str = AUTO, seed: int = 0) -> Raw:
-    """Puts objects into a raw picture.
+    """Composites objects into a raw picture.
 
     Args:
-        plate: The raw picture, of a sensor that is known.
-        frame: The objects, rendered by the plate's camera and sensor (``sensor=``).
+        plate: Raw picture of a known sensor.
+        frame: Objects, rendered with the plate's camera and sensor (``sensor=``).
         form: How catchers change the plate, ``auto`` or ``ratio``; see ``over``.
-        seed: Seed of the noise of what is added.
+        seed: Seed of the noise of added objects.
 
     Returns:
-        The plate with other numbers where the objects change something.
+        The plate with new values where the objects change it.
 
     Raises:
-        InputError: The pictures differ in size, or the frame lacks its exposure, or the sensor's
-            channels of what catchers caught.
-        UsageError: Another form: electrons cannot be taken away but as a share.
+        InputError: The sizes differ, or the frame lacks its exposure or catcher channels of the
+            plate's sensor.
+        UsageError: Another ``form``: electrons can be removed only as a share.
     """
     if form not in (AUTO, RATIO):
-        raise UsageError(f"form: wanted {AUTO} or {RATIO} in raw, got {short(form)}")
+        raise UsageError(f"form: wanted {AUTO} or {RATIO} for a raw plate, got {short(form)}")
     shown = frame.without_overscan()
     if (shown.width, shown.height) != (plate.width, plate.height):
         raise InputError(
@@ -72,14 +72,14 @@ def composite_raw(plate: Raw, frame: Frame, *, form: str = AUTO, seed: int = 0) 
 def mixed(
     plate: Mosaic, kept: Mosaic, added: Mosaic, read: float, rng: np.random.Generator
 ) -> Mosaic:
-    """Electrons of a shot that has ``kept`` of the plate's light, and ``added`` of its own.
+    """Electrons of a shot with the share ``kept`` of the plate's light, and ``added`` electrons.
 
     Args:
-        plate: Electrons of the plate, noise and all, shape (H, W).
-        kept: Share of its light that is left, 0 .. 1.
-        added: Electrons that come to it on average.
-        read: Deviation of read noise, electrons.
-        rng: Source of random numbers.
+        plate: Electrons of the plate, with noise, shape (H, W).
+        kept: Share of the plate's light that remains, 0 .. 1.
+        added: Mean number of added electrons.
+        read: Standard deviation of read noise, electrons.
+        rng: Random number generator.
     """
     light = np.maximum(plate, 0)
     variance = kept * (1 - kept) * light + (1 - kept**2) * read**2
@@ -88,13 +88,13 @@ def mixed(
 
 
 def kept_and_added(plate: Raw, frame: Frame, form: str) -> tuple[Mosaic, Mosaic]:
-    """Kept share and added electrons of each photosite, behind the sensor's filters."""
+    """Kept share and added electrons of each photosite, after the sensor's filters."""
     body = plate.sensor
     light = light_of(frame, body, chosen_ev(frame, None))
     change = _change(frame, body, light, form)
     one = np.eye(len(body.channels), dtype=np.float32)
     kept = _core.expected_electrons(_planes(np.clip(change.factor, 0, 1)), _shot(body, one, 0.0))
-    # More than all of the plate (the ratio alone does that) is light that comes to it.
+    # A kept share above 1 (only a ratio has it) becomes added light.
     more = np.maximum(change.factor - 1, 0)
     added = _core.expected_electrons(_planes(change.light), _shot(body, one, body.prnu))
     if more.any():
@@ -104,10 +104,10 @@ def kept_and_added(plate: Raw, frame: Frame, form: str) -> tuple[Mosaic, Mosaic]
 
 
 def _change(frame: Frame, body: Sensor, light: Light, form: str) -> Change:
-    """The change in electrons of each channel of the sensor.
+    """Change in electrons of each channel of the sensor.
 
-    Light of the objects may be fitted from colours, which denoising leaves alone; what catchers
-    caught is a change of the sensor's own channels, which denoising leaves as they were drawn.
+    The light of objects may be fitted from colours. Catchers need channels of the sensor itself,
+    which denoising does not change.
     """
     added = np.asarray(light.planes @ light.electrons.T.astype(np.float32))
     if frame.catcher is None:
@@ -117,8 +117,8 @@ def _change(frame: Frame, body: Sensor, light: Light, form: str) -> Change:
         caught = frame.catcher_channels * per_one
         return change_of(added, frame.alpha, caught, frame.catcher_ratio_channels, form)
     raise InputError(
-        "composite: catchers in raw: wanted a frame with the channels of the plate's sensor "
-        f"(render with --sensor {body.name})"
+        "composite: wanted a frame with catcher channels of the plate's sensor for a raw plate, "
+        f"got none (render with --sensor {body.name})"
     )
 
 

@@ -1,4 +1,4 @@
-"""Remarks on what is put together: parts that do not go together, and what is missing."""
+"""Notes on parts of a composite that do not fit together or are missing."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from daguerre.plates.photograph import Photograph
 
 
 def of_plate(plate: Photograph, camera: PlateCamera | None) -> list[str]:
-    """Tells what was left out of the plate, and whether the matched camera is another's."""
+    """Returns notes on the plate, and on a camera that was matched to another plate."""
     notes = [f"{plate.path}: {note}" for note in plate.notes]
     if camera is not None and camera.sha256 != plate.sha256():
-        notes.append(f"{plate.path}: the matched camera is that of {camera.plate}, another file")
+        notes.append(f"{plate.path}: the camera was matched to another file, {camera.plate}")
     return notes
 
 
 def of_camera(camera: PlateCamera | None) -> list[str]:
-    """Tells what objects cannot get."""
+    """Returns a note if objects get no grain."""
     if camera is None or camera.noise is not None or camera.sensor is not None:
         return []
     return [f"no noise was measured in {camera.plate}: objects get no grain"]
 
 
 def of_objects(frame: Frame, path: Path) -> list[str]:
-    """Tells that a picture covers the whole plate."""
+    """Returns a note if the render covers the whole plate."""
     if not bool((frame.alpha >= 1).all()):
         return []
-    return [f"{path}: has no alpha, or 1 everywhere: it covers the whole plate"]
+    return [f"{path}: alpha is missing or 1 everywhere, so the render covers the whole plate"]

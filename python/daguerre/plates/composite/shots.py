@@ -1,7 +1,7 @@
-"""Files of a sequence of composites: which plate, objects and results make one frame.
+"""Finds the files of a sequence of composites: plate, objects and results of each frame.
 
-Noise of what is added differs from frame to frame, and is the same each time: frame n has the bits
-of a single composite with the seed of the sequence plus n.
+The noise of added objects differs between frames and is reproducible: frame n equals a single
+composite with the seed of the sequence plus n, bit by bit.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pathlib import Path
 from daguerre.errors import InputError, UsageError
 from daguerre.rendering.names import has_frame, numbered
 
-#: Seeds of noise by place are below this; sums below 0 count down from it.
+#: Upper limit of seeds; sums below 0 wrap around to it.
 SEEDS = 2**53
 
 
@@ -23,11 +23,11 @@ class Shot:
     """One composite.
 
     Attributes:
-        plate: The photograph.
-        objects: The render.
-        outputs: Files to write.
-        seed: Seed of the noise of what is added.
-        frame: Number in a sequence; None: there is none.
+        plate: Path of the photograph.
+        objects: Path of the render.
+        outputs: Paths of files to write.
+        seed: Seed of the noise of added objects.
+        frame: Frame number in a sequence; None: not a sequence.
     """
 
     plate: Path
@@ -38,12 +38,12 @@ class Shot:
 
     @property
     def is_complete(self) -> bool:
-        """Whether its files are there: they are written whole or not at all."""
+        """Whether its output files exist; they are written atomically."""
         return all(path.exists() for path in self.outputs)
 
 
 def seed_of(seed: int, frame: int) -> int:
-    """The seed of a frame."""
+    """Seed of a frame."""
     return (seed + frame) % SEEDS
 
 
@@ -53,16 +53,16 @@ def shots_of(
     """Finds the composites of a call.
 
     Args:
-        plate: The photograph; its number in the place of ``#``, or one for all frames.
-        objects: The render; the same.
-        outputs: Files to write.
-        frames: Numbers of the frames; None: no sequence.
+        plate: Path of the photograph, with ``#`` for the frame number, or one for all frames.
+        objects: Path of the render, likewise.
+        outputs: Paths of files to write.
+        frames: Frame numbers; None: no sequence.
         seed: Seed of the sequence.
 
     Raises:
-        UsageError: A ``#`` without frames, or frames without one, or a file would be written twice
-            or is one of those that are read.
-        InputError: A file is missing; the message names the first, and its frame.
+        UsageError: There is a ``#`` without frames, or frames without a ``#``; or a file would be
+            written twice, or is also read.
+        InputError: A file is missing; the message has the first one and its frame.
     """
     _check_places(plate, objects, frames)
     if frames is None:
@@ -85,28 +85,28 @@ def shots_of(
 def _check_places(plate: Path, objects: Path, frames: Sequence[int] | None) -> None:
     marked = [path for path in (plate, objects) if has_frame(path)]
     if frames is None and marked and not marked[0].exists():
-        raise UsageError(f"{marked[0]}: # stands for the number of a frame; wanted --frames")
+        raise UsageError(f"{marked[0]}: wanted --frames for # in the name, got none")
     if frames is not None and len(frames) > 1 and not marked:
         raise UsageError(
-            f"--frames: wanted a plate or objects with # for the number of a frame, such as "
-            f"{plate.stem}.####{plate.suffix}; got {plate} and {objects}"
+            f"--frames: wanted # for the frame number in the name of the plate or the objects, "
+            f"such as {plate.stem}.####{plate.suffix}; got {plate} and {objects}"
         )
 
 
 def _check_files(shots: list[Shot]) -> None:
-    """Errors come before the first frame is made, not after hours."""
+    """Checks all files before the first frame is made."""
     read = {path.resolve() for shot in shots for path in (shot.plate, shot.objects)}
     written = [path for shot in shots for path in shot.outputs]
     for path in written:
         if path.resolve() in read:
-            raise UsageError(f"{path}: wanted another file than those that are read")
+            raise UsageError(f"{path}: wanted an output file that is not an input, got an input")
     if twice := [path for path, count in Counter(written).items() if count > 1]:
-        raise UsageError(f"-o {twice[0]}: wanted a file for each picture, got one for several")
+        raise UsageError(f"-o {twice[0]}: wanted one file for each frame, got one for several")
     missing = [
         (shot, path) for shot in shots for path in (shot.plate, shot.objects) if not path.exists()
     ]
     if missing and missing[0][0].frame is not None:
         shot, path = missing[0]
         count = len({each.frame for each, _ in missing})
-        which = "it alone is missing" if count == 1 else f"{count} of {len(shots)} frames miss one"
+        which = "only this frame" if count == 1 else f"{count} of {len(shots)} frames miss a file"
         raise InputError(f"frame {shot.frame}: {path}: wanted a picture, got no file ({which})")

@@ -1,1 +1,1 @@
-"""The camera of a photograph: its facts, its noise and its sharpness, for objects put into it."""
+"""Matches the camera of a photograph: settings, noise and sharpness, for compositing objects."""

@@ -1,14 +1,15 @@
 """Blocks of equal photosites, judged by low frequencies and measured by high ones.
 
 White noise has the same variance in every coefficient of a discrete cosine transform, independent
-of each other, while pictures have little in the high ones. So low coefficients tell which blocks
-are flat, and high ones, which had no say in that, how large the noise is: a choice by them does not
-bias it (Ponomarenko et al. 2007, An automatic approach to lossy compression of AVIRIS images; Colom
-and Buades 2013, Analysis and extension of the Ponomarenko et al. method, IPOL 3). Coefficients
-along one axis alone are left out: light that changes along rows plus columns has only those.
+of each other, while pictures have little in the high ones. So the low coefficients select flat
+blocks, and the high ones measure the noise. As the high ones do not take part in the selection, it
+does not bias them (Ponomarenko et al. 2007, An automatic approach to lossy compression of AVIRIS
+images; Colom and Buades 2013, Analysis and extension of the Ponomarenko et al. method, IPOL 3).
+Coefficients along only one axis are left out: light that is a function of the row plus a function
+of the column has only those.
 
-Where photosites of one colour stand far apart (X-Trans, Quad-Bayer), texture between them would
-look like noise. There squares of four that touch are taken, see ``squares``.
+Where photosites of one colour are far apart (X-Trans, Quad-Bayer), texture between them would look
+like noise. There, squares of four adjacent photosites are used; see ``squares``.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
-#: Coefficients of a block that judge it, and those that measure it.
+#: Number of coefficients that select a block, and of those that measure noise.
 LOW_COUNT, HIGH_COUNT = 9, 16
 
 
@@ -30,8 +31,8 @@ class Blocks:
     Attributes:
         level: Mean, DN above black, shape (N,).
         low: Mean square of the low coefficients, DN^2, shape (N,).
-        high: Mean square of the high ones, DN^2: of a flat block the variance of its noise.
-        slope: Sum of the squares of the first coefficient along either axis, DN^2.
+        high: Mean square of the high coefficients, DN^2; the noise variance in flat blocks.
+        slope: Sum of the squares of the first coefficient along each axis, DN^2.
         channel: Index of the channel, shape (N,).
     """
 
@@ -42,18 +43,18 @@ class Blocks:
     channel: NDArray[np.intp]
 
     def only(self, chosen: NDArray[np.bool_]) -> Blocks:
-        """Those of a mask."""
+        """Selects blocks by a mask."""
         return Blocks(*(getattr(self, part.name)[chosen] for part in fields(self)))
 
 
 def joined(parts: list[Blocks]) -> Blocks:
-    """Blocks of several pictures as one."""
+    """Joins blocks of several pictures."""
     names = [part.name for part in fields(Blocks)]
     return Blocks(*(np.concatenate([getattr(one, name) for one in parts]) for name in names))
 
 
 def inside(blocks: NDArray[np.uint16], white: int) -> NDArray[np.bool_]:
-    """Which blocks, shape (N, ...), hold no number of either end, shape (N,)."""
+    """Mask, shape (N,), of blocks, shape (N, ...), without values at either end of the range."""
     if not len(blocks):
         return np.zeros(0, np.bool_)
     flat = blocks.reshape(len(blocks), -1)

@@ -1,7 +1,7 @@
-"""Blur between rendered pixels and those of a plate: a Gaussian, and the sharpening of cameras.
+"""Blur from rendered pixels to those of a plate: a Gaussian, then the sharpening of cameras.
 
-The response is exp(-2 pi^2 s^2 f^2) (1 + a (1 - exp(-2 pi^2 r^2 f^2))): spread by s px, then an
-unsharp mask of strength a and radius r, that of development.
+The response is exp(-2 pi^2 s^2 f^2) (1 + a (1 - exp(-2 pi^2 r^2 f^2))): a Gaussian of s px, then an
+unsharp mask of strength a and the radius r of development.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from daguerre.development.develop import SHARPEN_RADIUS
 
 FloatArray = NDArray[np.float64]
 Floats = NDArray[np.float32]
-#: Largest spread, px, and largest strength, that are looked for.
+#: Largest sigma, px, and largest sharpening in the fit.
 _MOST_SIGMA, _MOST_SHARPEN = 6.0, 4.0
-#: Frequencies that are fitted: above, aliasing and noise have their say.
+#: Highest frequency in the fit, cycles per pixel; above, aliasing and noise matter.
 _FITTED = 0.42
 
 
@@ -39,32 +39,32 @@ class Blur:
         return np.asarray(gaussian(self.sigma, frequency) * mask)
 
     def applied(self, planes: Floats, scale: float = 1.0) -> Floats:
-        """A picture with this blur; what lies beyond its border is as at the border.
+        """Applies this blur to a picture; border values continue beyond the border.
 
         Args:
             planes: Linear light, shape (H, W, C).
-            scale: Pixels of the picture for each of the plate.
+            scale: Pixels of the picture for each pixel of the plate.
         """
         soft = _spread(planes, self.sigma * scale)
         if self.sharpen == 0:
             return soft
         more = np.float32(self.sharpen) * (soft - _spread(soft, SHARPEN_RADIUS * scale))
-        # Sharpening must not make light below 0, which a camera does not have either.
+        # Sharpening must not make light negative.
         return np.where(soft >= 0, np.maximum(soft + more, 0), soft)
 
 
 def gaussian(sigma: float, frequency: FloatArray) -> FloatArray:
-    """Modulation of a Gaussian blur, cycles per pixel."""
+    """Modulation of a Gaussian blur at frequencies in cycles per pixel."""
     return np.asarray(np.exp(-2 * (np.pi * sigma * frequency) ** 2))
 
 
 def fitted(frequency: FloatArray, response: FloatArray, model: FloatArray | None = None) -> Blur:
-    """The blur and sharpening that turn the response of rendered pixels into a measured one.
+    """Fits the blur and sharpening that convert the response of rendered pixels to a measured one.
 
     Args:
-        frequency: Cycles per pixel, shape (F,).
+        frequency: Frequencies, cycles per pixel, shape (F,).
         response: Measured modulation, shape (F,).
-        model: Modulation of rendered pixels, shape (F,); None: that of an even square pixel.
+        model: Modulation of rendered pixels, shape (F,); None: that of a square pixel.
     """
     used = (frequency > 0) & (frequency <= _FITTED)
     f, wanted = frequency[used], response[used]
@@ -77,7 +77,7 @@ def fitted(frequency: FloatArray, response: FloatArray, model: FloatArray | None
         sharpen = float(masked @ (wanted - blurred)) / power if power > 1e-12 else 0.0
         sharpen = min(max(sharpen, 0.0), _MOST_SHARPEN)
         rest = wanted - blurred - sharpen * masked
-        # Blur and sharpening undo each other: of equal fits the one with less of both.
+        # Blur and sharpening cancel: among equal fits take the one with less of both.
         error = float(rest @ rest) + 1e-4 * sharpen
         if error < best[0]:
             best = (error, Blur(float(sigma), sharpen))
@@ -104,9 +104,9 @@ def _spread(planes: Floats, sigma: float) -> Floats:
 
 
 def taps(sigma: float) -> FloatArray:
-    """Weights of a blur that are not negative, whose response at 1/4 cycle is the Gaussian's.
+    """Non-negative weights of a blur whose response at 1/4 cycle per pixel is the Gaussian's.
 
-    A Gaussian that is read at pixels has another response, the more the smaller it is.
+    A Gaussian sampled at pixels has another response, the more so the smaller it is.
     """
     if sigma < 0.01:
         return np.ones(1)

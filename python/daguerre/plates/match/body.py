@@ -1,4 +1,4 @@
-"""The sensor of the library that a photograph's camera has."""
+"""Finds the library's sensor for a photograph's camera."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from daguerre.sensors import Sensor
 
 
 def library_sensor(facts: Mapping[str, Any]) -> Sensor | None:
-    """By the names of make and model; None: the library has none.
+    """Finds a sensor by make and model; None: the library has none.
 
     Args:
-        facts: ``cameraMake`` and ``cameraModel``. DNG files of Daguerre have both as the model.
+        facts: ``cameraMake`` and ``cameraModel``; DNG files of Daguerre have both in the model.
     """
     make, model = str(facts.get("cameraMake") or ""), str(facts.get("cameraModel") or "")
     names = {_plain(model), _plain(f"{make} {model}")} - {""}

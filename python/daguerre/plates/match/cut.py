@@ -1,4 +1,4 @@
-"""A mosaic cut into blocks, in the way that its pattern allows."""
+"""Cuts a mosaic into blocks, depending on its pattern."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from .blocks import Blocks
 from .planes import blocks_of_planes
 from .squares import blocks_of_squares
 
-#: Blocks that are looked at in one picture; more tell nothing new.
+#: Largest number of blocks in one picture; more add no information.
 MOST = 400_000
 
 
 def blocks_of(raw: RawNumbers, share: float = 1.0) -> Blocks:
-    """Blocks all over a mosaic; those with a photosite at either end of the numbers are left out.
+    """Cuts blocks from a whole mosaic, without those that have clipped photosites.
 
     Args:
-        raw: The mosaic.
-        share: Share of ``MOST`` that may come of it.
+        raw: Mosaic.
+        share: Share of ``MOST`` to cut at most.
     """
     if max(raw.cells.shape) > 2:
         return blocks_of_squares(raw, int(MOST * share))

@@ -1,4 +1,4 @@
-"""Vignetting by a photograph of an even surface, as the polynomial of the darkroom."""
+"""Measures vignetting in a photograph of an even surface, as the darkroom's polynomial."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class Falloff:
 
     Attributes:
         terms: k1, k2 and k3 as measured.
-        lens: Those of the camera's lens as it is rendered; None: it has no falloff of its own.
-        rest: Root mean square of what the fit leaves, relative.
+        lens: Terms of the camera's lens as rendered; None: it has no falloff.
+        rest: Relative RMS residual of the fit.
     """
 
     terms: Terms
@@ -39,12 +39,12 @@ class Falloff:
 
     @property
     def corner_ev(self) -> float:
-        """Light in the corners against the middle, EV."""
+        """Light in the corners relative to the middle, EV."""
         return float(np.log2(max(1 + sum(self.terms), 1e-6)))
 
     @property
     def lens_corner_ev(self) -> float | None:
-        """The same by the lens as it is rendered."""
+        """Light in the corners relative to the middle for the lens as rendered, EV."""
         return None if self.lens is None else float(np.log2(max(1 + sum(self.lens), 1e-6)))
 
     def factor(self, rows: int, columns: int) -> Floats:
@@ -87,26 +87,26 @@ def fitted(
 
 
 def falloff_of(flat: Photograph) -> Falloff:
-    """Measures the falloff of a photograph of an even surface.
+    """Measures the falloff in a photograph of an even surface.
 
-    A gradient across it, of a surface that is lit from one side, is fitted and left out.
+    A linear gradient, as of a surface lit from one side, is fitted and removed.
 
     Raises:
-        InputError: It is clipped, dark, or not even.
+        InputError: The photograph is clipped, dark, or not even.
     """
     light, y, x = _means(flat)
     if not (light > 0).all():
-        raise InputError(f"{flat.path}: flat: wanted light everywhere, got some parts without")
+        raise InputError(f"{flat.path}: flat: wanted light everywhere, got dark parts")
     terms, rest, slopes = fitted(light, y**2 + x**2, np.stack([y, x], axis=1))
     if np.hypot(*slopes) > STEEP:
         raise InputError(
-            f"{flat.path}: flat: wanted an even surface, got light that changes by "
+            f"{flat.path}: flat: wanted an even surface, got a gradient of "
             f"{2 * np.hypot(*slopes):.0%} from one corner to the other"
         )
     if rest > UNEVEN:
         raise InputError(
-            f"{flat.path}: flat: wanted an even surface, got light that differs by {rest:.1%} from "
-            "a smooth falloff"
+            f"{flat.path}: flat: wanted an even surface, got light that deviates by {rest:.1%} "
+            "from a smooth falloff"
         )
     return Falloff(terms, None, rest)
 
@@ -116,7 +116,7 @@ def _means(flat: Photograph) -> tuple[FloatArray, FloatArray, FloatArray]:
     plane, _ = overview(flat)
     clipped = _top(flat)
     if (plane >= clipped).mean() > 1e-3:
-        raise InputError(f"{flat.path}: flat: wanted no clipped light, got some")
+        raise InputError(f"{flat.path}: flat: wanted no clipped pixels, got some")
     side = max(max(plane.shape) // _CELLS, 1)
     rows, columns = (length // side for length in plane.shape)
     cut = plane[: rows * side, : columns * side] - np.float32(_black(flat))

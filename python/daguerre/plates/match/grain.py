@@ -1,9 +1,9 @@
-"""Noise of developed pictures: how large it is by level, and how it looks.
+"""Noise of developed pictures: its standard deviation by level, and its spectrum.
 
-Demosaicing, noise reduction, curves and compression leave noise that no law of photons describes.
-The model is the noise's own: at each place normal numbers, whose standard deviations are functions
-of the channels' levels alone, and whose spectra, of each channel and between them (light and
-colours have grain of different size), are the same at every level.
+After demosaicing, noise reduction, curves and compression, noise no longer follows photon
+statistics. It is modelled as normal. The standard deviation of each channel depends only on the
+channel's level. Spectra and cross spectra of the channels are the same at every level; luminance
+and colour differ in grain size.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ class Grain:
     """Noise of a developed picture.
 
     Attributes:
-        linear: Whether levels are linear light; else numbers encoded for screens, 0 to 1.
-        levels: Levels of each channel, rising, shape (3, L).
-        deviations: Standard deviation of the noise there, in the same numbers, shape (3, L).
-        spectra: Cross power of the channels' noise, each of variance 1, at frequencies of 0 to 1/2
-            along y and x, shape (17, 17, 3, 3): symmetric; the mean of a channel's own is 1.
+        linear: Whether levels are linear light; else display-encoded values, 0 to 1.
+        levels: Levels of each channel, ascending, shape (3, L).
+        deviations: Standard deviation of the noise at these levels, same units, shape (3, L).
+        spectra: Cross power of the channels' noise, scaled to variance 1, at frequencies of 0 to
+            1/2 along y and x, shape (17, 17, 3, 3). Symmetric; the mean power of a channel is 1.
     """
 
     linear: bool
@@ -39,9 +39,9 @@ class Grain:
     spectra: FloatArray
 
     def deviation(self, channel: int, level: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Standard deviation of a channel's noise at its levels, linear between those known.
+        """Returns the standard deviation of a channel's noise, linear between known levels.
 
-        Beyond them it stays; of linear light it grows with the root, as that of photons.
+        Beyond them it is constant; for linear light it grows with the square root, as shot noise.
         """
         at, known = self.levels[channel], self.deviations[channel]
         found = np.interp(level, at, known).astype(np.float32)
@@ -51,9 +51,10 @@ class Grain:
 
     @property
     def size(self) -> float:
-        """Size of the grain of green, px: 1 where pixels know nothing of each other.
+        """Grain size of green, px; 1 if pixels are independent.
 
-        Square root of the sum of the autocorrelation: of a picture of even squares, their side.
+        It is the square root of the sum of the autocorrelation; for a picture of uniform squares
+        that is their side.
         """
         return float(np.sqrt(self.spectra[:3, :3, 1, 1].mean()))
 

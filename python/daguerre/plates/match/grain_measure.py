@@ -1,4 +1,4 @@
-"""Measures the noise of developed pictures in their flat parts."""
+"""Measures the noise of developed pictures in flat parts."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ _MOST = 1500
 def grain_of(
     photograph: Photograph, electrons: float | None = None, notes: list[str] | None = None
 ) -> Grain | None:
-    """The noise of a developed picture; None: nothing in it is flat.
+    """Measures the noise of a developed picture; None: it has no flat parts.
 
     Args:
-        photograph: A developed picture.
-        electrons: Those of a white pixel, against which noise is judged; None: it is not.
-        notes: Takes a sentence where parts were left out, or all.
+        photograph: Developed picture.
+        electrons: Electrons of a white pixel, to tell noise from texture; None: no such check.
+        notes: List that gets a note if parts were left out.
     """
     notes = [] if notes is None else notes
     found = flat_blocks(photograph)
     if found is None:
-        notes.append("noise: no part of the picture is flat: none was measured")
+        notes.append("noise: not measured, as no part of the picture is flat")
         return None
     if electrons is not None and photograph.kind == "display":
         found = _likely(photograph, found, electrons, notes)
@@ -49,9 +49,10 @@ def _likely(
     if fault is not None:
         count = 0 if kept is None else len(kept.corner)
         notes.append(
-            f"noise: {len(found.corner) - count} of {len(found.corner)} parts that look flat are "
-            f"texture: alike in all colours, and {fault.times:.1f} times what light of that ISO "
-            f"explains: {'left out' if count else 'none was measured'}"
+            f"noise: {'' if count else 'not measured, as '}"
+            f"{len(found.corner) - count} of {len(found.corner)} parts that look flat are "
+            f"texture{' and were left out' if count else ''}: their variation is alike in all "
+            f"colours, and {fault.times:.1f} times the noise expected at this ISO"
         )
     return kept
 

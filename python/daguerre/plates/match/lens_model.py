@@ -1,4 +1,4 @@
-"""A library lens as it is rendered: its response to edges, and its falloff."""
+"""Response and falloff of a library lens as rendered."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _HEIGHTS, _GRID = 9, 48
 
 
 def bench_of(camera: Camera) -> Bench | None:
-    """The camera's lens on the bench; None: it is an ideal one.
+    """Returns the camera's lens on the bench; None: the lens is ideal.
 
     Raises:
-        InputError: The lens has no such stop, zoom or focus.
+        InputError: The lens does not have this f-stop, zoom or focus.
     """
     if camera.lens is None or camera.lens in IDEAL:
         return None

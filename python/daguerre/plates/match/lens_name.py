@@ -1,4 +1,4 @@
-"""The lens of the library that a photograph names, such as "EF24-70mm f/2.8L II USM"."""
+"""Finds the library's lens from a photograph's lens name, such as "EF24-70mm f/2.8L II USM"."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from daguerre.lenses.library import Entry, entries
 
 _FOCAL = re.compile(r"(\d+(?:\.\d+)?)(?:\s*-\s*(\d+(?:\.\d+)?))?\s*mm", re.IGNORECASE)
 _STOP = re.compile(r"(?<![a-z])[ft]\s*/?\s*(\d+(?:\.\d+)?)", re.IGNORECASE)
-#: Names of lenses differ in their last digit: 50.0, 2.80.
+#: Relative tolerance of numbers in lens names, such as 50.0 and 2.80.
 _SAME = 0.01
 
 
 @dataclass(frozen=True)
 class LensName:
-    """A lens's name in its parts.
+    """Parts of a lens name.
 
     Attributes:
         focal: Shortest and longest focal length, mm.
-        stop: Widest stop.
-        words: The other words, in lower case.
+        stop: Widest f-stop.
+        words: Other words, in lower case.
     """
 
     focal: tuple[float, float]
@@ -32,7 +32,7 @@ class LensName:
 
 
 def parsed(name: str) -> LensName | None:
-    """The parts of a name; None: it says no focal length, or no stop."""
+    """Parses a lens name; None: it has no focal length or no f-stop."""
     focal = _FOCAL.search(name)
     rest = name.replace(focal[0], " ", 1) if focal else name
     stop = _STOP.search(rest)
@@ -45,14 +45,14 @@ def parsed(name: str) -> LensName | None:
 
 
 def library_lens(facts: Mapping[str, Any], where: str) -> tuple[str | None, list[str]]:
-    """Name of the library's lens, if it has the one that a photograph names, and notes.
+    """Finds the library's lens for a photograph's lens name; returns its name or None, and notes.
 
     Args:
         facts: ``lensModel``, ``lensMake`` and ``cameraMake`` of the photograph.
-        where: The photograph, for messages.
+        where: Name of the photograph, for messages.
 
     Raises:
-        InputError: Several lenses of the library may be meant.
+        InputError: Several lenses of the library match.
     """
     model = str(facts.get("lensModel") or "")
     if not model:
@@ -62,21 +62,27 @@ def library_lens(facts: Mapping[str, Any], where: str) -> tuple[str | None, list
     name = parsed(model)
     alike = [] if name is None else [entry for entry in entries() if _same_numbers(entry, name)]
     if not alike or name is None:
-        return None, [f"the library has no {model}"]
+        return None, [f"lens: {model} is not in the library"]
     found, sure = _chosen(alike, name, facts)
     if len(found) > 1:
         names = ", ".join(entry.name for entry in found)
-        raise InputError(f"{where}: lens: {model!r} may be {names}; --lens says which")
+        raise InputError(
+            f"{where}: lens: wanted one lens of the library for {model!r}, got {names}; choose one "
+            "with --lens"
+        )
     if not found:
         names = ", ".join(entry.name for entry in alike)
-        return None, [f"the library has no {model}; of the same numbers: {names} (--lens)"]
-    return found[0].name, [] if sure else [f"{model!r} was taken for {found[0].name}"]
+        return None, [
+            f"lens: {model} is not in the library; --lens can set one with the same focal length "
+            f"and f-number: {names}"
+        ]
+    return found[0].name, [] if sure else [f"lens: {model!r} is taken as {found[0].name}"]
 
 
 def _chosen(
     alike: list[Entry], name: LensName, facts: Mapping[str, Any]
 ) -> tuple[list[Entry], bool]:
-    """Those that may be meant, and whether all words are the same."""
+    """Returns the entries that match, and whether all words agree."""
     make = _first(facts.get("lensMake")) or ("" if name.words else _first(facts.get("cameraMake")))
     alike = [entry for entry in alike if not make or make in f"{entry.maker} {entry.title}".lower()]
     same = [entry for entry in alike if _words(entry) == name.words - _maker(entry)]

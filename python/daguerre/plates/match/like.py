@@ -1,7 +1,4 @@
-"""Clean frames made to look like a plate: its vignetting, blur, noise and development.
-
-``PlateLook`` is what a ``Photograph`` of a job asks; its functions serve whoever has a frame.
-"""
+"""Makes clean frames look like a plate: vignetting, blur, noise and development."""
 
 from __future__ import annotations
 
@@ -21,7 +18,7 @@ from .grain_draw import with_grain
 from .plate_camera import PlateCamera
 
 Floats = NDArray[np.float32]
-#: Light of a frame: what sensors and development read, and what catchers add.
+#: Planes of a frame that hold light: those that sensors and development read, and catchers.
 _LIGHT = ("rgb", "xyz", "channels", "bands", "catcher", "catcher_channels")
 _RATIOS = ("catcher_ratio", "catcher_ratio_channels")
 
@@ -30,8 +27,8 @@ class PlateLook:
     """The look of a plate.
 
     Attributes:
-        plate: The matched camera.
-        look: Tone curve that pictures are developed by.
+        plate: Matched camera.
+        look: Tone curve of development.
     """
 
     def __init__(self, plate: PlateCamera) -> None:
@@ -39,17 +36,17 @@ class PlateLook:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """Facts that the file of a frame tells of the plate, for who goes on with it."""
+        """Metadata about the plate for the file of a frame."""
         return {"file": self.plate.plate, "sha256": self.plate.sha256, "kind": self.plate.kind}
 
     def seen(self, frame: Frame, seed: int = 0) -> Frame:
-        """A clean frame as the plate's camera sees it: vignetting and blur.
+        """Applies the vignetting and blur of the plate's camera to a clean frame.
 
-        Where the plate is linear light its noise is added, too: a sensor or a development adds
-        that of others.
+        For a plate in linear light, noise is added, too; for others a sensor or development adds
+        it later.
 
         Args:
-            frame: Scene-linear, without noise.
+            frame: Scene-linear frame without noise.
             seed: Seed of the noise.
         """
         frame = frame.without_overscan()
@@ -68,7 +65,7 @@ class PlateLook:
         return replace(frame, **planes)
 
     def finished(self, picture: Picture, seed: int = 0) -> Picture:
-        """A developed picture with the noise of a developed plate; of others it has it already."""
+        """Adds the noise of a developed plate to a developed picture; others have noise already."""
         noise = self.plate.noise
         if not isinstance(noise, Grain) or noise.linear:
             return picture
@@ -77,7 +74,7 @@ class PlateLook:
         return Picture(np.clip(noisy, 0, 1), picture.colour_space, facts)
 
     def _covered(self, frame: Frame, scale: float) -> dict[str, Floats]:
-        """Alpha and ratios with the blur of the light: a ratio counts by what is not covered."""
+        """Blurs alpha and ratios like the light; ratios are weighted by the uncovered share."""
         if self.plate.sharpness is None or bool((frame.alpha == 1).all()):
             return {}
         left = 1 - frame.alpha[:, :, None]
@@ -97,7 +94,7 @@ class PlateLook:
         return self.plate.sharpness.blur.applied(np.ascontiguousarray(lit), scale)
 
     def _factor(self, frame: Frame) -> Floats | None:
-        """Vignetting of the frame's part of the picture, shape (H, W); None: none is known."""
+        """Vignetting over the frame's part of the picture, shape (H, W); None: unknown."""
         if self.plate.falloff is None:
             return None
         width, height = frame.metadata.get("resolution") or (frame.width, frame.height)
@@ -106,7 +103,7 @@ class PlateLook:
         return whole[y : y + frame.height, x : x + frame.width]
 
     def _scale(self, frame: Frame) -> float:
-        """Pixels of the frame for each of the plate."""
+        """Pixels of the frame for each pixel of the plate."""
         width = (frame.metadata.get("resolution") or (frame.width, frame.height))[0]
         return float(width / self.plate.resolution[0])
 
@@ -117,6 +114,6 @@ def _corner(facts: dict[str, Any]) -> tuple[int, int]:
 
 
 def _own(seed: int, facts: dict[str, Any]) -> int:
-    """A seed of the moment: pictures of a sequence have noise of their own."""
+    """Seed that depends on the time of the frame, so that noise differs within a sequence."""
     time = float(facts.get("time") or 0.0)
     return seed if time == 0 else (seed + zlib.crc32(repr(time).encode())) % 2**53

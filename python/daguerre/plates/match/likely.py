@@ -1,10 +1,10 @@
-"""Grain that light can have made: texture that looks like noise is told by its size and colours.
+"""Tells noise from fine texture, by its size and its colours.
 
-Even texture (grass far away, plaster, felt) has blocks like those of noise. Two things tell it.
-Photosites know nothing of each other, so slow changes of red are not those of green, while texture
-is dark and light in all colours at once. And the number of electrons, which ISO and size of a pixel
-tell, sets how large noise can be: where noise is alike in all colours (of cameras that smooth
-colours, of mono sensors), it is not above what that number explains.
+Even texture (distant grass, plaster, felt) looks like noise in flat blocks. Two signs reveal it.
+First, photosites are independent, so slow changes of red do not follow those of green, while
+texture is dark and light in all colours at once. Second, the number of electrons, from ISO and
+pixel size, limits the noise. Noise that is alike in all colours (cameras that smooth colours, mono
+sensors) does not exceed that limit.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ _YIELD = 2000.0
 _WHITE_LX_S = 78.0
 #: Noise in the dark: electrons, and a share of white.
 _DARK, _DARK_SHARE = 3.0, 1e-4
-#: Largest pixel that is believed, um: parts of pictures seem to have larger ones.
+#: Largest credible pixel pitch, um; crops seem to have larger pixels.
 _LARGEST = 6.0
 #: Deviation over what electrons explain, at most, where red and green are alike by ``_ALIKE``; it
 #: grows as they become less so. Developed shots by the library's sensors have up to 2.4 at -0.7 to
 #: -0.2, its mono sensors up to 1.2 at 1.
 _MOST, _ALIKE = 1.5, 0.5
-#: Likeness that noise has by chance: no more is no texture, unless most of the others are.
+#: Correlation of noise by chance; up to this, a block is not texture, unless most others are.
 _HARDLY, _HARDLY_IN_TEXTURE = 0.15, 0.08
 _BINS = 16
 
@@ -43,8 +43,8 @@ class Signs:
     """Signs of texture in blocks that look flat.
 
     Attributes:
-        times: Their deviation over what electrons explain, the median.
-        alike: Correlation of their colours' slow changes.
+        times: Median ratio of their standard deviation to that expected from electrons.
+        alike: Correlation of the slow changes of their colours.
     """
 
     times: float
@@ -52,28 +52,28 @@ class Signs:
 
     @property
     def limit(self) -> float:
-        """Most that the deviation of noise can be, over what electrons explain."""
+        """Largest ratio of the standard deviation of noise to that expected from electrons."""
         return np.inf if self.alike < _HARDLY else _MOST * _ALIKE / min(self.alike, _ALIKE)
 
 
 def white_electrons(iso: float, pixel_um: float) -> float:
-    """Electrons of a white pixel of an ordinary sensor."""
+    """Electrons of a white pixel of a typical sensor."""
     return _YIELD * _WHITE_LX_S / iso * min(pixel_um, _LARGEST) ** 2
 
 
 def likely(
     photograph: Photograph, found: FlatBlocks, electrons: float
 ) -> tuple[FlatBlocks | None, Signs | None]:
-    """Flat blocks whose noise light can have made.
+    """Selects flat blocks with noise rather than texture.
 
     Args:
-        photograph: A picture encoded for screens.
+        photograph: Display-encoded picture.
         found: Its flat blocks.
         electrons: Electrons of a white pixel.
 
     Returns:
-        Blocks of levels that are likely, or None where too few are left; and signs of the others,
-        or None where all are likely.
+        Blocks at credible levels, or None if too few are left; and the signs of the others, or
+        None if all are credible.
     """
     order = np.argsort(found.level.mean(axis=1))
     noise = expected(found.level[:, 1], electrons) + rounding(photograph)
@@ -85,7 +85,7 @@ def likely(
         for part in parts
     ]
     faults = [sign for sign in signs if sign.times > sign.limit]
-    mostly = 2 * len(faults) > len(parts)  # what is left of texture is a little less so
+    mostly = 2 * len(faults) > len(parts)  # then the rest is probably weak texture
     good = [
         part
         for part, sign in zip(parts, signs, strict=True)

@@ -1,4 +1,4 @@
-"""Matches a photograph: its camera, noise, sharpness and vignetting, without further asking."""
+"""Matches a photograph automatically: camera, noise, sharpness and vignetting."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ from .sharpness import Sharpness, sharpness_of
 from .transfer import Transfer, transfer_of
 
 Path = str | os.PathLike[str]
-#: Relative standard error of the read noise above which a note tells it.
+#: Relative standard error of the read noise above which there is a note.
 _UNSURE = 0.1
-#: The same of the gain.
+#: Relative standard error of the gain above which there is a note.
 _UNSURE_GAIN = 0.05
-#: Look that is nearest to the pictures that cameras make.
+#: Look nearest to the JPEGs of cameras.
 _USUAL_LOOK = "standard"
 
 
@@ -48,19 +48,19 @@ _USUAL_LOOK = "standard"
 def match_plate(
     photo: Path, *, flats: Sequence[Path] = (), **keywords: Unpack[MatchKeywords]
 ) -> PlateCamera:
-    """Finds the camera of a photograph, and how its pixels look.
+    """Matches the camera of a photograph, its noise, sharpness and vignetting.
 
-    Lens, stop, time, ISO and sensor are those of its EXIF; noise comes from its flat parts,
-    sharpness from its edges, vignetting from a flat.
+    Lens, f-stop, exposure time, ISO and sensor come from EXIF, noise from flat parts of the
+    photograph (or of ``flats``), sharpness from edges, vignetting from ``flats``.
 
     Args:
         photo: A raw file (``.dng`` and others), ``.jpg``, ``.png``, ``.tif``, or linear ``.exr``.
-        flats: Photographs of an even surface by the same camera, at the same settings.
+        flats: Photographs of an even surface with the same camera and settings.
         {keywords}
 
     Raises:
-        InputError: A file cannot be used, or does not say what is needed.
-        UsageError: A wrong parameter.
+        InputError: A file cannot be used, or lacks metadata that is needed.
+        UsageError: A parameter is wrong.
     """
     given = MATCH.filled(keywords, "match_plate")
     photograph = read(photo)
@@ -74,7 +74,7 @@ def match_plate(
     pitch = camera.sensor_size[0] / photograph.size[0]
     sharpness = _sharpness(photograph, bench, pitch, notes)
     if sharpness is not None and sensor is not None:
-        sensor = sensor.with_(low_pass=0.0)  # it is in the edges
+        sensor = sensor.with_(low_pass=0.0)  # included in the measured sharpness
     falloff = _falloff(even, bench, camera, notes)
     return PlateCamera(
         plate=photograph.path.name,
@@ -93,12 +93,12 @@ def match_plate(
 
 
 def _flat(flat: Photograph, photograph: Photograph) -> Photograph:
-    """A flat that goes with the photograph."""
+    """Checks that a flat fits the photograph."""
     if flat.kind != photograph.kind or flat.size != photograph.size:
         width, height = photograph.size
         raise InputError(
-            f"{flat.path}: flat: wanted a {photograph.kind} picture of {width}x{height} px as the "
-            f"plate, got a {flat.kind} one of {flat.size[0]}x{flat.size[1]}"
+            f"{flat.path}: flat: wanted a {photograph.kind} picture of {width}x{height} px like "
+            f"the plate, got a {flat.kind} one of {flat.size[0]}x{flat.size[1]}"
         )
     return flat
 
@@ -110,7 +110,7 @@ def _noise(
     body: Sensor | None,
     notes: list[str],
 ) -> tuple[Camera, Sensor | None, Transfer | Grain | None]:
-    """The camera as it is exposed, its sensor, and the noise."""
+    """Returns the camera with its exposure, its sensor, and the noise."""
     if photograph.raw is None:
         return camera, None, _grain(photograph, flats, camera, body, notes)
     iso = float(camera.iso)
@@ -124,7 +124,9 @@ def _noise(
     sensor = with_transfer(sensor, measured, iso, photograph.raw.white)
     beyond = responsivity(sensor)
     if beyond > 1:
-        notes.append(f"the ISO promises {np.log2(beyond):.2f} EV more than ISO 12232 allows")
+        notes.append(
+            f"the camera's ISO rating is {np.log2(beyond):.2f} EV higher than ISO 12232 allows"
+        )
         efficiency = np.asarray(sensor.quantum_efficiency) / beyond
         sensor = sensor.with_(quantum_efficiency=efficiency)
         camera = camera.with_(iso=iso / beyond, responsivity=beyond)
@@ -138,9 +140,9 @@ def _grain(
     body: Sensor | None,
     notes: list[str],
 ) -> Grain | None:
-    """Grain of a developed photograph, or of the first flat that has some."""
+    """Grain of a developed photograph, else of the first flat that has some."""
     pixel = 1e3 * camera.sensor_size[0] / photograph.size[0]
-    if body is not None:  # a part of a picture seems to have larger ones
+    if body is not None:  # a crop seems to have larger pixels
         pixel = min(pixel, body.pixel_pitch)
     found = grain_of(photograph, white_electrons(float(camera.iso), pixel), notes)
     if found is not None:
@@ -148,16 +150,18 @@ def _grain(
     for flat in flats:
         found = grain_of(flat)
         if found is not None:
-            notes.append(f"noise: that of {flat.path.name} was taken")
+            notes.append(f"noise: taken from {flat.path.name}")
             return found
-    notes.append("noise: objects get no grain; --flat FILE brings an even surface that has it")
+    notes.append(
+        "noise: objects get no grain; add a photograph of an even surface with --flat FILE"
+    )
     return None
 
 
 def _transfer(
     photograph: Photograph, flats: list[Photograph], body: Sensor | None, notes: list[str]
 ) -> Transfer | None:
-    """Photon transfer; None: nothing is flat, and the library knows the camera."""
+    """Photon transfer; None: it cannot be measured, and the library has the camera."""
     pictures = [one.raw for one in (photograph, *flats) if one.raw is not None]
     main = pictures[0]
     blocks = joined([blocks_of(raw, 1 / len(pictures)) for raw in pictures])
@@ -168,18 +172,20 @@ def _transfer(
     except InputError as error:
         if body is None:
             raise
-        notes.append(f"{error}; gain and noise are those of {body.name}")
+        notes.append(f"{error}; gain and noise are taken from the library's {body.name}")
         return None
     if found.gain_error > _UNSURE_GAIN:
         notes.append(
-            "noise: few parts are flat, or texture is among them: gain known within "
-            f"{found.gain_error:.0%}; --flat FILE brings an even surface"
+            "noise: few parts are flat, or some have texture, so the gain has an error of "
+            f"{found.gain_error:.0%}; add a photograph of an even surface with --flat FILE"
         )
     if found.read_noise_error > UNKNOWN:
-        notes.append("read noise: nothing in the picture is dark: that of the library was taken")
+        notes.append(
+            "read noise: taken from the library's sensor, as no part of the picture is dark"
+        )
     elif found.read_noise_error > _UNSURE:
         sure = f"{found.read_noise_error:.0%}"
-        notes.append(f"read noise: little of the picture is dark: known within {sure}")
+        notes.append(f"read noise: has an error of {sure}, as little of the picture is dark")
     return found
 
 
@@ -188,7 +194,9 @@ def _sharpness(
 ) -> Sharpness | None:
     found = sharpness_of(photograph)
     if found is None:
-        notes.append("sharpness: no edge is good enough: objects keep the sharpness of the render")
+        notes.append(
+            "sharpness: not measured, as no edge is good enough; objects keep that of the render"
+        )
         return None
     if bench is None:
         return found
@@ -208,13 +216,13 @@ def _falloff(
     found = replace(found, lens=lens_falloff(bench, camera.sensor_size))
     own = found.lens_corner_ev or 0.0
     notes.append(
-        f"vignetting: corners {found.corner_ev:+.2f} EV, by the lens of the library {own:+.2f} EV"
+        f"vignetting: measured corners {found.corner_ev:+.2f} EV, library's lens {own:+.2f} EV"
     )
     return found
 
 
 def _look(given: str | None, photograph: Photograph, notes: list[str]) -> str:
-    """The tone curve: no photograph tells its own."""
+    """Tone curve, which cannot be measured in a photograph."""
     if given is not None:
         if not isinstance(given, str):
             raise UsageError(f"match-plate: look: wanted a name, got {shown(given)}")
@@ -223,5 +231,5 @@ def _look(given: str | None, photograph: Photograph, notes: list[str]) -> str:
         return given
     if photograph.kind != "display":
         return "neutral"
-    notes.append(f"tone: a picture does not tell its curve: taken for {_USUAL_LOOK} (--look)")
+    notes.append(f"tone: the tone curve is taken as {_USUAL_LOOK}; --look sets another")
     return _USUAL_LOOK

@@ -1,4 +1,4 @@
-"""Parameters of a match: what a photograph does not say, or says wrongly."""
+"""Parameters of ``match_plate``, which replace missing or wrong metadata of the photograph."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ class MatchKeywords(TypedDict, total=False):
 
 
 def _row(name: str, meaning: str, **changes: Any) -> Parameter:
-    """A camera's parameter, where the photograph's own is the default."""
+    """Makes a row from a camera's parameter; its default is the photograph's value."""
     return replace(
         CAMERA[name],
         meaning=meaning,
         default=None,
         usual=None,
         tells_default=False,
-        default_words="the photo's",
+        default_words="from the photo",
         more="",
         in_python="",
         explained=(),
@@ -46,23 +46,23 @@ def _row(name: str, meaning: str, **changes: Any) -> Parameter:
 MATCH = Table(
     _row(
         "lens",
-        "Lens of the library or a lens file; `thin`: an ideal one",
+        "Lens of the library or a lens file; `thin`: an ideal lens",
         metavar="NAME|FILE|thin",
     ),
-    _row("focal_length", "Focal length, mm; of a zoom where it stands", flags=("--focal-length",)),
-    _row("f_stop", "F-number of the shot"),
+    _row("focal_length", "Focal length of the photo, mm", flags=("--focal-length",)),
+    _row("f_stop", "F-number of the photo"),
     replace(
-        _row("focus_distance", "Focus distance of the shot, m, or inf"),
-        default_words="the photo's, else autofocus",
+        _row("focus_distance", "Focus distance of the photo, m, or inf"),
+        default_words="from the photo, else autofocus",
     ),
-    _row("shutter_time", "Exposure time of the shot, s: 1/125, 20ms"),
-    _row("iso", "ISO of the shot"),
+    _row("shutter_time", "Exposure time of the photo, s: 1/125, 20ms"),
+    _row("iso", "ISO of the photo"),
     _row(
         "sensor",
-        "Sensor of the library or a file, or the size of the camera's, mm",
+        "Sensor of the library, a sensor file, or the sensor's size, mm",
         metavar="NAME|FILE|WxH|ff|apsc",
     ),
-    _row("white_balance", "White that the photo was developed for, K or x,y"),
+    _row("white_balance", "White balance of the developed photo, K or x,y"),
     Parameter(
         "look",
         "Tone curve of a developed photo",

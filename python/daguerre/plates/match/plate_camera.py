@@ -1,4 +1,4 @@
-"""The camera of a plate, as it was matched: for objects that shall look as if it had seen them."""
+"""Matched camera of a plate, for objects that should look as if taken with it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .grain import Grain
 from .sharpness import Sharpness
 from .transfer import Transfer
 
-#: Parameters of a camera that a match finds.
+#: Camera parameters that a match sets.
 FOUND = (
     *("lens", "focal_length", "zoom", "f_stop", "exposure_f_stop", "focus_distance"),
     *("shutter_time", "iso", "responsivity", "sensor_size", "white_balance"),
@@ -30,18 +30,18 @@ class PlateCamera(Value):
     """A matched camera.
 
     Attributes:
-        plate: Name of the plate's file.
-        sha256: Its hash.
+        plate: File name of the plate.
+        sha256: SHA-256 of the plate's file.
         kind: ``raw``, ``display`` or ``linear``.
-        resolution: Width and height of the plate, upright, px.
-        camera: Lens, stop, shutter, ISO and size of the sensor.
-        sensor: The sensor with gain and noise as measured, of a raw plate; None of others.
-        noise: Photon transfer of a raw plate, grain of others; None: no part of it is flat.
-        sharpness: Sharpness by edges; None: none was good enough.
-        falloff: Vignetting by a flat; None: there was none.
-        focal_length: Focal length that the plate tells, mm; None: it tells none.
-        look: Tone curve that pictures are developed by.
-        notes: Decisions that were made on the user's behalf.
+        resolution: Width and height of the upright plate, px.
+        camera: Lens, f-stop, shutter, ISO and sensor size.
+        sensor: Sensor with the measured gain and noise for a raw plate; else None.
+        noise: Photon transfer for a raw plate, else grain; None: no part of the plate is flat.
+        sharpness: Sharpness measured at edges; None: no edge was good enough.
+        falloff: Vignetting measured in a flat; None: no flat.
+        focal_length: Focal length from the plate's metadata, mm; None: unknown.
+        look: Tone curve for development.
+        notes: Assumptions made in the match.
     """
 
     plate: str
@@ -58,7 +58,7 @@ class PlateCamera(Value):
     notes: tuple[str, ...] = ()
 
     def changes(self) -> dict[str, Any]:
-        """Parameters of ``Camera.with_`` that make another camera this one."""
+        """Arguments of ``Camera.with_`` that give another camera this one's settings."""
         defaults = Camera()
         found = {name: getattr(self.camera, name) for name in FOUND}
         kept = {name: value for name, value in found.items() if value != getattr(defaults, name)}
@@ -66,10 +66,11 @@ class PlateCamera(Value):
         return kept | always | ({} if self.sensor is None else {"sensor": self.sensor})
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes a camera file, and that of its sensor beside it.
+        """Writes a camera file, and a sensor file beside it for a raw plate.
 
         Args:
-            path: Its name should end in ``.json``; ``x.json`` has its sensor in ``x.sensor.json``.
+            path: Path of the camera file, usually ``.json``; the sensor of ``x.json`` is in
+                ``x.sensor.json``.
 
         Raises:
             OutputError: A file cannot be written.

@@ -1,4 +1,4 @@
-"""A raw plate as a raw picture of its matched sensor: what objects are put into."""
+"""Makes the raw picture of a matched sensor from a raw plate, for compositing."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from .plate_camera import PlateCamera
 
 
 def raw_of(photograph: Photograph, plate: PlateCamera) -> Raw:
-    """The numbers of a raw photograph, upright, with the sensor that was measured in it.
+    """Returns the values of a raw photograph, upright, with its matched sensor.
 
     Args:
-        photograph: The plate, from ``plates.files.read``.
-        plate: The camera that was matched to it.
+        photograph: Plate, from ``plates.files.read``.
+        plate: Matched camera of the plate.
 
     Raises:
-        InputError: It is no raw photograph, or another one.
+        InputError: The photograph is not raw, or has another size than the matched one.
     """
     raw, sensor = photograph.raw, plate.sensor
     if raw is None or sensor is None:
         raise InputError(f"{photograph.path}: wanted a raw plate, got a {photograph.kind} one")
     if photograph.size != plate.resolution:
         raise InputError(
-            f"{photograph.path}: wanted {plate.resolution[0]}x{plate.resolution[1]} px as the "
-            f"camera was matched to, got {photograph.size[0]}x{photograph.size[1]}"
+            f"{photograph.path}: wanted {plate.resolution[0]}x{plate.resolution[1]} px, the size "
+            f"of the matched plate, got {photograph.size[0]}x{photograph.size[1]}"
         )
     iso = float(plate.camera.iso)
     return Raw(

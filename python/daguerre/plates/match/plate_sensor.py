@@ -1,4 +1,4 @@
-"""The sensor of a raw photograph, with the gain and the noise that were measured in it."""
+"""Makes the sensor of a raw photograph with the measured gain and noise."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .transfer import Transfer
 
 #: Sensors whose colours stand in for those of unknown cameras.
 _STAND_INS = {1: "sony-imx571-mono", 3: "nikon-d5100"}
-#: Relative standard error from which on a read noise is not known.
+#: Relative standard error from which on a read noise counts as unknown.
 UNKNOWN = 0.5
 #: Most electrons per photon that efficiencies are scaled to.
 _MOST_EFFICIENT = 1.0
@@ -24,11 +24,11 @@ _MOST_EFFICIENT = 1.0
 def plate_sensor(
     raw: RawNumbers, body: Sensor | None, iso: float, width_mm: float, name: str
 ) -> tuple[Sensor, list[str]]:
-    """A sensor with the geometry and the levels of a raw photograph, and notes.
+    """Makes a sensor with the geometry and levels of a raw photograph; also returns notes.
 
     Args:
-        raw: The photograph's numbers.
-        body: The library's sensor of that camera; None: another's colours stand in.
+        raw: Values of the photograph.
+        body: Library sensor of the camera; None: another sensor's colours are used.
         iso: ISO of the photograph.
         width_mm: Width of the sensor, mm.
         name: Name of the new sensor.
@@ -39,7 +39,7 @@ def plate_sensor(
     rows, columns = raw.mosaic.shape
     low, high = base.iso_range
     pitch = 1e3 * width_mm / columns
-    # A photosite has as many electrons as the body's own, whatever a pixel of the picture spans.
+    # A photosite holds as many electrons as the camera's, also if pixels of the picture are larger.
     efficiency = np.asarray(base.quantum_efficiency) * (base.pixel_pitch / pitch) ** 2
     made = base.with_(
         name=name,
@@ -52,7 +52,9 @@ def plate_sensor(
         iso_range=(min(low, iso), max(high, iso)),
     )
     if stand_in:
-        notes.append(f"colours of the sensor are those of {base.name}: the library has no other")
+        notes.append(
+            f"the camera is not in the library; its colours are taken from the sensor {base.name}"
+        )
         made = made.with_(
             make="", model="", dsnu=0.0, prnu=0.0, dual_gain=None,
             dark_current=DarkCurrent(), hot_pixels=HotPixels(),
@@ -62,10 +64,10 @@ def plate_sensor(
 
 
 def with_transfer(sensor: Sensor, measured: Transfer, iso: float, white: int) -> Sensor:
-    """The sensor with a measured gain, noise and well, at the ISO of the photograph.
+    """Returns the sensor with the measured gain, noise and full well, at the photograph's ISO.
 
-    Gain and ISO tell the efficiency (ISO 12232), so that is scaled. Offsets of the photosites that
-    the library knows are taken out of what was measured in the dark.
+    Gain and ISO determine the quantum efficiency (ISO 12232), which is scaled. The DSNU of the
+    library's sensor is subtracted from the noise measured in the dark.
     """
     highest = 2**sensor.bit_depth - 1
     wanted = (highest - sensor.black_level) * iso / SATURATION_LX_S / measured.gain
@@ -85,15 +87,16 @@ def with_transfer(sensor: Sensor, measured: Transfer, iso: float, white: int) ->
 
 
 def responsivity(sensor: Sensor) -> float:
-    """How much its efficiency is above one electron per photon, which no sensor has; else 1.
+    """Ratio of the quantum efficiency to one electron per photon if it is above 1; else 1.
 
-    Such a camera's ISO promises more than ISO 12232 does: it is exposed longer than it says.
+    No sensor exceeds 1. The ISO rating of such a camera is higher than by ISO 12232, so its
+    pictures get more exposure than the rating implies.
     """
     return max(float(np.max(sensor.quantum_efficiency)) / _MOST_EFFICIENT, 1.0)
 
 
 def _pattern(raw: RawNumbers, notes: list[str]) -> Mosaic:
-    """The pattern with these cells; of one that starts elsewhere the usual one."""
+    """Returns the pattern with these cells; if the cells are shifted, the unshifted pattern."""
     for name in PATTERNS:
         letters = set("".join(PATTERNS[name]))
         if letters == set(raw.channels):
@@ -102,5 +105,5 @@ def _pattern(raw: RawNumbers, notes: list[str]) -> Mosaic:
                 return known
     side = len(raw.cells)
     name = {6: "xtrans", 4: "quad-bayer-rggb"}.get(side, "bayer-rggb")
-    notes.append(f"the mosaic begins at another place of its pattern: taken for {name}")
+    notes.append(f"the mosaic starts at another photosite of its pattern; it is taken as {name}")
     return Mosaic.of(name, raw.channels)

@@ -36,10 +36,10 @@ _MOST_PIXELS = 65536
 
 @guarded
 def read_plate_camera(path: str | os.PathLike[str]) -> PlateCamera:
-    """Reads the camera of a plate, as ``PlateCamera.save`` writes it.
+    """Reads the matched camera of a plate, as written by ``PlateCamera.save``.
 
     Raises:
-        InputError: With file and JSON path of what cannot be used.
+        InputError: The file cannot be used; the message has the file and JSON path.
     """
     file = Path(path)
     return read_json_file(file, "plate camera", SCHEMA, MEMBERS, lambda root: _plate(root, file))
@@ -67,7 +67,7 @@ def _plate(root: Item, file: Path) -> PlateCamera:
 
 
 def _known(item: Item, key: str) -> Item | None:
-    """A member that may be null or absent."""
+    """Member that may be null or absent."""
     member = item.get(key)
     return None if member is None or member.value is None else member
 
@@ -125,7 +125,7 @@ def _sensor(item: Item | None, file: Path, kind: str) -> Sensor | None:
     if not name or Path(name).name != name or "\0" in name:
         item.fail(f"wanted the name of a file in the same folder, got {short(name)}")
     if kind != "raw":
-        item.fail(f"wanted none: a plate of kind {kind} has no mosaic, got {short(name)}")
+        item.fail(f"wanted no sensor file for a plate of kind {kind}, got {short(name)}")
     return sensors.read(file.with_name(name))
 
 
@@ -154,9 +154,9 @@ def _transfer(item: Item) -> Transfer:
 def _grain(item: Item, *, linear: bool) -> Grain:
     levels, deviations = _rows(item.need("levels")), _rows(item.need("deviations"))
     if levels.shape != deviations.shape:
-        item.need("deviations").fail("wrong shape: wanted that of levels")
+        item.need("deviations").fail("wrong shape: wanted the shape of levels, got another")
     if (np.diff(levels, axis=1) < 0).any() or (deviations < 0).any():
-        item.need("levels").fail("wanted rising levels, and deviations of at least 0")
+        item.need("levels").fail("wanted levels in ascending order, and deviations of at least 0")
     spectra = np.zeros((HALF, HALF, 3, 3))
     for (i, j), plane in zip(UPPER, _some(item.need("spectra"), len(UPPER)), strict=True):
         values = np.array([row.numbers(HALF) for row in _some(plane, HALF)])
@@ -168,7 +168,7 @@ def _rows(item: Item) -> NDArray[np.float64]:
     rows = _some(item, 3)
     count = len(list(rows[0]))
     if count == 0:
-        rows[0].fail("wanted at least one value")
+        rows[0].fail("wanted at least one value, got none")
     return np.array([row.numbers(count) for row in rows])
 
 

@@ -1,4 +1,4 @@
-"""The camera of a photograph: what its file says, what was given, and what the library knows."""
+"""Settings of a photograph's camera, from its file, the user's parameters and the library."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ from .body import library_sensor
 from .lens_name import library_lens
 from .parameters import MATCH
 
-#: Facts that no photograph can do without: ours, by parameter, and in words.
+#: Required facts by parameter: the name in the metadata, and in words.
 _NEEDED = {
     "f_stop": ("aperture", "an f-number"),
     "shutter_time": ("expTime", "an exposure time"),
     "iso": ("isoSpeed", "an ISO"),
 }
-#: Equivalent focal lengths are whole numbers of mm, so sizes by them are off by as much.
+#: Relative error of sizes from equivalent focal lengths, which are whole numbers of mm.
 _ROUNDED = 0.03
 
 
 @dataclass(frozen=True)
 class Settings:
-    """A camera, its sensor, and how they were found.
+    """A camera, its sensor, and notes on how they were found.
 
     Attributes:
-        camera: The camera.
-        body: The library's sensor of the camera, or the one that was given.
-        focal_length: Focal length that the photograph tells, or that was given, mm.
-        notes: Decisions, a sentence each.
+        camera: Camera of the photograph.
+        body: Sensor of the library for the camera, or the given one.
+        focal_length: Focal length from the metadata, or the given one, mm.
+        notes: Assumptions, a sentence each.
     """
 
     camera: Camera
@@ -52,11 +52,11 @@ def settings_of(photograph: Photograph, given: Mapping[str, Any]) -> Settings:
     """Finds lens, settings and sensor of a photograph.
 
     Args:
-        photograph: The photograph.
-        given: Parameters of ``MATCH`` that replace its own; None: not given.
+        photograph: Photograph to match.
+        given: Parameters of ``MATCH`` that replace the metadata; None: not given.
 
     Raises:
-        InputError: Something is not known; the message names all that is missing, with its flags.
+        InputError: A value is unknown; the message lists all missing values and their flags.
     """
     facts, where = photograph.facts, str(photograph.path)
     wanted = {name: value for name, value in given.items() if value is not None}
@@ -72,7 +72,7 @@ def settings_of(photograph: Photograph, given: Mapping[str, Any]) -> Settings:
     if missing:
         words = ", ".join(words for _, words in missing)
         flags = ", ".join(MATCH[name].flag for name, _ in missing)
-        raise InputError(f"{where}: EXIF: wanted {words}; got none; {flags} say it")
+        raise InputError(f"{where}: EXIF: wanted {words}; got none; set with {flags}")
     camera = Camera().with_(
         **values,
         focus_distance=wanted.get("focus_distance", facts.get("focus")),
@@ -86,7 +86,7 @@ def settings_of(photograph: Photograph, given: Mapping[str, Any]) -> Settings:
 def _sensor(
     given: Any, facts: Mapping[str, Any], photograph: Photograph
 ) -> tuple[Sensor | None, tuple[float, float] | None]:
-    """The sensor, and the size of the part of it that the photograph spans, upright, mm."""
+    """Returns the sensor, and the size of the part that the photograph spans, upright, mm."""
     columns, rows = photograph.size
     if isinstance(given, tuple | list):
         width, height = (float(side) for side in given)
@@ -103,36 +103,36 @@ def _sensor(
     near = told is None or abs(told[0] / whole[0] - 1) < _ROUNDED
     if given is not None or near:
         return sensor, whole
-    return sensor, told  # a part of it
+    return sensor, told  # a crop of the sensor
 
 
 def _lens(
     wanted: Mapping[str, Any], facts: Mapping[str, Any], where: str
 ) -> tuple[str | Lens | None, list[str]]:
-    """The lens: as given, else by its name; None: an ideal one."""
+    """Returns the given lens, else the one named in the metadata; None: an ideal lens."""
     given = wanted.get("lens")
     if not isinstance(given, str | Path | Lens | None):
         raise UsageError(f"{where}: lens: wanted a name, a file or a Lens, got {shown(given)}")
     if given == "pinhole":
-        raise UsageError("--lens pinhole: wanted a lens with an opening, as the photo has one")
+        raise UsageError("--lens: wanted a lens with an aperture, as photos have one, got pinhole")
     if isinstance(given, Path):
         given = str(given)
     if given is not None:
         return (None, []) if isinstance(given, str) and given in IDEAL else (given, [])
-    if facts.get("lensModel") in IDEAL:  # a picture of ours
+    if facts.get("lensModel") in IDEAL:  # a picture made by Daguerre
         return None, []
     if facts.get("lensModel") is None:
-        return None, ["the file names no lens: taken for an ideal thin lens"]
+        return None, ["lens: the file names none; an ideal thin lens is used"]
     name, notes = library_lens(facts, where)
     if name is None:
-        notes.append("taken for an ideal thin lens")
+        notes.append("lens: an ideal thin lens is used")
     return name, notes
 
 
 def _with_lens(
     camera: Camera, lens: str | Lens | None, focal: float | None
 ) -> tuple[Camera, list[str]]:
-    """The camera with its lens, whose zoom and stop are those that it can have."""
+    """Returns the camera with its lens; zoom and f-stop are limited to the lens's range."""
     if lens is None:
         return camera.with_(focal_length=focal), []
     notes = []
@@ -142,7 +142,10 @@ def _with_lens(
     if span is not None and focal is not None:
         zoom = min(max(focal, span[0]), span[1])
         if abs(zoom - focal) > 0.005 * focal:
-            notes.append(f"the lens zooms from {span[0]:.4g} mm to {span[1]:.4g} mm: {zoom:.4g} mm")
+            notes.append(
+                f"zoom: the lens's range is {span[0]:.4g} mm to {span[1]:.4g} mm, so "
+                f"{zoom:.4g} mm is used"
+            )
         camera = camera.with_(zoom=zoom)
     at = loaded if camera.zoom is None else loaded.at_zoom(camera.zoom)
     widest = at.first_order().f_number
@@ -151,8 +154,10 @@ def _with_lens(
         if math.log2(widest / stop) > 0.5:
             raise InputError(
                 f"{loaded.name}: f-stop: wanted f/{widest:.3g} or narrower (the widest of this "
-                f"lens), got f/{stop:g}; --lens names another"
+                f"lens), got f/{stop:g}; set another lens with --lens"
             )
-        notes.append(f"the lens opens to f/{widest:.3g}, so f/{stop:g} was taken for that")
+        notes.append(
+            f"f-stop: the library's lens opens to f/{widest:.3g}, which is used for f/{stop:g}"
+        )
         camera = camera.with_(f_stop=widest, exposure_f_stop=stop)
     return camera, notes

@@ -1,4 +1,4 @@
-"""Sharpness of a photograph by the edges in it, and the blur that rendered pixels lack."""
+"""Measures the sharpness of a photograph at edges, and the blur that rendered pixels lack."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from .regions import centred, overview
 FloatArray = NDArray[np.float64]
 #: Frequencies at which responses are kept, cycles per pixel.
 FREQUENCIES = np.arange(33) / 64
-#: Good edges that are needed, and those that are measured, at most.
+#: Least number of good edges, and largest number that is measured.
 LEAST, _ENOUGH = 3, 60
 #: Noise of the sides over the step, and contrast (light over dark, less 1), of good edges.
 _NOISE, _CONTRAST = 0.08, 0.3
-#: Edges count whose MTF50 is at least this share of the best tenth's: others are out of focus.
-#: Were it the best alone that count, noise would choose them.
+#: Edges count if their MTF50 is at least this share of the best tenth's; others are out of focus.
+#: Using only the best edges would select them by noise.
 _SHARPEST = 0.8
 
 
@@ -33,10 +33,10 @@ class Sharpness:
     """Sharpness of a photograph.
 
     Attributes:
-        frequency: Cycles per pixel, shape (F,).
+        frequency: Frequencies, cycles per pixel, shape (F,).
         response: Modulation by lens, photosites and development, shape (F,).
         edges: Number of good edges.
-        blur: Blur and sharpening that make an even pixel's response this one.
+        blur: Blur and sharpening that give rendered pixels this response.
     """
 
     frequency: FloatArray
@@ -46,12 +46,12 @@ class Sharpness:
 
     @property
     def mtf50(self) -> float:
-        """Where the response falls to a half, cycles per pixel; infinite: beyond 1/2."""
+        """Frequency at which the response falls to a half, cycles/px; infinite: above 1/2."""
         return EdgeResponse(self.frequency, self.response, 0, 0, 0).mtf50
 
 
 def sharpness_of(photograph: Photograph) -> Sharpness | None:
-    """Measures the sharpest edges; None: too few are good enough."""
+    """Measures sharpness at the sharpest edges; None: too few are good enough."""
     found: list[EdgeResponse] = []
     for one in _edges(photograph):
         found.append(one)

@@ -1,8 +1,8 @@
-"""Texture that is finer than what judges flat blocks: fabric, floors, leaves, bricks.
+"""Detects texture too fine for the selection of flat blocks: fabric, floors, leaves, bricks.
 
-Noise of a block has a smooth spectrum and is alike all over it. Regular texture has lines in its
-spectrum; leaves, bricks and text are rough in one corner and even in another. Blocks with either
-are no flat ones, however little they have that is coarse.
+Noise has a smooth spectrum and is uniform over a block. Regular texture has lines in its spectrum.
+Leaves, bricks and text are rough in one corner and smooth in another. Blocks with either sign are
+not flat, even if their coarse structure is weak.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Photon transfer: gain and read noise from the variance of a picture's flat blocks.
 
-Electrons arrive by Poisson's law, so the variance of numbers grows with their mean by the gain g
-(DN per electron); reading adds r^2, rounding 1/12, and unequal photosites p^2 times the mean
-squared: V(s) = r^2 + 1/12 + g s + p^2 s^2, s above black (Janesick 2007, Photon Transfer, ch. 5).
-Of one picture r holds the unequal offsets of the photosites (DSNU), too.
+Electrons are Poisson distributed, so the variance of values grows with their mean by the gain g (DN
+per electron). Read noise adds r^2, rounding 1/12, and PRNU p^2 times the squared mean:
+V(s) = r^2 + 1/12 + g s + p^2 s^2, s above black (Janesick 2007, Photon Transfer, ch. 5).
+In a single picture r includes the offsets of the photosites (DSNU).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from daguerre.errors import InputError
 from .blocks import HIGH_COUNT, Blocks
 
 FloatArray = NDArray[np.float64]
-#: Fewest flat blocks of which a line is fitted.
+#: Least number of flat blocks for a fit.
 LEAST = 64
 _BINS, _FINE_BINS, _FIRST_SHARE, _ROUNDS = 24, 96, 0.1, 6
 #: Width of a bin, standard deviations of a photosite; the mean of a block has an eighth of one.
@@ -47,14 +47,14 @@ class Transfer:
     """A photon transfer curve.
 
     Attributes:
-        gain: DN per electron.
-        gain_error: Its standard error, relative; larger where texture is among the flat blocks.
+        gain: Gain, DN per electron.
+        gain_error: Relative standard error of the gain; larger if flat blocks include texture.
         read_noise: Noise in the dark, DSNU included, e-.
-        read_noise_error: Its standard error, relative; infinite if the picture has nothing dark.
-        prnu: Standard deviation of the photosites' responses, relative.
+        read_noise_error: Relative standard error of the read noise; infinite if nothing is dark.
+        prnu: Relative standard deviation of the photosites' responses.
         blocks: Number of flat blocks.
-        darkest: Mean of the darkest ones, e-.
-        by_channel: Gain of each channel alone, DN per electron; NaN where it has too few blocks.
+        darkest: Mean of the darkest blocks, e-.
+        by_channel: Gain of each channel, DN per electron; NaN: too few blocks.
     """
 
     gain: float
@@ -71,13 +71,14 @@ def transfer_of(blocks: Blocks, span: tuple[float, float], channels: int, where:
     """Fits a photon transfer curve.
 
     Args:
-        blocks: Those of one picture, or of several with the same settings.
-        span: Least and largest number above black, DN.
+        blocks: Blocks of one picture, or of several with the same settings.
+        span: Least and largest value above black, DN.
         channels: Number of channels.
-        where: The picture, for messages.
+        where: Name of the picture, for messages.
 
     Raises:
-        InputError: Too few blocks are flat, or they tell no gain: all are of one brightness.
+        InputError: Too few blocks are flat, or they do not determine the gain, for example because
+            all have one brightness.
     """
     flat, line = _flat(blocks, span, where)
     fitted = _fit(flat.level, flat.high, line)
@@ -85,26 +86,26 @@ def transfer_of(blocks: Blocks, span: tuple[float, float], channels: int, where:
     error = fitted.errors
     if q > MOST_PRNU**2:
         raise InputError(
-            f"{where}: noise: wanted flat parts, got texture alone: its variance would be unequal "
-            f"photosites of {np.sqrt(q):.0%}; --flat FILE brings an even surface"
+            f"{where}: noise: wanted flat parts, got only texture (its variance would mean a PRNU "
+            f"of {np.sqrt(q):.0%}); add a photograph of an even surface with --flat FILE"
         )
     if not (g > 0 and error[1] < 0.5 * g):
         raise InputError(
             f"{where}: noise: wanted flat parts of different brightness, got {len(flat.level)} "
-            "flat blocks whose noise does not grow with light; is it a raw file as the camera "
-            "wrote it?"
+            "flat blocks whose noise does not grow with light; is this an unprocessed raw file?"
         )
     by_channel = tuple(_gain_of(flat, c, line) for c in range(channels))
     if any(abs(gain - g) > _ONE_GAIN * g for gain in by_channel):
         raise InputError(
             f"{where}: noise: wanted flat parts of different brightness, got {len(flat.level)} "
-            "flat blocks that tell each colour another gain: --flat FILE brings an even surface"
+            "flat blocks that give each colour a different gain; add a photograph of an even "
+            "surface with --flat FILE"
         )
     mixed = _texture_among(flat, line)
     if mixed > _TOO_MIXED:
         raise InputError(
-            f"{where}: noise: wanted flat parts, got texture that is nearly flat, which leaves the "
-            f"gain unknown by {mixed:.0%}; --flat FILE brings an even surface"
+            f"{where}: noise: wanted flat parts, got nearly flat texture, which makes the gain "
+            f"uncertain by {mixed:.0%}; add a photograph of an even surface with --flat FILE"
         )
     dark = a - ROUNDING
     read = float(np.sqrt(max(dark, 0.0))) / g
@@ -134,7 +135,7 @@ class _Line:
 
 
 def _flat(blocks: Blocks, span: tuple[float, float], where: str) -> tuple[Blocks, _Line]:
-    """The flat blocks, and the variance by level that tells them, in turns."""
+    """Finds flat blocks and the variance by level that selects them, alternating."""
     if len(blocks.level) < LEAST:
         raise InputError(
             f"{where}: noise: wanted at least {LEAST} blocks that are not clipped, got "
@@ -153,7 +154,7 @@ def _flat(blocks: Blocks, span: tuple[float, float], where: str) -> tuple[Blocks
         if len(chosen.level) < LEAST:
             raise InputError(
                 f"{where}: noise: wanted at least {LEAST} flat blocks, got {len(chosen.level)} of "
-                f"{len(blocks.level)}; --flat FILE brings an even surface"
+                f"{len(blocks.level)}; add a photograph of an even surface with --flat FILE"
             )
         line = _fit(chosen.level, chosen.high, line)
     return chosen, line

@@ -19,15 +19,15 @@ from .plate_camera import PlateCamera
 from .transfer import Transfer
 
 SCHEMA = "daguerre-plate-camera/0.1"
-#: Places of a symmetric matrix of three channels that are kept.
+#: Elements of a symmetric 3 x 3 matrix that are written.
 UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 
 
 def write(path: str | os.PathLike[str], plate: PlateCamera) -> None:
-    """Writes a camera file, and its sensor's beside it, each whole or not at all."""
+    """Writes a camera file, and its sensor file beside it, each atomically."""
     file = Path(path)
     if not file.name:
-        raise OutputError(f"{path or '(empty)'}: wanted the name of a file")
+        raise OutputError(f"{path or '(empty)'}: wanted the name of a file, got none")
     beside = None
     if plate.sensor is not None:
         beside = file.with_name(f"{file.stem}.sensor.json")

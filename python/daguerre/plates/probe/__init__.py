@@ -1,4 +1,4 @@
-"""Light from the set: photographs of balls, and panoramas, as environments."""
+"""Light probes: environments from photographs of balls, and from panoramas."""
 
 from .probe import LightProbe, light_probe
 from .sun import Sun

@@ -1,4 +1,4 @@
-"""Wishes of a light probe, checked, with what was remarked on the way."""
+"""Parameters of a light probe, checked, and notes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .latlong import FloatArray
 
 @dataclass(frozen=True)
 class Asked:
-    """Parameters as ``LIGHT_PROBE`` explains them, in the forms in which they are used."""
+    """Parameters of the table ``LIGHT_PROBE``, converted for use."""
 
     photographs: list[Path]
     ball: str | None
@@ -42,21 +42,21 @@ class Asked:
 
     @classmethod
     def of(cls, photographs: Any, given: dict[str, Any]) -> Asked:
-        """Checks what no row of the table can.
+        """Checks and converts parameters, beyond the checks of the table.
 
         Raises:
-            UsageError: The message names the parameter.
+            UsageError: A parameter is wrong; the message has its name.
         """
         paths, greys = _paths(photographs), _paths([] if given["grey"] is None else given["grey"])
         if not paths:
-            raise UsageError("light_probe: photographs: wanted one at least, got none")
+            raise UsageError("light_probe: photographs: wanted at least one, got none")
         ball = given["ball"]
         yaws = _several(given["ball_direction"], "ball_direction") or (0.0,)
         _refuse_idle(ball, given)
         if len(paths) % len(yaws):
             raise UsageError(
-                f"--ball-direction: wanted as many photographs of each of {len(yaws)} sides, got "
-                f"{len(paths)} in all"
+                f"--ball-direction: wanted equally many photographs for each of {len(yaws)} sides, "
+                f"got {len(paths)} in all"
             )
         notes = Notes()
         reading = Reading(given["wb"], given["response"], given["scale"], notes)
@@ -80,7 +80,7 @@ class Asked:
         ]
 
     def ev_of(self, side: int) -> tuple[float, ...] | None:
-        """Exposures of the photographs of a side, EV: one list serves each side, or all."""
+        """Exposures of the photographs of a side, EV; the list has one side's or all sides'."""
         if self.ev is None or len(self.ev) != len(self.photographs):
             return self.ev
         each = len(self.ev) // len(self.yaws)
@@ -130,17 +130,19 @@ def _reflectance(given: Any, ball: str | None) -> NDArray[np.float64]:
 
 
 def _refuse_idle(ball: str | None, given: dict[str, Any]) -> None:
-    """Refuses what would do nothing."""
+    """Raises an error for parameters without effect."""
     flags = ("circle", "reflectance", "ball_direction", "pitch")
     idle = [n for n in flags if given[n] is not None and not (n == "pitch" and given[n] == 0)]
     if ball is None and idle:
-        raise UsageError(f"--{idle[0].replace('_', '-')}: wanted --ball mirror or grey with it")
+        raise UsageError(
+            f"--{idle[0].replace('_', '-')}: wanted --ball mirror or --ball grey as well, got none"
+        )
     if given["grey"] and (given["illuminance"] or ball == "grey"):
         other = "--ball grey" if ball == "grey" else "--illuminance"
         raise UsageError(f"--grey and {other}: wanted one of them, got both")
     if not given["grey"]:
         for name in ("grey_circle", "grey_direction"):
             if given[name] is not None:
-                raise UsageError(f"--{name.replace('_', '-')}: wanted --grey with it")
+                raise UsageError(f"--{name.replace('_', '-')}: wanted --grey as well, got none")
     if ball == "grey" and np.size(given["ball_direction"]) > 1:
-        raise UsageError("--ball-direction: wanted one side of a grey ball, got several")
+        raise UsageError("--ball-direction: wanted one value for a grey ball, got several")

@@ -1,7 +1,7 @@
-"""A ball as a camera sees it: which pixel mirrors which direction, and which way it faces there.
+"""Geometry of a ball in a photograph: mirrored directions and normals of pixels.
 
-The camera looks along -z with +y up; pixels are counted from the upper left corner, their middles
-at + 0.5. What the ball mirrors is taken to be far away against its radius.
+The camera looks along -z with +y up. Pixels are counted from the upper left corner, with centres
+at + 0.5. The surroundings are taken as far away compared with the ball's radius.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from .latlong import FloatArray
 
 Circle = tuple[float, float, float]
-#: Pixels on the outline show the background, too: nothing is read closer to it, px.
+#: Distance from the outline within which pixels are not used, px, as they show the background.
 INSIDE = 1.25
 
 
@@ -23,11 +23,11 @@ class Ball:
     """A ball in a photograph.
 
     Attributes:
-        circle: Middle and radius of its outline, px.
-        axis: Unit vector from the camera to its middle, shape (3,).
-        sine: Its radius over its distance; 0: seen from far away, without perspective.
-        focal_px: Focal length, px; infinite: from far away.
-        centre: Place of the camera's axis, px.
+        circle: Centre and radius of its outline, px.
+        axis: Unit vector from the camera to its centre, shape (3,).
+        sine: Radius over distance; 0: seen from far away, without perspective.
+        focal_px: Focal length, px; infinite: seen from far away.
+        centre: Principal point, px.
     """
 
     circle: Circle
@@ -38,7 +38,7 @@ class Ball:
 
     @property
     def unseen_deg(self) -> float:
-        """Half angle of what its outline hides, about the direction away from the camera."""
+        """Half angle of the directions that the ball hides, around the view direction, degrees."""
         inside = 1 - INSIDE / self.circle[2]
         if self.sine == 0:
             return 180 - 2 * math.degrees(math.asin(inside))
@@ -46,14 +46,14 @@ class Ball:
         return 180 - math.degrees(np.interp(inside * seen[-1], seen, 2 * normal + seen))
 
     def mirrored(self, toward: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Where on the picture directions are mirrored.
+        """Returns the points of the picture in which directions are mirrored.
 
         Args:
             toward: Unit directions in the camera's frame, shape (N, 3).
 
         Returns:
-            Places in px, shape (N, 2), and angles to the direction from ball to camera, rad, (N,).
-            What the ball hides lands on its rim.
+            Points in px, shape (N, 2), and angles to the direction from ball to camera, rad, (N,).
+            Directions that the ball hides are on its rim.
         """
         back = -np.array(self.axis)
         along = np.clip(toward @ back, -1, 1)
@@ -70,18 +70,18 @@ class Ball:
         return self._place(ray), angle
 
     def _seen_at(self, angle: FloatArray) -> FloatArray:
-        """Angle between the ball's middle and a mirrored direction, both as the camera sees them.
+        """Angle from the camera between the ball's centre and the point that mirrors a direction.
 
-        With the normal at t from the way back to the camera, the camera sees the point at
-        g = atan(s sin t / (1 - s cos t)), s being radius over distance, and the mirrored ray leaves
-        at 2 t + g, which grows with t: it is inverted in a table.
+        If the normal is at angle t from the direction to the camera, the camera sees the point at
+        g = atan(s sin t / (1 - s cos t)), with s the radius over distance. The mirrored ray leaves
+        at 2 t + g, which grows with t and is inverted by a table.
         """
         normal, seen = self._turns()
         inside = seen[-1] * (1 - INSIDE / self.circle[2])
         return np.asarray(np.minimum(np.interp(angle, 2 * normal + seen, seen), inside))
 
     def _turns(self) -> tuple[FloatArray, FloatArray]:
-        """Table of t and g from the middle of the ball to its outline, rad."""
+        """Table of t and g from the centre of the ball to its outline, rad."""
         normal = np.linspace(0, math.acos(self.sine), 4096)
         return normal, np.arctan2(self.sine * np.sin(normal), 1 - self.sine * np.cos(normal))
 
@@ -119,16 +119,16 @@ class Ball:
 
 
 def seen_ball(circle: Circle, outline: FloatArray, size: tuple[int, int], focal_px: float) -> Ball:
-    """The ball whose outline is seen at these places.
+    """Finds the ball from points on its outline.
 
-    Rays c of the outline of a ball lie on a cone: with its axis a and half angle h, c . a = cos h.
-    So c . m = 1 with m = a / cos h, which is linear in m.
+    Rays c to the outline lie on a cone with axis a and half angle h: c . a = cos h. So c . m = 1
+    with m = a / cos h, which is linear in m.
 
     Args:
-        circle: Middle and radius of the outline, px.
-        outline: Places on it, px, shape (N, 2).
+        circle: Centre and radius of the outline, px.
+        outline: Points on the outline, px, shape (N, 2).
         size: Width and height of the picture, px.
-        focal_px: Focal length, px; infinite: from far away.
+        focal_px: Focal length, px; infinite: seen from far away.
     """
     if math.isinf(focal_px):
         return Ball(circle)
@@ -144,7 +144,7 @@ def seen_ball(circle: Circle, outline: FloatArray, size: tuple[int, int], focal_
 
 
 def points_on(circle: Circle, count: int = 360) -> FloatArray:
-    """Places on a circle, px, shape (N, 2)."""
+    """Points on a circle, px, shape (N, 2)."""
     angle = np.arange(count) * (2 * np.pi / count)
     x, y, radius = circle
     return np.stack([x + radius * np.cos(angle), y + radius * np.sin(angle)], axis=1)

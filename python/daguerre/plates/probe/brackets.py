@@ -1,4 +1,4 @@
-"""Photographs of one view, read, checked and merged."""
+"""Reads, checks and merges photographs of one view."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ class View:
     """A view of the set.
 
     Attributes:
-        merged: Its light.
-        shots: Photographs of it.
-        exposures: How they were exposed.
-        curve: Kind of curve of their numbers: recovered, srgb or linear.
+        merged: Merged light.
+        shots: Photographs of the view.
+        exposures: Exposures of the photographs.
+        curve: Response curve of the photographs: ``recovered``, ``srgb`` or ``linear``.
     """
 
     merged: Merged
@@ -39,11 +39,11 @@ class View:
 
     @property
     def path(self) -> Path:
-        """The first of its files."""
+        """Path of the first photograph."""
         return self.shots[0].path
 
     def facts(self) -> list[dict[str, Any]]:
-        """Each photograph with its exposure."""
+        """File and exposure of each photograph."""
         stops = self.exposures.stops
         return [
             {"file": shot.path.name, "exposure_ev": round(ev, 4)}
@@ -53,7 +53,7 @@ class View:
 
 @dataclass(frozen=True)
 class Reading:
-    """How photographs are read: white of raw files, curve of others, luminance of a value of 1."""
+    """Options of reading: white of raw files, curve of others, luminance of a value of 1."""
 
     white: White
     response: str
@@ -65,7 +65,7 @@ def read_view(paths: Sequence[str | Path], ev: Sequence[float] | None, how: Read
     """Reads the photographs of one view and merges them.
 
     Raises:
-        InputError: One cannot be read, they do not belong together, or all is clipped.
+        InputError: A photograph cannot be read, they do not belong together, or all is clipped.
     """
     shots = [read_shot(path, how.white, how.notes, len(paths)) for path in paths]
     check_together(shots)
@@ -75,16 +75,16 @@ def read_view(paths: Sequence[str | Path], ev: Sequence[float] | None, how: Read
     curve, kind = _curve(shots, exposures.stops, how)
     merged = merge(shots, exposures, curve)
     if merged.clipped.mean() > 0.98:
-        raise InputError(f"{shots[0].path}: wanted light that is not clipped, got none")
+        raise InputError(f"{shots[0].path}: wanted light that is not clipped, got hardly any")
     if not merged.light.any():
         raise InputError(f"{shots[0].path}: wanted light, got a black picture")
     if merged.negative:
-        how.notes.add("pixel of colours beyond Rec.709: negative light became 0", merged.negative)
+        how.notes.add("pixel outside the Rec.709 gamut: negative light set to 0", merged.negative)
     return View(merged, shots, exposures, kind)
 
 
 def _curve(shots: list[Shot], stops: tuple[float, ...], how: Reading) -> tuple[FloatArray, str]:
-    """Curve of coded numbers, and its kind."""
+    """Response curve of encoded photographs, and its kind."""
     srgb = response.srgb_curve()
     if not shots[0].coded:
         return srgb, "linear"
@@ -93,11 +93,11 @@ def _curve(shots: list[Shot], stops: tuple[float, ...], how: Reading) -> tuple[F
     apart = max(stops) - min(stops) >= 0.3
     if how.response == "recover" and not apart:
         raise UsageError(
-            "--response: recover wants photographs at least 0.3 EV apart, got "
+            "--response: wanted photographs at least 0.3 EV apart for recover, got "
             + ("one" if len(shots) == 1 else f"{max(stops) - min(stops):.1f} EV")
         )
     if how.response == "srgb" or not apart:
-        how.notes.add("numbers decoded as sRGB; a camera's own curve may be up to a stop off")
+        how.notes.add("pixels are decoded as sRGB; a camera's own curve may differ by up to a stop")
         return srgb, "srgb"
     return response.recover([_eight_bits(shot.numbers) for shot in shots], stops), "recovered"
 

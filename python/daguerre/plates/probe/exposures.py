@@ -1,7 +1,7 @@
-"""Exposures of photographs: how much light each took, and the luminance of a value of 1.
+"""Exposures of photographs, and the luminance of a value of 1.
 
-A sensor at f-number N, t seconds and ISO S shows white where the exposure H is that of ISO 12232:
-middle grey, 0.18, is 10 / S lux s. With H = pi / 4 L t / N^2 a value of 1 is a luminance of
+By ISO 12232, middle grey (0.18) has the exposure H = 10 / S lux s, with S the ISO. With
+H = pi / 4 L t / N^2 for f-number N and t seconds, a value of 1 has the luminance
 L = 4 / pi * 10 / 0.18 * N^2 / (t S) cd/m2.
 """
 
@@ -30,8 +30,8 @@ class Exposures:
     """Exposures of the photographs of one view.
 
     Attributes:
-        luminance: Luminance of a value of 1 in each, cd/m2 if ``absolute``.
-        absolute: Whether that unit is known.
+        luminance: Luminance of a value of 1 in each photograph, cd/m2 if ``absolute``.
+        absolute: Whether the unit is known.
     """
 
     luminance: tuple[float, ...]
@@ -39,7 +39,7 @@ class Exposures:
 
     @property
     def stops(self) -> tuple[float, ...]:
-        """Exposure of each, EV, more than that of the darkest photograph."""
+        """Exposure of each photograph above that of the darkest, EV."""
         highest = max(self.luminance)
         return tuple(math.log2(highest / value) for value in self.luminance)
 
@@ -51,18 +51,18 @@ def exposures_of(
     notes: Notes,
     flag: str = "--scale",
 ) -> Exposures:
-    """Exposures by ``ev`` where given, else by EXIF.
+    """Returns the exposures, from ``ev`` if given, else from EXIF.
 
     Args:
         shots: Photographs of one view.
-        ev: Exposure of each, EV, more is brighter; None: by EXIF.
+        ev: Exposure of each photograph, EV, more is brighter; None: from EXIF.
         scale: Luminance of a value of 1, cd/m2: at 0 EV, in linear files, or without EXIF.
-        notes: Says what was not known.
+        notes: Gets notes on missing values.
         flag: Flag of ``scale``, for the notes.
 
     Raises:
-        UsageError: There are more or fewer ``ev`` than photographs.
-        InputError: EXIF does not say what is needed.
+        UsageError: The number of ``ev`` is not that of the photographs.
+        InputError: EXIF lacks a required value.
     """
     if ev is not None:
         if len(ev) != len(shots):
@@ -74,7 +74,7 @@ def exposures_of(
     if all(not shot.metered for shot in shots):
         if len(shots) > 1:
             raise InputError(
-                f"{shots[1].path}: exposure: linear files do not say it; wanted --ev, such as -4,0"
+                f"{shots[1].path}: exposure: wanted --ev, such as -4,0, as linear files have none"
             )
         return Exposures((scale or 1.0,), True)
     return _by_exif(shots, scale, notes, flag)
@@ -94,12 +94,12 @@ def _by_exif(shots: list[Shot], scale: float | None, notes: Notes, flag: str) ->
     if absolute:
         return Exposures(tuple(_WHITE / factors), True)
     missing = [_WORDS[name] for name, values in known.items() if None in values]
-    notes.add(f"EXIF lacks {', '.join(missing)}: values have no known unit; {flag} gives one")
+    notes.add(f"EXIF lacks {', '.join(missing)}, so the unit of light is unknown; {flag} sets it")
     return Exposures(tuple(np.median(factors) / factors), False)
 
 
 def _refuse_missing(shots: list[Shot], known: dict[str, list[float | None]]) -> None:
-    """Several photographs need times; f-numbers and ISO may be missing in all of them."""
+    """Checks EXIF of several photographs: times are required, f-number and ISO in all or none."""
     for name, values in known.items():
         for shot, value in zip(shots, values, strict=True):
             if value is None and (name == "expTime" or any(values)):

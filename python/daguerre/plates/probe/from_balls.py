@@ -1,4 +1,4 @@
-"""Photographs of balls as environments."""
+"""Makes environments from photographs of balls."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ GREY_WIDTH = 1024
 
 
 def mirror_balls(asked: Asked) -> Source:
-    """Mirror balls, seen from one or more sides, unwrapped.
+    """Unwraps photographs of mirror balls, from one or more sides.
 
     Raises:
         InputError: A photograph cannot be used, or shows no ball.
@@ -53,11 +53,11 @@ def mirror_balls(asked: Asked) -> Source:
 
 
 def _one_unit(views: list[View]) -> bool:
-    """Whether light is in cd/m2; sides of unknown units do not fit together."""
+    """Whether light is in cd/m2; all sides must agree."""
     absolute = all(view.exposures.absolute for view in views)
     if not absolute and len(views) > 1 and any(view.exposures.absolute for view in views):
         raise InputError(
-            f"{views[1].path}: exposure: wanted one that is known for every side or for none"
+            f"{views[1].path}: exposure: wanted a known exposure for every side or for none"
         )
     return absolute
 
@@ -101,7 +101,7 @@ def _outline(view: View, circle: Circle | None) -> Outline:
 
 
 def _focal_px(asked: Asked, view: View) -> float:
-    """Focal length, px: by the field of view, else by EXIF; infinite: unknown, or far away."""
+    """Focal length, px, from the field of view, else from EXIF; infinite: unknown, or far away."""
     if asked.fov is not None:
         if asked.fov < 1e-6:
             return math.inf
@@ -109,7 +109,7 @@ def _focal_px(asked: Asked, view: View) -> float:
     known = view.shots[0].focal_px
     if known is None:
         asked.notes.add(
-            "no focal length in EXIF: the ball is taken to be seen from far away; --fov says more"
+            "EXIF has no focal length: the ball is taken as seen from far away; --fov sets it"
         )
         return math.inf
     return known
@@ -125,7 +125,7 @@ def shading(asked: Asked, paths: list[Path], circle: Circle | None, yaw: float) 
 
 
 def grey_ball(asked: Asked) -> Source:
-    """The light that explains a matt ball: soft light of order 2, and a sun.
+    """Finds the light that explains a matt ball: soft light of order 2, and a sun.
 
     Raises:
         InputError: A photograph cannot be used, or shows no ball.

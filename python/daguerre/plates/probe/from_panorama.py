@@ -1,4 +1,4 @@
-"""A panorama as it was photographed, turned and brought to size."""
+"""Makes environments from photographed panoramas, turned and resized."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from .panorama import resized, turned
 
 @dataclass(frozen=True)
 class Source:
-    """An environment before its sun was looked for.
+    """An environment before the search for the sun.
 
     Attributes:
-        light: float32, shape (H, W, 3).
-        clipped: Where it is clipped, shape (H, W).
+        light: Light, float32, shape (H, W, 3).
+        clipped: Mask of clipped pixels, shape (H, W).
         absolute: Whether light is in cd/m2.
-        facts: Facts of how it was made, for JSON.
-        sun: Direction and illuminance of a sun that is not in the light; None: unknown.
+        facts: Facts about its making, for JSON.
+        sun: Direction and illuminance of a sun that is not in ``light``; None: unknown.
     """
 
     light: NDArray[np.float32]
@@ -36,17 +36,17 @@ class Source:
 
 
 def panorama(asked: Asked) -> Source:
-    """A bracketed panorama, 2:1, in the frame of environments.
+    """Reads a bracketed panorama, 2:1, in the frame of environments.
 
     Raises:
-        InputError: It has another shape.
+        InputError: The picture is not 2:1.
     """
     view = read_view(asked.photographs, asked.ev, asked.reading)
     width, height = view.shots[0].size
     if width != 2 * height:
         raise InputError(
-            f"{view.path}: panorama: wanted twice as wide as high, got {width}x{height} px; "
-            "photographs of a ball want --ball mirror or --ball grey"
+            f"{view.path}: panorama: wanted a width of twice the height, got {width}x{height} px; "
+            "for photographs of a ball use --ball mirror or --ball grey"
         )
     size = (asked.res or width, (asked.res or width) // 2)
     light = resized(turned(view.merged.light, asked.rotate), *size)

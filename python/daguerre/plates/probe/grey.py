@@ -1,7 +1,7 @@
-"""The matt ball: the light that explains how bright it is on its visible half.
+"""Matt balls: finds the light that explains the shading of the visible half.
 
-Soft light is told to order 2 of spherical harmonics and kept from being negative. A sun is told by
-its terminator, the line where it sets: a clamped cosine, of which order 2 has no copy.
+Soft light is fitted to order 2 of spherical harmonics and kept non-negative. A sun shows by its
+terminator: its shading is a clamped cosine, which order 2 cannot reproduce.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from .harmonics import IRRADIANCE, basis, scattered
 from .latlong import FloatArray
 from .merge import Merged
 
-#: Steeper parts mirror and blur: least cosine between normal and view.
+#: Least cosine between normal and view; steeper parts mirror and are blurred.
 _LEAST_COSINE = 0.25
 _MOST_NORMALS = 6000
-#: A sun must explain this share of what soft light leaves, and bring this share of the mean light.
+#: Least share of the residual of soft light that a sun must explain, and of the mean light.
 _EXPLAINS, _BRINGS = 0.1, 0.05
-#: Strength of the wish for little light where the ball does not show it.
+#: Weight of the regularization toward little light where the ball does not show it.
 _CALM = 1e-3
 
 
@@ -46,10 +46,10 @@ class Lighting:
     """Light that explains a matt ball.
 
     Attributes:
-        coefficients: Soft light, nine functions by RGB, shape (9, 3).
-        direction: Unit vector toward the sun, shape (3,); None: there is none.
-        sun: Its illuminance, RGB, shape (3,).
-        error: RMS of what is left, as a share of the mean.
+        coefficients: Soft light: coefficients of nine functions by RGB, shape (9, 3).
+        direction: Unit vector toward the sun, shape (3,); None: no sun.
+        sun: Illuminance of the sun, RGB, shape (3,).
+        error: RMS of the residual, as a share of the mean.
     """
 
     coefficients: FloatArray
@@ -64,7 +64,7 @@ def shading_of(
     """Irradiance on the visible part of a matt ball: E = pi L / reflectance.
 
     Raises:
-        InputError: Hardly any of it is not clipped.
+        InputError: Too little of the ball is not clipped.
     """
     x, y, radius = ball.circle
     step = max(1, int(radius / np.sqrt(_MOST_NORMALS / np.pi)))
@@ -97,7 +97,7 @@ def _blocks(light: NDArray[np.float32], at: NDArray[np.int64], step: int) -> Flo
 
 
 def lighting_of(shading: Shading) -> Lighting:
-    """Soft light and a sun that explain a matt ball, by least squares."""
+    """Fits soft light and a sun to a matt ball, by least squares."""
     soft = basis(shading.normals) * IRRADIANCE
     target = shading.irradiance
     luma = target @ luminance_of_rgb()
@@ -116,7 +116,7 @@ def _rms(off: FloatArray, target: FloatArray) -> float:
 
 
 def _sun_direction(soft: FloatArray, normals: FloatArray, luma: FloatArray) -> FloatArray | None:
-    """The direction whose clamped cosine explains most of what soft light leaves."""
+    """Direction whose clamped cosine explains most of the residual of soft light."""
     q = np.linalg.qr(soft)[0]
     left = luma - q @ (q.T @ luma)
     tried, spread = scattered(2000), 0.08

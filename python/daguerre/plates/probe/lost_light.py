@@ -1,4 +1,4 @@
-"""The sun of an environment taken out, brought back to its strength, and put in its place."""
+"""Restores the sun of an environment that clipping has weakened."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from .sun import DIAMETER_DEG, Sun, Taken, take_out, with_disc
 
 @dataclass(frozen=True)
 class Lit:
-    """An environment with its sun, and without; warnings of what is missing."""
+    """An environment with and without its sun, and warnings on missing light."""
 
     image: NDArray[np.float32]
     rest: NDArray[np.float32]
@@ -34,10 +34,10 @@ class Lit:
 
 
 def sun_and_light(asked: Asked, source: Source) -> Lit:
-    """Finds the sun and the light that clipping lost.
+    """Finds the sun and the light lost to clipping.
 
     Raises:
-        InputError: There is no sun to solve for, or it does not fit what was measured.
+        InputError: There is no sun to solve for, or it does not fit the measurement.
     """
     solve = bool(asked.grey or asked.illuminance)
     taken = _taken(asked, source, solve)
@@ -45,7 +45,7 @@ def sun_and_light(asked: Asked, source: Source) -> Lit:
         return _solved(asked, source, taken)
     lit = _as_it_is(asked, source, taken)
     if asked.grey:
-        asked.notes.add("nothing is clipped: --grey was not needed")
+        asked.notes.add("--grey is ignored, as nothing is clipped")
     return _scaled(lit, asked.illuminance) if asked.illuminance else lit
 
 
@@ -64,7 +64,7 @@ def _taken(asked: Asked, source: Source, solve: bool) -> Taken | None:
 
 
 def _as_it_is(asked: Asked, source: Source, taken: Taken | None) -> Lit:
-    """Nothing is solved for: the light as photographed, with a warning where it is clipped."""
+    """Keeps the light as photographed, with a warning if it is clipped."""
     warnings = _warnings(source)
     if taken is None:
         return Lit(source.light, source.light, None, source.absolute, warnings)
@@ -85,27 +85,27 @@ def _warnings(source: Source) -> tuple[str, ...]:
     if not source.clipped.any():
         return ()
     facts = clipped_facts(source.light, source.clipped)
-    unit = "lux" if source.absolute else "of its unknown unit"
+    unit = "lux" if source.absolute else "(unknown unit)"
     return (
-        f"{facts['share']:.3%} of the sphere is clipped in every photograph, about azimuth "
-        f"{facts['azimuth_deg']:.0f}, elevation {facts['elevation_deg']:.0f} degrees: "
-        f"{facts['illuminance_at_least']:.4g} {unit} at least, {facts['light_share_at_least']:.1%} "
-        "of all light, and more is lost; a shorter exposure, --illuminance or --grey finds it",
+        f"{facts['share']:.3%} of the sphere is clipped in every photograph, around azimuth "
+        f"{facts['azimuth_deg']:.0f}, elevation {facts['elevation_deg']:.0f} degrees: at least "
+        f"{facts['illuminance_at_least']:.4g} {unit}, {facts['light_share_at_least']:.1%} "
+        "of all light, and more is lost; add a shorter exposure, --illuminance or --grey",
     )
 
 
 def _solved(asked: Asked, source: Source, taken: Taken | None) -> Lit:
-    """The sun by what a meter or a matt ball says."""
+    """Solves for the sun from a light meter or a matt ball."""
     if taken is None or not taken.sun.clipped:
         raise InputError(
-            f"{asked.photographs[0]}: clipped light: wanted one place of at most 40 degrees that "
-            "could be the sun, got none; photograph it with shorter exposures"
+            f"{asked.photographs[0]}: clipped light: wanted one clipped area of at most 40 degrees "
+            "that could be the sun, got none; photograph it with shorter exposures"
         )
     if asked.illuminance is not None:
         if not source.absolute:
             raise InputError(
-                f"{asked.photographs[0]}: --illuminance: the map has no known unit, so the rest of "
-                "its light cannot be subtracted; give --scale, or --grey instead"
+                f"{asked.photographs[0]}: --illuminance: wanted light in a known unit, so that the "
+                "rest of it can be subtracted, got none; set --scale, or use --grey instead"
             )
         sun = by_illuminance(taken.sun, taken.rest, asked.illuminance)
     else:
@@ -116,7 +116,7 @@ def _solved(asked: Asked, source: Source, taken: Taken | None) -> Lit:
 
 
 def _scaled(lit: Lit, lux: float) -> Lit:
-    """Nothing is clipped: the whole map is scaled to what a meter read.
+    """Scales the whole map to the reading of a light meter, if nothing is clipped.
 
     Raises:
         InputError: The upper half is black.

@@ -1,8 +1,8 @@
-"""Photographs of different exposure as one picture of linear light.
+"""Merges photographs of different exposure to one picture of linear light.
 
-Each pixel is the mean of what the photographs say, weighed by the inverse of its variance: that of
-photons, of reading out, and of rounding. What is clipped has no say. Source of the weights:
-Granados et al., Optimal HDR reconstruction with linear digital cameras, CVPR 2010.
+Each pixel is the mean over the photographs, weighted by the inverse of its variance: shot noise,
+read noise and rounding. Clipped pixels have weight 0. Source of the weights: Granados et al.,
+Optimal HDR reconstruction with linear digital cameras, CVPR 2010.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from .exposures import Exposures
 from .latlong import FloatArray
 from .shots import CLIPPED, Shot
 
-#: Variance of a value v of a usual camera, as shares of white: v of photons, the rest of reading.
+#: Variance of a value v of a typical camera, in shares of white: shot noise (times v), read noise.
 _PHOTONS, _READING = 1e-4, 4e-8
-#: Shares of saturation between which a photograph loses its say.
+#: Share of saturation from which on the weight of a photograph falls to 0.
 _FADE = 0.9
 
 
@@ -29,9 +29,9 @@ class Merged:
     """Linear light of a view.
 
     Attributes:
-        light: Rec.709 in cd/m2, or in units of no known size, float32, shape (H, W, 3).
-        clipped: Where every photograph is clipped, shape (H, W).
-        negative: Pixels with light of less than 0 in a channel, which became 0.
+        light: Rec.709 in cd/m2 or in an unknown unit, float32, shape (H, W, 3).
+        clipped: Mask of pixels that are clipped in every photograph, shape (H, W).
+        negative: Number of pixels with negative light in a channel, which is set to 0.
     """
 
     light: NDArray[np.float32]
@@ -40,12 +40,12 @@ class Merged:
 
 
 def merge(shots: list[Shot], exposures: Exposures, curve: FloatArray) -> Merged:
-    """One picture of all photographs of a view.
+    """Merges all photographs of a view.
 
     Args:
         shots: Photographs of one size.
-        exposures: Their exposures.
-        curve: Light of the numbers of coded ones, shape (256, 3).
+        exposures: Exposures of the photographs.
+        curve: Response curve of encoded photographs: light of each value, shape (256, 3).
     """
     shape = shots[0].numbers.shape
     sums: NDArray[Any] = np.zeros(shape)
@@ -55,7 +55,7 @@ def merge(shots: list[Shot], exposures: Exposures, curve: FloatArray) -> Merged:
     for i, (shot, unit) in enumerate(zip(shots, exposures.luminance, strict=True)):
         light, variance, top = _linear(shot, curve), _variance(shot, curve), shot.top
         weight = _say(top) / (variance * unit**2)
-        if i == darkest:  # where nothing else has a say
+        if i == darkest:  # used where all others are clipped
             weight = np.maximum(weight, 1e-12 / unit**2)
             clipped &= top >= CLIPPED
         else:
@@ -71,7 +71,7 @@ def merge(shots: list[Shot], exposures: Exposures, curve: FloatArray) -> Merged:
 
 
 def _linear(shot: Shot, curve: FloatArray) -> NDArray[np.float32]:
-    """Light of each channel, white being 1."""
+    """Light of each channel; white is 1."""
     if not shot.coded:
         return np.asarray(shot.numbers, np.float32)
     lut = response.table(curve, int(shot.full[0]) + 1)
@@ -88,6 +88,6 @@ def _variance(shot: Shot, curve: FloatArray) -> NDArray[np.float32]:
 
 
 def _say(top: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Share of its say that a photograph keeps toward saturation."""
+    """Factor on a photograph's weight near saturation."""
     t = np.clip((CLIPPED - top) / (CLIPPED - _FADE), 0, 1)
     return np.asarray(t * t * (3 - 2 * t))

@@ -1,7 +1,7 @@
-"""The outline of a ball in a photograph: a circle that edges vote for, then fitted to its rim.
+"""Finds the outline of a ball in a photograph: a Hough transform, then a fit to the rim.
 
-Votes: each edge pixel votes along its gradient, for every radius, for the middle of its circle
-(Duda and Hart, CACM 15 (1972) 11; with gradients Kimme, Ballard and Sklansky, CACM 18 (1975) 120).
+Each edge pixel votes along its gradient, for every radius, for the centre of its circle (Duda and
+Hart, CACM 15 (1972) 11; with gradients Kimme, Ballard and Sklansky, CACM 18 (1975) 120).
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ class Outline:
     """The outline of a ball.
 
     Attributes:
-        circle: Middle and radius, px.
-        points: Places on it that were seen, px, shape (N, 2).
+        circle: Centre and radius, px.
+        points: Edge points on it, px, shape (N, 2).
         seen: Share of the rim with an edge.
         spread_px: RMS distance of these edges from the circle, px.
     """
@@ -64,8 +64,8 @@ def find_outline(light: NDArray[np.float32], where: str) -> Outline:
     found = [_fitted(grey, circle) for circle in _candidates(grey)]
     best = max((one for one in found if one is not None), key=lambda one: one.seen, default=None)
     if best is None or best.seen < _RIM:
-        seen = f"one whose rim shows in {best.seen:.0%} of its length" if best else "no circle"
-        raise InputError(f"{where}: ball: wanted a clear round outline, got {seen}; give --circle")
+        seen = f"one with an edge along {best.seen:.0%} of its rim" if best else "no circle"
+        raise InputError(f"{where}: ball: wanted a clear round outline, got {seen}; set --circle")
     return best
 
 

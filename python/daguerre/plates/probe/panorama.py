@@ -1,4 +1,4 @@
-"""Panoramas turned and brought to another size, with all their light."""
+"""Turns and resizes panoramas without loss of light."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from .latlong import FloatArray
 
 
 def turned(image: NDArray[np.float32], degrees: float) -> NDArray[np.float32]:
-    """The panorama turned about +y, as by ``--env-rotation``; rows keep their sums.
+    """Turns a panorama about +y, like ``--env-rotation``; rows keep their sums.
 
     Args:
-        image: Shape (H, W, C).
-        degrees: From -z toward -x, which is toward the left of the picture.
+        image: Panorama, shape (H, W, C).
+        degrees: Angle from -z toward -x, that is toward the left of the picture.
     """
     columns = degrees / 360 * image.shape[1]
     whole = int(np.floor(columns))
@@ -27,12 +27,12 @@ def turned(image: NDArray[np.float32], degrees: float) -> NDArray[np.float32]:
 
 
 def resized(image: NDArray[np.float32], width: int, height: int) -> NDArray[np.float32]:
-    """Means over the solid angle of each new pixel, so that no light is lost.
+    """Resizes a panorama by means over the solid angle of each new pixel; no light is lost.
 
     Args:
-        image: Shape (H, W, C).
-        width: New columns, px.
-        height: New rows, px.
+        image: Panorama, shape (H, W, C).
+        width: New width, px.
+        height: New height, px.
     """
     rows, columns = image.shape[:2]
     if (rows, columns) == (height, width):

@@ -1,4 +1,4 @@
-"""Parameters of a light probe: one row each, from which keywords, checks and flags come."""
+"""Parameters of a light probe: a row for each, which defines keyword, checks and flag."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _fov(flag: str, text: str) -> float:
         return 0.0
     angle = units.angle_deg(flag, text)
     if not 0 < angle < 180:
-        raise UsageError(f"{flag}: wanted far, or an angle between 0 and 180 degrees, got {text!r}")
+        raise UsageError(f"{flag}: wanted an angle between 0 and 180 degrees, or far, got {text!r}")
     return angle
 
 
@@ -66,108 +66,110 @@ LIGHT_PROBE = Table(
     Parameter(
         "ball", "Kind of ball in the photographs [none: a panorama]", kind="choice",
         choices=BALLS, wants="mirror or grey", flags=("--ball",), panel=BALL,
-        in_python="``mirror`` or ``grey``, the kind of ball in the photographs; None: a panorama.",
+        in_python="Kind of ball in the photographs, ``mirror`` or ``grey``; None: a panorama.",
     ),
     Parameter(
         "ev", "Exposure of each photograph, EV, such as -4,-2,0", kind="value",
         parse=_list("-4,-2,0"), flags=("--ev",), metavar="EV,...", panel=PHOTOGRAPHS,
-        default_words="by EXIF",
-        in_python="Exposure of each photograph, EV, more is brighter; None: by EXIF.",
+        default_words="from EXIF",
+        in_python="Exposure of each photograph, EV; larger is brighter. None: from EXIF.",
     ),
     Parameter(
-        "response", "Curve of coded photographs; auto recovers it from brackets",
+        "response", "Response curve of developed photographs; auto recovers it from brackets",
         default="auto", kind="choice", choices=RESPONSES,
         flags=("--response",), panel=PHOTOGRAPHS, tells_default=True,
-        in_python="``recover`` the curve of coded photographs from their differences, ``srgb``, "
-        "``linear``, or ``auto``: recover where exposures differ, else srgb.",
+        in_python="Response curve of developed photographs: ``recover`` (from brackets), ``srgb``, "
+        "``linear``, or ``auto``: recover if exposures differ, else srgb.",
     ),
     Parameter(
         "scale", "Luminance of a value of 1 in the first photograph, cd/m2", above=0,
-        flags=("--scale",), metavar="X", panel=PHOTOGRAPHS, default_words="by EXIF, else 1",
+        flags=("--scale",), metavar="X", panel=PHOTOGRAPHS, default_words="from EXIF, else 1",
         in_python="Luminance of a value of 1 in the first photograph (at 0 EV with ``ev``), cd/m2; "
-        "None: by EXIF, else 1.",
+        "None: from EXIF, else 1.",
     ),
     Parameter(
         "wb", "White that becomes neutral in raw files", kind="value",
         parse=units.white, flags=("--wb",), metavar="K|X,Y", panel=PHOTOGRAPHS,
         default_words="as shot",
-        in_python="White that becomes neutral in raw files: K, or x, y; None: as shot.",
+        in_python="White that becomes neutral in raw files: K, or (x, y); None: as shot.",
     ),
     Parameter(
-        "circle", "Outline of the ball: middle and radius, px", kind="value",
+        "circle", "Outline of the ball: centre and radius, px", kind="value",
         parse=lambda flag, text: units.numbers(flag, text, 3, "1024,768,400"),
-        flags=("--circle",), metavar="X,Y,R", panel=BALL, default_words="found",
-        in_python="Outline of the ball, middle and radius in px; None: it is found.",
+        flags=("--circle",), metavar="X,Y,R", panel=BALL, default_words="detected",
+        in_python="Outline of the ball, centre and radius, px; None: detected.",
     ),
     Parameter(
         "fov", "Horizontal field of view of the photographs, degrees, or far", kind="value",
         parse=_fov, flags=("--fov",), metavar="DEG|far", panel=BALL,
-        default_words="by EXIF, else far",
+        default_words="from EXIF, else far",
         in_python="Horizontal field of view of the photographs, degrees; 0: the ball is seen from "
-        "far away; None: by EXIF, else 0.",
+        "far away; None: from EXIF, else 0.",
     ),
     Parameter(
-        "reflectance", "Reflectance of the ball, also R,G,B [mirror: 1; grey: 0.18]", kind="value",
+        "reflectance", "Reflectance of the ball, X or R,G,B [mirror: 1; grey: 0.18]", kind="value",
         parse=_list("0.6"), flags=("--reflectance",), metavar="X", panel=BALL,
-        in_python="Reflectance of the ball, one number or RGB; None: 1 of a mirror, 0.18 of grey.",
+        in_python="Reflectance of the ball, one number or RGB; None: 1 for a mirror ball, 0.18 for "
+        "a grey one.",
     ),
     Parameter(
-        "ball_direction", "Yaw of the camera, degrees; one for each side of the ball", kind="value",
+        "ball_direction", "Yaw of the camera, degrees; one for each side", kind="value",
         parse=_angles, flags=("--ball-direction",), metavar="DEG,...", panel=BALL,
         default_words="0: along -z",
-        in_python="Yaw of the camera, degrees, about +y from -z toward -x; several: photographs "
-        "are of as many sides, in equal parts. None: 0.",
+        in_python="Yaw of the camera, degrees, about +y from -z toward -x; with several, "
+        "photographs are split evenly between the sides. None: 0.",
     ),
     Parameter(
-        "pitch", "Pitch of the camera, upward, degrees", "deg", 0.0, low=-90, high=90,
+        "pitch", "Pitch of the camera, degrees; positive is up", "deg", 0.0, low=-90, high=90,
         flags=("--pitch",), metavar="DEG", panel=BALL, tells_default=True,
-        in_python="Pitch of the camera, upward, degrees.",
+        in_python="Pitch of the camera, degrees; positive is up.",
     ),
     Parameter(
-        "sun", "Search for the sun; disc draws it as an even disc", default="auto",
+        "sun", "Search for the sun; disc also draws it as a uniform disc", default="auto",
         kind="choice", choices=SUNS, flags=("--sun",), panel=SUN, tells_default=True,
-        in_python="``auto``: sought, and drawn as a disc only if its light was solved for; "
-        "``disc``: always drawn as one; ``off``: not sought.",
+        in_python="Search for the sun. ``auto``: search, and draw it as a disc only if its light "
+        "was solved for; ``disc``: search, and always draw a disc; ``off``: no search.",
     ),
     Parameter(
         "sun_diameter", "Angular diameter of the sun's disc, degrees", "deg",
         above=0, high=20, flags=("--sun-diameter",), metavar="DEG", panel=SUN,
-        default_words="as found; 0.533 where clipped",
-        in_python="Angular diameter of its disc, degrees; None: as found, 0.533 where clipped.",
+        default_words="as measured; 0.533 if clipped",
+        in_python="Angular diameter of the sun's disc, degrees; None: as measured, 0.533 if "
+        "clipped.",
     ),
     Parameter(
-        "illuminance", "Illuminance of the open ground by a meter, lux; finds clipped light",
+        "illuminance", "Metered illuminance of the open ground, lux; restores clipped light",
         above=0, flags=("--illuminance",), metavar="LUX", panel=SUN,
-        in_python="Illuminance of the open ground by a meter, lux: solves for a clipped sun, "
-        "else scales the map.",
+        in_python="Metered illuminance of the open ground, lux; solves for a clipped sun, else "
+        "scales the map.",
     ),
     Parameter(
-        "grey", "Photograph of a grey ball, which finds clipped light; repeatable", kind="value",
+        "grey", "Photograph of a grey ball that restores clipped light; repeatable", kind="value",
         parse=lambda flag, text: text, repeated=True, flags=("--grey",), metavar="PHOTO", panel=SUN,
-        in_python="Photographs of a matt ball, which solve for a clipped sun.",
+        in_python="Photographs of a matt grey ball, to solve for a clipped sun.",
     ),
     Parameter(
-        "grey_circle", "Outline of the ball of --grey, px", kind="value",
+        "grey_circle", "Outline of the ball in --grey: centre and radius, px", kind="value",
         parse=lambda flag, text: units.numbers(flag, text, 3, "1024,768,400"),
-        flags=("--grey-circle",), metavar="X,Y,R", panel=SUN, default_words="found",
-        in_python="Outline of the matt ball, px; None: it is found.",
+        flags=("--grey-circle",), metavar="X,Y,R", panel=SUN, default_words="detected",
+        in_python="Outline of the ball in ``grey``, centre and radius, px; None: detected.",
     ),
     Parameter(
-        "grey_direction", "Yaw of the camera of --grey, degrees", "deg",
+        "grey_direction", "Yaw of the camera for --grey, degrees", "deg",
         flags=("--grey-direction",), metavar="DEG", panel=SUN,
         default_words="the first --ball-direction",
-        in_python="Yaw of the camera of the matt ball; None: the first ``ball_direction``.",
+        in_python="Yaw of the camera for ``grey``, degrees; None: the first ``ball_direction``.",
     ),
     Parameter(
-        "rotate", "Turn of the map about the vertical, as of --env-rotation, degrees", "deg", 0.0,
+        "rotate", "Rotation of the map about +y, like --env-rotation, degrees", "deg", 0.0,
         flags=("--rotate",), metavar="DEG", panel=MAP, tells_default=True,
-        in_python="Turn of the map about +y, degrees.",
+        in_python="Rotation of the map about +y, degrees.",
     ),
     Parameter(
         "res", "Width of the map, px; its height is half of that", kind="whole", low=16, high=32768,
         wants="16 to 32768", flags=("--res",), metavar="W", panel=MAP,
-        default_words="that of the source",
-        in_python="Width of the map, px; None: that of the source.",
+        default_words="width of the source",
+        in_python="Width of the map, px; its height is half of that. None: width of the source.",
     ),
 )
 # fmt: on

@@ -1,4 +1,4 @@
-"""Light probes: photographs in, an environment out, in the frame and units of ``--env``."""
+"""Light probes: environments from photographs, in the frame and units of ``--env``."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from .sun import Sun
 
 @dataclass(frozen=True)
 class LightProbe:
-    """Light of a place.
+    """A light probe.
 
     Attributes:
         image: Environment, linear Rec.709, float32, shape (H, W, 3), row 0 at the zenith, middle
-            column along -z, as ``Scene.set_environment`` takes it; cd/m2 if ``absolute``.
-        absolute: Whether its unit is cd/m2; else it is not known.
-        sun: The sun, which is in the image; None: none was found.
-        rest: The image without the sun.
-        facts: Everything that was found, for JSON.
-        notes: Remarks, one sentence each.
-        warnings: Remarks on light that is missing.
+            column along -z, as for ``Scene.set_environment``; cd/m2 if ``absolute``.
+        absolute: Whether the unit is cd/m2; else it is unknown.
+        sun: Sun, which is part of ``image``; None: no sun was found.
+        rest: Environment without the sun.
+        facts: All results, for JSON.
+        notes: Notes, one sentence each.
+        warnings: Warnings about missing light.
     """
 
     image: NDArray[np.float32]
@@ -47,27 +47,30 @@ class LightProbe:
     warnings: tuple[str, ...] = ()
 
     def save(self, path: str | os.PathLike[str], *, with_sun: bool = True) -> None:
-        """Writes the environment, ``.exr`` or ``.hdr``, whole or not at all.
+        """Writes the environment atomically.
 
         Args:
-            path: The file.
-            with_sun: Whether the sun is in it.
+            path: Path of the file, ``.exr`` or ``.hdr``.
+            with_sun: Whether to include the sun.
 
         Raises:
-            UsageError: Another ending.
-            OutputError: It cannot be written.
+            UsageError: The path has another suffix.
+            OutputError: The file cannot be written.
         """
         from .save import write_environment
 
         write_environment(path, self.image if with_sun else self.rest, self.facts)
 
     def save_sun(self, path: str | os.PathLike[str]) -> None:
-        """Writes the sun as a directional light, ``.glb``.
+        """Writes the sun as a directional light.
+
+        Args:
+            path: Path of the file, ``.glb``.
 
         Raises:
-            InputError: None was found.
-            UsageError: Another ending.
-            OutputError: It cannot be written.
+            InputError: No sun was found.
+            UsageError: The path has another suffix.
+            OutputError: The file cannot be written.
         """
         from .save import write_sun
 
@@ -79,17 +82,17 @@ class LightProbe:
 def light_probe(
     photographs: str | Path | Sequence[str | Path], **keywords: Unpack[ProbeKeywords]
 ) -> LightProbe:
-    """Makes an environment of photographs of a ball, or of a panorama.
+    """Makes an environment from photographs of a ball, or of a panorama.
 
     Several photographs of one view are merged by their exposures.
 
     Args:
-        photographs: JPEG, PNG, TIFF, EXR, HDR or raw files.
+        photographs: Paths of JPEG, PNG, TIFF, EXR, HDR or raw files.
         {keywords}
 
     Raises:
-        UsageError: A wrong parameter.
-        InputError: A photograph cannot be used; the message names it.
+        UsageError: A parameter is wrong.
+        InputError: A photograph cannot be used; the message has its path.
     """
     asked = Asked.of(photographs, LIGHT_PROBE.filled(keywords, "light_probe"))
     if asked.ball == "grey":

@@ -1,10 +1,10 @@
-"""The response curve of a camera, found from photographs of different exposure.
+"""Recovers the response curve of a camera from photographs of different exposure.
 
-For a pixel i in photograph j with number z and exposure t_j, g(z) = ln E_i + ln t_j, where g is
-the logarithm of the light that makes z. Unknown light E_i is eliminated pixel by pixel, so that the
-normal equations are those of g alone, and every pixel can take part. g is kept near the curve of
-sRGB by the second differences of what it differs from it. Source: Debevec and Malik, Recovering
-High Dynamic Range Radiance Maps from Photographs, SIGGRAPH 1997, equations 3 and 4.
+For pixel i in photograph j with value z and exposure t_j, g(z) = ln E_i + ln t_j, where g is the
+logarithm of the light that gives z. The unknown light E_i is eliminated pixel by pixel, so that the
+normal equations have only g, and every pixel can take part. Second differences of the deviation
+from sRGB keep g near the sRGB curve. Source: Debevec and Malik, Recovering High Dynamic Range
+Radiance Maps from Photographs, SIGGRAPH 1997, equations 3 and 4.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from daguerre.color import srgb
 from .latlong import FloatArray
 
 NODES = 256
-#: Numbers beyond these tell nothing: noise and clipping.
+#: Range of values that are used; beyond are noise and clipping.
 _LOW, _HIGH = 4, 249
-#: Around middle grey of ISO 12232 in sRGB, 118, all three curves stand as sRGB does.
+#: Range around middle grey (118 in sRGB) in which all three curves are scaled to equal sRGB.
 _GREY = slice(88, 149)
 _SMOOTH = 0.1
 _PIXELS = 1 << 17
@@ -27,27 +27,27 @@ _ROUNDS = 4
 
 
 def srgb_curve() -> FloatArray:
-    """Light of each number, 0 to 255, shape (256, 3), by the sRGB transfer function."""
+    """Light of each value, 0 to 255, shape (256, 3), by the sRGB transfer function."""
     light = srgb.to_linear(np.arange(NODES) / (NODES - 1))
     return np.repeat(np.asarray(light, np.float64)[:, None], 3, axis=1)
 
 
 def table(curve: FloatArray, levels: int) -> NDArray[np.float32]:
-    """Light of each of ``levels`` numbers, shape (levels, 3)."""
+    """Light of each of ``levels`` values, shape (levels, 3)."""
     at = np.linspace(0, NODES - 1, levels)
     columns = [np.interp(at, np.arange(NODES), curve[:, c]) for c in range(3)]
     return np.stack(columns, axis=1).astype(np.float32)
 
 
 def recover(pictures: list[NDArray[np.uint8]], stops: tuple[float, ...]) -> FloatArray:
-    """Curves of three channels that make photographs agree.
+    """Recovers the response curves of three channels.
 
     Args:
         pictures: Pictures of one view, shape (H, W, 3).
-        stops: Exposure of each, EV.
+        stops: Exposure of each picture, EV.
 
     Returns:
-        Light of each number, shape (256, 3), rising; at middle grey that of sRGB.
+        Light of each value, shape (256, 3), ascending, equal to sRGB at middle grey.
     """
     step = max(pictures[0].shape[0] * pictures[0].shape[1] // _PIXELS, 1)
     taken = [picture.reshape(-1, 3)[::step] for picture in pictures]

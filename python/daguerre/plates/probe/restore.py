@@ -1,4 +1,4 @@
-"""Light that was lost to clipping, found from a light meter or from a matt ball."""
+"""Restores light lost to clipping from a light meter or a matt ball."""
 
 from __future__ import annotations
 
@@ -17,45 +17,45 @@ from .sun import DIAMETER_DEG, Sun
 
 
 def ground_illuminance(light: NDArray[np.float32]) -> float:
-    """Illuminance of the ground by an environment, lux where it is in cd/m2."""
+    """Illuminance of the ground under an environment, lux if that is in cd/m2."""
     height, width = light.shape[:2]
     return float(luminance(light).sum(axis=1) @ cosine_weights(width, height))
 
 
 def by_illuminance(sun: Sun, rest: NDArray[np.float32], lux: float) -> Sun:
-    """The sun that makes the illuminance of the ground what a meter read; white as D65.
+    """Solves for the sun, with the colour of D65, that gives the metered illuminance of the ground.
 
     Args:
-        sun: Its direction counts.
-        rest: Environment without it, cd/m2.
-        lux: On the ground, in the open.
+        sun: Sun, for its direction.
+        rest: Environment without the sun, cd/m2.
+        lux: Metered illuminance of the open ground, lux.
 
     Raises:
-        InputError: The sun is below the horizon, or there is more light without it already.
+        InputError: The sun is below the horizon, or the light without it exceeds the reading.
     """
     sky = ground_illuminance(rest)
     if sun.direction[1] < math.sin(math.radians(1)):
         raise InputError(
-            f"--illuminance: wanted a sun at least 1 degree above the horizon, got "
-            f"{sun.elevation_deg:.1f}: it does not light the ground; use --grey"
+            f"--illuminance: wanted a sun at least 1 degree above the horizon, so that it lights "
+            f"the ground, got {sun.elevation_deg:.1f} degrees; use --grey"
         )
     if not lux > sky:
         raise InputError(
             f"--illuminance: wanted more than the {sky:.4g} lux of the map without its sun, "
-            f"got {lux:g}"
+            f"got {lux:g} lux"
         )
     facing = (lux - sky) / sun.direction[1]
     return _solved(sun, np.full(3, facing), "illuminance")
 
 
 def by_grey_ball(sun: Sun, rest: NDArray[np.float32], shading: Shading) -> Sun:
-    """The sun that, with the rest of the environment, explains a matt ball; by channel.
+    """Solves for the sun that, with the rest of the environment, explains a matt ball; by channel.
 
-    How light the ball is and how it was exposed need not be known: its irradiance is
+    Reflectance and exposure of the ball need not be known: its irradiance is
     k (E_rest(n) + E_sun max(n . s, 0)), linear in k and k E_sun.
 
     Raises:
-        InputError: The ball shows no sun there.
+        InputError: The ball shows no sun in this direction.
     """
     direction = np.array(sun.direction)
     shadow = _irradiance(rest, shading.normals)
@@ -66,9 +66,9 @@ def by_grey_ball(sun: Sun, rest: NDArray[np.float32], shading: Shading) -> Sun:
         factor, amount = np.linalg.lstsq(columns, shading.irradiance[:, c], rcond=None)[0]
         if factor <= 0 or amount <= 0:
             raise InputError(
-                "--grey: wanted a ball that is brighter toward the sun of the map, at azimuth "
-                f"{sun.azimuth_deg:.0f}, elevation {sun.elevation_deg:.0f} degrees; it is not. "
-                "Was it photographed from the same side (--grey-direction)?"
+                "--grey: wanted a ball that is brighter toward the sun of the map (azimuth "
+                f"{sun.azimuth_deg:.0f}, elevation {sun.elevation_deg:.0f} degrees), got one that "
+                "is not; check --grey-direction"
             )
         found[c] = amount / factor
     return _solved(sun, found, "grey")
@@ -82,7 +82,7 @@ def _solved(sun: Sun, illuminance: FloatArray, way: str) -> Sun:
 
 
 def shared(sun: Sun, rest: NDArray[np.float32]) -> Sun:
-    """The sun with its part of the light of all directions."""
+    """Sets the sun's share of the light of all directions."""
     height, width = rest.shape[:2]
     others = float(luminance(rest).sum(axis=1) @ solid_angles(width, height))
     return replace(sun, share=sun.lux / (sun.lux + others))
@@ -102,7 +102,7 @@ def _irradiance(light: NDArray[np.float32], normals: FloatArray) -> FloatArray:
 
 
 def clipped_facts(light: NDArray[np.float32], clipped: NDArray[np.bool_]) -> dict[str, float]:
-    """Share of the sphere that is clipped, where, and the least light that it brings."""
+    """Share of the sphere that is clipped, its position, and the least light of it."""
     height, width = light.shape[:2]
     angles = solid_angles(width, height)[:, None] * clipped
     total = float((luminance(light) * solid_angles(width, height)[:, None]).sum())

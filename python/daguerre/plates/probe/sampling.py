@@ -1,4 +1,4 @@
-"""Pictures between their pixels."""
+"""Bilinear interpolation of pictures."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from numpy.typing import NDArray
 
 
 def between(image: NDArray[Any], x: NDArray[Any], y: NDArray[Any]) -> NDArray[np.float32]:
-    """Bilinear values at places in px, middles of pixels at + 0.5; beyond the edge its pixels.
+    """Interpolates bilinearly at points in px (pixel centres at + 0.5); edge pixels continue.
 
     Args:
-        image: Shape (H, W) or (H, W, C).
-        x: From the left edge, any shape S.
-        y: From the upper edge, shape S.
+        image: Picture, shape (H, W) or (H, W, C).
+        x: Distance from the left edge, any shape S.
+        y: Distance from the upper edge, shape S.
 
     Returns:
-        Shape S, or S + (C,).
+        Values, shape S, or S + (C,).
     """
     height, width = image.shape[:2]
     x, y = np.clip(x - 0.5, 0, width - 1), np.clip(y - 0.5, 0, height - 1)

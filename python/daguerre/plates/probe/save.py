@@ -1,4 +1,4 @@
-"""Environments and suns as files."""
+"""Writes environments and suns to files."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ ENVIRONMENTS, SUNS = (".exr", ".hdr"), (".glb",)
 def write_environment(
     path: str | os.PathLike[str], image: NDArray[np.float32], facts: Mapping[str, Any]
 ) -> None:
-    """Writes an environment; EXR also has what was found, as JSON in ``daguerre:light_probe``.
+    """Writes an environment; an EXR also gets the facts, as JSON in ``daguerre:light_probe``.
 
     Raises:
-        UsageError: Another ending.
-        OutputError: It cannot be written.
+        UsageError: The path has another suffix.
+        OutputError: The file cannot be written.
     """
     if check_written(path, ENVIRONMENTS) == ".hdr":
         _write_hdr(path, image)
@@ -64,15 +64,15 @@ def write_sun(path: str | os.PathLike[str], sun: Sun | None) -> None:
     """Writes the sun as a directional light of KHR_lights_punctual, in lux.
 
     Raises:
-        InputError: There is none.
-        UsageError: Another ending.
-        OutputError: It cannot be written.
+        InputError: There is no sun.
+        UsageError: The path has another suffix.
+        OutputError: The file cannot be written.
     """
     from daguerre.io.gltf.writer import Glb
 
     check_written(path, SUNS)
     if sun is None:
-        raise InputError(f"{path}: wanted a sun to write, got none in the light")
+        raise InputError(f"{path}: wanted a sun in the light to write, got none")
     file = Glb("daguerre light-probe")
     lux = max(sun.illuminance)
     light = {

@@ -1,4 +1,4 @@
-"""Photographs of a probe: numbers on a scale that ends at saturation, and how they were exposed."""
+"""Reads photographs for light probes, with their saturation and exposure."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from daguerre.plates.shot_facts import shot_facts
 
 White = float | tuple[float, float] | None
 LINEAR = (".exr", ".hdr")
-#: Share of full scale from which on a channel counts as clipped: demosaicing and JPEG smear.
+#: Share of full scale from which on a channel counts as clipped, as demosaicing and JPEG smear it.
 CLIPPED = 0.98
-#: Pixels that share the highest value of linear light from which on it counts as a ceiling.
+#: Number of pixels with the highest value of linear light from which on it counts as saturation.
 _SHARED = 3
 
 
@@ -33,11 +33,13 @@ class Shot:
     """One photograph.
 
     Attributes:
-        path: Its file.
-        numbers: Upright, shape (H, W, 3): uint8 or uint16 coded by a curve, float32 linear.
-        full: Where each channel of ``numbers`` saturates, shape (3,); infinite: never.
-        rgb: Linear Rec.709 of linear numbers, shape (3, 3); None: they are that, or coded.
-        facts: Facts of the shot by the names of OpenEXR, as far as known.
+        path: Path of its file.
+        numbers: Upright pixels, shape (H, W, 3): uint8 or uint16 encoded by a curve, else float32
+            linear.
+        full: Saturation of each channel of ``numbers``, shape (3,); infinite: never.
+        rgb: Matrix from linear ``numbers`` to linear Rec.709, shape (3, 3); None: identity, or
+            encoded.
+        facts: Known metadata of the shot by OpenEXR's names.
     """
 
     path: Path
@@ -48,12 +50,12 @@ class Shot:
 
     @property
     def coded(self) -> bool:
-        """Whether a curve stands between light and numbers."""
+        """Whether pixels are encoded by a response curve."""
         return bool(np.issubdtype(self.numbers.dtype, np.integer))
 
     @property
     def metered(self) -> bool:
-        """Whether a value of 1 is white by ISO 12232, and no luminance already."""
+        """Whether a value of 1 is white by ISO 12232, not a luminance."""
         return self.path.suffix.lower() not in LINEAR
 
     @property
@@ -63,7 +65,7 @@ class Shot:
 
     @property
     def focal_px(self) -> float | None:
-        """Focal length by that of the lens and the size of the sensor, px."""
+        """Focal length, px, from the lens's focal length and the sensor's size; None: unknown."""
         focal = self.facts.get("nominalFocalLength")
         sensor = self.facts.get("sensorOverallDimensions")
         if focal is None or sensor is None:
@@ -72,7 +74,7 @@ class Shot:
 
     @property
     def top(self) -> NDArray[np.float32]:
-        """The fullest channel of each pixel as a share of saturation, shape (H, W)."""
+        """Largest channel of each pixel as a share of saturation, shape (H, W)."""
         if not np.isfinite(self.full).all():
             return np.zeros(self.numbers.shape[:2], np.float32)
         shares = [self.numbers[..., c] / np.float32(self.full[c]) for c in range(3)]
@@ -83,13 +85,13 @@ def read_shot(path: str | Path, white: White, notes: Notes, one_of: int = 1) -> 
     """Reads a photograph: JPEG, PNG, TIFF, .hdr, .exr, or a raw file.
 
     Args:
-        path: The file.
-        white: White that becomes neutral in raw files: K or x, y; None: as shot.
-        notes: Says what was turned, and which colours were taken for sRGB.
-        one_of: Photographs of its view.
+        path: Path of the file.
+        white: White that becomes neutral in raw files: K or (x, y); None: as shot.
+        notes: Gets notes, such as on rotation and colour space.
+        one_of: Number of photographs of its view.
 
     Raises:
-        InputError: It cannot be read; the message names the file.
+        InputError: The file cannot be read; the message has its path.
     """
     file = Path(path)
     suffix = file.suffix.lower()
@@ -111,7 +113,7 @@ def read_shot(path: str | Path, white: White, notes: Notes, one_of: int = 1) -> 
 
 
 def _raw(file: Path, white: White, notes: Notes) -> Shot:
-    """A raw file: linear, in units of a developed white."""
+    """Reads a raw file as linear light; developed white is 1."""
     from daguerre.development.camera_raw import read_shot as read_raw
     from daguerre.development.camera_raw import tags_of
 
@@ -122,14 +124,14 @@ def _raw(file: Path, white: White, notes: Notes) -> Shot:
     height, width = channels.pixels.shape[:2]
     facts = shot_facts(tags_of(file), (width, height))
     if white is None:
-        notes.add("raw file developed with its own white balance")
+        notes.add("raw file developed with its as-shot white balance")
     return Shot(file, channels.pixels / unit, channels.full / unit, rgb, facts)
 
 
 def _plateau(light: NDArray[np.float32], one_of: int) -> NDArray[np.float64]:
-    """Saturation of linear light: its highest value, if many of the brightest pixels share it.
+    """Saturation of linear light: its highest value, if several pixels share it.
 
-    In a single picture they must be few and bright, else they may be an even sky.
+    In a single picture these pixels must be few and bright, as else they may be an even sky.
     """
     top = light.max(axis=2)
     highest = float(top.max())
@@ -139,20 +141,20 @@ def _plateau(light: NDArray[np.float32], one_of: int) -> NDArray[np.float64]:
 
 
 def check_together(shots: list[Shot]) -> None:
-    """Refuses photographs of one view that differ in size or kind.
+    """Checks that photographs of one view have the same size and kind.
 
     Raises:
-        InputError: The message names the file and what is wanted.
+        InputError: They differ; the message has the file.
     """
     first = shots[0]
     for shot in shots[1:]:
         if shot.size != first.size:
             raise InputError(
-                f"{shot.path}: size: wanted {first.size[0]}x{first.size[1]} px as {first.path}, "
+                f"{shot.path}: size: wanted {first.size[0]}x{first.size[1]} px like {first.path}, "
                 f"got {shot.size[0]}x{shot.size[1]}"
             )
         if shot.coded != first.coded:
             raise InputError(
-                f"{shot.path}: wanted photographs of one kind, as {first.path}; got linear and "
-                "coded ones"
+                f"{shot.path}: wanted photographs of one kind, like {first.path}; got linear and "
+                "developed ones"
             )

@@ -1,4 +1,4 @@
-"""The sun of an environment: one small source that brings a good share of the light."""
+"""Finds the sun of an environment: one small source with a large share of the light."""
 
 from __future__ import annotations
 
@@ -13,27 +13,27 @@ from daguerre.color.spectra import luminance_of_rgb
 
 from .latlong import FloatArray, centres, luminance, place, solid_angles
 
-#: Diameter from the Earth, degrees; 0.524 to 0.542 over the year.
+#: Angular diameter of the sun, degrees; 0.524 to 0.542 over the year.
 DIAMETER_DEG = 0.533
 #: Share of all light, integrated over the sphere, from which on a source counts.
 LEAST_SHARE = 0.05
-#: A source above this diameter is a window or a lamp; if clipped light is sought, it may be larger.
+#: Largest diameter of a sun, and of one in clipped light; larger sources are windows or lamps.
 MOST_DEG, MOST_CLIPPED_DEG = 10.0, 40.0
-#: Its edge: share of the highest luminance above the surroundings.
+#: Edge of the sun, as a share of the highest luminance above the surroundings.
 _EDGE = 0.02
 
 
 @dataclass(frozen=True)
 class Sun:
-    """A small source in the light.
+    """The sun, a small source of an environment.
 
     Attributes:
-        direction: Unit vector toward it.
-        illuminance: Illuminance of a surface that faces it, RGB, lux where the map is in cd/m2.
-        diameter_deg: Its angular diameter, degrees.
-        share: Its part of the light of all directions.
-        clipped: Whether it is clipped in all photographs.
-        solved: Way in which lost light was found: illuminance or grey; empty: none was sought.
+        direction: Unit vector toward the sun.
+        illuminance: Illuminance of a surface that faces the sun, RGB, lux if the map is in cd/m2.
+        diameter_deg: Angular diameter, degrees.
+        share: Share of the light of all directions.
+        clipped: Whether the sun is clipped in all photographs.
+        solved: Source of restored light, ``illuminance`` or ``grey``; empty: not restored.
     """
 
     direction: tuple[float, float, float]
@@ -45,7 +45,7 @@ class Sun:
 
     @property
     def lux(self) -> float:
-        """Illuminance of a surface that faces it."""
+        """Illuminance of a surface that faces the sun, lux if the map is in cd/m2."""
         return float(luminance_of_rgb() @ self.illuminance)
 
     @property
@@ -59,7 +59,7 @@ class Sun:
         return math.degrees(math.atan2(self.direction[0], -self.direction[2]))
 
     def facts(self) -> dict[str, Any]:
-        """Numbers for JSON."""
+        """Returns the values for JSON."""
         return {
             "direction": [round(v, 6) for v in self.direction],
             "azimuth_deg": round(self.azimuth_deg, 4),
@@ -75,7 +75,7 @@ class Sun:
 
 @dataclass(frozen=True)
 class Taken:
-    """A sun, and the environment without it, float32, shape (H, W, 3)."""
+    """The sun, and the environment without it, float32, shape (H, W, 3)."""
 
     sun: Sun
     rest: NDArray[np.float32]
@@ -84,14 +84,14 @@ class Taken:
 def take_out(
     light: NDArray[np.float32], clipped: NDArray[np.bool_], seek_clipped: bool = False
 ) -> Taken | None:
-    """Finds the sun and fills its place by the light around it; none: None.
+    """Finds the sun and fills its area with the light around it; None: no sun.
 
-    The part that is taken out and the rest add up to the light that was there.
+    The sun's light and the rest add up to the original light.
 
     Args:
         light: Environment, shape (H, W, 3).
-        clipped: Where it is clipped, shape (H, W).
-        seek_clipped: Whether the brightest clipped place is a sun, however little it still brings.
+        clipped: Mask of clipped pixels, shape (H, W).
+        seek_clipped: Whether the brightest clipped area is a sun, even with little light left.
     """
     height, width = light.shape[:2]
     found, toward = luminance(light), centres(width, height)
@@ -131,7 +131,7 @@ def _sun(
 
 
 def _brightest(found: FloatArray, angles: FloatArray, clipped: NDArray[np.bool_]) -> int:
-    """Index of the brightest pixel: in the clipped place with the most light, if there is one."""
+    """Index of the brightest pixel: in the clipped area with the most light, if there is one."""
     left, best, index = clipped.copy(), 0.0, int(found.argmax())
     for _ in range(64):
         if not left.any():
@@ -146,7 +146,7 @@ def _brightest(found: FloatArray, angles: FloatArray, clipped: NDArray[np.bool_]
 
 
 def _connected(mask: NDArray[np.bool_], start: Any) -> NDArray[np.bool_]:
-    """Pixels of a mask that hang together with one of it; left and right edge are neighbours."""
+    """Pixels of a mask that are connected with a given one; left and right edges are neighbours."""
     part = np.zeros_like(mask)
     part[start] = mask[start]
     count = 0
@@ -161,7 +161,7 @@ def _connected(mask: NDArray[np.bool_], start: Any) -> NDArray[np.bool_]:
 
 
 def _half(found: FloatArray, peak: Any) -> NDArray[np.bool_]:
-    """Pixels that hang together with the peak and are at least half as bright."""
+    """Pixels that are connected with the peak and at least half as bright."""
     return _connected(found >= 0.5 * found[peak], peak)
 
 
@@ -196,9 +196,9 @@ def _place(
 
 
 def with_disc(rest: NDArray[np.float32], sun: Sun) -> NDArray[np.float32]:
-    """The environment with the sun as an even disc, whose illuminance is the sun's.
+    """Returns the environment with the sun as a uniform disc of the sun's illuminance.
 
-    A disc below one and a half pixels gets that size.
+    A disc smaller than one and a half pixels gets that size.
     """
     height, width = rest.shape[:2]
     pixel = math.pi / height

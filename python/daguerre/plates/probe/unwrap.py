@@ -1,7 +1,7 @@
-"""The mirror ball unwrapped: photographs of it from one or more directions, as one environment.
+"""Unwraps photographs of a mirror ball from one or more directions to one environment.
 
-Where two photographs see a direction, the one counts that sees it neither near the camera's own
-mirror image nor near the rim, where the ball crowds a whole quarter of the world together.
+If two photographs show a direction, the one is used that shows it neither near the camera's own
+reflection nor near the rim, where the ball compresses a whole quarter of the surroundings.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from .ball import Ball
 from .latlong import FloatArray, directions
 from .sampling import between
 
-#: Between these angles from the camera its own mirror image fades out, degrees.
+#: Angles from the camera between which its own reflection fades out, degrees.
 PHOTOGRAPHER = (8.0, 25.0)
-#: Between these the rim fades out.
+#: Angles from the camera between which the rim fades out, degrees.
 RIM = (110.0, 165.0)
-#: Weight that is left to what another photograph sees better.
+#: Least weight, of pixels that another photograph shows better.
 LEAST = 1e-4
 _ROWS = 16
 
