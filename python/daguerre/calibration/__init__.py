@@ -1,4 +1,4 @@
-"""Calibration files: OpenCV, ROS, Kalibr, OpenTrackIO; in only COLMAP and transforms.json."""
+"""Calibration files: OpenCV, ROS, Kalibr, OpenTrackIO; COLMAP and transforms.json (read only)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A calibration: how a camera sees, where it stands in its rig, and what else its file said."""
+"""Calibration of a camera: projection, pose in its rig, and further settings of its file."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from daguerre.errors import InputError, UsageError
 from daguerre.setup.pose import mounted
 
 FloatArray = NDArray[np.float64]
-#: Between the camera frames of calibrations (y down, z ahead) and Daguerre's (y up, z behind).
+#: Conversion between camera frames of calibrations (y down, z ahead) and Daguerre's (y up, z back).
 FLIP = np.diag((1.0, -1.0, -1.0, 1.0))
-#: Models of whose picture no corner may stay dark, and those with polynomials of which some may.
+#: Models whose picture must be defined in all corners, and polynomial fisheyes, whose need not be.
 WHOLE, FISHEYES = ("opencv", "opencv_inverse"), ("kannala_brandt", "omni")
-#: From the axis, degrees: who sees so far has a picture that ends in a circle, wherever it folds.
+#: Angle from the axis, degrees, from which on a picture is a circle that may end within the frame.
 SIDEWAYS = 90.0
-#: Parameters of a lens, which a projection replaces, with the values that unset them.
+#: Lens parameters that a projection replaces, with the values that unset them.
 OF_LENSES: dict[str, Any] = {
     **dict.fromkeys(("lens", "lens_model", "degree", "fit_tolerance", "focal_length", "zoom")),
     **dict.fromkeys(("aperture_diameter", "t_stop", "front_mask", "iris_mask", "ripple")),
@@ -35,17 +35,17 @@ OF_LENSES: dict[str, Any] = {
 @guarded
 @dataclass(frozen=True)
 class Calibration:
-    """One camera of a file.
+    """Calibration of one camera.
 
     Attributes:
-        projection: The model and its numbers.
-        name: Name of the camera, if it has one.
-        rig_from_camera: Where the camera stands, seen from the rig's first camera; shape (4, 4), m.
-            Both frames are those of Daguerre's cameras: x right, y up, looking along -z.
-        pixel_pitch: um; None where the file does not say.
-        settings: Parameters of ``Camera`` that the file says, such as ``f_stop``.
-        notes: Remarks for the user, a sentence each.
-        delay_s: How much later than the rig's first camera it is triggered.
+        projection: Projection model and its parameters.
+        name: Name of the camera; empty: none.
+        rig_from_camera: Pose of the camera in the frame of the rig's first camera, shape (4, 4), m.
+            Both frames are Daguerre's: x right, y up, looking along -z.
+        pixel_pitch: Pixel pitch, um; None: not in the file.
+        settings: Parameters of ``Camera`` in the file, such as ``f_stop``.
+        notes: Notes for the user, a sentence each.
+        delay_s: Trigger delay after the rig's first camera, s.
     """
 
     projection: Projection
@@ -63,14 +63,14 @@ class Calibration:
         *,
         timeshift: bool = False,
     ) -> Camera:
-        """A camera that sees so.
+        """Returns a camera with this calibration.
 
         Args:
-            camera: Gives all that a calibration does not say, and the place of the rig's first
-                camera; its lens goes. None: one at the origin.
-            pixel_pitch: um; it makes the film as large as the calibrated sensor, on which the size
-                of blur depends. None: the file's, else the camera's ``sensor_size``.
-            timeshift: Its shutter opens ``delay_s`` later.
+            camera: Camera that provides all other parameters, and the pose of the rig's first
+                camera; its lens is replaced. None: a default camera at the origin.
+            pixel_pitch: Pixel pitch of the calibrated sensor, um, which sets the size of the film
+                and so of blur. None: from the file, else the camera's ``sensor_size``.
+            timeshift: Whether the shutter opens ``delay_s`` later.
         """
         given: Any = Camera() if camera is None else camera
         if not isinstance(given, Camera):
@@ -86,19 +86,19 @@ class Calibration:
         return self._moved(delayed(made, self.delay_s) if timeshift else made)
 
     def _moved(self, camera: Camera) -> Camera:
-        """The camera as it moves; one that stands stays as it is."""
+        """Returns the camera with this calibration's motion, if any."""
         return camera
 
     def starting(self, time_s: float) -> Self:
-        """The same with frame 0 at a time, s; one that knows no frames stays as it is."""
+        """Returns the calibration with frame 0 at a time, s; unchanged if it has no frames."""
         return self
 
     def check(self, frame: int | None, time_s: float, fps: float) -> None:
-        """Refuses frames at which it is not known: none, but of a :class:`Take`."""
+        """Checks that the calibration is known at a frame; only a :class:`Take` may fail."""
 
 
 def delayed(camera: Camera, seconds: float) -> Camera:
-    """The camera with a shutter that opens so much later, s; one that is calibrated."""
+    """Returns a calibrated camera whose shutter opens later, s."""
     if not seconds or camera.projection is None:
         return camera
     opens = shutter.interval(camera, 0.0, camera.projection.size)[0]
@@ -106,14 +106,14 @@ def delayed(camera: Camera, seconds: float) -> Camera:
 
 
 def projection(where: str, *values: Any) -> Projection:
-    """Makes a projection of a file, checked to be valid all over its picture.
+    """Makes a projection from a file's values, and checks that it is valid all over its picture.
 
     Args:
-        where: File, and place in it.
+        where: File, and place in it, for messages.
         values: Arguments of ``Projection``.
 
     Raises:
-        InputError: They make no model, or one that folds within its picture.
+        InputError: The values are invalid, or the model folds within its picture.
     """
     try:
         made = Projection(*values)
@@ -124,13 +124,13 @@ def projection(where: str, *values: Any) -> Projection:
 
 
 def check_field(made: Projection, where: str) -> None:
-    """A lens images nothing twice: where its polynomial turns back, numbers are wrong.
+    """Checks that the polynomial of a model does not fold within the picture.
 
-    Fisheyes may leave the corners dark, so of theirs the nearest edge counts, and nothing if they
-    see to the side: then the circle of their picture may lie within it.
+    A fisheye may leave the corners dark, so it is checked up to the nearest edge only. It is not
+    checked if it sees 90 degrees and more, as its image circle may then lie within the picture.
 
     Raises:
-        InputError: The model ends within the picture.
+        InputError: The model folds within the picture.
     """
     (fx, fy), (width, height), (x, y) = made.focal, made.size, made.center
     fold, angle = made.core.largest_radius * math.sqrt(fx * fy), made.largest_angle
@@ -161,7 +161,7 @@ def check_field(made: Projection, where: str) -> None:
 
 
 def field_notes(made: Projection) -> list[str]:
-    """Remarks on values that are allowed and may be meant otherwise, a sentence each."""
+    """Returns notes on values that are valid but may be mistakes, a sentence each."""
     notes = []
     (fx, fy), (width, height), (x, y) = made.focal, made.size, made.center
     ends = np.array([[0, y], [width - 1, y], [x, 0], [x, height - 1]])

@@ -1,4 +1,4 @@
-"""Cameras by calibration files, for ``Camera.from_opencv`` and its kin, which explain them."""
+"""Makes cameras from calibration files; ``Camera.from_opencv`` etc. document the parameters."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def from_opencv(
     rectified: bool,
     unit_m: float,
 ) -> Camera:
-    """A camera as OpenCV calibrated it."""
+    """Makes a camera from an OpenCV calibration."""
     found = read(
         *(calibration, name),
         format="opencv",
@@ -42,7 +42,7 @@ def from_opencv(
 def from_ros(
     calibration: Source, rectified: bool, camera: Camera | None, pixel_pitch: float | None
 ) -> Camera:
-    """A camera by its ROS ``camera_info``."""
+    """Makes a camera from a ROS ``camera_info``."""
     return read_ros(calibration, rectified=rectified).camera(camera, pixel_pitch)
 
 
@@ -53,7 +53,7 @@ def from_kalibr(
     camera: Camera | None,
     pixel_pitch: float | None,
 ) -> Camera:
-    """A camera of Kalibr's chain."""
+    """Makes a camera from a Kalibr camera chain."""
     found = read(calibration, name, format="kalibr")
     return found.camera(camera, pixel_pitch, timeshift=timeshift)
 
@@ -65,7 +65,7 @@ def from_colmap(
     camera: Camera | None,
     pixel_pitch: float | None,
 ) -> Camera:
-    """The camera of a picture of a COLMAP model."""
+    """Makes the camera of a picture in a COLMAP model."""
     return read(folder, name, format="colmap", unit_m=unit_m).camera(camera, pixel_pitch)
 
 
@@ -75,7 +75,7 @@ def from_opentrackio(
     camera: Camera | None,
     pixel_pitch: float | None,
 ) -> Camera:
-    """A tracked camera of one sample, or with keys of several."""
+    """Makes a tracked camera from one sample, or with keys from several."""
     if isinstance(calibration, list) or is_take(calibration):
         return read_track(calibration, size=size, camera=camera, pixel_pitch=pixel_pitch)
     return read_opentrackio(calibration, size=size).camera(camera, pixel_pitch)

@@ -1,8 +1,8 @@
-"""COLMAP's models as text: ``cameras.txt``, and ``images.txt`` with a pose for each picture.
+"""Reads COLMAP's text models: ``cameras.txt``, and ``images.txt`` with a pose for each picture.
 
-COLMAP has the upper left corner of the picture at (0, 0), so **pixel centres at halves**, unlike
-all other formats here. Its frame of a camera is OpenCV's, and a pose takes points of its world into
-it. That world is taken for the scene's: a mesh that was reconstructed is seen as in the pictures.
+COLMAP has the upper left corner of the picture at (0, 0), so **pixel centres are at halves**,
+unlike in most other formats here. Its camera frame is OpenCV's, and a pose maps world points into
+it. COLMAP's world is taken as the scene's, so a reconstructed mesh appears as in the pictures.
 
 Source: COLMAP, "Output Format" and src/colmap/sensor/models.h (names and order of parameters).
 """
@@ -22,9 +22,9 @@ from daguerre.errors import InputError, UsageError, suggest
 
 from .calibration import FLIP, Calibration, FloatArray, projection
 
-#: A model of many thousand pictures; most of ``images.txt`` is points, which are passed over.
+#: Largest file; most of ``images.txt`` are points, which are skipped.
 MAX_BYTES = 1 << 30
-#: Model -> ours, how many focal lengths it has, and how many parameters beside the centre.
+#: Model -> Daguerre's, number of focal lengths, and number of parameters beside the centre.
 MODELS = {
     "SIMPLE_PINHOLE": ("rectilinear", 1, 0),
     "PINHOLE": ("rectilinear", 2, 0),
@@ -40,7 +40,7 @@ MODELS = {
 
 
 def is_colmap(source: object) -> bool:
-    """Whether it is a folder of COLMAP's, or its file of cameras or images."""
+    """Whether a source is a COLMAP folder, or its file of cameras or images."""
     if not isinstance(source, str | os.PathLike):
         return False
     path = Path(source)
@@ -49,14 +49,14 @@ def is_colmap(source: object) -> bool:
 
 @guarded
 def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[str, Calibration]:
-    """The pictures of a model by their names; without ``images.txt`` the cameras by their numbers.
+    """Reads the pictures of a model by name; without ``images.txt`` the cameras by number.
 
     Args:
-        source: The folder.
-        unit_m: Length of the model's unit, m: pictures alone do not tell.
+        source: Folder of the model.
+        unit_m: Length of the model's unit, m, which COLMAP does not know.
 
     Raises:
-        InputError: A file cannot be used; the message names file and line.
+        InputError: A file cannot be used; the message has file and line.
     """
     path = Path(source)
     folder = path if os.path.isdir(path) else path.parent  # noqa: PTH112
@@ -83,7 +83,7 @@ def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[
 
 
 def _lines(path: Path, every: int = 1) -> Iterator[tuple[str, list[str]]]:
-    """Place and words of lines without comments: of each ``every``-th."""
+    """Yields place and words of every ``every``-th line that is not a comment."""
     try:
         if path.stat().st_size > MAX_BYTES:
             raise InputError(f"{path}: wanted at most 1 GiB, got more")
@@ -103,7 +103,7 @@ def _lines(path: Path, every: int = 1) -> Iterator[tuple[str, list[str]]]:
 
 
 def _camera(where: str, words: list[str]) -> tuple[str, Projection]:
-    """CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]."""
+    """Parses CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]."""
     if len(words) < 5:
         raise InputError(
             f"{where}: wanted CAMERA_ID MODEL WIDTH HEIGHT PARAMS, got {len(words)} words"
@@ -134,7 +134,7 @@ def _camera(where: str, words: list[str]) -> tuple[str, Projection]:
 def _image(
     where: str, words: list[str], cameras: dict[str, Projection], unit_m: float
 ) -> Calibration:
-    """IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME; names may have blanks."""
+    """Parses IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME; names may have blanks."""
     if len(words) < 10:
         raise InputError(
             f"{where}: wanted IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, got {len(words)} words"
@@ -171,6 +171,6 @@ def _number(where: str, word: str) -> float:
 
 
 def check_unit(unit_m: float) -> None:
-    """Refuses lengths of a file's unit (m) that cannot be meant."""
+    """Checks the length of a file's unit, m."""
     if not 1e-9 <= unit_m <= 1e9:
         raise UsageError(f"calibration: unit_m: wanted 1e-9 .. 1e9 m, got {unit_m:g}")

@@ -1,4 +1,4 @@
-"""Calibration files of any format."""
+"""Reads and writes calibration files of any format."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ WRITTEN = FORMATS[:4]
 
 
 def format_of(source: Source) -> str:
-    """Which format a file has, by the names in it."""
+    """Format of a file, recognized by the names in it."""
     if colmap.is_colmap(source):
         return "colmap"
     if track.is_take(source):
@@ -86,7 +86,7 @@ def read_all(
     rectified: bool = False,
     unit_m: float = 1.0,
 ) -> dict[str, Calibration]:
-    """All cameras of a calibration file, by name; the only one of a file has the file's own.
+    """Reads all cameras of a calibration file, by name; a single camera has the file's name.
 
     Args: those of :func:`read`.
     """
@@ -129,10 +129,10 @@ def read_all(
 
 @guarded
 def pick(cameras: dict[str, Calibration], name: str | None, where: str) -> Calibration:
-    """One of several; without a name the first, and with # in it a take of those numbered so.
+    """Picks one of several cameras; None: the first; with # in the name a take of numbered ones.
 
     Raises:
-        UsageError: There is none of that name; the nearest is suggested.
+        UsageError: The name is unknown; the message suggests the nearest.
     """
     wanted = next(iter(cameras)) if name is None else name
     if wanted not in cameras and has_place(wanted):

@@ -23,11 +23,11 @@ from daguerre.files.source import Source
 from .calibration import FLIP, Calibration, FloatArray, projection
 from .source import choice, load, rigid, row
 
-#: camera_model -> how many of its own parameters come before fu fv pu pv.
+#: camera_model -> number of parameters before fu fv pu pv.
 CAMERAS = {"pinhole": 0, "omni": 1, "ds": 2, "eucm": 2}
-#: distortion_model -> how many coefficients.
+#: distortion_model -> number of coefficients.
 DISTORTIONS = {"radtan": 4, "equidistant": 4, "equi": 4, "fov": 1, "none": 0}
-#: (camera_model, distortion_model) -> our model.
+#: (camera_model, distortion_model) -> Daguerre's model.
 MODELS = {
     ("pinhole", "radtan"): "opencv",
     ("pinhole", "equidistant"): "kannala_brandt",
@@ -42,13 +42,13 @@ MODELS = {
 
 @guarded
 def read_kalibr(source: Source) -> dict[str, Calibration]:
-    """All cameras of a chain: cam0, cam1, ...
+    """Reads all cameras of a chain: cam0, cam1, ...
 
     Args:
-        source: YAML (``camchain.yaml``), or the same as a dict.
+        source: YAML file (``camchain.yaml``), or its values as a dict.
 
     Raises:
-        InputError: The file cannot be used; the message names the place.
+        InputError: The file cannot be used; the message has the place in it.
     """
     root = load(source)
     names = sorted(
@@ -57,7 +57,7 @@ def read_kalibr(source: Source) -> dict[str, Calibration]:
     )
     if [str(name) for name in names] != [f"cam{i}" for i in range(len(names))] or not names:
         root.fail(f"wanted cameras cam0, cam1, ..., got {', '.join(map(str, names)) or 'none'}")
-    for item in root.members():  # it would not be missed in a chain that ends before it
+    for item in root.members():  # a misnamed camera would otherwise be skipped silently
         is_camera = isinstance(item.value, dict) and "camera_model" in item.value
         if is_camera and item.key not in names:
             item.fail(f"wanted the name cam{len(names)}, cam{len(names) + 1}, ... of a camera")
@@ -106,7 +106,7 @@ def _pair(item: Item) -> list[Item]:
 
 
 def write_kalibr(calibrations: Sequence[Calibration]) -> str:
-    """A chain of these cameras, in order; the first must stand where its rig does."""
+    """Formats a chain of cameras, in order; the first must be at the origin of the rig."""
     lines: list[str] = []
     before: FloatArray = np.eye(4)  # camera from first
     for i, one in enumerate(calibrations):
@@ -129,7 +129,7 @@ def _rows(matrix: FloatArray) -> list[str]:
 
 
 def _named(made: Projection) -> tuple[str, str, list[float], list[float]]:
-    """Kalibr's two names, its intrinsics and its coefficients."""
+    """Returns Kalibr's two model names, the intrinsics and the coefficients."""
     values = list(made.parameters)
     tail = [*made.focal, *made.center]
     if made.model == "opencv" and not any(values[4:]):

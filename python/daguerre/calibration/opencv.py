@@ -27,11 +27,11 @@ COEFFICIENTS = (
     *("D", "dist", "D1"),
 )
 SIZES = ("image_size", "imageSize", "img_size", "resolution", "size")
-#: Names of so few letters are near to too many others.
+#: Names of fewer letters are too similar to others to be checked for typing errors.
 SHORT = 5
-#: How many coefficients there may be.
+#: Allowed numbers of coefficients.
 COUNTS = (0, 4, 5, 8, 12, 14)
-#: A file's own word for its model -> ours.
+#: Names of models in files -> Daguerre's.
 MODELS = {
     **dict.fromkeys(("opencv", "pinhole", "plumb_bob", "radtan", "rational_polynomial"), "opencv"),
     **dict.fromkeys(("fisheye", "equidistant", "kannala_brandt"), "kannala_brandt"),
@@ -42,16 +42,16 @@ MODELS = {
 def read_opencv(
     source: Source, *, model: str | None = None, size: tuple[int, int] | None = None
 ) -> Calibration:
-    """Reads a calibration by OpenCV.
+    """Reads an OpenCV calibration.
 
     Args:
-        source: YAML, XML or JSON by ``cv::FileStorage``, or the same as a dict.
-        model: opencv or fisheye; None: the file's, else opencv.
-        size: Size of the picture, px, if the file does not say it.
+        source: YAML, XML or JSON file of ``cv::FileStorage``, or its values as a dict.
+        model: ``opencv`` or ``fisheye``; None: from the file, else opencv.
+        size: Width and height of the picture, px, if the file does not have them.
 
     Raises:
-        InputError: The file cannot be used; the message names the place.
-        UsageError: No such model.
+        InputError: The file cannot be used; the message has the place in it.
+        UsageError: The model is unknown.
     """
     root = load(source)
     where = root.file
@@ -71,7 +71,7 @@ def read_opencv(
 
 
 def _check_spelling(root: Item) -> None:
-    """A name that is misspelt would be a camera without distortion, and nobody would know."""
+    """Checks for misspelt names, which would silently give a camera without distortion."""
     for item in root.members():
         name = str(item.key)
         near = [one for one in COEFFICIENTS if len(one) > SHORT]
@@ -80,7 +80,7 @@ def _check_spelling(root: Item) -> None:
 
 
 def model_of(root: Item, model: str | None = None) -> str:
-    """Model that was asked for, else the file's: in words, or by a flag of OpenCV's sample."""
+    """Requested model, else the file's: by name, or by the flag of OpenCV's sample."""
     if model is not None:
         if model not in MODELS:
             raise UsageError(
@@ -96,7 +96,7 @@ def model_of(root: Item, model: str | None = None) -> str:
 
 
 def size_of(root: Item, given: tuple[int, int] | None) -> tuple[int, int]:
-    """Size of the picture, px: the file's, else the given one."""
+    """Size of the picture, px, from the file, else the given one."""
     return agreed(root, "image_width and image_height", _size(root), given)
 
 
@@ -114,11 +114,11 @@ def _size(root: Item) -> tuple[int, int] | None:
 
 
 def coefficients(made: Projection, counts: Sequence[int]) -> tuple[float, ...]:
-    """Coefficients of a model that OpenCV has, filled up with zeros.
+    """Returns the coefficients of a model that OpenCV has, padded with zeros.
 
     Args:
-        made: opencv, rectilinear or kannala_brandt.
-        counts: Allowed lengths, rising.
+        made: Projection: opencv, rectilinear or kannala_brandt.
+        counts: Allowed numbers of coefficients, ascending.
     """
     if made.model not in ("opencv", "rectilinear", "kannala_brandt"):
         raise InputError(
@@ -137,13 +137,13 @@ def coefficients(made: Projection, counts: Sequence[int]) -> tuple[float, ...]:
 
 
 def matrix_of(made: Projection) -> list[float]:
-    """The camera matrix, row by row."""
+    """Camera matrix, row by row."""
     (fx, fy), (cx, cy) = made.focal, made.center
     return [fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0]
 
 
 def write_opencv(calibration: Calibration) -> str:
-    """YAML that ``cv::FileStorage`` of all versions reads."""
+    """Formats YAML that ``cv::FileStorage`` of all versions reads."""
     made = calibration.projection
     fisheye = made.model == "kannala_brandt"
     values = coefficients(made, (4,) if fisheye else (5, 8, 12, 14))

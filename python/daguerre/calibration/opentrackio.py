@@ -33,7 +33,7 @@ from .calibration import Calibration, FloatArray, projection
 from .source import agreed, choice, load
 
 DISTORTED_TO_IDEAL, IDEAL_TO_DISTORTED = "Brown-Conrady D-U", "Brown-Conrady U-D"
-#: World of OpenTrackIO (x right, y ahead, z up) as Daguerre has it (y up, z toward the viewer).
+#: Rotation from OpenTrackIO's world (x right, y ahead, z up) to Daguerre's (y up, z toward viewer).
 UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 MODELS = {DISTORTED_TO_IDEAL: "opencv_inverse", IDEAL_TO_DISTORTED: "opencv"}
 
@@ -43,11 +43,11 @@ def read_opentrackio(source: Source, *, size: tuple[int, int] | None = None) -> 
     """Reads the camera of a sample.
 
     Args:
-        source: JSON, or the same as a dict.
-        size: Size of the picture, px, if the sample has no ``activeSensorResolution``.
+        source: JSON file, or its values as a dict.
+        size: Width and height of the picture, px, if the sample has no ``activeSensorResolution``.
 
     Raises:
-        InputError: The file cannot be used; the message names the place.
+        InputError: The file cannot be used; the message has the place in it.
     """
     root = load(source)
     lens = root.need("lens")
@@ -90,7 +90,7 @@ def _offset(lens: Item, name: str) -> tuple[float, float]:
 
 
 def _distortion(lens: Item, focal: float) -> tuple[str, tuple[float, ...]]:
-    """Our model and its parameters."""
+    """Daguerre's model and its parameters."""
     listed = lens.list_of("distortion")
     if not listed:
         return "rectilinear", ()
@@ -107,9 +107,9 @@ def _direction(item: Item) -> str:
 
 
 def _coefficients(item: Item, focal: float) -> tuple[float, ...]:
-    """In units of the focal length, in OpenCV's order: k1 k2 p1 p2 k3 k4 k5 k6.
+    """Coefficients in units of the focal length, in OpenCV's order: k1 k2 p1 p2 k3 k4 k5 k6.
 
-    Odd ones of the list (the first is 1) are the numerator's.
+    Odd elements of the list (the first is 1) belong to the numerator.
     """
     listed = [one.number() for one in item.need("radial")]
     if not 1 <= len(listed) <= 6:
@@ -128,7 +128,7 @@ def _settings(lens: Item) -> dict[str, Any]:
 
 
 def _pose(root: Item, lens: Item) -> dict[str, Any]:
-    """World from camera; the camera stands where its entrance pupil does."""
+    """World from camera; the camera is at its entrance pupil."""
     listed = root.list_of("transforms")
     if not listed:
         return {}
@@ -142,7 +142,7 @@ def _pose(root: Item, lens: Item) -> dict[str, Any]:
 
 
 def _transform(item: Item) -> FloatArray:
-    """About z (pan), then the turned x (tilt), then the turned y (roll); degrees and m."""
+    """Pose from pan (about z), tilt (turned x), then roll (turned y), degrees, and shift, m."""
     scale = item.get("scale")
     if scale is not None and any(scale.number_of(axis, 1.0) != 1 for axis in "xyz"):
         scale.fail("wanted a camera that is not scaled (1, 1, 1)")
@@ -161,10 +161,10 @@ def _transform(item: Item) -> FloatArray:
 
 
 def write_opentrackio(calibration: Calibration) -> str:
-    """A sample with the lens alone, as JSON; its distortion maps as the model does.
+    """Formats a sample with only the lens, as JSON; the distortion keeps the model's direction.
 
     Raises:
-        InputError: The model is none that OpenLensIO has, or there is no pixel pitch.
+        InputError: OpenLensIO does not have the model, or there is no pixel pitch.
     """
     made, pitch = calibration.projection, calibration.pixel_pitch
     if pitch is None:

@@ -25,7 +25,7 @@ Numbers = tuple[str, Pair, Pair, tuple[float, ...]]
 PROJECTION = ("projection_matrix", "P", "p")
 OFFSETS, SIDES = ("x_offset", "y_offset"), ("width", "height")
 
-#: Name -> our model, and how many coefficients there may be.
+#: Name -> Daguerre's model, and allowed numbers of coefficients.
 MODELS = {
     "plumb_bob": ("opencv", (0, 4, 5)),
     "rational_polynomial": ("opencv", (8, 12, 14)),
@@ -36,14 +36,14 @@ MODELS = {
 
 @guarded
 def read_ros(source: Source, *, rectified: bool = False) -> Calibration:
-    """A ``camera_info``.
+    """Reads a ``camera_info``.
 
     Args:
-        source: YAML or JSON, or the same as a dict.
-        rectified: The picture after rectification, by P, instead of the raw one, by K and D.
+        source: YAML or JSON file, or its values as a dict.
+        rectified: Whether to read the rectified camera, by P, instead of the raw one, by K and D.
 
     Raises:
-        InputError: The file cannot be used; the message names the place.
+        InputError: The file cannot be used; the message has the place in it.
     """
     root = load(source)
     root = root.get("msg") or root  # rosbridge puts a message into an envelope
@@ -70,7 +70,7 @@ def _raw(root: Item) -> Numbers:
 
 
 def _rectified(root: Item) -> Numbers:
-    """The same of the rectified one."""
+    """Model, focal lengths, principal point and parameters of the rectified picture."""
     focal, principal, _ = rectified_of(needed(root, "a projection matrix", *PROJECTION))
     return "rectilinear", focal, principal, ()
 
@@ -78,10 +78,10 @@ def _rectified(root: Item) -> Numbers:
 def _read_out(
     root: Item, sides: list[int], focal: Pair, principal: Pair, *, whole: bool
 ) -> tuple[tuple[int, int], Pair, Pair, tuple[str, ...]]:
-    """Size and numbers of the picture that is read out of the sensor, of which K and P are.
+    """Size and intrinsics of the picture after region of interest and binning; K and P are before.
 
-    First a window, then the mean of b x b pixels as one, whose centre lies (b - 1) / 2 behind that
-    of its first. (``image_geometry`` scales K alone, and is off by that.)
+    First the region is cut, then b x b pixels are averaged to one, whose centre lies (b - 1) / 2
+    beyond that of its first pixel. (``image_geometry`` only scales K and lacks this offset.)
     """
     corner, size = [0, 0], [*sides]
     roi = root.get("roi")
@@ -112,22 +112,23 @@ def _or_0(item: Item, name: str, most: int) -> int:
 
 
 def _rig_from_camera(root: Item, *, rectified: bool) -> FloatArray:
-    """The rig's frame is that of the first camera after rectification.
+    """Pose of the camera in the rig, whose frame is that of the first camera after rectification.
 
-    A point X of the raw camera is R X there, and P's last column is -fx times the way to the right.
+    A point X of the raw camera is R X in it, and P's last column is -fx times the shift to the
+    right.
     """
     rig = np.eye(4)
     turn = first(root, "rectification_matrix", "R", "r")
     if turn is not None and not rectified:
         rig[:3, :3] = rotation(turn)
     ahead = first(root, *PROJECTION)
-    if ahead is not None and matrix(ahead, 3, 4).any():  # all 0 where nothing is calibrated
+    if ahead is not None and matrix(ahead, 3, 4).any():  # all 0: not calibrated
         rig[:3, 3] = rectified_of(ahead)[2]
     return np.asarray(FLIP @ rig @ FLIP)
 
 
 def write_ros(calibration: Calibration) -> str:
-    """YAML as ``camera_info_manager`` reads it, of a camera on its own: R is the identity."""
+    """Formats YAML for ``camera_info_manager``, for a single camera: R is the identity."""
     made = calibration.projection
     if not np.array_equal(calibration.rig_from_camera, np.eye(4)):
         raise InputError("calibration: ROS: wanted a camera that is not part of a rig")
@@ -156,5 +157,5 @@ def _list(values: tuple[float, ...] | list[float]) -> str:
 
 
 def _quoted(text: str) -> str:
-    """A name in YAML's single quotes, in which only they themselves are special."""
+    """Quotes a name in YAML's single quotes, in which only the quote itself is special."""
     return "'" + text.replace("'", "''") + "'"

@@ -1,4 +1,4 @@
-"""Sources of calibrations: files, or the same as dicts."""
+"""Reads sources of calibrations: files, or their values as dicts."""
 
 from __future__ import annotations
 
@@ -17,16 +17,15 @@ from daguerre.files.json_item import Item
 from daguerre.files.source import Source
 
 FloatArray = NDArray[np.float64]
-#: A calibration has some thousand bytes: what is so large is another kind of file. JSON may hold
-#: all frames of a long shot.
+#: Largest files. A calibration has some thousand bytes; JSON may hold all frames of a long shot.
 MAX_BYTES, MAX_JSON_BYTES = 1 << 20, 1 << 26
 
 
 def load(source: Source) -> Item:
-    """The values of a file (JSON by its suffix, XML by how it begins, else YAML), or of a dict.
+    """Loads the values of a file (JSON by suffix, XML by its first bytes, else YAML), or a dict.
 
     Raises:
-        InputError: It cannot be read.
+        InputError: The file cannot be read.
     """
     if isinstance(source, dict):
         return Item(_plain(source), "calibration")
@@ -57,7 +56,7 @@ def _yaml(data: bytes, path: Path) -> Item:
 
 
 def read_bytes(path: Path) -> bytes:
-    """A file of at most ``MAX_BYTES``, or of JSON ``MAX_JSON_BYTES``."""
+    """Reads a file of at most ``MAX_BYTES``, or ``MAX_JSON_BYTES`` for JSON."""
     most = MAX_JSON_BYTES if path.suffix.lower() in (".json", ".jsonl") else MAX_BYTES
     try:
         with path.open("rb") as file:
@@ -71,7 +70,7 @@ def read_bytes(path: Path) -> bytes:
 
 
 def _plain(value: Any) -> Any:
-    """Arrays and tuples as lists, as a file would have them."""
+    """Converts arrays and tuples to lists, as in a file."""
     if isinstance(value, dict):
         return {str(name): _plain(one) for name, one in value.items()}
     if isinstance(value, np.ndarray | np.generic):
@@ -80,7 +79,7 @@ def _plain(value: Any) -> Any:
 
 
 def first(root: Item, *names: str) -> Item | None:
-    """The member of the first of these names that is there."""
+    """Member with the first of these names that exists; None: none does."""
     return next((found for name in names if (found := root.get(name)) is not None), None)
 
 
@@ -93,7 +92,7 @@ def needed(root: Item, wanted: str, *names: str) -> Item:
 
 
 def matrix(item: Item, rows: int, columns: int) -> FloatArray:
-    """Finite numbers of a shape: as rows, one after the other, or as OpenCV has matrices."""
+    """Reads a matrix of finite numbers: as rows, as a flat list, or in OpenCV's form."""
     data = item
     if isinstance(item.value, dict):
         shape = item.need("rows").integer(0, 4096), item.need("cols").integer(0, 4096)
@@ -115,7 +114,7 @@ def _shape(item: Item, rows: int, columns: int, got: str) -> NoReturn:
 
 
 def row(item: Item, counts: Iterable[int]) -> tuple[float, ...]:
-    """So many finite numbers, as a row or a column."""
+    """Reads an allowed number of finite numbers, as a row or a column."""
     data = item
     if isinstance(item.value, dict):
         shape = item.need("rows").integer(0, 4096), item.need("cols").integer(0, 4096)
@@ -139,13 +138,13 @@ def row(item: Item, counts: Iterable[int]) -> tuple[float, ...]:
 def agreed(
     item: Item, names: str, told: tuple[int, int] | None, given: tuple[int, int] | None
 ) -> tuple[int, int]:
-    """The size of the picture, px: that of a file, or the one that is given where it tells none.
+    """Size of the picture, px, from the file, else the given one; both must agree.
 
     Args:
         item: Item of the file, for messages.
-        names: Names that the file has for it.
-        told: By the file.
-        given: By who reads it.
+        names: Names of the size in the file.
+        told: Size in the file.
+        given: Size given by the caller.
     """
     size = told or given
     if size is None:
@@ -162,7 +161,7 @@ def agreed(
 
 
 def camera_matrix(item: Item) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Focal lengths and principal point, px."""
+    """Reads focal lengths and principal point from a camera matrix, px."""
     k = matrix(item, 3, 3)
     if k[0, 1] != 0:
         item.fail(f"wanted pixels without skew, got {k[0, 1]:g} at row 1, column 2")
@@ -174,7 +173,7 @@ def camera_matrix(item: Item) -> tuple[tuple[float, float], tuple[float, float]]
 
 
 def rigid(item: Item) -> FloatArray:
-    """A rotation and a shift, shape (4, 4)."""
+    """Reads a rotation and a shift, shape (4, 4)."""
     pose = matrix(item, 4, 4)
     turned = pose[:3, :3]
     odd = np.abs(turned @ turned.T - np.eye(3)).max() > 1e-4 or np.linalg.det(turned) < 0
@@ -184,7 +183,7 @@ def rigid(item: Item) -> FloatArray:
 
 
 def choice(item: Item, known: Iterable[str]) -> str:
-    """One of the known names; the nearest is suggested."""
+    """Reads one of the known names; an error suggests the nearest."""
     name, names = item.text(), list(known)
     if name not in names:
         item.fail(f"wanted {', '.join(names)}; got {short(name)}{suggest(name, names)}")

@@ -27,12 +27,12 @@ from .opencv import COUNTS, model_of, size_of
 from .source import camera_matrix, first, load, matrix, needed, row
 
 SIDES = ("left", "right")
-#: A longer baseline was hardly given in metres.
+#: Longest credible baseline, m.
 LONGEST_M = 20.0
 
 
 def is_stereo(root: Item) -> bool:
-    """Whether it is about two cameras."""
+    """Whether a file is about two cameras."""
     found = first(root, *_matrices(2))
     return found is not None and isinstance(found.value, dict | list)  # K2 may be a coefficient
 
@@ -95,7 +95,7 @@ def _raw(root: Item, number: int, pixels: tuple[int, int], model: str | None) ->
 
 
 def _with_pose(root: Item, source: Source, *, rectified: bool) -> Item:
-    """Where the pose is written: here, or in ``extrinsics`` beside it."""
+    """File with the pose: this one, or ``extrinsics`` beside it."""
     wanted = ("R1", "R2", "P1", "P2") if rectified else ("R", "T")
     if all(root.get(name) is not None for name in wanted):
         return root
@@ -109,7 +109,7 @@ def _with_pose(root: Item, source: Source, *, rectified: bool) -> Item:
 
 
 def _second(pose: Item, unit_m: float) -> FloatArray:
-    """Where the second raw camera stands in the first one's frame."""
+    """Pose of the second raw camera in the first one's frame."""
     turn = rotation(pose.need("R"))
     stands = np.eye(4)
     stands[:3, :3] = turn.T
@@ -120,7 +120,7 @@ def _second(pose: Item, unit_m: float) -> FloatArray:
 def _rectified(
     pose: Item, number: int, pixels: tuple[int, int], unit_m: float
 ) -> tuple[Projection, FloatArray]:
-    """By P, in the frame that R1 turns the first camera to."""
+    """Projection by P, and pose in the frame to which R1 rotates the first camera."""
     turn = rotation(pose.need("R1"))
     rotation(pose.need(f"R{number}"))
     focal, principal, away = rectified_of(pose.need(f"P{number}"))
@@ -134,7 +134,7 @@ def _rectified(
 def rectified_of(
     item: Item,
 ) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float, float]]:
-    """Focal lengths and principal point of a P, px, and where its camera stands, right and down."""
+    """Focal lengths and principal point of a P, px, and the camera's shift, right and down."""
     p = matrix(item, 3, 4)
     if p[0, 1] != 0 or p[1, 0] != 0 or (p[2] != (0, 0, 1, 0)).any() or min(p[0, 0], p[1, 1]) <= 0:
         item.fail(f"wanted [fx 0 cx tx; 0 fy cy ty; 0 0 1 0], got {p.tolist()}")
@@ -143,7 +143,7 @@ def rectified_of(
 
 
 def rotation(item: Item) -> FloatArray:
-    """A rotation, shape (3, 3)."""
+    """Reads a rotation, shape (3, 3)."""
     turn = matrix(item, 3, 3)
     if np.abs(turn @ turn.T - np.eye(3)).max() > 1e-4 or np.linalg.det(turn) < 0:
         item.fail(f"wanted a rotation, got {short(turn.tolist())}")

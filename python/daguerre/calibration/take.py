@@ -1,8 +1,8 @@
-"""A camera that was followed: a calibration for each of several moments, or frames.
+"""Takes of a moving camera: a calibration for each of several moments or frames.
 
-Between them it moves evenly, and turns evenly about one axis, so that its pictures have motion blur
-and its lines are exposed where it stood then. Source of poses: OpenTrackIO by time; pictures of
-COLMAP and ``transforms.json`` by the number in their names.
+Between them the camera moves and turns at constant speed, so that pictures have motion blur and
+rolling shutter. Poses come from OpenTrackIO by time, and from pictures of COLMAP and
+``transforms.json`` by the number in their names.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from daguerre.motion.values import keys
 
 from .calibration import Calibration
 
-#: Facts of a camera that may change from one moment to the next.
+#: Parameters of a camera that may change during a take.
 CHANGING = ("projection", "transform", "f_stop", "focus_distance")
 
 
 @guarded
 @dataclass(frozen=True)
 class Take(Calibration):
-    """Calibrations of one camera, one after the other; it is itself that of the first.
+    """Calibrations of one camera over time; as a ``Calibration`` it is the first one.
 
     Attributes:
-        samples: Moments, s, rising, and the camera then; with a pattern numbers of frames.
-        pattern: Name of the pictures with # for the number of the frame; empty: moments are times.
+        samples: Times, s, ascending, and the calibration at each; with a pattern frame numbers.
+        pattern: Name of the pictures with # for the frame number; empty: samples are by time.
         file: Name of the file, for messages.
         start: Time of frame 0, s.
     """
@@ -46,24 +46,24 @@ class Take(Calibration):
     start: float = 0.0
 
     def _moved(self, camera: Camera) -> Camera:
-        """The camera that moves so; frames are as far apart as those of the camera."""
+        """Returns the camera with this motion; the frame rate is the camera's."""
         return camera.with_(**self._changes(camera.fps))
 
     def starting(self, time_s: float) -> Self:
-        """The same take with frame 0 at another time, s; takes by time have times of their own."""
+        """Returns the take with frame 0 at another time, s; takes by time are not changed."""
         return replace(self, start=time_s) if self.pattern else self
 
     def check(self, frame: int | None, time_s: float, fps: float) -> None:
-        """Refuses frames at which nobody knows where the camera was.
+        """Checks that the take has a pose for a frame.
 
         Args:
-            frame: Number of the frame; None: there is no sequence.
-            time_s: Its time in the scene, s.
+            frame: Frame number; None: not a sequence.
+            time_s: Time of the frame in the scene, s.
             fps: Frames per second.
 
         Raises:
-            UsageError: There is no number for a pattern.
-            InputError: The frame is none of the take.
+            UsageError: A pattern needs a frame number, and there is none.
+            InputError: The frame is outside the take.
         """
         first, last = self.samples[0][0], self.samples[-1][0]
         if self.pattern and frame is None:
@@ -86,7 +86,7 @@ class Take(Calibration):
             )
 
     def _changes(self, fps: float) -> dict[str, Any]:
-        """Keys of what changes."""
+        """Returns keys of the parameters that change."""
         found: dict[str, Any] = {}
         for name in CHANGING:
             known = [
@@ -104,15 +104,15 @@ def _fact(one: Calibration, name: str) -> Any:
 
 
 def take_of(cameras: Mapping[str, Calibration], pattern: str, file: str) -> Take:
-    """The take of pictures whose names have the number of the frame.
+    """Makes the take of pictures with frame numbers in their names.
 
     Args:
-        cameras: Pictures by their names.
-        pattern: Name with # for the number.
+        cameras: Calibrations by names of pictures.
+        pattern: Name with # for the frame number.
         file: Name of their file, for messages.
 
     Raises:
-        UsageError: No picture has such a name.
+        UsageError: No picture matches the pattern.
     """
     found = numbers_in(cameras, pattern)
     if not found:
@@ -137,6 +137,6 @@ def take_of(cameras: Mapping[str, Calibration], pattern: str, file: str) -> Take
 
 
 def label(pattern: str) -> str:
-    """Name of a camera whose pictures are named so: without number and ending."""
+    """Name of a camera from its pictures' pattern, without number and suffix."""
     bare = PLACE.sub("", str(PurePosixPath(pattern).with_suffix("")), count=1)
     return re.sub(r"[\W_]+$", "", bare) or "camera"

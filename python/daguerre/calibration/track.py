@@ -1,4 +1,4 @@
-"""Samples of OpenTrackIO one after the other: a camera whose numbers and place change."""
+"""Reads several OpenTrackIO samples: a camera whose parameters and pose change."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Samples = Source | Sequence[Source]
 
 
 def is_take(source: object) -> bool:
-    """Whether these are several samples: a list of them, lines, or a JSON file with a list."""
+    """Whether a source has several samples: a list, a file of lines, or a JSON file with a list."""
     if isinstance(source, list | tuple):
         return True
     if not isinstance(source, str | os.PathLike):
@@ -40,14 +40,14 @@ def is_take(source: object) -> bool:
 def read_take(samples: Samples, *, size: tuple[int, int] | None = None) -> Take:
     """Reads the camera of several samples; the first is at 0 s.
 
-    Facts that are the same for all of a take (``static``) may be in the first of them alone.
+    Only the first sample needs the values that do not change (``static``).
 
     Args:
-        samples: Samples as dicts or files; or one file of them, as lines (.jsonl) or as a list.
-        size: Size of the picture, px, if they have no ``activeSensorResolution``.
+        samples: Samples as dicts or files; or one file, with lines (.jsonl) or a list.
+        size: Width and height of the picture, px, if samples have no ``activeSensorResolution``.
 
     Raises:
-        InputError: A sample cannot be used, or times do not rise; the message names it.
+        InputError: A sample cannot be used, or times do not ascend; the message has the sample.
     """
     file, listed = _listed(samples)
     if not listed:
@@ -103,7 +103,7 @@ def read_track(
 
 
 def _listed(samples: Samples) -> tuple[str, list[tuple[str, Any]]]:
-    """Name of the whole, and samples with their places."""
+    """Returns the name of the source, and samples with their places."""
     if not isinstance(samples, str | os.PathLike):
         given = [samples] if isinstance(samples, dict) else list(samples)
         return "samples", [(f"samples[{i}]", one) for i, one in enumerate(given)]
@@ -117,9 +117,9 @@ def _listed(samples: Samples) -> tuple[str, list[tuple[str, Any]]]:
 
 
 def _time(root: Item, index: int) -> tuple[float, float]:
-    """When the sample was taken: by its time stamp, or by its number and the rate.
+    """Time of a sample, from its time stamp, or from its number and the rate.
 
-    Seconds and what is more, s: their sum since 1970 would lose a quarter of a microsecond.
+    Whole seconds and the rest, s: their sum since 1970 would lose a quarter of a microsecond.
     """
     timing = root.get("timing")
     stamp = None if timing is None else timing.get("sampleTimestamp")
@@ -132,7 +132,7 @@ def _time(root: Item, index: int) -> tuple[float, float]:
 
 
 def _rate(root: Item) -> dict[str, float]:
-    """Frames per second of the camera, if the take says them."""
+    """Frame rate of the camera, if the take has it."""
     rate = root.need("static").need("camera").get("captureFrameRate")
     if rate is None:
         return {}

@@ -21,7 +21,7 @@ from daguerre.files.source import Source
 from .calibration import Calibration, projection
 from .source import agreed, choice, load, rigid
 
-#: camera_model -> ours, and the names of its coefficients in our order.
+#: camera_model -> Daguerre's model, and the names of its coefficients in Daguerre's order.
 MODELS: dict[str, tuple[str, tuple[str, ...]]] = {
     "PINHOLE": ("rectilinear", ()),
     "SIMPLE_PINHOLE": ("rectilinear", ()),
@@ -40,12 +40,12 @@ def read_transforms(
     """Reads the pictures of a file, by their paths.
 
     Args:
-        source: JSON, or the same as a dict.
-        size: Size of the pictures, px, if the file does not say it.
-        unit_m: Length of its world's unit, m.
+        source: JSON file, or its values as a dict.
+        size: Width and height of the pictures, px, if the file does not have them.
+        unit_m: Length of the world's unit, m.
 
     Raises:
-        InputError: The file cannot be used; the message names the place.
+        InputError: The file cannot be used; the message has the place in it.
     """
     root = load(source)
     listed = root.list_of("frames")
@@ -65,7 +65,7 @@ def read_transforms(
 
 
 def _projection(item: Item, root: Item, size: tuple[int, int] | None) -> Projection:
-    """Projection of a picture, whose own numbers come before those of the whole file."""
+    """Projection of a picture; its own values take precedence over those of the whole file."""
 
     def told(name: str) -> Item | None:
         found = item.get(name)
@@ -108,7 +108,7 @@ def _size(width: Item | None, height: Item | None) -> tuple[int, int] | None:
 
 
 def _focal(told: Any, axis: str, side: int, root: Item) -> float:
-    """In px, or by the angle that the side covers."""
+    """Focal length, px, as given, or from the angle of view."""
     focal, angle = told(f"fl_{axis}"), told(f"camera_angle_{axis}")
     if focal is not None:
         return float(focal.number(above=0))

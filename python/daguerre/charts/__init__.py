@@ -1,4 +1,4 @@
-"""Test charts as scenes, with what is known about them, and what pictures of them tell.
+"""Test charts as scenes with ground truth, and measurements in pictures of them.
 
 See ``docs/charts.md``.
 """
@@ -37,7 +37,7 @@ __all__ = [
     "texture_response",
 ]
 
-#: By name: a function that makes it; its parameters are the chart's.
+#: Functions that make charts, by name; their parameters are the chart's.
 KINDS: dict[str, Callable[..., Chart]] = {
     "apriltag": boards.apriltag,
     "charuco": boards.charuco,

@@ -1,7 +1,7 @@
-"""Boards for calibrating cameras: checkerboards, ChArUco boards, grids of markers.
+"""Boards for camera calibration: checkerboards, ChArUco boards, grids of markers.
 
-Corners are told in the order in which OpenCV finds them, in m in the plane of the chart, whose y is
-up; OpenCV's own boards have y down (``object_points``). What lies around a board is grey.
+Corners are listed in the order in which OpenCV finds them, in m in the plane of the chart, whose y
+is up; OpenCV's own boards have y down (``object_points``). The surroundings of a board are grey.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ PAPER_LAYER = 1
 
 
 def checkerboard(columns: int = 10, rows: int = 7, square: float = 0.03) -> Chart:
-    """Squares with a white margin: a checkerboard whose corners lie at places known exactly.
+    """Makes a checkerboard with a white margin and exactly known corners.
 
     The upper left square is black. Unless one of ``columns`` and ``rows`` is even and the other
-    odd, the board looks the same upside down, and detectors cannot tell its orientation.
+    odd, the board looks the same upside down, and detectors cannot find its orientation.
 
     Args:
-        columns: Squares across, 3 to 200.
-        rows: Squares down, 3 to 200.
+        columns: Number of squares across, 3 to 200.
+        rows: Number of squares down, 3 to 200.
         square: Side of a square, m.
     """
     centers = _centers(columns, rows, square, 3)
@@ -47,14 +47,14 @@ def charuco(
     marker: float = 0.75,
     dictionary: str = "5X5_250",
 ) -> Chart:
-    """A ChArUco board: a checkerboard with a marker in each white square, so parts suffice.
+    """Makes a ChArUco board: a checkerboard with markers, so that a partial view suffices.
 
     Args:
-        columns: Squares across, 2 to 200.
-        rows: Squares down, 2 to 200.
+        columns: Number of squares across, 2 to 200.
+        rows: Number of squares down, 2 to 200.
         square: Side of a square, m.
-        marker: Side of a marker, share of a square's, 0.3 to 0.95.
-        dictionary: OpenCV's name, such as 4X4_50 or DICT_6X6_250.
+        marker: Side of a marker as a share of a square's, 0.3 to 0.95.
+        dictionary: OpenCV's name of the dictionary, such as 4X4_50 or DICT_6X6_250.
     """
     centers = _centers(columns, rows, square, 2)
     number(marker, "chart: marker", 0.3, 0.95)
@@ -84,16 +84,16 @@ def apriltag(
     first: int = 0,
     border: int = 1,
 ) -> Chart:
-    """A grid of tags on white, ids from the upper left: AprilTag 36h11, or a dictionary of ArUco.
+    """Makes a grid of tags on white, with ids from the upper left: AprilTag 36h11 or ArUco.
 
     Args:
-        columns: Tags across, 1 to 100.
-        rows: Tags down, 1 to 100.
+        columns: Number of tags across, 1 to 100.
+        rows: Number of tags down, 1 to 100.
         tag: Side of a tag with its black border, m.
-        gap: Gap between tags, share of a tag's side, 0.1 to 2.
-        dictionary: OpenCV's name.
+        gap: Gap between tags as a share of a tag's side, 0.1 to 2.
+        dictionary: OpenCV's name of the dictionary.
         first: Id of the first tag.
-        border: Width of black around the bits, in bits, 1 to 4.
+        border: Width of the black border around the bits, in bits, 1 to 4.
     """
     number(gap, "chart: gap", 0.1, 2)
     number(tag, "chart: tag", 1e-4, 1e3)
@@ -122,13 +122,17 @@ def apriltag(
 
 @guarded
 def object_points(points_m: ArrayLike) -> FloatArray:
-    """Points of a chart as OpenCV has those of boards: y down, z into the board, shape (N, 3)."""
+    """Converts points of a chart to OpenCV's board frame: y down, z into the board, shape (N, 3).
+
+    Args:
+        points_m: Points in the chart's plane, y up, m, shape (N, 2).
+    """
     points = rows(points_m, "object_points: points_m", 2)
     return np.column_stack([points[:, 0], -points[:, 1], np.zeros(len(points))])
 
 
 def outline(chart: Chart) -> FloatArray:
-    """Corners of a chart, where its white margin ends, m, shape (4, 2)."""
+    """Returns the corners of a board with its white margin, m, shape (4, 2)."""
     return rectangle((0, 0), chart.size)
 
 
@@ -143,12 +147,12 @@ def _centers(columns: int, rows: int, side: float, least: int, most: int = 200) 
 
 
 def _inner(centers: FloatArray, square: float) -> FloatArray:
-    """Where four squares meet, row by row from the upper left, shape (N, 2)."""
+    """Inner corners, row by row from the upper left, shape (N, 2)."""
     return np.asarray((centers[:-1, :-1] + [square / 2, -square / 2]).reshape(-1, 2))
 
 
 def _black_squares(centers: FloatArray, square: float) -> list[Patch]:
-    """Every other one, the first among them."""
+    """Black squares: every other one, from the first."""
     rows, columns = centers.shape[:2]
     return [
         Patch("square", rectangle(centers[r, c], (square, square)), grey(0.0), markers.BLACK_LAYER)

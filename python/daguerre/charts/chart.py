@@ -1,8 +1,8 @@
-"""A flat test chart: coloured polygons in a plane, and what is known about them.
+"""Flat test charts: coloured polygons in a plane, with ground truth.
 
-A chart lies in the plane z = 0, in m, +x right and +y up as the camera sees it, which stands on
-+z. Its colours are linear Rec.709, as shares of its white; everything in it is geometry, so edges
-are as sharp at any distance.
+A chart lies in the plane z = 0, in m, +x right and +y up as seen by a camera on +z. Its colours are
+linear Rec.709, as shares of its white. Everything in it is geometry, so edges are sharp at any
+distance.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 Rgb = tuple[float, float, float]
-#: How far layers of a chart stand before each other, as a share of its larger side, or of a metre
-#: if that is smaller: more than single precision confuses.
+#: Distance between layers of a chart, as a share of its larger side, or of a metre if that is
+#: smaller; large enough for single precision.
 LAYER = 5e-6
-#: Size of the ground over the chart's: distortion and focus bring what is around into the frame.
+#: Size of the ground over the chart's, as distortion and focus bring surroundings into the frame.
 GROUND = 2.0
 
 
@@ -56,14 +56,14 @@ class Patch:
 @guarded
 @dataclass(frozen=True)
 class Chart:
-    """A chart and what is known about it.
+    """A chart and its ground truth.
 
     Attributes:
-        name: Which kind.
+        name: Kind of chart.
         size: Width and height, m.
-        patches: Patches shown over the ground.
+        patches: Patches on the ground.
         ground: Colour of the ground.
-        truth: Facts for who measures pictures of it; JSON.
+        truth: Ground truth for measurements, JSON-compatible.
     """
 
     name: str
@@ -73,11 +73,11 @@ class Chart:
     truth: dict[str, Any] = field(default_factory=dict)
 
     def camera(self, focal_length: float = 50.0, sensor_width: float = 36.0) -> Camera:
-        """A pinhole that the chart fills: straight before it, and nothing is out of focus.
+        """Returns a pinhole camera square to the chart, whose frame the chart fills.
 
         Args:
-            focal_length: mm.
-            sensor_width: mm; the height follows from the chart.
+            focal_length: Focal length, mm.
+            sensor_width: Sensor width, mm; the height follows from the chart.
         """
         from daguerre.camera.camera import Camera
 
@@ -92,7 +92,12 @@ class Chart:
         )
 
     def distance(self, focal_length: float, sensor_width: float) -> float:
-        """From where a pinhole with this focal length (mm) has the chart fill its width (mm), m."""
+        """Returns the distance, m, from which the chart fills the frame's width.
+
+        Args:
+            focal_length: Focal length, mm.
+            sensor_width: Sensor width, mm.
+        """
         number(focal_length, "chart: focal_length", above=0)
         number(sensor_width, "chart: sensor_width", above=0)
         return self.size[0] * focal_length / sensor_width
@@ -116,7 +121,7 @@ class Chart:
         return scene
 
     def meshes(self) -> dict[Rgb, tuple[NDArray[np.float32], NDArray[np.uint32]]]:
-        """Positions (N, 3), m, and triangles (T, 3) by colour."""
+        """Returns positions (N, 3), m, and triangles (T, 3) by colour."""
         width, height = (GROUND * side / 2 for side in self.size)
         ground = Patch("ground", rectangle((0, 0), (2 * width, 2 * height)), self.ground, 0)
         by_color: dict[Rgb, list[Patch]] = defaultdict(list)
@@ -145,7 +150,7 @@ class Chart:
             f_stop: F-stop of the camera.
 
         Raises:
-            UsageError: Another ending, or numbers that are no camera's.
+            UsageError: The path has another suffix, or a number is out of range.
             OutputError: A file cannot be written.
         """
         from daguerre.checks import number
@@ -208,7 +213,7 @@ def _paint(glb: Any, rgb: Rgb) -> int:
 
 
 def _mesh(patches: list[Patch], apart: float) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
-    """Fans about the first corner: patches are convex. Layers are so far apart, m."""
+    """Triangle fans of convex patches; layers are ``apart`` m apart."""
     points = [np.c_[p.points, np.full(len(p.points), p.layer * apart)] for p in patches]
     fans, first = [], 0
     for corners in points:
@@ -233,5 +238,5 @@ def rectangle(center: ArrayLike, size: ArrayLike, turned: float = 0.0) -> FloatA
 
 
 def grey(value: float) -> Rgb:
-    """A neutral of this share of white."""
+    """Neutral colour with this share of white."""
     return (value, value, value)

@@ -1,4 +1,4 @@
-"""Twenty-four colours: two rows of things people know, one of strong colours, one of greys."""
+"""Colour chart of 24 patches: two rows of natural colours, one of strong ones, one of greys."""
 
 from __future__ import annotations
 

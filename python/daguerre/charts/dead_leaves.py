@@ -15,7 +15,7 @@ from daguerre.errors import UsageError
 from .chart import Chart, Patch, grey
 
 GREYS = 64
-_GRID = 1536  # cells across, on which it is looked which leaves are seen at all
+_GRID = 1536  # cells across, for the visibility of leaves
 
 
 def make(
@@ -25,15 +25,15 @@ def make(
     largest: float = 0.25,
     contrast: float = 0.5,
 ) -> Chart:
-    """Dead leaves: discs whose radii fall off as r^-3, alike at every scale.
+    """Makes dead leaves: discs with radii distributed as r^-3, so that all scales look alike.
 
-    Their light is even around 0.5.
+    Their light is distributed uniformly around 0.5.
 
     Args:
         width: Width of the chart, m.
-        seed: Seed of the places, sizes and greys.
-        smallest: Smallest radius over the chart's height.
-        largest: Largest radius over the chart's height.
+        seed: Seed of positions, sizes and greys.
+        smallest: Smallest radius, in heights of the chart.
+        largest: Largest radius, in heights of the chart.
         contrast: Half the range of light over its mean.
     """
     whole(seed, "chart: seed", 0, 2**63)
@@ -62,10 +62,10 @@ def make(
 
 
 def _seen(rng: np.random.Generator, smallest: float, largest: float) -> list[NDArray[np.float64]]:
-    """Leaves that nothing covers whole: rows x, y, radius, shade, layer; in heights of the chart.
+    """Leaves that are at least partly visible: x, y, radius, shade, layer; in heights of the chart.
 
-    Drawn from the front to the back until nothing of the ground is seen. Then each lies one layer
-    above the highest that it may touch, so that there are few layers.
+    They are drawn from front to back until they cover the ground. Then each is put one layer above
+    the highest that it may touch, so that there are few layers.
     """
     free = np.ones((_GRID * 2 // 3, _GRID), bool)
     kept: list[NDArray[np.float64]] = []

@@ -1,4 +1,4 @@
-"""Square markers that carry a number: ArUco's and AprilTag's, as polygons."""
+"""Square markers with ids, ArUco and AprilTag, as polygons."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from daguerre.errors import UsageError, suggest
 
 from .chart import FloatArray, Patch, Rgb, grey, rectangle
 
-#: By OpenCV's names: which table, bits along a side, how many.
+#: Dictionaries by OpenCV's names: table, bits along a side, number of markers.
 DICTIONARIES: dict[str, tuple[str, int, int]] = {
     f"{size}X{size}_{count}": (f"{size}X{size}", size, count)
     for size in (4, 5, 6)
@@ -24,7 +24,7 @@ BLACK_LAYER, WHITE_LAYER = 2, 3
 
 
 def bits(dictionary: str, number: int) -> NDArray[np.bool_]:
-    """A marker without its border, shape (S, S), from its upper left; true is white."""
+    """Bits of a marker without its border, shape (S, S), from its upper left; true is white."""
     table, size, _ = DICTIONARIES[dictionary]
     digits = -(-size * size // 4)
     word = _tables()[table][number * digits : (number + 1) * digits]
@@ -33,15 +33,15 @@ def bits(dictionary: str, number: int) -> NDArray[np.bool_]:
 
 
 def checked(dictionary: str, first: int, count: int) -> tuple[str, int]:
-    """A dictionary's name as it is in ``DICTIONARIES``, and the first id.
+    """Returns a dictionary's name as in ``DICTIONARIES``, and the first id, checked.
 
     Args:
-        dictionary: With or without OpenCV's ``DICT_``, in any case.
+        dictionary: Name with or without OpenCV's ``DICT_``, in any case.
         first: Id of the first marker.
-        count: Markers that the board has.
+        count: Number of markers on the board.
 
     Raises:
-        UsageError: No such dictionary, or it has not so many.
+        UsageError: The dictionary is unknown, or has too few markers.
     """
     name = str(dictionary).upper().removeprefix("DICT_")
     if name not in DICTIONARIES:
@@ -56,14 +56,14 @@ def checked(dictionary: str, first: int, count: int) -> tuple[str, int]:
 
 
 def corners(center: FloatArray, side: float) -> FloatArray:
-    """In OpenCV's order: upper left, and on clockwise; shape (4, 2)."""
+    """Corners in OpenCV's order: clockwise from the upper left; shape (4, 2)."""
     return rectangle(center, (side, side))[[3, 2, 1, 0]]
 
 
 def patches(
     dictionary: str, number: int, center: FloatArray, side: float, border: int, white: Rgb
 ) -> list[Patch]:
-    """A black square, and its white bits on it; runs of a row are one rectangle."""
+    """Black square with white bits on it; adjacent bits of a row are one rectangle."""
     known = bits(dictionary, number)
     cell = side / (len(known) + 2 * border)
     out = [Patch(f"marker {number}", rectangle(center, (side, side)), grey(0.0), BLACK_LAYER)]

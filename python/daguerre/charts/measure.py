@@ -1,4 +1,4 @@
-"""Measures pictures of charts, rendered or photographed: edges, stars, texture, patches."""
+"""Measures rendered or photographed charts: edges, stars, texture, patches."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from daguerre.errors import InputError, UsageError
 from .chart import Chart
 
 FloatArray = NDArray[np.float64]
-_FINER = 4  # bins of the edge's profile per pixel, as ISO 12233 has it
+_FINER = 4  # bins of the edge's profile per pixel, as in ISO 12233
 
 
 @guarded
@@ -39,12 +39,12 @@ class EdgeResponse:
     high: float
 
     def at(self, frequency: ArrayLike) -> FloatArray:
-        """The response at frequencies (cycles per pixel), linear between."""
+        """Returns the response at frequencies (cycles per pixel), interpolated linearly."""
         return np.asarray(np.interp(np.asarray(frequency), self.frequency, self.response))
 
     @property
     def mtf50(self) -> float:
-        """Where the response first falls to a half, cycles per pixel; infinite if it never does."""
+        """Frequency at which the response first falls to a half, cycles/px; infinite: never."""
         below = np.flatnonzero(self.response < 0.5)
         if not below.size or below[0] == 0:
             return np.inf
@@ -55,19 +55,19 @@ class EdgeResponse:
 
 @guarded
 def edge_response(region: ArrayLike, *, bend: int = 1) -> EdgeResponse:
-    """The spatial frequency response by a slanted edge, as ISO 12233 measures it.
+    """Measures the spatial frequency response of a slanted edge by ISO 12233.
 
-    The edge's place is found in each row; all rows together sample the edge's profile finer than
-    pixels do, and the Fourier transform of its slope is the response. What quarter-pixel bins and
-    differences do to it is divided out; what a pixel's own area does is part of it.
+    The edge is located in each row. All rows together sample the edge's profile finer than pixels,
+    and the Fourier transform of the profile's slope is the response. The effects of quarter-pixel
+    bins and differences are divided out; that of the pixel's area is part of the response.
 
     Args:
-        region: Linear light, shape (H, W), with one edge through it from side to side that is
-            nearly, but not quite, along the columns or the rows.
-        bend: Degree of the polynomial that the edge follows: above 1 where distortion bends it.
+        region: Linear light, shape (H, W), with one edge from side to side that is nearly, but not
+            exactly, along the columns or the rows.
+        bend: Degree of the polynomial fitted to the edge; above 1 if distortion bends it.
 
     Raises:
-        InputError: No such edge is in the region.
+        InputError: There is no such edge in the region.
     """
     light, bend = plane(region, "edge: region", 8), whole(bend, "edge: bend", 1, 9)
     rows, columns = light.shape
@@ -100,7 +100,7 @@ def edge_response(region: ArrayLike, *, bend: int = 1) -> EdgeResponse:
 
 
 def plane(values: ArrayLike, where: str, least: int = 2) -> FloatArray:
-    """Finite light, shape (H, W), of at least so many pixels on a side."""
+    """Checks for finite light, shape (H, W), with at least ``least`` pixels on a side."""
     what, _, name = where.partition(": ")
     light = to_numbers(values, what, name, "shape (H, W)").astype(np.float64)
     if light.ndim != 2 or min(light.shape) < least:
@@ -115,14 +115,14 @@ def plane(values: ArrayLike, where: str, least: int = 2) -> FloatArray:
 
 
 def _slope(light: FloatArray, axis: int) -> float:
-    """How much lighter the picture gets from one side to the other."""
+    """Increase of light from one side of the picture to the other."""
     half = light.shape[axis] // 2
     first, second = np.split(light, [half], axis)
     return float(second.mean() - first.mean())
 
 
 def _edge(light: FloatArray, bend: int) -> FloatArray:
-    """Where the edge crosses each row: the middle of its slope, then a curve through all, again."""
+    """Position of the edge in each row: centre of its slope, then a fitted curve, iterated."""
     slope = np.diff(light, axis=1)
     at = np.arange(slope.shape[1]) + 0.5
     rows = np.arange(len(light))
@@ -180,16 +180,16 @@ def places(points: ArrayLike, metadata: Mapping[str, Any]) -> FloatArray:
 def means(
     picture: ArrayLike, chart: Chart, metadata: Mapping[str, Any], *, inner: float = 0.6
 ) -> FloatArray:
-    """Mean of each patch of a chart of patches, in the order of its truth.
+    """Returns the mean of each patch of a chart, in the order of its ground truth.
 
     Args:
-        picture: Shape (H, W, C) or (H, W).
-        chart: A chart of kind colour or step-wedge.
-        metadata: Metadata of the frame, see ``places``.
-        inner: Share of a patch's side that is looked at.
+        picture: Picture, shape (H, W, C) or (H, W).
+        chart: Chart of kind ``color`` or ``step-wedge``.
+        metadata: Metadata of the frame; see ``places``.
+        inner: Share of a patch's side that is averaged.
 
     Returns:
-        Shape (patches, C) or (patches,).
+        Means, shape (patches, C) or (patches,).
     """
     if "patches" not in chart.truth:
         raise InputError(f"chart: wanted one of patches, got {chart.name}")
@@ -249,15 +249,16 @@ def star_modulation(
 
 @guarded
 def texture_response(picture: ArrayLike, reference: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """The modulation of texture against the same texture as it is, by frequency.
+    """Measures the modulation of texture against a reference, by frequency.
 
-    The real part of the cross spectrum over the reference's own: noise, which has nothing to do
-    with the chart, drops out (Kirk, Herzer, Artmann and Kunz 2014, Description of texture loss
-    using the dead leaves target, Proc. SPIE 9014).
+    It is the real part of the cross spectrum over the reference's spectrum. Noise, which does not
+    correlate with the chart, drops out (Kirk, Herzer, Artmann and Kunz 2014, Description of texture
+    loss using the dead leaves target, Proc. SPIE 9014).
 
     Args:
         picture: Linear light, shape (H, W).
-        reference: The chart without lens and noise, of the same pixels; say by ``chart.camera()``.
+        reference: The chart without lens and noise, with the same pixels, for example from
+            ``chart.camera()``.
 
     Returns:
         Frequencies, cycles per pixel, from 0 to 0.5, and the response at them.

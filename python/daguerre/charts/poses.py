@@ -1,4 +1,4 @@
-"""Where a camera stands in a session of calibration: near and far, tilted, all over its picture."""
+"""Camera poses for a calibration session: near and far, tilted, all over the picture."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from daguerre.errors import UsageError
 from .boards import outline
 from .chart import Chart, FloatArray
 
-FURTHER = 1.12  # at each try that does not fit
-CLOSER_IN = 0.9  # then: toward the middle of the picture
-TRIES, PATIENCE = 20, 14  # places in the picture; distances at each
-GRAZING = 0.35  # cosine at which a board is seen too flat
-EDGE = 9  # points of a side of the board that must be seen
+FURTHER = 1.12  # factor of distance after a try that does not fit
+CLOSER_IN = 0.9  # then: factor toward the middle of the picture
+TRIES, PATIENCE = 20, 14  # positions in the picture; distances at each
+GRAZING = 0.35  # cosine below which a board is seen at too flat an angle
+EDGE = 9  # points along a side of the board that must be visible
 
 
 @guarded
@@ -45,7 +45,7 @@ def poses(
         seed: Seed of the choice.
         tilt: Largest tilt of the board to the line of sight, degrees, 0 to 60.
         farthest: Largest distance, as a multiple of the nearest that fits, 1 to 10.
-        margin: Margin left free at the picture's edges, share of its height.
+        margin: Free margin at the picture's edges, as a share of its height.
 
     Returns:
         World-from-camera matrices, shape (4, 4), for ``Camera(transform=...)``.
@@ -107,7 +107,7 @@ def _seen(projection: Projection, points: FloatArray, normal: FloatArray, margin
 
 
 def _border(chart: Chart) -> FloatArray:
-    """Around the board as OpenCV has it, shape (N, 3)."""
+    """Points around the board in OpenCV's frame, shape (N, 3)."""
     ends = outline(chart)
     share = np.linspace(0, 1, EDGE)[:, None]
     sides = [a + share * (b - a) for a, b in zip(ends, np.roll(ends, -1, axis=0), strict=True)]
@@ -116,7 +116,7 @@ def _border(chart: Chart) -> FloatArray:
 
 
 def _board_turn(rng: np.random.Generator, tilt: float) -> FloatArray:
-    """A board's tilt about a line across the sight, and its turn about the sight."""
+    """Random tilt of a board about a line normal to the view, and rotation about the view."""
     about, angle = 2 * math.pi * rng.random(), tilt * math.sqrt(rng.random())
     axis = np.array([math.cos(about), math.sin(about), 0.0])
     roll = math.radians(20) * (2 * rng.random() - 1)
@@ -124,7 +124,7 @@ def _board_turn(rng: np.random.Generator, tilt: float) -> FloatArray:
 
 
 def _toward(direction: FloatArray) -> FloatArray:
-    """The turn that takes the axis to a direction, shape (3, 3)."""
+    """Rotation that takes the axis to a direction, shape (3, 3)."""
     axis = np.cross([0.0, 0, 1], direction)
     length = float(np.linalg.norm(axis))
     if length < 1e-12:
@@ -133,14 +133,14 @@ def _toward(direction: FloatArray) -> FloatArray:
 
 
 def _turn(axis: FloatArray, angle: float) -> FloatArray:
-    """About a unit axis (Rodrigues), shape (3, 3)."""
+    """Rotation about a unit axis (Rodrigues), shape (3, 3)."""
     x, y, z = axis
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.asarray(np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross)
 
 
 def _camera_pose(turn: FloatArray, place: FloatArray) -> FloatArray:
-    """World from camera, of a board at rest: both frames of OpenCV have y and z the other way."""
+    """World from camera for a board at rest; both frames of OpenCV have opposite y and z."""
     flip = np.diag([1.0, -1, -1])
     out = np.eye(4)
     out[:3, :3] = flip @ turn.T @ flip

@@ -1,4 +1,4 @@
-"""The row time of a rolling shutter, by how edges lean in pictures taken while panning."""
+"""Measures the row time of a rolling shutter from the skew of edges in pictures while panning."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ SURE = 3.0  # standard errors above which lines are told to be exposed in turn
 @guarded
 @dataclass(frozen=True)
 class RowTime:
-    """When lines of pixels were exposed.
+    """Timing of the lines of a rolling shutter.
 
     Attributes:
-        line_time: From one line to the next, s.
-        readout_time: For all lines of the picture, s.
-        scan_order: Side of the picture that came first: top, bottom, left or right; ``none`` if all
-            came at once as far as can be told.
-        turn_rate: Turn rate of the camera, degrees per second, to the right or up.
-        error: Standard error of ``line_time``, by the fit, s.
+        line_time: Time from one line to the next, s.
+        readout_time: Time for all lines of the picture, s.
+        scan_order: Side of the picture that is read first: ``top``, ``bottom``, ``left`` or
+            ``right``; ``none``: no measurable delay.
+        turn_rate: Turn rate of the camera, degrees per second, positive to the right or up.
+        error: Standard error of ``line_time`` from the fit, s.
     """
 
     line_time: float
@@ -56,27 +56,28 @@ def row_time(
     corner: tuple[int, int] = (0, 0),
     still: ArrayLike | None = None,
 ) -> RowTime:
-    """Measures the time from one line of pixels to the next, in pictures of a turning camera.
+    """Measures the time from one line of pixels to the next in pictures of a turning camera.
 
-    An upright edge, while the camera pans, tells of shutters that scan from the top or the bottom;
-    a level one, while it tilts, of those from the left or the right. Each line of pixels sees the
-    edge in the direction in which it lay when that line was exposed, so the pictures must be as the
-    sensor has them: undistorting moves pixels to other lines.
+    A vertical edge while the camera pans measures shutters that scan from the top or bottom; a
+    horizontal edge while it tilts those from the left or right. Each line of pixels sees the edge
+    in its direction at the line's exposure. So pictures must not be undistorted, which would move
+    pixels to other lines.
 
     Args:
-        regions: Linear light, shape (H, W), or (K, H, W) of K pictures one after the other, each
-            with one edge along its longer side, from end to end. Checkerboards will do: dark and
-            light may change sides along the edge.
-        projection: How directions become pixels of the whole picture, in its size.
-        turn_rate: Turn rate of the camera, degrees per second, positive to the right or up; or
-        fps: Pictures per second, of two or more during which the rate, whatever it is, stays.
-        corner: The region's first column and row in the picture.
-        still: The same region of a picture without motion, for an edge that is not along the axis
-            of the turn; if absent, it is.
+        regions: Linear light, shape (H, W), or (K, H, W) for K successive pictures, each with one
+            edge along its longer side, from end to end. Checkerboards are suitable: dark and light
+            may change sides along the edge.
+        projection: Projection of the whole picture, in its size.
+        turn_rate: Turn rate of the camera, degrees per second, positive to the right or up; either
+            this or ``fps``.
+        fps: Pictures per second, for two or more pictures with a constant, unknown turn rate.
+        corner: First column and row of the region in the picture.
+        still: Same region of a picture without motion, if the edge is not along the axis of the
+            turn; None: it is.
 
     Raises:
-        UsageError: Neither or both of ``turn_rate`` and ``fps``, or numbers that cannot be.
-        InputError: No such edge, or the camera did not turn.
+        UsageError: Neither or both of ``turn_rate`` and ``fps``, or a number is out of range.
+        InputError: There is no such edge, or the camera did not turn.
     """
     if (turn_rate is None) == (fps is None):
         got = "none" if fps is None else "both"

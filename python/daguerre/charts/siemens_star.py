@@ -1,4 +1,4 @@
-"""A Siemens star: spokes that come closer toward the middle: frequency is a place (ISO 12233)."""
+"""Siemens star: spokes whose spatial frequency grows toward the middle (ISO 12233)."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ _PARTS = {
 
 
 def make(width: float = 0.9, cycles: int = 72, profile: str = "sine", white: float = 0.9) -> Chart:
-    """A Siemens star, 0.9 of the chart high; cycles / (2 pi r) per m on a circle of radius r.
+    """Makes a Siemens star, 0.9 of the chart high; cycles / (2 pi r) per m at radius r.
 
     Args:
         width: Width of the chart, m.
-        cycles: Cycles around the star, 4 to 360.
-        profile: sine (its light is (white / 2) (1 + 0.95 cos)) or bar (white and 0.025 of it).
-        white: Share of the chart's white.
+        cycles: Number of cycles around the star, 4 to 360.
+        profile: ``sine``, with light (white / 2) (1 + 0.95 cos), or ``bar``, with white and 0.025
+            of it.
+        white: Light of the star's white, as a share of the chart's white.
     """
     if profile not in PROFILES:
         raise UsageError(f"chart: profile: wanted sine or bar, got {profile!r}")

@@ -1,4 +1,4 @@
-"""Slanted squares over the field, for the spatial frequency response by their edges (ISO 12233)."""
+"""Slanted squares over the field, for the spatial frequency response of edges (ISO 12233)."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ COLUMNS, ROWS = 5, 3
 def make(
     width: float = 0.9, angle: float = 5.0, contrast: float = 4.0, white: float = 0.8
 ) -> Chart:
-    """Slanted edges: 5 x 3 dark squares on a light ground.
+    """Makes slanted edges: 5 x 3 dark squares on a light ground.
 
     Args:
         width: Width of the chart, m.
-        angle: Turn of the squares counter-clockwise, degrees; not 0 nor 45.
-        contrast: Light of the ground over that of the squares; ISO 12233 has 4.
-        white: Light of the ground, share of the chart's white.
+        angle: Rotation of the squares counter-clockwise, degrees, 1 to 44.
+        contrast: Light of the ground over that of the squares; 4 in ISO 12233.
+        white: Light of the ground, as a share of the chart's white.
     """
     number(angle, "chart: angle", 1, 44)
     number(white, "chart: white", 0, 1, above=0)
@@ -41,7 +41,7 @@ def make(
 
 
 def _edges(points: np.ndarray) -> dict[str, list[list[float]]]:
-    """Ends by the side on which the edge is."""
+    """End points of edges, by side of the square."""
     names = ("bottom", "right", "top", "left")
     return {
         name: [points[i].tolist(), points[(i + 1) % 4].tolist()] for i, name in enumerate(names)

@@ -1,4 +1,4 @@
-"""A grey step wedge: even steps in density, for tone curves and noise (ISO 14524, ISO 15739)."""
+"""Grey step wedge: equal steps in density, for tone curves and noise (ISO 14524, ISO 15739)."""
 
 from __future__ import annotations
 

@@ -12,15 +12,15 @@ _LUMINANCE = LUMINANCE_709.astype(np.float32)
 
 
 def _srgb(linear: NDArray[np.float32]) -> NDArray[np.float32]:
-    """The sRGB curve, clipped to [0, 1]."""
+    """Encodes with the sRGB curve, clipped to [0, 1]."""
     return srgb.from_linear(np.clip(linear, 0, 1))
 
 
 def _shoulder(linear: NDArray[np.float32], knee: float = 0.8) -> NDArray[np.float32]:
-    """Identity up to the knee k, then 1 - (1 - k)^2 / (x + 1 - 2 k), which joins smoothly.
+    """Applies a soft shoulder: identity up to the knee k, then 1 - (1 - k)^2 / (x + 1 - 2 k).
 
-    Each channel by itself would shift hues, so the largest one sets the scale of its pixel. Colours
-    go to white with the light above 1, half way at 17.
+    Separate channels would shift hues, so the largest one sets the scale of its pixel. Colours move
+    toward white with light above 1, half way at 17.
     """
     peak = linear.max(axis=2, keepdims=True)
     above = np.maximum(peak, knee)
@@ -31,7 +31,7 @@ def _shoulder(linear: NDArray[np.float32], knee: float = 0.8) -> NDArray[np.floa
 
 
 def _into_gamut(linear: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Negative colours mixed with the grey of their luminance until they are none."""
+    """Mixes negative colours with the grey of their luminance until they are in the gamut."""
     low = linear.min(axis=2, keepdims=True)
     if (low >= 0).all():
         return linear

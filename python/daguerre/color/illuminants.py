@@ -1,4 +1,4 @@
-"""White light: D65, other whites by colour temperature or chromaticity, and its photons."""
+"""White light: D65, other whites by colour temperature or chromaticity, and photon counts."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from daguerre.checks import numbers, short, shown
 from daguerre.errors import UsageError
 
 FloatArray = NDArray[np.float64]
-#: Planck's constant (J s) and the speed of light (m/s): exact in the SI of 2019.
+#: Planck's constant (J s) and the speed of light (m/s), exact in the SI of 2019.
 PLANCK, LIGHT = 6.62607015e-34, 299792458.0
 #: Boltzmann's constant, J/K.
 BOLTZMANN = 1.380649e-23
 #: Luminous efficacy of 540 THz, lm/W (SI).
 EFFICACY = 683.0
-#: Chromaticity of D65 by this program's tables, which are those of the CIE in steps of 5 nm: the
-#: white that arithmetic adapts to, so that a grey world stays exactly grey.
+#: Chromaticity of D65 from Daguerre's tables (CIE, steps of 5 nm). Computations adapt to it, so
+#: that a grey world stays exactly grey.
 D65_XY = (0.31275676, 0.32907241)
-#: The same as standards of RGB state it (IEC 61966-2-1, ITU-R BT.709-6): for matrices of their
+#: Chromaticity of D65 as RGB standards state it (IEC 61966-2-1, ITU-R BT.709-6), for matrices of
 #: primaries, profiles and headers, where other programs expect these digits.
 D65_STATED = (0.3127, 0.3290)
 #: Correlated colour temperatures of DNG's illuminants 21 and 17, K.
 D65_KELVIN, A_KELVIN = 6504.0, 2856.0
 LOWEST_KELVIN, HIGHEST_KELVIN = 1000.0, 25000.0
-#: nm
+#: Step of sums over the spectrum, nm.
 STEP = 0.5
-#: Wavelengths of sums over the spectrum, nm: the middle of equal steps.
+#: Wavelengths of sums over the spectrum, nm: middles of equal steps.
 NM = np.arange(380 + STEP / 2, 780, STEP)
 NM.flags.writeable = False
 
@@ -42,15 +42,15 @@ def _color_tables() -> FloatArray:
 
 
 def observer() -> FloatArray:
-    """CIE 1931 colour matching at ``NM``, so that a sum over a radiance is its XYZ, shape (L, 3).
+    """CIE 1931 colour matching at ``NM``, so that its sum with a radiance is XYZ, shape (L, 3).
 
-    The radiance is in units that make D65 of Y = 1 ``d65()``.
+    The unit of radiance is that of ``d65()``, which has Y = 1.
     """
     return np.asarray(_color_tables()[:, :3] * STEP)
 
 
 def d65() -> FloatArray:
-    """D65 at ``NM``, W/m2/nm of 1 lux times 683 (so that Y is 1), shape (L,)."""
+    """D65 at ``NM``, W/m2/nm for 1 lux, times 683, so that Y is 1; shape (L,)."""
     table = _color_tables()
     return np.asarray(table[:, 3] / (table[:, 1] @ table[:, 3] * STEP))
 
@@ -61,7 +61,7 @@ def rgb_reflectances() -> FloatArray:
 
 
 def planck(kelvin: float) -> FloatArray:
-    """A black body of Y = 1 at ``NM``, shape (L,)."""
+    """Black body with Y = 1 at ``NM``, shape (L,)."""
     with np.errstate(over="ignore"):
         rise = np.expm1(PLANCK * LIGHT / (NM * 1e-9 * BOLTZMANN * kelvin))
     shape = NM**-5.0 / rise
@@ -69,7 +69,7 @@ def planck(kelvin: float) -> FloatArray:
 
 
 def photons_per_lux_s(radiance: FloatArray) -> FloatArray:
-    """Photons per um2 and nm that 1 lux s of a light of Y = 1 brings, at ``NM``."""
+    """Photons per um2 and nm for 1 lux s of a light with Y = 1, at ``NM``."""
     radiance = np.asarray(radiance)
     if radiance.shape != NM.shape or radiance.dtype.kind not in "iuf":
         wanted = f"its light at {len(NM)} wavelengths"
@@ -79,7 +79,7 @@ def photons_per_lux_s(radiance: FloatArray) -> FloatArray:
 
 
 def integral(values: ArrayLike) -> float:
-    """Integral over wavelengths (nm) of values at ``NM``."""
+    """Integrates values at ``NM`` over wavelength (nm)."""
     return float(np.sum(values) * STEP)
 
 
@@ -90,15 +90,15 @@ def xy_of(spectrum: FloatArray) -> tuple[float, float]:
 
 
 def white_xy(white: Any = None, where: str = "white_balance") -> tuple[float, float]:
-    """Chromaticity of a white.
+    """Returns the chromaticity of a white.
 
     Args:
-        white: None (D65), a colour temperature in K, or a chromaticity (x, y). From 4000 K on the
-            temperature is that of daylight, below that of a black body.
-        where: For messages.
+        white: None (D65), a colour temperature, K, or a chromaticity (x, y). From 4000 K on the
+            temperature means daylight, below a black body.
+        where: Place for messages.
 
     Raises:
-        UsageError: Neither, or outside of 1000 .. 25000 K.
+        UsageError: ``white`` is none of these, or outside 1000 .. 25000 K.
     """
     if white is None:
         return D65_XY
@@ -128,7 +128,7 @@ def _of_kelvin(value: Any, where: str) -> tuple[float, float]:
 
 
 def _daylight_xy(kelvin: float) -> tuple[float, float]:
-    """The locus of daylight. Source: CIE 015:2018, 4.1.2 (a cubic in 1000/K, in two pieces)."""
+    """Chromaticity on the daylight locus. Source: CIE 015:2018, 4.1.2 (two cubics in 1000/K)."""
     t = 1000 / kelvin
     if kelvin <= 7000:
         x = 0.244063 + 0.09911 * t + 2.9678 * t**2 - 4.6070 * t**3
@@ -148,6 +148,6 @@ def kelvin_of(xy: tuple[float, float]) -> float:
 
 
 def xyz_of_xy(xy: tuple[float, float]) -> FloatArray:
-    """XYZ of Y = 1."""
+    """XYZ of a chromaticity, with Y = 1."""
     x, y = xy
     return np.array([x / y, 1.0, (1 - x - y) / y])

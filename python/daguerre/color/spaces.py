@@ -34,7 +34,7 @@ class ColorSpace:
     interop: str
 
 
-# IEC 61966-2-1; ITU-R BT.2020-2, table 4, turned around: E' = a E^0.45 - (a - 1).
+# IEC 61966-2-1; ITU-R BT.2020-2, table 4, inverted: E' = a E^0.45 - (a - 1).
 _SRGB = (
     srgb.POWER,
     1 / (1 + srgb.OFFSET),
@@ -51,8 +51,8 @@ _BT2020 = (1 / 0.45, 1 / _A, (_A - 1) / _A, 1 / 4.5, 4.5 * _B)
 
 
 P709 = ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06))  # ITU-R BT.709-6
-#: Luminance of linear Rec.709 to the digits of ITU-R BT.709-6: for mixing with gray. Photometry
-#: takes ``spectra.luminance_of_rgb()``, which adds up with the spectra of the renderer.
+#: Luminance of linear Rec.709 to the digits of ITU-R BT.709-6, for mixing with gray. Photometry
+#: uses ``spectra.luminance_of_rgb()``, which is consistent with the renderer's spectra.
 LUMINANCE_709 = np.array([0.2126, 0.7152, 0.0722])
 
 
@@ -79,14 +79,14 @@ def xyz_from_rgb(space: ColorSpace) -> FloatArray:
 
 
 def decoded(values: NDArray[np.float32], name: str) -> NDArray[np.float32]:
-    """Linear light of numbers encoded in a colour space."""
+    """Decodes values of a colour space to linear light."""
     g, a, b, c, d = COLOR_SPACES[name].curve
     high = np.maximum(np.float32(a) * values + np.float32(b), 0) ** np.float32(g)
     return np.where(values >= d, high, np.float32(c) * values).astype(np.float32)
 
 
 def encoded(linear: NDArray[np.float64], name: str) -> NDArray[np.float64]:
-    """The numbers that stand for linear light in a colour space; ``decoded`` turned around."""
+    """Encodes linear light in a colour space; the inverse of ``decoded``."""
     g, a, b, c, d = COLOR_SPACES[name].curve
     high = (np.maximum(linear, 0) ** (1 / g) - b) / a
     return np.where(linear >= c * d, high, linear / c)

@@ -1,7 +1,7 @@
-"""Spectra and colours: what wavelengths and bands of a film look like, and what RGB may have been.
+"""Spectra and colours: conversion between wavelengths, bands of a film, and RGB.
 
-An RGB emitter is a mixture of three spectra, the same as everywhere in Daguerre: D65 times the
-basis of Mallett and Yuksel 2019 (``core/spectrum``).
+An RGB emitter, here and everywhere in Daguerre, is a mixture of three spectra: D65 times the basis
+of Mallett and Yuksel 2019 (``core/spectrum``).
 """
 
 from __future__ import annotations
@@ -17,27 +17,27 @@ from daguerre.checks import whole
 
 FloatArray = NDArray[np.float64]
 FIRST_NM, LAST_NM = 380.0, 780.0
-#: wavelengths of fine sums: two per interval of the tables would do
+#: Number of wavelengths of fine sums; two per interval of the tables would suffice.
 FINE = 1600
 
 
 def rgb_from_xyz() -> FloatArray:
-    """Linear Rec.709 of CIE XYZ, shape (3, 3); D65 is (1, 1, 1)."""
+    """Matrix from CIE XYZ to linear Rec.709, shape (3, 3); D65 is (1, 1, 1)."""
     return np.array([_core.rgb_from_xyz(unit) for unit in np.eye(3).tolist()]).T
 
 
 def luminance_of_rgb() -> FloatArray:
-    """Luminance of linear Rec.709 by this program's tables, shape (3,)."""
+    """Luminance of linear Rec.709 from Daguerre's tables, shape (3,)."""
     return np.asarray(np.linalg.inv(rgb_from_xyz())[1])
 
 
 def xyz_of(rgb: NDArray[np.float32]) -> NDArray[np.float32]:
-    """CIE XYZ of linear Rec.709, shape (..., 3)."""
+    """Converts linear Rec.709 to CIE XYZ, shape (..., 3)."""
     return np.asarray(rgb @ np.linalg.inv(rgb_from_xyz()).T.astype(np.float32))
 
 
 def _tables(nm: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """At wavelengths: XYZ (L, 3) of unit radiance per nm, and radiances (L, 3) of RGB emitters."""
+    """XYZ (L, 3) of unit radiance per nm at wavelengths, and radiances (L, 3) of RGB emitters."""
     rows = np.asarray(_core.colour_tables(np.asarray(nm, np.float64).tolist()))
     fine = np.asarray(_core.colour_tables(fine_wavelengths(1)[0].tolist()))
     step = (LAST_NM - FIRST_NM) / FINE
@@ -56,15 +56,15 @@ def fine_wavelengths(bands: int) -> FloatArray:
 
 @cache
 def rgb_mixes(count: int) -> tuple[FloatArray, FloatArray]:
-    """How RGB emitters look wavelength by wavelength.
+    """Returns the contribution of each wavelength to the RGB of RGB emitters.
 
     Args:
-        count: Wavelengths, in equal steps from 400 to 700 nm.
+        count: Number of wavelengths, in equal steps from 400 to 700 nm.
 
     Returns:
-        Wavelengths (L,), nm; and the RGB that each brings of emitters of red, green and blue,
-        shape (L, 3, 3), from last axis to middle one. Their sum is the unit matrix: what no
-        wavelength changes keeps its colour.
+        Wavelengths (L,), nm; and matrices from emitters (last axis) to their RGB at each
+        wavelength, shape (L, 3, 3). They sum to the unit matrix, so colours are kept if all
+        wavelengths are treated alike.
     """
     nm = 400 + 300 * (np.arange(count) + 0.5) / count
     seen, emitted = _tables(nm)
@@ -79,16 +79,16 @@ def band_colors(bands: int) -> FloatArray:
 
 
 def band_weights(bands: int, seen_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
-    """Weights by which an observer sees unit mean radiance in each band of a film, (bands, K).
+    """Observer's response to unit mean radiance in each band of a film, (bands, K).
 
-    They hold for D65 within each band, then are changed as little as makes the three spectra of
-    RGB emitters exact, white among them: bands that no kernel touches give the picture that sums
-    of the observer's own give, up to spectra that are no such mixture.
+    The weights are exact for D65 within each band. Then they are changed by the least amount that
+    makes the spectra of RGB emitters, and so white, exact. So bands give the observer's own result
+    for all mixtures of these spectra.
 
     Args:
         bands: Number of bands of equal width over all wavelengths.
-        seen_at: The observer's curves at wavelengths (L,), nm, shape (L, K), per unit radiance and
-            nm.
+        seen_at: Function that returns the observer's curves at wavelengths (L,), nm, shape (L, K),
+            per unit radiance and nm.
     """
     nm = fine_wavelengths(bands)
     seen = seen_at(nm.ravel()).reshape(*nm.shape, -1)
@@ -96,19 +96,19 @@ def band_weights(bands: int, seen_at: Callable[[FloatArray], FloatArray]) -> Flo
     white = emitted.sum(axis=2)
     width = (LAST_NM - FIRST_NM) / bands
     weights = width * np.einsum("bnk,bn->bk", seen, white) / white.sum(axis=1)[:, None]
-    means = emitted.mean(axis=1)  # of the three spectra, by band
+    means = emitted.mean(axis=1)  # means of the three spectra, by band
     exact = np.einsum("bnk,bni->ik", seen, emitted) * (width / nm.shape[1])
-    freedom = weights.sum(axis=1)[:, None]  # where the observer sees most
+    freedom = weights.sum(axis=1)[:, None]  # changes go where the observer is most sensitive
     change = np.linalg.lstsq(means.T @ (freedom * means), exact - means.T @ weights, rcond=None)[0]
     return np.asarray(weights + freedom * (means @ change))
 
 
 def unit_d65(nm: FloatArray) -> FloatArray:
-    """D65 of luminance 1 at wavelengths, in the film's units of radiance, shape (L,)."""
+    """D65 with luminance 1 at wavelengths, in the film's unit of radiance, shape (L,)."""
     return np.asarray(_tables(nm)[1].sum(axis=1))
 
 
 def band_wavelengths(bands: int, each: int) -> FloatArray:
-    """Wavelengths that stand for bands, nm, shape (bands, each)."""
+    """Representative wavelengths of bands, nm, shape (bands, each)."""
     at = (np.arange(bands * each) + 0.5) / (bands * each)
     return (FIRST_NM + (LAST_NM - FIRST_NM) * at).reshape(bands, each)

@@ -1,4 +1,4 @@
-"""From what a sensor recorded to a picture: white balance, colours, tone, and files of them."""
+"""Develops raw pictures and frames: white balance, highlights, colours, tone; writes DNG."""
 
 from daguerre.frame.picture import Picture
 

@@ -1,4 +1,4 @@
-"""Mosaics that developers of photographs know: Bayer, X-Trans and mono. Quad-Bayer is binned."""
+"""Bins Quad-Bayer mosaics to Bayer, which raw converters support (also X-Trans and mono)."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ if TYPE_CHECKING:
 
 
 def is_mono(raw: Raw) -> bool:
-    """Whether it has no colours."""
+    """Whether a raw picture is monochrome."""
     return len(raw.sensor.channels) == 1
 
 
 @guarded
 def bayer_of(raw: Raw) -> Raw:
-    """A Quad-Bayer picture as cameras bin it; others as they are.
+    """Bins a Quad-Bayer picture as cameras do; returns others unchanged.
 
-    Four photosites of one colour become one of twice the pitch: their numbers are added, so
-    that nothing is lost, if 16 bits hold them.
+    Four photosites of one colour become one of twice the pitch. Their values are added without
+    loss if 16 bits hold the sum.
     """
     if not raw.sensor.pattern.name.startswith("quad-"):
         return raw
@@ -49,7 +49,7 @@ def bayer_of(raw: Raw) -> Raw:
 
 
 def _binned_sensor(raw: Raw, shift: int) -> Sensor:
-    """Sensor that takes such a picture: twice the pitch, and the noise of four readings."""
+    """Sensor of the binned picture: twice the pitch, and the noise of four photosites."""
     sensor = raw.sensor
     columns, rows = sensor.resolution
     return sensor.with_(

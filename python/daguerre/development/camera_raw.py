@@ -1,4 +1,4 @@
-"""Raw files of cameras, and our own DNG, as channels for development: LibRaw reads them."""
+"""Reads raw files of cameras, and Daguerre's DNG, with LibRaw, as channels for development."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Matrix = Callable[[XY], FloatArray]
 _ILLUMINANTS = {
     3: 2850.0, 17: 2856.0, 24: 3200.0, 23: 5003.0, 20: 5503.0, 1: 5500.0, 21: 6504.0, 22: 7504.0,
 }  # fmt: skip
-#: EXIF's names in tifffile, and ours.
+#: EXIF's names in tifffile, and the names of metadata.
 _FACTS = {
     "ExposureTime": "expTime",
     "FNumber": "aperture",
@@ -41,14 +41,14 @@ _FACTS = {
 
 
 def read_shot(path: str | os.PathLike[str], demosaic: Demosaic = USUAL) -> Channels:
-    """A camera's raw file, demosaiced, with its own colours.
+    """Reads a camera's raw file and demosaics it; colours are the camera's.
 
     Args:
-        path: DNG, or what else LibRaw reads.
-        demosaic: How; of X-Trans below 516 px LibRaw knows only the fast method.
+        path: Path of a DNG or another file that LibRaw reads.
+        demosaic: Demosaicing; for X-Trans below 516 px LibRaw has only the fast method.
 
     Raises:
-        InputError: It is no such file, or nothing is known of its camera's colours.
+        InputError: The file is not a raw file, or the colours of its camera are unknown.
     """
     tags = tags_of(path)
     with opened_raw(path) as opened:
@@ -57,10 +57,10 @@ def read_shot(path: str | os.PathLike[str], demosaic: Demosaic = USUAL) -> Chann
 
 @contextmanager
 def opened_raw(path: str | os.PathLike[str]) -> Iterator[Any]:
-    """A raw file, opened by rawpy.
+    """Opens a raw file with rawpy.
 
     Raises:
-        InputError: It is no such file; also where LibRaw finds that out within the block.
+        InputError: The file is not a raw file; also if LibRaw finds that out within the block.
     """
     extras.need("rawpy", f"{path}: a raw file")
     import rawpy
@@ -104,12 +104,12 @@ def _shot(path: Any, opened: Any, tags: Mapping[str, Any], demosaic: Demosaic) -
 
 
 def white_of_shot(path: Any, opened: Any, tags: Mapping[str, Any]) -> XY:
-    """The white that a camera was set to, as its file says, without developing it.
+    """Returns the white balance of a raw file, without developing it.
 
     Args:
         path: Name of the file, for messages.
-        opened: rawpy's.
-        tags: Those of ``tags_of``.
+        opened: File opened by rawpy.
+        tags: Tags from ``tags_of``.
     """
     if opened.num_colors == 1:
         return illuminants.D65_XY
@@ -130,7 +130,7 @@ def _grey(white: XY) -> FloatArray:
 
 
 def _camera_from_xyz(path: Any, opened: Any, tags: Mapping[str, Any]) -> Matrix:
-    """A DNG's two matrices, between them by reciprocal temperature; else LibRaw's for daylight."""
+    """Interpolates a DNG's two matrices by reciprocal temperature; else LibRaw's for daylight."""
     known = [
         (_ILLUMINANTS.get(int(_number(tags.get(f"CalibrationIlluminant{k}"), 21)), 6504.0), table)
         for k in (1, 2)
@@ -154,12 +154,12 @@ def _camera_from_xyz(path: Any, opened: Any, tags: Mapping[str, Any]) -> Matrix:
 
 
 def _scaled(matrix: FloatArray) -> FloatArray:
-    """So that the strongest channel of daylight of Y = 1 is 1, which is what white levels mean."""
+    """Scales a matrix so that daylight of Y = 1 is 1 in the strongest channel."""
     return np.asarray(matrix / (matrix @ illuminants.xyz_of_xy(illuminants.D65_XY)).max())
 
 
 def _white(neutral: FloatArray, matrix: Matrix) -> XY:
-    """The light in which white reads as the neutral; found in turns, as in DNG 1.7.1, chapter 6."""
+    """Finds the light in which white has the neutral's values; iterates as DNG 1.7.1, chapter 6."""
     white = illuminants.D65_XY
     for _ in range(8):
         xyz = np.linalg.solve(matrix(white), neutral)
@@ -170,7 +170,7 @@ def _white(neutral: FloatArray, matrix: Matrix) -> XY:
 
 
 def _matrix(value: Any) -> FloatArray | None:
-    """Matrix of 9 rationals; None: there is none, or it cannot be inverted."""
+    """Matrix of 9 rationals; None: absent or singular."""
     if not isinstance(value, tuple | list) or len(value) != 18:
         return None
     with np.errstate(all="ignore"):
@@ -181,7 +181,7 @@ def _matrix(value: Any) -> FloatArray | None:
 
 
 def tags_of(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """TIFF tags of the first directory and that of the exposure; none if the file is no TIFF.
+    """Returns TIFF tags of the first directory and of the EXIF directory; empty if not a TIFF.
 
     Raises:
         UsageError: The package that reads them is not installed.
@@ -197,7 +197,7 @@ def tags_of(path: str | os.PathLike[str]) -> dict[str, Any]:
             first: Any = file.pages[0]
             found = {tag.name: tag.value for tag in first.tags}
             return found | dict(found.get("ExifTag") or {})
-    except Exception:  # broken files bring out whatever there is
+    except Exception:  # broken files raise any kind of exception
         return {}
     finally:
         log.setLevel(level)
@@ -218,7 +218,7 @@ def _facts(tags: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _number(value: Any, default: float) -> float:
-    """A number, or a rational as a pair; a tuple of more counts by its first."""
+    """Reads a number, or a rational as a pair; of a longer tuple the first number."""
     try:
         if isinstance(value, tuple | list):
             value = float(value[0]) / float(value[1]) if len(value) == 2 else value[0]

@@ -34,7 +34,7 @@ XY = tuple[float, float]
 _TOP = 65535.0
 #: Cells of X-Trans have 6 px.
 MARGIN_XTRANS = 6
-#: Three that are chosen by pattern, and LibRaw's own names.
+#: Methods for each pattern, by LibRaw's names.
 _BAYER_METHODS = {"best": "DHT", "good": "AHD", "fast": "LINEAR"}
 #: LibRaw runs Markesteijn's method in one pass for "PPG", in three for what is better.
 _XTRANS_METHODS = {"best": "DHT", "good": "PPG", "fast": "LINEAR"}
@@ -43,13 +43,13 @@ DEMOSAICS = ("best", "good", "fast", "linear", "vng", "ppg", "ahd", "dcb", "dht"
 
 @dataclass(frozen=True)
 class Demosaic:
-    """How LibRaw makes three channels of a mosaic.
+    """Options of demosaicing by LibRaw.
 
     Attributes:
         method: One of ``DEMOSAICS``.
-        colour_noise: Passes of a median over the differences of colours.
-        clip: Whether the channels end where the first one is full, before anything is interpolated:
-            else the edges of highlights get colours, and nothing is lost.
+        colour_noise: Passes of a median filter over colour differences.
+        clip: Whether all channels are clipped at the lowest saturation before interpolation.
+            Otherwise nothing is lost, but edges of highlights get false colours.
     """
 
     method: str = "good"
@@ -57,18 +57,18 @@ class Demosaic:
     clip: bool = False
 
     def scale(self, balance: FloatArray, span: float) -> FloatArray:
-        """LibRaw's numbers for each DN above black; ``span``: DN from black to white."""
+        """LibRaw's values per DN above black; ``span``: DN from black to white."""
         one = balance.min() if self.clip else balance.max()
         return np.asarray(_TOP / span * balance / one)
 
     def run(self, opened: Any, balance: FloatArray, xtrans: bool, turn: bool) -> NDArray[np.uint16]:
-        """Numbers (H, W, 3), balanced, linear, in the camera's own colours.
+        """Demosaics; returns values (H, W, 3), balanced, linear, in the camera's colours.
 
         Args:
-            opened: rawpy's.
+            opened: File opened by rawpy.
             balance: Factors of the channels.
-            xtrans: Whether the mosaic is of that kind.
-            turn: Upright, as the file says.
+            xtrans: Whether the mosaic is X-Trans.
+            turn: Whether to turn the picture upright, as in the file's metadata.
         """
         import rawpy
 
@@ -104,15 +104,15 @@ USUAL = Demosaic()
 
 @dataclass(frozen=True)
 class Channels:
-    """Light by pixel in three channels.
+    """Light in three channels, for development.
 
     Attributes:
-        pixels: Numbers without black, uint16 or float32, shape (H, W, 3).
-        unit: Numbers of each channel for a value of 1, that of a developed white, shape (3,).
-        full: Numbers from which on a channel is saturated, shape (3,); infinite if never.
-        xyz_from: XYZ from values, for a white (x, y), shape (3, 3).
-        as_shot: The white that the picture was taken for.
-        metadata: Facts of the shot.
+        pixels: Values above black, uint16 or float32, shape (H, W, 3).
+        unit: Value of each channel for developed white (1), shape (3,).
+        full: Saturation of each channel, shape (3,); infinite: never.
+        xyz_from: Function that returns the matrix from values to XYZ for a white (x, y), (3, 3).
+        as_shot: White balance as shot.
+        metadata: Metadata of the shot.
     """
 
     pixels: NDArray[Any]
@@ -124,7 +124,7 @@ class Channels:
 
 
 def of_frame(frame: Frame) -> Channels:
-    """A frame's XYZ as a perfect sensor exposes it, at ISO 12232's brightness."""
+    """Makes channels from a frame's XYZ, as from a perfect sensor, with ISO 12232's brightness."""
     from daguerre.exposure.lux_seconds import frame_iso, luminance_exposure
 
     facts = frame.metadata
@@ -154,7 +154,7 @@ def _xyz(frame: Frame) -> NDArray[np.float32]:
 
 
 def of_raw(raw: Raw, demosaic: Demosaic = USUAL) -> Channels:
-    """A raw picture, demosaiced."""
+    """Makes channels from a raw picture, by demosaicing."""
     raw = bayer_of(raw)
     if is_mono(raw):
         return _of_pixels(raw, _grey(raw), np.ones(3))
@@ -162,14 +162,14 @@ def of_raw(raw: Raw, demosaic: Demosaic = USUAL) -> Channels:
 
 
 def of_cells(raw: Raw, means: NDArray[np.float32]) -> Channels:
-    """Means of DN above black in cells of the pattern, shape (h, w, C)."""
+    """Makes channels from means of DN above black in cells of the pattern, shape (h, w, C)."""
     return _of_pixels(
         raw, np.ascontiguousarray(np.broadcast_to(means, (*means.shape[:2], 3))), np.ones(3)
     )
 
 
 def _of_pixels(raw: Raw, pixels: NDArray[Any], scale: FloatArray) -> Channels:
-    """Numbers that are DN above black times ``scale``."""
+    """Makes channels from DN above black times ``scale``."""
     from .dng import shot_facts, value_dn
 
     return Channels(
@@ -187,7 +187,7 @@ def _inverse_matrix(raw: Raw) -> Callable[[XY], FloatArray]:
 
 
 def _grey_matrix(white: XY) -> FloatArray:
-    """Matrix of a mosaic without colours: the white's own."""
+    """Matrix of a monochrome mosaic, from the white's XYZ."""
     return np.asarray(np.diag(illuminants.xyz_of_xy(white)))
 
 
@@ -197,7 +197,7 @@ def _grey(raw: Raw) -> NDArray[np.uint16]:
 
 
 def _demosaiced(raw: Raw, demosaic: Demosaic) -> tuple[NDArray[np.uint16], FloatArray]:
-    """Numbers (H, W, 3) and how they are scaled against DN above black, by channel."""
+    """Returns values (H, W, 3) and their scale to DN above black, by channel."""
     extras.need("rawpy", "develop: demosaic")
     import rawpy
 
@@ -221,12 +221,12 @@ def _large_enough(raw: Raw) -> Raw:
 
 
 def _with_margin(raw: Raw) -> Raw:
-    """LibRaw leaves holes at the border of X-Trans, where a pixel's neighbours lack a colour."""
+    """Adds a margin, as LibRaw leaves holes at the border of X-Trans mosaics."""
     return _extended(raw, MARGIN_XTRANS, LEAST_XTRANS)
 
 
 def _extended(raw: Raw, margin: int, least: int) -> Raw:
-    """A margin all around, and at least so many px each way: cells of the pattern are repeated."""
+    """Adds a margin, and extends to at least ``least`` px each way, by repeating cells."""
     rows, columns = (
         _places(count, margin, least, period)
         for count, period in zip(raw.mosaic.shape, raw.sensor.pattern.cells.shape, strict=True)
@@ -235,7 +235,7 @@ def _extended(raw: Raw, margin: int, least: int) -> Raw:
 
 
 def _places(count: int, margin: int, least: int, period: int) -> NDArray[np.intp]:
-    """Places 0 .. count - 1, and around them the nearest ones of the same place in the pattern."""
+    """Indices 0 .. count - 1, and around them the nearest ones at the same place in the pattern."""
     at = np.arange(-margin, max(count + margin, least - margin))
     last = count - 1 - (count - 1 - at) % period
     inside = np.where(at < 0, at % period, np.where(at < count, at, last))

@@ -1,4 +1,4 @@
-"""Development in its order: white balance, highlights, colours, tone, sharpening."""
+"""Development: white balance, highlights, colours, tone, sharpening, in this order."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
     from daguerre.frame.raw import Raw
 
 FloatArray = NDArray[np.float64]
-#: Standard deviation of the Gaussian of the unsharp mask, px: as far as demosaicing softens.
+#: Standard deviation of the unsharp mask's Gaussian, px, about the blur of demosaicing.
 SHARPEN_RADIUS = 0.8
 
 
 @dataclass(frozen=True)
 class Recipe:
-    """How to develop; see ``develop``."""
+    """Parameters of development; see ``develop``."""
 
     wb: Any
     look: str
@@ -53,7 +53,7 @@ class Recipe:
 
     @classmethod
     def of(cls, **keywords: Unpack[RecipeKeywords]) -> Recipe:
-        """The recipe of these keywords, checked; defaults for the others."""
+        """Makes a recipe from keywords, checked; others get defaults."""
         return cls(**DEVELOP.filled(keywords, "develop"))
 
     def __post_init__(self) -> None:
@@ -66,31 +66,30 @@ class Recipe:
 
     @property
     def view(self) -> str:
-        """The OCIO view that makes the picture, or nothing."""
+        """Name of the OCIO view; empty: none."""
         return self.look.removeprefix("ocio:") if self.look.startswith("ocio:") else ""
 
     @property
     def demosaicing(self) -> Demosaic:
-        """How a mosaic gets three channels."""
+        """Options of demosaicing."""
         return Demosaic(self.demosaic, self.colour_noise, clip=self.highlights == "clip")
 
 
 @takes(DEVELOP, RecipeKeywords)
 @guarded(but=("source",))
 def develop(source: Raw | Frame | Channels, **keywords: Unpack[RecipeKeywords]) -> Picture:
-    """Develops a raw picture, or a frame: without noise then, like one from a perfect sensor.
+    """Develops a raw picture, or a frame as if from a perfect sensor (without sensor noise).
 
-    Brightness is that of ISO 12232: a luminance exposure of 10 / ISO lux s is middle grey, 118 of
-    255 in sRGB. Colours that the colour space lacks are brought in toward the grey of the same
-    luminance.
+    Brightness follows ISO 12232: an exposure of 10 / ISO lux s becomes middle grey, 118 of 255 in
+    sRGB. Colours outside the colour space are moved toward the grey of the same luminance.
 
     Args:
         source: Raw picture, frame, or channels.
         {keywords}
 
     Raises:
-        UsageError: A wrong parameter.
-        InputError: A frame without exposure metadata; the message names the field.
+        UsageError: A parameter is wrong.
+        InputError: A frame lacks exposure metadata; the message has the field.
     """
     recipe = Recipe.of(**keywords)
     source = _channels(source, recipe.demosaicing)
@@ -120,18 +119,18 @@ def _channels(source: Any, demosaic: Demosaic) -> Channels:
 
 @guarded
 def save_raw(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
-    """Writes a raw picture: its numbers as ``.dng``, or developed; see ``Raw.save``."""
+    """Writes a raw picture, as ``.dng`` or developed; see ``Raw.save``."""
     formats.write("raw", path, raw, **look)
 
 
 def _balance(source: Channels, white: XY) -> FloatArray:
-    """Factors that make the white's numbers 1 in each channel."""
+    """Factors that scale the white's values to 1 in each channel."""
     neutral = np.linalg.solve(source.xyz_from(white), illuminants.xyz_of_xy(white))
     return np.asarray(1 / (source.unit * np.maximum(neutral, 1e-6)))
 
 
 def _rgb_from_balanced(source: Channels, white: XY, space: str) -> FloatArray:
-    """Linear light of the colour space from balanced channels; three equal ones are grey."""
+    """Matrix from balanced channels to linear light of a colour space; equal channels are grey."""
     balanced = source.unit * _balance(source, white)
     rgb = _space_from_709(space) @ rgb_from_xyz() @ adaptation(white, illuminants.D65_XY)
     return np.asarray(rgb @ source.xyz_from(white) / balanced)
@@ -147,7 +146,7 @@ def _luminance(space: str) -> FloatArray:
 
 
 def _shown(source: Channels, white: XY, recipe: Recipe) -> NDArray[np.float32]:
-    """All in one pass over the pixels."""
+    """Develops in one pass over the pixels."""
     space, look = recipe.colour_space, look_of(recipe.look)
     luminance, gain = _luminance(space), 2.0**recipe.exposure
     balance = _balance(source, white)
@@ -179,7 +178,7 @@ def _pass(
 
 
 def _by_light(source: Channels, white: XY, recipe: Recipe) -> NDArray[np.float32]:
-    """In two passes, with scene light in between, where grain and OCIO work."""
+    """Develops in two passes, with scene light in between, as grain and OCIO need."""
     gain = 2.0**recipe.exposure
     balance = _balance(source, white)
     matrix = gain * _rgb_from_balanced(source, white, "srgb")
@@ -212,6 +211,6 @@ def _with_grain(
             "(sensorOverallDimensions), got none"
         )
     sensor = tuple(float(value) for value in size)
-    # Colours outside of Rec.709 are negative here, and grain is of light.
+    # Colours outside Rec.709 are negative here; grain needs light of at least 0.
     positive = np.maximum(light, 0)
     return grain(positive, size=recipe.grain, sensor=sensor, seed=recipe.seed)

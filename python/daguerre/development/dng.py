@@ -1,8 +1,8 @@
-"""DNG, the raw format that every developer of photographs opens, of a raw picture.
+"""Writes raw pictures as DNG.
 
 Tags and their numbers: Adobe, Digital Negative Specification 1.7.1, chapter 4. The first directory
-has a small picture for browsers, and what is about the whole photograph; its child has the numbers
-of the photosites as they are, 16 bits each.
+has a small preview and tags of the whole photograph. Its child has the values of the photosites,
+16 bits each, unchanged.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ if TYPE_CHECKING:
     from daguerre.frame.raw import Raw
 
 MAKE = "Daguerre"
-#: LibRaw takes smaller pictures for no raw file, px each way.
+#: Smallest picture that LibRaw opens, px each way.
 LEAST_OPENED = 22
 #: Numbers of EXIF's light sources, in DNG's order: incandescent first.
 _LAMP_A, _LAMP_D65 = 17, 21
 
 
 def size_note(raw: Raw) -> str | None:
-    """For pictures that are too small for LibRaw, and all that is built on it; None: large enough.
+    """Returns a note if a picture is too small for LibRaw and programs that use it; else None.
 
-    It opens none below 22 px, and its methods for X-Trans work in tiles of 512 px.
+    LibRaw opens no picture below 22 px, and its methods for X-Trans work in tiles of 512 px.
     """
     xtrans = raw.sensor.pattern.name == "xtrans"
     least = LEAST_XTRANS if xtrans else LEAST_OPENED
@@ -48,12 +48,12 @@ def size_note(raw: Raw) -> str | None:
 
 
 def put_dng(target: Path | IO[bytes], raw: Raw, preview: NDArray[np.uint8] | None = None) -> None:
-    """Writes a raw picture into a file that exists, or a stream.
+    """Writes a raw picture into an existing file or a stream.
 
     Args:
-        target: The file or stream.
-        raw: The picture, of a pattern that DNG knows.
-        preview: Small developed picture, shape (h, w, 3); None: the file has none.
+        target: File or stream.
+        raw: Raw picture with a pattern that DNG supports.
+        preview: Small developed picture, shape (h, w, 3); None: no preview.
     """
     facts = shot_facts(raw)
     about = exif.main_tags(facts | body_facts(raw)) | photograph_tags(raw)
@@ -68,7 +68,7 @@ def put_dng(target: Path | IO[bytes], raw: Raw, preview: NDArray[np.uint8] | Non
 
 
 def shot_facts(raw: Raw) -> dict[str, Any]:
-    """EXIF facts of a raw picture: the frame's facts, the sensor as body, and the ISO."""
+    """EXIF metadata of a raw picture: the frame's metadata, the sensor as body, and the ISO."""
     sensor = raw.sensor
     body = {"cameraMake": sensor.make, "cameraModel": sensor.model}
     return (
@@ -79,16 +79,16 @@ def shot_facts(raw: Raw) -> dict[str, Any]:
 
 
 def body_facts(raw: Raw) -> dict[str, str]:
-    """Make and model in a DNG: not the real camera's.
+    """Make and model for a DNG, which differ from the real camera's.
 
-    Developers would take their own profile of that camera, and cut off the border that it has.
+    With the real ones, raw converters would apply their own profile and crop of that camera.
     """
     body = f"{raw.sensor.make} {raw.sensor.model}".strip()
     return {"cameraMake": MAKE, "cameraModel": body.removeprefix(f"{MAKE} ")}
 
 
 def photograph_tags(raw: Raw) -> Tags:
-    """Colours and brightness: matrices for lamp light and daylight, the neutral, the exposure."""
+    """Tags for colours and brightness: matrices for lamp light and daylight, neutral, exposure."""
     sensor = raw.sensor
     tags: Tags = {
         50706: (exif.BYTE, (1, 4, 0, 0)),
@@ -109,7 +109,7 @@ def photograph_tags(raw: Raw) -> Tags:
 
 
 def mosaic_tags(raw: Raw) -> Tags:
-    """Where which channel is read, and between which levels."""
+    """Tags for the pattern of the mosaic, and its black and white levels."""
     height, width = raw.mosaic.shape
     tags: Tags = {
         50713: (exif.SHORT, (1, 1)),
@@ -129,31 +129,31 @@ def mosaic_tags(raw: Raw) -> Tags:
 
 
 def value_dn(raw: Raw) -> float:
-    """DN above black of a developed value of 1 in the strongest channel, D65.
+    """DN above black for a developed value of 1 in the strongest channel, D65.
 
-    ISO 12232: a luminance exposure of 10 / S lux s becomes middle grey, 0.18.
+    By ISO 12232 an exposure of 10 / S lux s becomes middle grey, 0.18.
     """
     lux_s = GREY_LX_S / GREY / raw.iso
     return raw.gain * float(raw.sensor.white_electrons().max()) * lux_s
 
 
 def baseline_exposure(raw: Raw) -> float:
-    """EV that readers have to brighten the file by, so that middle grey is 0.18.
+    """Exposure compensation, EV, with which readers of the file show middle grey as 0.18.
 
-    They take the white level for 1; ISO 12232 keeps half a stop above white.
+    Readers take the white level as 1; ISO 12232 keeps half a stop above white.
     """
     return math.log2((raw.white_level - raw.black_level) / value_dn(raw))
 
 
 def noise_profile(raw: Raw) -> tuple[float, float]:
-    """Variance of numbers between black (0) and white (1): slope and that of black."""
+    """Variance of values between black (0) and white (1): slope, and variance at black."""
     span = raw.white_level - raw.black_level
     read = raw.gain * raw.sensor.read_noise_at(raw.iso)
     return raw.gain / span, (read**2 + 1 / 12) / span**2
 
 
 def _matrix(values: NDArray[np.float64]) -> tuple[int, ...]:
-    """Rounded to 10000ths, as every camera has it."""
+    """Rationals rounded to 1/10000, as cameras write them."""
     return tuple(part for value in values.ravel() for part in (round(float(value) * 10000), 10000))
 
 
@@ -161,5 +161,5 @@ def _rationals(values: NDArray[np.float64]) -> tuple[int, ...]:
     return tuple(part for value in values for part in (round(float(value) * 10**6), 10**6))
 
 
-#: LibRaw refuses smaller pictures, px each way.
+#: Smallest pictures that LibRaw demosaics, px each way.
 _LEAST, LEAST_XTRANS = 32, 516

@@ -1,9 +1,9 @@
-"""Looks: tone curves from light to display, and how much colour they leave.
+"""Looks: tone curves from light to display, and their saturation.
 
-One family: y = M x^c / (x^c + k), the sigmoid of a film's characteristic curve (and of many
+All curves are y = M x^c / (x^c + k), the sigmoid of a film's characteristic curve (and of many
 measured responses, Naka and Rushton 1966): a straight middle of slope c (1 - y / M) over log
-light, a toe and a shoulder. M and k are such that middle grey stays, as ISO 12232 has it, and that
-a stated light is white.
+light, a toe and a shoulder. M and k are set so that middle grey stays where ISO 12232 puts it, and
+a stated light becomes white.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ class Look:
     black: float = 0.0
 
     def curve(self, light: FloatArray, most: float) -> FloatArray:
-        """Display light; ``most``: the light at which the sensor is full."""
+        """Returns display light; ``most``: the light at which the sensor saturates."""
         if self.contrast is None:
             return np.minimum(light, 1.0)
-        # For a white closer to grey no such curve exists.
+        # No such curve exists for a white closer to grey.
         white = max(min(self.white, most), 1.0)
         c, top, grey = self.contrast, white**self.contrast, GREY**self.contrast
         height = GREY * (top - grey) / (GREY * top - grey)
@@ -60,10 +60,10 @@ LOOKS = {
 
 
 def look_of(name: str) -> Look:
-    """A look by name.
+    """Returns a look by name.
 
     Raises:
-        UsageError: There is none of that name.
+        UsageError: The name is unknown.
     """
     if name not in LOOKS:
         raise UsageError(
@@ -74,7 +74,7 @@ def look_of(name: str) -> Look:
 
 
 def tone_table(look: Look, most: float) -> list[float] | None:
-    """The curve at the core's breakpoints; None: none is needed."""
+    """Tone curve at the core's breakpoints; None: not needed."""
     if look.contrast is None:
         return None
     values: list[float] = look.curve(_breakpoints(), most).tolist()
@@ -83,7 +83,7 @@ def tone_table(look: Look, most: float) -> list[float] | None:
 
 @cache
 def encode_table(space: str) -> list[float]:
-    """The curve of a colour space at the core's breakpoints."""
+    """Transfer curve of a colour space at the core's breakpoints."""
     values: list[float] = np.minimum(spaces.encoded(_breakpoints(), space), 1.0).tolist()
     return values
 
@@ -94,5 +94,5 @@ def _breakpoints() -> FloatArray:
 
 
 def saturation(amount: float, luminance: FloatArray) -> FloatArray:
-    """Colours at another distance from the grey of their luminance, shape (3, 3)."""
+    """Matrix that scales the distance of colours from the grey of their luminance, (3, 3)."""
     return np.asarray(amount * np.eye(3) + (1 - amount) * np.outer(np.ones(3), luminance))

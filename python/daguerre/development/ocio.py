@@ -1,4 +1,4 @@
-"""Views of OpenColorIO: how ACES shows scene-linear light (extra ``color``)."""
+"""Applies ACES views of OpenColorIO to scene-linear light (extra ``color``)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from daguerre.errors import UsageError, suggest
 from daguerre.files import extras
 
-#: OpenColorIO's own configuration, of its newest release.
+#: Newest built-in configuration of OpenColorIO.
 CONFIG = "ocio://studio-config-latest"
 LINEAR = "Linear Rec.709 (sRGB)"
 DISPLAYS = {"srgb": "sRGB - Display", "p3": "Display P3 - Display"}
@@ -25,7 +25,7 @@ def view_of(light: NDArray[np.float32], view: str, space: str = "srgb") -> NDArr
         space: ``srgb`` or ``p3``.
 
     Raises:
-        UsageError: No such view; OpenColorIO is missing.
+        UsageError: The view is unknown, or OpenColorIO is not installed.
     """
     ocio = _module()
     config = ocio.Config.CreateFromFile(CONFIG)

@@ -1,4 +1,4 @@
-"""Parameters of development: one row each, from which keywords, checks and flags come."""
+"""Parameters of development: a row for each, which defines keyword, checks and flag."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ DEVELOP = Table(
         in_python="Seed of the grain.",
     ),
     Parameter(
-        "exposure", "Exposure compensation, EV: on the sensor with --sensor, else in development",
+        "exposure", "Exposure compensation, EV; with --sensor on the sensor, else in development",
         "EV", 0.0, low=-64, high=64,
         parse=typed.number("an exposure in EV such as -0.5"),
         flags=("--ev",), metavar="EV", panel=LOOK, in_python="Exposure compensation, EV.",
@@ -44,52 +44,52 @@ DEVELOP = Table(
     Parameter(
         "wb", "White that becomes neutral", kind="value",
         flags=("--wb",), metavar="as-shot|auto|K|X,Y", panel=LOOK, default_words="as-shot",
-        in_python='The white that becomes neutral: "as-shot" (None), "auto", a temperature in K, '
+        in_python='White that becomes neutral: "as-shot" (None), "auto", a colour temperature, K, '
         "or a chromaticity (x, y).",
     ),
     Parameter(
         "look", "Tone curve [neutral]; OCIO: extra `color`", default="neutral", kind="text",
         flags=("--look",), metavar="neutral|standard|film|filmic|ocio:VIEW", panel=LOOK,
-        in_python="``neutral``: light in proportion, up to white; ``standard``, ``film``, "
-        "``filmic``: curves with shoulder and toe; ``ocio:VIEW``: a view of OpenColorIO's ACES "
+        in_python="Tone curve. ``neutral``: linear up to white; ``standard``, ``film``, "
+        "``filmic``: curves with toe and shoulder; ``ocio:VIEW``: a view of OpenColorIO's ACES "
         "configuration (extra ``color``).",
     ),
     Parameter(
         "highlights", "Treatment of saturated channels", default="clip", kind="choice",
         choices=HIGHLIGHTS, wants=f"one of {', '.join(HIGHLIGHTS)}",
         flags=("--highlights",), panel=LOOK, tells_default=True,
-        in_python="``clip``: saturated is white; ``blend``: highlights keep their differences and "
-        "lose colour; ``reconstruct``: a saturated channel is guessed from the others.",
+        in_python="Treatment of saturated channels. ``clip``: to white; ``blend``: highlights keep "
+        "differences and lose colour; ``reconstruct``: from the other channels.",
     ),
     Parameter(
         "sharpen", "Strength of an unsharp mask", default=0.0, low=0, high=10,
         flags=("--sharpen",), metavar="X", panel=LOOK, tells_default=True,
-        in_python="Strength of an unsharp mask: 0 none, 0.5 about that of a camera.",
+        in_python="Strength of an unsharp mask; 0: none, 0.5: about that of a camera.",
     ),
     Parameter(
-        "grain", "Diameter of the film's grains, um", "um", 0.0, low=0, high=1000,
+        "grain", "Diameter of film grains, um", "um", 0.0, low=0, high=1000,
         parse=typed.number("a diameter in um such as 2"),
         flags=("--grain",), metavar="UM", panel=LOOK, tells_default=True,
-        in_python="Diameter of the grains of a film, um; 0 none. Needs ``sensorOverallDimensions`` "
-        "in the metadata, or a raw picture.",
+        in_python="Diameter of film grains, um; 0: none. Needs ``sensorOverallDimensions`` in the "
+        "metadata, or a raw picture.",
     ),
     Parameter(
-        "demosaic", "Demosaicing method, or one of LibRaw's by name", default="good", kind="text",
+        "demosaic", "Demosaicing method, also by LibRaw's names", default="good", kind="text",
         flags=("--demosaic",), metavar="best|good|fast", panel=LOOK, tells_default=True,
-        in_python="``best``, ``good`` or ``fast``, or a method of LibRaw by name.",
+        in_python="Demosaicing method: ``best``, ``good``, ``fast``, or LibRaw's name of one.",
     ),
     Parameter(
         "colour_noise", "Passes of a median filter over color differences, for raw pictures",
         default=0, kind="whole", low=0, high=20,
         flags=("--colour-noise",), metavar="N", panel=LOOK, tells_default=True,
-        in_python="Passes of a median filter over the differences of colours, for the coloured "
-        "specks of high ISO; 0 none, 2 to 5 are usual. For raw pictures with colours.",
+        in_python="Passes of a median filter over colour differences, against colour noise at "
+        "high ISO; 0: none, 2 to 5 are usual. Only for raw pictures with colours.",
     ),
     Parameter(
         "colour_space", "Color space of the file", default="srgb", kind="choice",
         choices=tuple(COLOR_SPACES), wants=f"one of {', '.join(COLOR_SPACES)}",
         flags=("--colorspace",), panel=FILE, tells_default=True,
-        in_python="``srgb``, ``p3`` or ``rec2020``.",
+        in_python="Colour space of the picture: ``srgb``, ``p3`` or ``rec2020``.",
     ),
 )
 # fmt: on

@@ -1,4 +1,4 @@
-"""The small picture in a DNG, as a camera shows it on its back."""
+"""Makes the small preview of a DNG."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ LONGEST = 512
 
 
 def preview_of(raw: Raw) -> NDArray[np.uint8]:
-    """A developed picture of at most 512 px, shape (h, w, 3); the mosaic is not quad's.
+    """Makes a developed picture of at most 512 px, shape (h, w, 3); not for Quad-Bayer.
 
-    It looks at one cell of the pattern in every so many photosites: quick, and rough.
+    It samples only some cells of the pattern, which is fast but rough.
     """
     from .develop import develop
 
@@ -26,7 +26,7 @@ def preview_of(raw: Raw) -> NDArray[np.uint8]:
 
 
 def cell_means(raw: Raw, longest: int) -> NDArray[np.float32]:
-    """DN above black of each channel in cells of the pattern, shape (h, w, C)."""
+    """Means of DN above black of each channel in cells of the pattern, shape (h, w, C)."""
     cells = raw.sensor.pattern.cells
     rows, columns = cells.shape
     step = max(rows, columns) * -(-max(raw.mosaic.shape) // (max(rows, columns) * longest))

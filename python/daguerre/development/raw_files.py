@@ -1,4 +1,4 @@
-"""Raw pictures into files, as the table of formats calls for them."""
+"""Writes raw pictures to files, for the table of formats."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ def write_dng(path: str | os.PathLike[str], raw: Raw) -> None:
 
 
 def as_dng(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
-    """Writes the numbers as they are.
+    """Writes the undeveloped values as DNG.
 
     Raises:
-        UsageError: A look was asked for.
+        UsageError: A parameter of development is given.
     """
     if look:
         raise UsageError(f"{Path(path)}: a DNG is not developed: {', '.join(look)} has no place")
@@ -46,6 +46,6 @@ def as_dng(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
 
 
 def as_picture(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
-    """Develops the picture; ``quality`` and ``bits`` are those of the file."""
+    """Develops and writes the picture; ``quality`` and ``bits`` set the file format."""
     files = {name: look.pop(name) for name in ("quality", "bits") if name in look}
     develop(raw, **look).save(path, **files)

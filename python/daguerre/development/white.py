@@ -1,4 +1,4 @@
-"""White balance: which white becomes neutral."""
+"""White balance: finds the white that becomes neutral."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _BLOCK = 8  # px, of means that "auto" looks at: edges have colours that demosai
 
 
 def white_of(source: Channels, wanted: Any) -> XY:
-    """Chromaticity of the white.
+    """Returns the chromaticity of the white.
 
     Args:
         source: Channels of the picture.
         wanted: None or "as-shot"; "auto"; K; (x, y); also as text, "5600", "0.34,0.35".
 
     Raises:
-        UsageError: None of these.
+        UsageError: ``wanted`` is none of these.
     """
     if wanted is None or (isinstance(wanted, str) and wanted == "as-shot"):
         return source.as_shot
@@ -35,7 +35,7 @@ def white_of(source: Channels, wanted: Any) -> XY:
 
 
 def numbers_of(wanted: Any) -> Any:
-    """K or (x, y) of a text; what is none stays as it is."""
+    """Parses K or (x, y) from text; returns other values unchanged."""
     if not isinstance(wanted, str):
         return wanted
     try:
@@ -51,7 +51,7 @@ def numbers_of(wanted: Any) -> Any:
 
 
 def _block_means(pixels: NDArray[Any]) -> FloatArray:
-    """Mean colours of blocks, or of pixels if the picture is small, shape (N, 3)."""
+    """Mean colours of blocks, or of pixels in a small picture, shape (N, 3)."""
     height, width = pixels.shape[:2]
     size = _BLOCK if min(height, width) >= _BLOCK else 1
     rows, columns = height // size, width // size
@@ -61,10 +61,10 @@ def _block_means(pixels: NDArray[Any]) -> FloatArray:
 
 
 def _average(source: Channels) -> XY:
-    """The colour of the brighter part of what is not saturated: that is mostly white or grey.
+    """Colour of the brighter unsaturated part, which is usually white or grey.
 
-    The mean of the picture (grey world) and that of its top tenth (white patch) are both usual;
-    a power mean lies between them (Finlayson and Trezzi 2004, Shades of gray, power 6).
+    Common choices are the mean of the picture (grey world) and that of its brightest tenth (white
+    patch). A power mean lies between them (Finlayson and Trezzi 2004, Shades of gray, power 6).
     """
     means = _block_means(source.pixels)
     good = np.isfinite(means).all(axis=1) & (means < 0.95 * source.full).all(axis=1)
@@ -74,7 +74,7 @@ def _average(source: Channels) -> XY:
     top = values.max()
     mean = top * np.mean((values / top) ** 6, axis=0) ** (1 / 6)
     white = source.as_shot
-    for _ in range(4):  # the matrix depends on the white that it is to find
+    for _ in range(4):  # iterate: the matrix depends on the white that is sought
         xyz = source.xyz_from(white) @ mean
         x, y = xyz[:2] / xyz.sum()
         if not (0.15 < x < 0.65 and 0.15 < y < 0.65 and math.isfinite(x + y)):

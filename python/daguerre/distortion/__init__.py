@@ -1,4 +1,4 @@
-"""Models of distortion as functions of points; pictures are bent with them in ``daguerre.post``."""
+"""Distortion models as functions of points; ``daguerre.post`` applies them to pictures."""
 
 from __future__ import annotations
 

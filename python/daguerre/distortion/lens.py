@@ -1,4 +1,4 @@
-"""The distortion of a real lens: its chief rays, at its focus and zoom, for one wavelength."""
+"""Distortion of a real lens from chief rays, at its focus and zoom, for one wavelength."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ from .model import WIDEST, FloatArray, Radial
 from .monotone import SAMPLES, Monotone
 
 HEIGHTS = 48
-NEAR, NEAR_HEIGHTS = 0.1, 10  # for the scale near the axis: up to a share of the reach
+NEAR, NEAR_HEIGHTS = 0.1, 10  # share of the reach, and heights, for the scale near the axis
 DEGREE = 20
-TRIM = 1e-10  # of the angle: terms that are less are left out
+TRIM = 1e-10  # terms that are a smaller share of the angle are dropped
 
 
 @dataclass(frozen=True)
 class LensDistortion(Radial):
-    """Where a lens puts the points of a flat picture at its focus distance.
+    """Distortion of an axially symmetric lens, for a plane at its focus distance.
 
     The ideal picture is that of a pinhole in the middle of the paraxial entrance pupil. It has the
-    scale of the lens near the axis at the design wavelength, whatever this model's wavelength is:
-    so models of several wavelengths differ by the lens's lateral colour.
+    scale of the lens near the axis at the design wavelength, not at this model's. So models of
+    several wavelengths differ by the lens's lateral colour.
 
     Attributes:
-        bench: The lens, set up.
-        reach_mm: Largest image height that will be asked for, mm.
-        wavelength_nm: nm.
+        bench: Lens on the bench.
+        reach_mm: Largest image height that is needed, mm.
+        wavelength_nm: Wavelength, nm.
     """
 
     bench: Bench
@@ -46,7 +46,7 @@ class LensDistortion(Radial):
     def of_colours(
         cls, bench: Bench, reach_mm: float, wavelengths_nm: Sequence[float]
     ) -> list[LensDistortion]:
-        """Models of one lens for several wavelengths, which share their scale."""
+        """Returns models of one lens for several wavelengths, with a common scale."""
         made = [cls(bench, reach_mm, nm) for nm in wavelengths_nm]
         for model in made[1:]:
             model.__dict__["focal_length_mm"] = made[0].focal_length_mm
@@ -61,7 +61,7 @@ class LensDistortion(Radial):
 
     @cached_property
     def focal_length_mm(self) -> float:
-        """Image height over the tangent of the angle, near the axis, mm."""
+        """Focal length: image height over the tangent of the angle, near the axis, mm."""
         near = NEAR * self.reach_mm
         angle, _ = _angles(self.bench, near, DESIGN_WAVELENGTH_NM, NEAR_HEIGHTS)
         return 1 / float(angle(0.0))
@@ -85,14 +85,14 @@ class LensDistortion(Radial):
 
 
 def tangent(angle: FloatArray) -> FloatArray:
-    """Radius at distance 1 of an angle off the axis; NaN for what lies beside or behind."""
+    """Radius at distance 1 for an angle off the axis; NaN for 90 degrees and more."""
     return np.where(angle < WIDEST, np.tan(np.minimum(angle, 1.5706)), np.nan)
 
 
 def _angles(
     bench: Bench, reach_mm: float, nm: float, rays: int = HEIGHTS
 ) -> tuple[Chebyshev, float]:
-    """Angle over image height as a function of its square, and how far it holds, mm."""
+    """Angle over image height as a function of its square, and its largest valid height, mm."""
     heights = reach_mm * np.sin(0.5 * np.pi * (np.arange(rays) + 0.5) / rays)
     chief = chief_rays(bench, heights, nm)
     slope = chief.directions[:, 1] / chief.directions[:, 2]

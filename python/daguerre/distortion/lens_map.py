@@ -1,4 +1,4 @@
-"""Maps of lenses that are not the same on all sides: anamorphic, or with elements off the axis."""
+"""Distortion of lenses without axial symmetry: anamorphic, or with decentred elements."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ DEGREE = 24  # in x and y together
 GUESS_DEGREE = 7
 LEAST = 700  # chief rays that a fit needs
 NEWTON = 12
-MARGIN = 1.02  # the fit may be asked so far beyond the film
+MARGIN = 1.02  # extent of the fit, in sizes of the film
 CHUNK = 1 << 14  # points at a time
 
 
 @dataclass(frozen=True)
 class LensMap(Distortion):
-    """Where a lens puts the points of a flat picture at its focus distance, in two dimensions.
+    """Distortion of any lens, for a plane at its focus distance, in two dimensions.
 
-    Unlike ``LensDistortion``, a polynomial of both coordinates, fitted to the chief rays of a grid
-    of film points: to their direction cosines, which stay smooth where tangents run away. The ideal
-    picture is a pinhole's whose pixels have the lens's own scales near the axis: of an anamorphic
-    lens it is as squeezed as the lens's own.
+    Unlike ``LensDistortion``, this is a polynomial of both coordinates. It is fitted to the
+    direction cosines of chief rays from a grid of film points; cosines stay smooth where tangents
+    diverge. The ideal picture is a pinhole's with the lens's horizontal and vertical scale near the
+    axis, so for an anamorphic lens it is equally squeezed.
 
     Attributes:
-        bench: The lens, set up.
-        reach_mm: Largest distances from the axis that will be asked for, across and down, mm.
-        wavelength_nm: nm.
-        focal_mm: Scales near the axis, across and down, mm.
+        bench: Lens on the bench.
+        reach_mm: Largest distances from the axis that are needed, horizontal and vertical, mm.
+        wavelength_nm: Wavelength, nm.
+        focal_mm: Scales near the axis, horizontal and vertical, mm.
     """
 
     bench: Bench
@@ -52,7 +52,7 @@ class LensMap(Distortion):
     def of_colours(
         cls, bench: Bench, reach_mm: tuple[float, float], wavelengths_nm: Sequence[float]
     ) -> list[LensMap]:
-        """Models of one lens for several wavelengths, which share their scales."""
+        """Returns models of one lens for several wavelengths, with common scales."""
         scales = _scales(bench)
         return [cls(bench, reach_mm, nm, scales) for nm in wavelengths_nm]
 
@@ -62,12 +62,12 @@ class LensMap(Distortion):
 
     @cached_property
     def _half(self) -> FloatArray:
-        """Half of the film that the fit is good for, as distorted points."""
+        """Half extent of the film for which the fit holds, as distorted points."""
         return np.divide(self.reach_mm, self.focal_mm)
 
     @cached_property
     def _grid(self) -> tuple[FloatArray, FloatArray]:
-        """Points of the fit in [-1, 1], denser toward edges, and the cosines there."""
+        """Points of the fit in [-1, 1], denser toward the edges, and their cosines."""
         line = np.sin(0.5 * np.pi * np.linspace(-1, 1, NODES))
         at = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
         ideal = _ideal_points(self.bench, at * self._half * self.focal_mm, self.wavelength_nm)
@@ -83,7 +83,7 @@ class LensMap(Distortion):
 
     @cached_property
     def _inverse_fit(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Middle and half extent of the cosines, and coefficients back from there."""
+        """Middle and half extent of the cosines, and coefficients of the inverse."""
         at, cosines = self._grid
         low, high = cosines.min(axis=0), cosines.max(axis=0)
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
@@ -91,7 +91,7 @@ class LensMap(Distortion):
 
     @cached_property
     def _known(self) -> FloatArray:
-        """Where there are chief rays: 1 or 0 on a raster of the film, rows of y."""
+        """Mask of film points with chief rays: 1 or 0 on a raster, rows of y."""
         line = np.linspace(-1, 1, NODES)
         at = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
         ideal = _ideal_points(self.bench, at * self._half * self.focal_mm, self.wavelength_nm)
@@ -117,7 +117,7 @@ class LensMap(Distortion):
         return np.asarray(near & np.greater(np.min(corners, axis=0), 0), np.bool_)
 
     def _distorted_of(self, points: FloatArray) -> FloatArray:
-        """By Newton's method, from a rough inverse."""
+        """Inverts by Newton's method, from a rough inverse."""
         middle, half, back = self._inverse_fit
         wanted = _cosines(points)
         near = np.asarray((np.abs((wanted - middle) / half) <= 1.2).all(axis=1))
@@ -129,7 +129,7 @@ class LensMap(Distortion):
                 break
             step = _solved(self._slopes(at), miss)
             at = np.clip(at - step, -1.5 * MARGIN, 1.5 * MARGIN)
-        # Behind a turn there is another point that is as good: the lens does not show it.
+        # Beyond a fold there is a second solution, which the lens does not show.
         slopes = self._slopes(at)
         upright = slopes[:, 0, 0] * slopes[:, 1, 1] > slopes[:, 0, 1] * slopes[:, 1, 0]
         good = near & upright & self._inside(at) & (np.hypot(miss[:, 0], miss[:, 1]) < 1e-8)
@@ -142,7 +142,7 @@ class LensMap(Distortion):
 
 
 def _scales(bench: Bench) -> tuple[float, float]:
-    """Film over tangent near the axis, across and down, mm: the same unless it squeezes."""
+    """Image height over tangent near the axis, across and down, mm; equal unless anamorphic."""
     step = 1e-3 * abs(bench.order.efl)
     film = step * np.array([[-1.0, 0], [1, 0], [0, -1], [0, 1]])
     ideal = _ideal_points(bench, film, DESIGN_WAVELENGTH_NM)
@@ -155,8 +155,8 @@ def _scales(bench: Bench) -> tuple[float, float]:
 
 
 def _ideal_points(bench: Bench, film_mm: FloatArray, nm: float) -> FloatArray:
-    """Ideal points (x right, y down) that a picture shows at points of it, mm; NaN: none."""
-    # The picture stands upside down on the film; film y is up, and so turned twice.
+    """Ideal points (x right, y down) for points of the picture, mm; NaN: none."""
+    # The picture is upside down on the film, and the film's y is up: both signs flip.
     film = film_mm * (-1, 1)
     found = [chief_rays(bench, film[k : k + CHUNK], nm) for k in range(0, len(film), CHUNK)]
     return np.concatenate([_seen(bench, rays) for rays in found])
@@ -175,12 +175,12 @@ def _seen(bench: Bench, rays: ChiefRays) -> FloatArray:
 
 
 def _cosines(points: FloatArray) -> FloatArray:
-    """Direction cosines across of points at distance 1."""
+    """Direction cosines (x, y) of points at distance 1."""
     return np.asarray(points / np.sqrt(1 + (points**2).sum(axis=1, keepdims=True)))
 
 
 def _tangents(cosines: FloatArray) -> FloatArray:
-    """Points at distance 1 again; NaN: beside the camera."""
+    """Points at distance 1 from direction cosines; NaN: 90 degrees or more."""
     rest = 1 - (cosines**2).sum(axis=1, keepdims=True)
     return np.asarray(cosines / np.sqrt(np.where(rest > 0, rest, np.nan)))
 
@@ -196,7 +196,7 @@ def _fitted(at: FloatArray, values: FloatArray, degree: int) -> FloatArray:
 
 
 def _values(coefficients: FloatArray, at: FloatArray) -> FloatArray:
-    """Shape (N, K), of coefficients (D, E, K)."""
+    """Values of a polynomial, shape (N, K), from coefficients (D, E, K)."""
     columns = chebyshev.chebvander(at[:, 0], coefficients.shape[0] - 1)
     rows = chebyshev.chebvander(at[:, 1], coefficients.shape[1] - 1)
     parts = [

@@ -1,9 +1,9 @@
-"""Interface of all distortion models: ideal points to those of a lens, and back.
+"""Interface of all distortion models: maps ideal points to those of a lens, and back.
 
 Points lie on the plane at distance 1 in front of the camera: (x, y) = (X / Z, Y / Z), x to the
-right and y down, OpenCV's convention. A model maps the points of an ideal (rectilinear) picture to
-those of the picture of the lens: ``distort``, undistorted -> distorted, which is OpenCV's
-direction. Where a model is not defined, or turns back upon itself, the answer is NaN.
+right and y down, OpenCV's convention. ``distort`` maps points of an ideal (rectilinear) picture to
+those of the lens's picture, undistorted -> distorted, OpenCV's direction. Where a model is not
+defined or folds, the result is NaN.
 """
 
 from __future__ import annotations
@@ -20,27 +20,34 @@ from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 FloatArray = NDArray[np.float64]
-#: Angle off the axis, rad, from which on things lie beside the camera: no ideal picture shows them.
+#: Largest angle off the axis, rad, that an ideal picture can show.
 WIDEST = math.radians(89.99)
 
 
 @guarded(arrays=False)
 class Distortion(ABC):
-    """The base of all models."""
+    """Base class of distortion models."""
 
     def distort(self, points: ArrayLike) -> FloatArray:
-        """Where the lens shows ideal points.
+        """Maps ideal points to those of the lens's picture.
 
         Args:
-            points: Shape (N, 2), at distance 1.
+            points: Points at distance 1, shape (N, 2).
 
         Returns:
-            Shape (N, 2); NaN for points that it does not show.
+            Points at distance 1, shape (N, 2); NaN for points that the lens does not show.
         """
         return self._distorted(_checked(points))
 
     def undistort(self, points: ArrayLike) -> FloatArray:
-        """The ideal points that the lens shows at these points: the inverse of ``distort``."""
+        """Maps points of the lens's picture to ideal points: the inverse of ``distort``.
+
+        Args:
+            points: Points at distance 1, shape (N, 2).
+
+        Returns:
+            Points at distance 1, shape (N, 2); NaN where the lens shows none.
+        """
         return self._ideal(_checked(points))
 
     @abstractmethod
@@ -51,7 +58,7 @@ class Distortion(ABC):
 
 
 class Radial(Distortion):
-    """A model that moves points along their radius alone."""
+    """Base class of models that move points only along their radius."""
 
     @abstractmethod
     def _bent(self, radius: FloatArray) -> FloatArray:
@@ -70,7 +77,7 @@ class Radial(Distortion):
 
 def _scaled(points: FloatArray, new: Callable[[FloatArray], FloatArray]) -> FloatArray:
     radius = np.hypot(points[:, 0], points[:, 1])
-    # Near the axis the ratio is that of a small radius: all models are smooth there.
+    # Near the axis the ratio of a small radius is used, as all models are smooth there.
     safe = np.maximum(radius, 1e-9)
     return np.asarray(points * (new(safe) / safe)[:, None])
 

@@ -1,4 +1,4 @@
-"""Rising functions of one number, and their inverse, from 0 to where they stop rising."""
+"""Functions on the interval from 0 on which they increase, and their inverse."""
 
 from __future__ import annotations
 
@@ -13,18 +13,17 @@ NEWTON = 12
 
 
 class Monotone:
-    """f with f(0) = 0, from 0 to where it stops rising or ends; NaN beyond.
+    """Function f with f(0) = 0, from 0 to where it stops increasing or ends; NaN beyond.
 
-    A lens never shows one direction twice: where the formula of a distortion turns back, it has
-    left what it was fitted to.
+    A lens shows no direction twice, so a distortion formula that folds is beyond its fitted range.
     """
 
     def __init__(self, function: Callable[[FloatArray], FloatArray], samples: FloatArray) -> None:
-        """Finds the end.
+        """Finds the end of the interval.
 
         Args:
-            function: Elementwise.
-            samples: From 0 upward, shape (N,); the function is not asked beyond the last one.
+            function: Elementwise function.
+            samples: Points from 0 upward, shape (N,); none beyond the last is evaluated.
         """
         self._function = function
         with np.errstate(all="ignore"):
@@ -39,12 +38,12 @@ class Monotone:
         self.value_limit = float(self._y[-1])
 
     def __call__(self, x: FloatArray) -> FloatArray:
-        """f(x); NaN beyond the end."""
+        """Returns f(x); NaN beyond the end."""
         with np.errstate(all="ignore"):
             return np.where(x <= self.limit, self._function(x), np.nan)
 
     def inverse(self, y: FloatArray) -> FloatArray:
-        """The x with f(x) = y, by Newton's method from a table; NaN beyond the end."""
+        """Returns x with f(x) = y, by Newton's method from a table; NaN beyond the end."""
         known = y <= self.value_limit
         goal = np.where(known, y, 0.0)
         x = np.interp(goal, self._y, self._x)
@@ -63,7 +62,7 @@ class Monotone:
         return np.asarray((self._function(high) - self._function(low)) / (high - low))
 
     def _end(self, low: float, high: float) -> float:
-        """Where the slope turns, between a place at which it rises and one behind the turn."""
+        """Position of the maximum, between a point before and a point behind it."""
         width = high - low
         for _ in range(40):
             middle = 0.5 * (low + high)

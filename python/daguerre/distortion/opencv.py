@@ -46,7 +46,7 @@ class OpenCV(Projected):
 @guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class BrownConrady(OpenCV):
-    """Radial and tangential distortion: k1, k2, k3 and p1, p2 in OpenCV's order and meaning."""
+    """Radial (k1, k2, k3) and tangential (p1, p2) distortion, in OpenCV's order and meaning."""
 
     def __init__(
         self,
@@ -62,7 +62,7 @@ class BrownConrady(OpenCV):
 @guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class OpenCVFisheye(Projected):
-    """Radius = t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8), t the angle off the axis."""
+    """OpenCV's fisheye: radius = t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8), t the angle, rad."""
 
     _projection: ClassVar = "kannala_brandt"
     k1: float = 0.0

@@ -23,7 +23,7 @@ FloatArray = NDArray[np.float64]
 FILTER_MARGIN = 4
 
 
-#: More than that many times the picture's side beside it is a mistake, or no picture any more.
+#: Largest overscan on a side, in sides of the picture.
 MOST = 2.0
 
 
@@ -31,7 +31,7 @@ def to_undistort(view: RectifiedView, where: str = "overscan undistort") -> Over
     """Finds the overscan with which undistorting leaves no holes in a picture of the same size.
 
     Raises:
-        UsageError: It would need what the camera does not show, or a picture many times as large.
+        UsageError: It would need parts that the camera does not show, or too large a picture.
     """
     return _reach(view, view.bent_from_straight, where)
 
@@ -43,11 +43,11 @@ def note(overscan: Overscan) -> str:
 
 
 def to_redistort(view: RectifiedView) -> Overscan | None:
-    """Finds the overscan with which an ideal picture redistorts without holes; None: no bounds."""
+    """Finds the overscan with which an ideal picture redistorts without holes; None: unbounded."""
 
     def place(points: FloatArray) -> FloatArray:
         found = view.straight_from_bent(points)
-        dark = ~view.sees(points)  # nothing is needed for what is dark
+        dark = ~view.sees(points)  # dark pixels need no source
         found[dark] = np.array(view.resolution) / 2
         return found
 
@@ -58,9 +58,9 @@ def to_redistort(view: RectifiedView) -> Overscan | None:
 
 
 def _reach(view: RectifiedView, place: Any, where: str) -> Overscan:
-    """How far the pixels of the display window, by a map, reach out of it."""
+    """Overscan that contains the mapped pixels of the display window."""
     width, height = view.resolution
-    # The map is smooth: its corners and edges reach farthest, but for folds within.
+    # The map is smooth: corners and edges reach farthest, except for folds within.
     x, y = (np.linspace(0, n, min(n, 256) + 1) for n in (width, height))
     at = np.stack(np.meshgrid(x, y), axis=-1)
     found = place(at.reshape(-1, 2)).reshape(at.shape)
@@ -79,7 +79,7 @@ def _reach(view: RectifiedView, place: Any, where: str) -> Overscan:
             f"{where}: would take {max(beside):.0f} px beside a picture of {width} x {height}; "
             "wanted a number of pixels"
         )
-    # Rounding is no distortion: a camera that bends nothing needs nothing.
+    # Rounding is not distortion: a camera without distortion needs no overscan.
     return Overscan(*(math.ceil(n) + FILTER_MARGIN if n > 0.01 else 0 for n in beside))
 
 
@@ -90,7 +90,7 @@ def overscan_of(
     scene: Scene | None,
     core_scene: _core.Scene | None,
 ) -> Overscan:
-    """Pixels beside the picture that are asked for; ``"undistort"``: as the camera needs them."""
+    """Returns the overscan as given, in px; ``"undistort"``: as the camera needs it."""
     found = check_overscan(wanted, resolution)
     if found is not None:
         return found

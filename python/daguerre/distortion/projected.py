@@ -1,4 +1,4 @@
-"""Distortion by the models of the core, which also draw rays and calibrate cameras."""
+"""Distortion by the core's projection models, which also serve rendering and calibration."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .model import WIDEST, Distortion, FloatArray
 
 @dataclass(frozen=True)
 class Projected(Distortion):
-    """A model of the core; its fields are the model's parameters, in their order."""
+    """Base class of the core's models; the fields are the model's parameters, in order."""
 
     _projection: ClassVar[str]
 
@@ -32,7 +32,7 @@ class Projected(Distortion):
 
 @lru_cache(16)
 def _model(of: Projected) -> _core.ProjectionModel:
-    """The core's model: beside the value, so that the value travels without it."""
+    """Core's model, kept outside the value so that the value can be pickled."""
     numbers = [float(getattr(of, field.name)) for field in fields(of)]
     with core_errors(UsageError, type(of).__name__):
         return _core.ProjectionModel(of._projection, numbers)

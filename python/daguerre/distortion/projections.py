@@ -22,7 +22,7 @@ from .projected import Projected
 @guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class Equidistant(Projected):
-    """Radius = theta: equal angles are equal lengths."""
+    """Equidistant fisheye: radius = theta; equal angles are equal lengths."""
 
     _projection: ClassVar = "equidistant"
 
@@ -30,7 +30,7 @@ class Equidistant(Projected):
 @guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class Equisolid(Projected):
-    """Radius = 2 sin(theta / 2): equal solid angles are equal areas."""
+    """Equisolid fisheye: radius = 2 sin(theta / 2); equal solid angles are equal areas."""
 
     _projection: ClassVar = "equisolid"
 
@@ -38,7 +38,7 @@ class Equisolid(Projected):
 @guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class Stereographic(Projected):
-    """Radius = 2 tan(theta / 2): small shapes stay as they are."""
+    """Stereographic fisheye: radius = 2 tan(theta / 2); small shapes are kept."""
 
     _projection: ClassVar = "stereographic"
 
@@ -46,7 +46,7 @@ class Stereographic(Projected):
 @guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class Orthographic(Projected):
-    """Radius = sin(theta): the half sphere seen from far away."""
+    """Orthographic fisheye: radius = sin(theta); the hemisphere seen from far away."""
 
     _projection: ClassVar = "orthographic"
 
@@ -54,10 +54,10 @@ class Orthographic(Projected):
 @guarded(init=True, arrays=False)
 @dataclass(frozen=True)
 class Division(Radial):
-    """Ideal radius = r / (1 + k1 r^2 + k2 r^4), r that of the lens.
+    """Division model: ideal radius = r / (1 + k1 r^2 + k2 r^4), r the lens's radius.
 
     After Fitzgibbon 2001, Simultaneous linear estimation of multiple view geometry and lens
-    distortion: one number serves even wide lenses.
+    distortion. One parameter suffices even for wide lenses.
     """
 
     k1: float = 0.0

@@ -1,6 +1,6 @@
-"""Where the pixels of a camera look, and where the ideal camera would have put what they see.
+"""Maps pixels between a camera and its rectified (ideal) twin.
 
-Pixels have their middles at halves: (0, 0) is the upper left corner of the picture.
+Pixel centres are at halves: (0, 0) is the upper left corner of the picture.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class RectifiedView:
         return math.inf if distance is None else distance
 
     def bent_from_straight(self, pixels: FloatArray) -> FloatArray:
-        """Where the camera has what the ideal camera has at points (N, 2), px; NaN: nowhere."""
+        """Maps points (N, 2) of the ideal picture to the camera's, px; NaN: not visible."""
         slopes = (self._film(pixels) - self._principal) / self._focal
         ahead = np.column_stack([slopes, -np.ones(len(slopes))])
         endless = math.isinf(self.distance)
@@ -81,7 +81,7 @@ class RectifiedView:
         return self._pixels(self._chief.film_points(np.ascontiguousarray(points), endless))
 
     def straight_from_bent(self, pixels: FloatArray) -> FloatArray:
-        """Where the ideal camera has what the camera has at points (N, 2), px; NaN: nowhere."""
+        """Maps points (N, 2) of the camera's picture to the ideal one's, px; NaN: not visible."""
         origins, directions = self._chief.rays(np.ascontiguousarray(self._film(pixels)))
         seen = self.sees(pixels)
         ahead = -directions[:, 2]
@@ -94,7 +94,7 @@ class RectifiedView:
         return self._pixels(slopes * self._focal + self._principal)
 
     def sees(self, pixels: FloatArray) -> NDArray[np.bool_]:
-        """Whether light comes to points (N, 2), px."""
+        """Whether light reaches points (N, 2), px."""
         film = np.ascontiguousarray(self._film(pixels))
         return np.asarray(self._chief.sees(self.setup.core, film))
 
@@ -109,7 +109,7 @@ class RectifiedView:
 
 
 def built(scene: Scene | None, camera: Camera, resolution: tuple[int, int]) -> _core.Scene | None:
-    """The scene as a camera sees it, for autofocus; None where there is none."""
+    """Builds the scene for a camera's autofocus; None: no scene."""
     if scene is None:
         return None
     from daguerre.setup.scene import build

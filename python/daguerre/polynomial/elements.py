@@ -1,8 +1,8 @@
-"""The pieces of a system, each the Taylor expansion of its exact transfer about a base ray.
+"""Elements of a system, each the Taylor expansion of its exact transfer about a base ray.
 
-Lengths in mm. z runs the way that light goes, also behind a mirror: distances are positive, and a
-radius is positive when the centre lies ahead. Every element ends on a plane across z through the
-vertex of its surface, where the next one begins.
+Lengths in mm. z points along the light, also after a mirror: distances are positive, and a radius
+is positive when the centre lies ahead. Every element ends on a plane normal to z through the vertex
+of its surface, where the next one begins.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ MAX_DEGREE = 15
 
 
 def propagate(distance: float, *, degree: int = 5, about: ArrayLike = AXIS) -> System:
-    """To a plane ``distance`` mm ahead.
+    """Returns the propagation to a plane ahead.
 
     Args:
-        distance: mm; negative: back.
-        degree: 1 to 15. Of two systems put together, the lower counts.
-        about: Base ray of the expansion, shape (4,); the axis if not given.
+        distance: Distance of the plane, mm; negative: back.
+        degree: Degree, 1 to 15. A composed system has the lower degree of its parts.
+        about: Base ray of the expansion (x, y, dx, dy), shape (4,); default: the axis.
     """
     nodes, rays = _about(about, [])
     length = number(distance, "propagate: distance in mm")
@@ -45,19 +45,19 @@ def refract(
     wavelength: ArrayLike | None = None,
     about: ArrayLike = AXIS,
 ) -> System:
-    """Through a surface, from the plane at its vertex to itself.
+    """Returns the refraction at a surface, from and to the plane at its vertex.
 
     Args:
         form: ``sphere(50)``, ``plane()``, ``conic``, ``asphere``, ``cylinder`` ...
         n1: Index in front: a number, one for each wavelength, or a glass.
-        n2: Index behind.
-        degree: 1 to 15.
-        wavelength: Nodes, nm, shape () or (W,); not given: the indices hold for any, or are those
-            of a glass at 587.56 nm.
-        about: Base ray, shape (4,) or (W, 4): the ``image`` of what comes before.
+        n2: Index behind, likewise.
+        degree: Degree, 1 to 15.
+        wavelength: Wavelength nodes, nm, shape () or (W,); default: numbers hold for any
+            wavelength, glasses are taken at 587.56 nm.
+        about: Base ray, shape (4,) or (W, 4), such as the ``image`` of the preceding system.
 
     Raises:
-        UsageError: The base ray misses, is totally reflected, or the form is not smooth there.
+        UsageError: The base ray misses or is totally reflected, or the form is not smooth there.
     """
     nodes, rays = _about(about, with_glass(nodes_of(wavelength), n1, n2))
     first, second = index_at(n1, nodes), index_at(n2, nodes)
@@ -69,12 +69,13 @@ def refract(
 
 
 def reflect(form: Form, *, degree: int = 5, about: ArrayLike = AXIS) -> System:
-    """From a mirror. What follows is counted along the reflected light; x and y stay.
+    """Returns the reflection at a mirror; then z points along the reflected light, x and y stay.
 
     Args:
-        form: Radius positive when the centre lies ahead of the light that arrives.
-        degree: 1 to 15.
-        about: Base ray, shape (4,).
+        form: Form of the mirror; its radius is positive when the centre lies ahead of the incoming
+            light.
+        degree: Degree, 1 to 15.
+        about: Base ray, shape (4,); default: the axis.
     """
     nodes, rays = _about(about, [])
     surface = _surface(form)
@@ -118,10 +119,10 @@ def place(
 
 
 def checked(degree: int) -> int:
-    """A degree that there is.
+    """Checks a degree.
 
     Raises:
-        UsageError: It is none of 1 .. 15.
+        UsageError: The degree is not 1 .. 15.
     """
     return whole(degree, "degree", 1, MAX_DEGREE, f"1 to {MAX_DEGREE}")
 

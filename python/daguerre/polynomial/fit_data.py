@@ -30,7 +30,7 @@ _UNITS = {"direction": "_rad", "film": "_um", "iris": "_mm", "mount": "_mm", "tr
 
 
 def error_zone(zone: _core.FitErrorZone) -> dict[str, Any]:
-    """One zone's errors by the names of ``ErrorZone``."""
+    """Errors of one zone, by the names of ``ErrorZone``."""
     pairs = {
         name + _UNITS[name]: (getattr(zone, name).rms, getattr(zone, name).max) for name in _PAIRS
     }
@@ -45,7 +45,7 @@ def error_zone(zone: _core.FitErrorZone) -> dict[str, Any]:
 
 
 def to_dict(fit: _core.LensFit) -> dict[str, Any]:
-    """The whole fit, JSON-able."""
+    """Converts a fit to JSON-compatible data."""
     axial, mirror_x, mirror_y = fit.symmetry
     points = ["offset", "iris", *(f"mount{i}" for i in range(len(fit.mounts)))]
     offset, scale = fit.wavelength_scale
@@ -91,7 +91,7 @@ def to_dict(fit: _core.LensFit) -> dict[str, Any]:
 
 
 def from_dict(data: Any) -> _core.LensFit:
-    """The inverse of ``to_dict``."""
+    """Makes a fit from the data of ``to_dict``."""
     form = data.get("format") if isinstance(data, dict) else None
     if form != FORMAT:
         raise InputError(f"lens fit: format: wanted {FORMAT!r}, got {form!r}")

@@ -19,28 +19,28 @@ from .lens_fit import LensFit
 from .parameters import FIT, FitKeywords
 from .setting import FitSetting, iris_shape
 
-#: The highest degree that is fitted.
+#: Highest degree of a fit.
 MAX_DEGREE = 13
-#: Pixel filters reach a little over the frame's edge.
+#: Extent of the fit in sizes of the film, as pixel filters reach a little beyond the frame.
 FILM_MARGIN = 1.02
 
 
 @takes(FIT, FitKeywords)
 @guarded
 def fit(lens: lenses.Lens | str, degree: int = 7, **keywords: Unpack[FitKeywords]) -> LensFit:
-    """Fits polynomials from film rays to scene rays.
+    """Fits polynomials that map film rays to scene rays.
 
     Args:
-        lens: A lens, or the name of one in the library or of a file.
-        degree: Degree of the polynomials in the ray's four coordinates: odd, 1 to 13.
+        lens: A lens, its name in the library, or a file.
+        degree: Degree of the polynomials in the ray's four coordinates; odd, 1 to 13.
         {keywords}
 
     Returns:
-        The fit, with its error on rays that it was not fitted to.
+        The fit, with its error on rays that were not used for fitting.
 
     Raises:
-        UsageError: A degree that is not fitted, or a film without size.
-        LensError: The lens cannot open, focus or zoom like that.
+        UsageError: The degree or the size of the film is invalid.
+        LensError: F-stop, focus or zoom is out of the lens's range.
     """
     if isinstance(lens, str):
         lens = lenses.load(lens)

@@ -1,4 +1,4 @@
-"""Forms of surfaces. A radius is positive when the centre lies ahead, as the light goes."""
+"""Forms of surfaces. A radius is positive when the centre lies ahead, in the direction of light."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from daguerre.lenses.surface_reader import MAX_POWER
 
 @dataclass(frozen=True, eq=False)
 class Form:
-    """The form of a surface about its vertex.
+    """Form of a surface about its vertex.
 
     Attributes:
         name: Name of the form.
-        surface: The core's version.
+        surface: Surface in the core.
     """
 
     name: str
@@ -30,28 +30,28 @@ class Form:
 
 
 def plane() -> Form:
-    """A plane across the axis."""
+    """Returns a plane normal to the axis."""
     return _form("plane()", "spherical")
 
 
 def sphere(radius: float) -> Form:
-    """A sphere of a radius, mm."""
+    """Returns a sphere of a radius, mm."""
     radius = _length(radius)
     return _form(f"sphere({radius:g})", "spherical", curvature=1 / radius)
 
 
 def conic(radius: float, k: float) -> Form:
-    """A conic of revolution: radius at the vertex, mm, and conic constant (-1: paraboloid)."""
+    """Returns a conic of revolution: vertex radius, mm, and conic constant (-1: paraboloid)."""
     radius, k = _length(radius), number(k, "conic: k")
     return _form(f"conic({radius:g}, {k:g})", "aspheric", curvature=1 / radius, conic=k)
 
 
 def asphere(radius: float, terms: Mapping[int, float], k: float = 0.0) -> Form:
-    """A conic of revolution, to which powers of the distance from the axis are added.
+    """Returns an asphere: a conic of revolution plus powers of the distance from the axis.
 
     Args:
-        radius: At the vertex, mm; infinity for none.
-        terms: Power of r to its coefficient, r in mm. Odd powers have no expansion at the vertex.
+        radius: Radius at the vertex, mm; infinity: a plane.
+        terms: Coefficients by power of r, r in mm. Odd powers have no expansion at the vertex.
         k: Conic constant.
     """
     if not isinstance(terms, Mapping):
@@ -66,7 +66,13 @@ def asphere(radius: float, terms: Mapping[int, float], k: float = 0.0) -> Form:
 
 
 def cylinder(radius: float, axis: Literal["x", "y"] = "x", k: float = 0.0) -> Form:
-    """A cylinder whose axis lies along x or y, so that it bends light across that."""
+    """Returns a cylinder whose axis lies along x or y; it has power across its axis.
+
+    Args:
+        radius: Radius, mm.
+        axis: Direction of the axis, ``x`` or ``y``.
+        k: Conic constant of the curved section.
+    """
     if str(axis) not in ("x", "y"):
         raise UsageError(f"cylinder: axis: wanted 'x' or 'y', got {short(axis)}")
     radius, k = _length(radius), number(k, "cylinder: k")
@@ -74,12 +80,12 @@ def cylinder(radius: float, axis: Literal["x", "y"] = "x", k: float = 0.0) -> Fo
 
 
 def biconic(radius_x: float, radius_y: float, k_x: float = 0.0, k_y: float = 0.0) -> Form:
-    """A radius and a conic constant for each of the sections x-z and y-z."""
+    """Returns a biconic: radius (mm) and conic constant for the sections x-z and y-z."""
     return _two("biconic", radius_x, radius_y, k_x, k_y)
 
 
 def toroid(radius_x: float, radius_y: float, k_y: float = 0.0) -> Form:
-    """The section y-z turned about an axis along y through the centre of the section x-z."""
+    """Returns a toroid: the y-z section turned about an axis along y at radius_x, mm."""
     return _two("toroid", radius_x, radius_y, 0.0, k_y)
 
 
@@ -98,7 +104,7 @@ def _two(
 
 
 def _length(radius: float) -> float:
-    """A radius; either infinity is that of a plane."""
+    """Checks a radius; plus or minus infinity is a plane."""
     given: Any = radius  # of any type yet
     endless = isinstance(given, float) and math.isinf(given)
     given = radius if endless else number(radius, "radius in mm")

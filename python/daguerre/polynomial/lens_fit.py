@@ -1,4 +1,4 @@
-"""A fitted lens: evaluation, its own error, and its data as a dictionary."""
+"""Fitted lens: evaluation, errors, and conversion to data."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ FloatArray = NDArray[np.float64]
 @guarded
 @dataclass(frozen=True)
 class SceneRays:
-    """Scene rays of N film rays by a fit; lens frame, mm.
+    """Scene rays for N film rays by a fit; lens frame, mm.
 
     Attributes:
-        origins: On the sphere of the front surface, shape (N, 3).
+        origins: Points on the sphere of the front surface, shape (N, 3).
         directions: Unit vectors toward the scene, shape (N, 3).
-        iris: Where the rays cross the iris, shape (N, 2).
+        iris: Points where the rays cross the iris, shape (N, 2).
         transmittance: Transmittance of the glass, shape (N,).
-        within: Whether film, pupil and mounts let the ray pass; the iris is not asked. Shape (N,).
+        within: Whether film, pupil and mounts let the ray pass, apart from the iris; shape (N,).
         angles: Directions as theta (dx, dy) / sin(theta), rad, shape (N, 2).
-        offsets: From the middle of the entrance pupil across the ray, shape (N, 2).
-        mounts: Where the limiting mounts are met, in their own frames, shape (N, M, 2).
+        offsets: Offsets from the centre of the entrance pupil, normal to the ray, shape (N, 2).
+        mounts: Points on the limiting mounts, in their own frames, shape (N, M, 2).
     """
 
     origins: FloatArray
@@ -49,19 +49,19 @@ class SceneRays:
 @guarded
 @dataclass(frozen=True)
 class ErrorZone:
-    """How far a fit is from the exact lens over film radii [low, high) mm: RMS and worst ray.
+    """Error of a fit against the exact lens over film radii [low, high): RMS and worst ray.
 
     Attributes:
-        low: mm.
-        high: mm.
-        rays: How many were compared.
-        direction_rad: Angle between the scene rays.
-        film_um: On the film: the fitted scene ray traced exactly back, against where it began.
-        iris_mm: On the iris.
-        mount_mm: At the worst of the mounts.
-        transmittance: Error of the transmittance, 1 being all light.
+        low: Smallest film radius, mm.
+        high: Largest film radius, mm.
+        rays: Number of rays compared.
+        direction_rad: Angle between the scene rays, rad.
+        film_um: Distance on the film, um, when the fitted scene ray is traced exactly back.
+        iris_mm: Distance on the iris, mm.
+        mount_mm: Distance at the worst of the mounts, mm.
+        transmittance: Error of the transmittance (0 to 1).
         lost: Share of the passing rays that the fit stops.
-        leaked: Rays that the fit lets pass though the lens stops them, against those that pass.
+        leaked: Rays that the fit passes but the lens stops, as a share of the passing rays.
     """
 
     low: float
@@ -76,21 +76,21 @@ class ErrorZone:
     leaked: float
 
     def film_px(self, pixels: int, width_mm: float) -> tuple[float, float]:
-        """RMS and worst ray on the film, in pixels of a picture so wide."""
+        """Returns RMS and worst error on the film, px, for ``pixels`` over ``width_mm``."""
         scale = 1e-3 * pixels / width_mm
         return self.film_um[0] * scale, self.film_um[1] * scale
 
 
 @guarded(init=True)
 class LensFit:
-    """A lens as polynomials from film rays to scene rays.
+    """A lens as polynomials that map film rays to scene rays.
 
-    A film ray is a point on the film (mm, upside down as the image is) and a slope
-    (dx/dz, dy/dz) in the lens's frame, whose z points from the scene to the film.
+    A film ray is a point on the film (mm; the image is upside down) and a slope (dx/dz, dy/dz) in
+    the lens frame, whose z points from the scene to the film.
     """
 
     def __init__(self, core: _core.LensFit, setting: FitSetting | None = None) -> None:
-        """From the core's fit, and what it was made for, if that is known."""
+        """Wraps the core's fit, and the setting for which it was made, if known."""
         self.core = core
         self.setting = setting
 
@@ -106,23 +106,23 @@ class LensFit:
 
     @property
     def error(self) -> ErrorZone:
-        """On rays all over film and pupil that the fit was not fitted to."""
+        """Error on rays over the whole film and pupil that were not used for fitting."""
         return ErrorZone(**error_zone(self.core.error.all))
 
     @property
     def zones(self) -> list[ErrorZone]:
-        """The same by film radius."""
+        """Errors by film radius."""
         return [ErrorZone(**error_zone(zone)) for zone in self.core.error.zones]
 
     def evaluate(
         self, film_points: ArrayLike, slopes: ArrayLike, wavelength_nm: ArrayLike
     ) -> SceneRays:
-        """Follows film rays to the scene.
+        """Maps film rays to scene rays.
 
         Args:
-            film_points: mm, shape (N, 2).
-            slopes: dx/dz and dy/dz, shape (N, 2).
-            wavelength_nm: Shape (N,), or one for all.
+            film_points: Film points, mm, shape (N, 2).
+            slopes: Slopes dx/dz and dy/dz, shape (N, 2).
+            wavelength_nm: Wavelength, nm, one or shape (N,).
         """
         film, slope = _rows(film_points, "film_points", 2), _rows(slopes, "slopes", 2)
         nm = _each(wavelength_nm, len(film))
@@ -136,16 +136,16 @@ class LensFit:
     def to_film(
         self, origins: ArrayLike, directions: ArrayLike, wavelength_nm: ArrayLike
     ) -> tuple[FloatArray, FloatArray]:
-        """Follows scene rays to the film: the inverse of ``evaluate``.
+        """Maps scene rays to film rays: the inverse of ``evaluate``.
 
         Args:
-            origins: mm, shape (N, 3).
+            origins: Points on the rays, mm, shape (N, 3).
             directions: Unit vectors toward the scene, shape (N, 3).
-            wavelength_nm: Shape (N,), or one for all.
+            wavelength_nm: Wavelength, nm, one or shape (N,).
 
         Returns:
-            Film points (mm) and slopes, shape (N, 2) each; NaN for rays that do not belong to the
-            fit's film and pupil.
+            Film points (mm) and slopes, shape (N, 2) each; NaN for rays outside the fit's film or
+            pupil.
         """
         points, toward = _rows(origins, "origins", 3), _rows(directions, "directions", 3)
         nm = _each(wavelength_nm, len(points))
@@ -161,16 +161,17 @@ class LensFit:
         origins: ArrayLike,
         directions: ArrayLike,
     ) -> LensFit:
-        """The same fit with other scene rays: least squares of those given, in its basis.
+        """Returns the fit with scene rays fitted to given ones, by least squares in its basis.
 
-        For maps from elsewhere, such as a Taylor series: iris, mounts and transmittance stay, and
-        the error is not known.
+        Use it for maps from elsewhere, such as a Taylor series. Iris, mounts and transmittance are
+        kept, and the error is unknown.
 
         Args:
-            film_points: mm, shape (N, 2); all over the film, several for each coefficient.
-            slopes: dx/dz and dy/dz, shape (N, 2).
-            wavelength_nm: Shape (N,), or one for all.
-            origins: A point of each scene ray, mm, shape (N, 3).
+            film_points: Film points over the whole film, mm, shape (N, 2); several for each
+                coefficient.
+            slopes: Slopes dx/dz and dy/dz, shape (N, 2).
+            wavelength_nm: Wavelength, nm, one or shape (N,).
+            origins: A point on each scene ray, mm, shape (N, 3).
             directions: Unit vectors toward the scene, shape (N, 3).
         """
         film = _rows(film_points, "film_points", 2)
@@ -184,7 +185,7 @@ class LensFit:
             )
 
     def to_dict(self) -> dict[str, Any]:
-        """The whole fit as JSON-able data, ``daguerre-lens-fit/0.1``."""
+        """Returns the fit as JSON-compatible data, ``daguerre-lens-fit/0.1``."""
         setting = self.setting and self.setting.to_dict()
         return {**to_dict(self.core), "setting": setting}
 
@@ -192,7 +193,7 @@ class LensFit:
         """Writes the lens as code or data: ``.osl``, ``.c``, ``.glsl``, ``.py`` or ``.json``.
 
         Raises:
-            UsageError: Another suffix, or a fit that is too large for code without loops.
+            UsageError: The suffix is unknown, or the fit is too large for code without loops.
             InputError: The language cannot express the fit.
             OutputError: The file cannot be written.
         """
@@ -202,25 +203,25 @@ class LensFit:
 
     @classmethod
     def from_dict(cls, data: Any) -> LensFit:
-        """The inverse of ``to_dict``.
+        """Makes a fit from the data of ``to_dict``.
 
         Raises:
-            InputError: Data of another form; the message names the place.
+            InputError: The data have another form; the message has the place.
         """
         core = from_dict(data)
         setting = data.get("setting")
         return cls(core, None if setting is None else FitSetting.from_dict(setting))
 
     def to_bytes(self) -> bytes:
-        """The fit for this machine, to the last bit."""
+        """Returns the fit as bytes for this machine, exact to the last bit."""
         return bytes(self.core.to_bytes())
 
     @classmethod
     def from_bytes(cls, data: bytes) -> LensFit:
-        """The inverse of ``to_bytes``.
+        """Makes a fit from the bytes of ``to_bytes``.
 
         Raises:
-            InputError: Bytes that are damaged, or of another version.
+            InputError: The bytes are damaged, or from another version.
         """
         core = _core.LensFit.from_bytes(data)
         if core is None:
@@ -240,7 +241,7 @@ def _rows(given: ArrayLike, name: str, columns: int) -> FloatArray:
 
 
 def _each(wavelength_nm: ArrayLike, count: int) -> FloatArray:
-    """Wavelengths of so many rays, of one for all of them or one each."""
+    """Wavelengths of ``count`` rays, from one for all or one for each."""
     found = wavelengths(wavelength_nm, "lens fit: wavelength_nm")
     if found.shape not in ((), (1,), (count,)):
         raise UsageError(f"lens fit: wavelength_nm: wanted 1 or {count}, got {found.shape}")

@@ -1,4 +1,4 @@
-"""The expansion of a lens, or of a ghost in it."""
+"""Expands a lens, or a ghost in it."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ def from_lens(
 ) -> System:
     """Expands a lens as a polynomial, from a plane before it to the film.
 
-    Even degrees are allowed; a lens with axial symmetry has no terms in them.
+    Even degrees are allowed; a lens with axial symmetry has no terms of even degree.
 
     Args:
-        lens: Lens, alone or focused; or its name or file.
-        degree: 1 to 15.
+        lens: Lens, focused lens, name or file.
+        degree: Degree, 1 to 15.
         {keywords}
 
     Returns:
-        x and y are those of the lens frame on all planes, and both ways.
+        The expansion; x and y are those of the lens frame on all planes, in both directions.
 
     Raises:
-        InputError: The base ray is not let through, or a surface is not smooth where it meets it;
-            the message names the surface.
-        UsageError: A parameter that cannot be.
+        InputError: The base ray is stopped, or a surface is not smooth where it meets it; the
+            message has the surface.
+        UsageError: A parameter is invalid.
     """
     own_film = lens.film_z_mm if isinstance(lens, Focused) else None
     prescribed = load(lens.lens if isinstance(lens, Focused) else lens)
@@ -90,7 +90,7 @@ def _ray(about: ArrayLike) -> list[float]:
 
 
 def _pair(ghost: tuple[int, int]) -> tuple[int, int]:
-    """Two whole numbers; whether there are such surfaces is the core's to say."""
+    """Checks for two whole numbers; the core checks that the surfaces exist."""
     try:
         one, other = ghost
     except (TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""Parameters of fits and expansions of lenses: one row each, for keywords, texts and checks."""
+"""Parameters of fits and expansions of lenses: a row for each, for keywords, texts and checks."""
 
 from __future__ import annotations
 
@@ -45,53 +45,54 @@ class ExpansionKeywords(TypedDict, total=False):
 #: ``LensSetting`` checks focus and zoom.
 FIT = Table(
     Parameter("f_stop", "F-stop; default: wide open", low=0.1, high=1000),
-    Parameter("focus", "Distance from the entrance pupil, m", "m", math.inf, "value"),
+    Parameter("focus", "Focus distance from the entrance pupil, m", "m", math.inf, "value"),
     Parameter(
-        "focus_by", "The paraxial image, or the smallest spot on the axis: ``best``",
+        "focus_by", "Focus by the ``paraxial`` image, or by the smallest axial spot, ``best``",
         default="paraxial", kind="value",
     ),
     Parameter(
-        "film", "Width and height, mm; the format of the lens's file if None, else 36 x 24 mm",
+        "film", "Width and height, mm; None: the format in the lens's file, else 36 x 24 mm",
         "mm", kind="value",
     ),
-    Parameter("zoom", "Focal length of a zoom, mm; as it stands if None", "mm", kind="value"),
+    Parameter("zoom", "Focal length of a zoom, mm; None: the current one", "mm", kind="value"),
     Parameter(
-        "segments", "Parts of the film by radius, each with polynomials of its own; the worst part "
+        "segments", "Number of film zones by radius, each with its own polynomials; the worst zone "
         "is halved until there are as many", default=1, kind="whole", low=1, high=16,
         more="Lenses without axial symmetry have one",
     ),
     Parameter(
-        "terms", "Coefficients of each vector, chosen one by one (orthogonal matching pursuit); "
-        "the complete basis if None", kind="whole", low=1, high=10000,
+        "terms", "Number of coefficients per vector, chosen by orthogonal matching pursuit; "
+        "None: the complete basis", kind="whole", low=1, high=10000,
     ),
-    Parameter("iris", "Shape of the iris; round if None", kind="value"),
+    Parameter("iris", "Shape of the iris; None: round", kind="value"),
 )
 EXPANSION = Table(
     Parameter(
-        "ghost", "Two surfaces at which light is reflected on its way, in either order: at the one "
-        "farther along first", kind="value",
+        "ghost", "Two surfaces that reflect the light, in either order; the farther one reflects "
+        "first", kind="value",
     ),
     Parameter(
-        "wavelength", "One, or nodes between which the coefficients follow the wavelength, nm, "
-        "shape () or (W,); see ``wavelength_nodes``", "nm", DESIGN_WAVELENGTH_NM, "value",
+        "wavelength", "Wavelength, or nodes for interpolation of the coefficients, nm, shape () or "
+        "(W,); see ``wavelength_nodes``", "nm", DESIGN_WAVELENGTH_NM, "value",
     ),
     Parameter(
-        "reverse", "From the film to the plane before the lens", default=False, kind="flag",
+        "reverse", "Whether to expand from the film to the plane before the lens", default=False,
+        kind="flag",
     ),
     Parameter(
-        "to_iris", "End at the iris instead: at the crossing of this number, 0 for the first, -1 "
-        "for the last (a ghost may cross it three times)", kind="whole", low=-1, high=2,
-        more="Points are those of the iris's own frame",
+        "to_iris", "Index of the iris crossing at which to end instead; 0: the first, -1: the last "
+        "(a ghost may cross it three times)", kind="whole", low=-1, high=2,
+        more="Points are in the iris's own frame",
     ),
     Parameter(
-        "object_z", "The plane before the lens, z in the lens frame, mm: 0 touches the first "
-        "vertex", "mm", 0.0,
+        "object_z", "Plane before the lens, z in the lens frame, mm; 0 is at the first vertex",
+        "mm", 0.0,
     ),
     Parameter(
-        "film_z", "The film, mm; not given: as the lens is focused, else its image plane", "mm",
+        "film_z", "Film, z, mm; None: as the lens is focused, else its image plane", "mm",
     ),
     Parameter(
-        "about", "Base ray, x, y and cosines on the plane where light starts, shape (4,)",
+        "about", "Base ray (x, y, dx, dy) on the plane where light starts, shape (4,)",
         default=AXIS, kind="value",
     ),
 )

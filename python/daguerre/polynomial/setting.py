@@ -1,4 +1,4 @@
-"""At which stop, focus and zoom a lens was fitted, and where its prescription comes from."""
+"""Setting of a fitted lens: f-stop, focus, zoom, and the source of its prescription."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from daguerre.errors import InputError
 
 @dataclass(frozen=True)
 class FitSetting:
-    """Setting of a lens that was fitted, which the polynomials do not say.
+    """Setting of a fitted lens, which its polynomials do not contain.
 
     Attributes:
         f_stop: F-stop as engraved.
-        focus_m: From the entrance pupil; may be infinite.
-        zoom_mm: Focal length of a zoom; None: no zoom.
+        focus_m: Focus distance from the entrance pupil, m; may be infinite.
+        zoom_mm: Focal length of a zoom, mm; None: not a zoom.
         source: Patent or book of the prescription.
-        iris: Its shape: None is round; "picture"; or edges in units of the iris radius, as
-            `daguerre.export.plan.Blades` names them.
+        iris: Shape of the iris: None: round; ``"picture"``; or edges in units of the iris radius,
+            as in `daguerre.export.plan.Blades`.
     """
 
     f_stop: float
@@ -30,16 +30,16 @@ class FitSetting:
     iris: dict[str, Any] | str | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON-able: an infinite distance is null."""
+        """Returns JSON-compatible data; an infinite distance is null."""
         focus = None if math.isinf(self.focus_m) else self.focus_m
         return {**self.__dict__, "focus_m": focus}
 
     @classmethod
     def from_dict(cls, data: Any) -> FitSetting:
-        """The inverse of ``to_dict``.
+        """Makes a setting from the data of ``to_dict``.
 
         Raises:
-            InputError: Data of another form.
+            InputError: The data have another form.
         """
         try:
             focus = math.inf if data["focus_m"] is None else float(data["focus_m"])
@@ -50,7 +50,7 @@ class FitSetting:
 
 
 def iris_shape(iris: _core.Iris) -> dict[str, Any] | str | None:
-    """The shape of an iris as `FitSetting` has it."""
+    """Shape of an iris in the form of `FitSetting`."""
     if iris.is_picture:
         return "picture"
     if not iris.edges:

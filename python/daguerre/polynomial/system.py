@@ -1,4 +1,4 @@
-"""A polynomial from rays to rays: evaluated, put together, undone, printed."""
+"""Polynomial system: maps rays to rays; can be composed, inverted and printed."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ NAMES = ("x", "y", "dx", "dy")
 
 @dataclass(frozen=True, eq=False, repr=False)
 class System:
-    """The Taylor expansion of an optical system about one ray, its base.
+    """Taylor expansion of an optical system about its base ray.
 
     A ray is ``(x, y, dx, dy)`` on a plane: a point in mm, and x and y of its unit direction. These
-    cosines (not slopes), times the index of the medium, are the momenta that belong to x and y, so
-    that a system keeps etendue to the order to which it is known. z runs the way that light goes.
+    cosines (not slopes), times the index of the medium, are the momenta conjugate to x and y, so a
+    system conserves etendue up to its degree. z points along the light.
 
-    ``P2 @ P1`` is first P1, then P2, to the lower degree of both. What was cut from each is what is
-    cut from both together, as long as P2 is expanded about the ray on which P1 ends.
+    ``P2 @ P1`` applies first P1, then P2, to the lower degree of both. This is exact to that degree
+    if P2 is expanded about the ray on which P1 ends.
 
     Attributes:
-        core: The core's version.
-        pupil: Where the entrance pupil lies ahead of the first plane, mm; None: not known.
+        core: System in the core.
+        pupil: Distance of the entrance pupil ahead of the first plane, mm; None: unknown.
     """
 
     core: _core.PolynomialSystem
@@ -42,79 +42,79 @@ class System:
 
     @property
     def degree(self) -> int:
-        """Degree of the highest monomials."""
+        """Highest degree of the monomials."""
         return int(self.core.degree)
 
     @property
     def wavelengths(self) -> FloatArray:
-        """Where it was expanded, nm, shape (W,); empty: it is the same at all."""
+        """Wavelengths of the expansion, nm, shape (W,); empty: it holds for all."""
         return np.asarray(self.core.nm, np.float64)
 
     @property
     def monomials(self) -> NDArray[np.int32]:
-        """Powers of x, y, dx and dy, by degree, shape (M, 4)."""
+        """Powers of x, y, dx and dy, sorted by degree, shape (M, 4)."""
         return np.asarray(self.core.monomials())
 
     @property
     def coefficients(self) -> FloatArray:
-        """Coefficients of monomials of the ray less the base ray, (4, M); (W, 4, M) for W > 1."""
+        """Coefficients of monomials of the ray minus the base ray, (4, M); (W, 4, M) for W > 1."""
         c = np.asarray(self.core.coefficients())
         return c[0] if len(c) == 1 else c
 
     @property
     def base(self) -> FloatArray:
-        """The base ray on the first plane, shape (4,); (W, 4) for W > 1 wavelengths."""
+        """Base ray on the first plane, shape (4,); (W, 4) for W > 1 wavelengths."""
         rays = np.asarray(self.core.origin())
         return rays[0] if len(rays) == 1 else rays
 
     @property
     def image(self) -> FloatArray:
-        """The base ray on the last plane, shape (4,); (W, 4) for W > 1 wavelengths."""
+        """Base ray on the last plane, shape (4,); (W, 4) for W > 1 wavelengths."""
         return self.coefficients[..., 0].copy()
 
     @property
     def matrix(self) -> FloatArray:
-        """The first degree: ABCD of both sections, shape (4, 4); (W, 4, 4) for W > 1."""
+        """Matrix of first order: ABCD of both sections, shape (4, 4); (W, 4, 4) for W > 1."""
         first = self.monomials.sum(axis=1) == 1
         return self.coefficients[..., first].copy()
 
     def __call__(self, rays: ArrayLike, wavelength: ArrayLike | None = None) -> FloatArray:
-        """Rays on the last plane.
+        """Maps rays from the first plane to the last.
 
         Args:
-            rays: On the first plane, shape (N, 4) or (4,).
-            wavelength: nm, one or shape (N,); not given: the only one, or else 587.56 nm.
+            rays: Rays on the first plane, shape (N, 4) or (4,).
+            wavelength: Wavelength, nm, one or shape (N,); default: the only one, else 587.56 nm.
 
         Raises:
-            UsageError: Shapes that do not fit, or a wavelength outside the system's own.
+            UsageError: Shapes do not match, or a wavelength is outside the system's range.
         """
         rows, nm = self._arguments(rays, wavelength)
         out = _said(self.core.evaluate, rows, nm)
         return np.asarray(out).reshape(np.shape(rays))
 
     def jacobian(self, rays: ArrayLike, wavelength: ArrayLike | None = None) -> FloatArray:
-        """Derivatives of the ray on the last plane (rows), shape (N, 4, 4) or (4, 4)."""
+        """Returns derivatives of the ray on the last plane (rows), shape (N, 4, 4) or (4, 4)."""
         rows, nm = self._arguments(rays, wavelength)
         out = _said(self.core.jacobian, rows, nm)
         return np.asarray(out).reshape(*np.shape(rays), 4)
 
     def __matmul__(self, first: System) -> System:
-        """First ``first``, then this."""
+        """Composes systems: ``first``, then this one."""
         if not isinstance(first, System):
             return NotImplemented
         return System(_said(self.core.after, first.core), self._pupil_before(first))
 
     def inverse(self) -> System:
-        """From the last plane to the first one: put together, the identity up to the degree."""
+        """Returns the inverse, from the last plane to the first, exact up to the degree."""
         return System(_said(self.core.inverse))
 
     def truncated(self, degree: int) -> System:
-        """Without the monomials above a degree."""
+        """Returns the system without monomials above a degree."""
         degree = whole(degree, "truncated: degree", 1, self.degree)
         return replace(self, core=self.core.truncated(degree))
 
     def at(self, wavelength: float) -> System:
-        """The system at one wavelength, nm: between its nodes as they say."""
+        """Returns the system at one wavelength, nm, interpolated between its nodes."""
         return replace(self, core=_said(self.core.at, number(wavelength, "wavelength in nm")))
 
     def seidel(
@@ -124,16 +124,17 @@ class System:
         pupil: float | None = None,
         object_distance: float = np.inf,
     ) -> SeidelTerms:
-        """Returns the third-order aberrations by name, of the point on the last plane.
+        """Returns the third-order aberrations of the point on the last plane, by name.
 
         Args:
-            wavelength: nm; as for a call.
+            wavelength: Wavelength, nm; default: the only one, else 587.56 nm.
             pupil: Distance of the entrance pupil ahead of the first plane, mm; default: the known
-                one, else on that plane.
+                one, else 0.
             object_distance: Distance of the object from that pupil, mm.
 
         Raises:
-            UsageError: Degree 3 is missing, or axial symmetry; a place that is none.
+            UsageError: The degree is below 3, the system has no axial symmetry, or a distance is
+                invalid.
         """
         if wavelength is not None:
             wavelength = number(wavelength, "seidel: wavelength in nm")
@@ -168,7 +169,7 @@ class System:
         return seidel_terms(here.monomials, here.coefficients, pupil, object_distance)
 
     def _pupil_before(self, first: System) -> float | None:
-        """The entrance pupil of both: the first one's, else the image of this one's through it."""
+        """Entrance pupil of a composed system: the first's, else this one's imaged through it."""
         if first.pupil is not None or self.pupil is None:
             return first.pupil
         matrix = first.matrix if first.matrix.ndim == 2 else first.matrix[0]
@@ -222,7 +223,7 @@ class System:
 
 
 def _said(call: Callable[..., Any], *arguments: object) -> Any:
-    """Calls the core; raises its complaint as a wrong parameter."""
+    """Calls the core; re-raises its errors as ``UsageError``."""
     with core_errors(UsageError):
         return call(*arguments)
 
@@ -232,7 +233,7 @@ def _ray(ray: FloatArray) -> str:
 
 
 def _first_order(matrix: FloatArray) -> list[str]:
-    """Rows of x' and dx', and of y' and dy' where they differ, without what is 0."""
+    """Rows of x' and dx', and of y' and dy' if they differ, without zeros."""
     rows = [0, 2] if np.allclose(matrix[::2, ::2], matrix[1::2, 1::2]) else [0, 1, 2, 3]
     lines = []
     for row in rows:
@@ -247,7 +248,7 @@ def _first_order(matrix: FloatArray) -> list[str]:
 
 
 def _count_by_degree(system: System) -> list[str]:
-    """How many coefficients are not 0, by degree."""
+    """Number of non-zero coefficients by degree."""
     degrees, used = system.monomials.sum(axis=1), (system.coefficients != 0).any(axis=0)
     counts = [f"{int(used[degrees == g].sum())} of degree {g}" for g in range(1, system.degree + 1)]
     counts = [c for c in counts if not c.startswith("0 ")]

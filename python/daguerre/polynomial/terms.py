@@ -1,4 +1,4 @@
-"""Third-order aberrations of an axially symmetric system, by Seidel's names."""
+"""Third-order (Seidel) aberrations of an axially symmetric system."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daguerre.doors import guarded
 
 FloatArray = NDArray[np.float64]
 
-#: How far coefficients may lie from those of a symmetric system, of the largest of their kind.
+#: Largest deviation of coefficients from symmetry, relative to the largest of their kind.
 TOLERANCE = 1e-9
 
 
@@ -42,15 +42,15 @@ class SeidelTerms:
 
     @property
     def petzval(self) -> float:
-        """Field curvature that is left without astigmatism, mm per mm."""
+        """Field curvature without astigmatism (Petzval), mm per mm."""
         return 2 * self.field_curvature - self.astigmatism
 
     def sums(self, pupil_radius: float, field_slope: float) -> FloatArray:
-        """Seidel's sums S1 to S5 in Welford's form, mm of wavefront, shape (5,).
+        """Returns Seidel's sums S1 to S5 in Welford's form, mm of wavefront, shape (5,).
 
         Args:
-            pupil_radius: Edge of the entrance pupil, mm.
-            field_slope: Edge of the field, tangent.
+            pupil_radius: Radius of the entrance pupil, mm.
+            field_slope: Tangent of the angle at the edge of the field.
         """
         kinds = (
             2 * self.spherical,
@@ -65,7 +65,7 @@ class SeidelTerms:
         return np.array(kinds) * powers * self.convergence
 
     def rows(self) -> list[tuple[str, float, str]]:
-        """Name, value and unit of each."""
+        """Returns name, value and unit of each term."""
         return [
             ("spherical aberration", self.spherical, "mm/mm^3"),
             ("coma", self.coma, "mm/mm^2"),

@@ -1,4 +1,4 @@
-"""Wavelengths at which systems are expanded, and what they do to refractive indices."""
+"""Wavelengths of expansions, and refractive indices at them."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 
 class HasIndex(Protocol):
-    """A glass: ``dg.lenses.glasses.find("N-BK7")``."""
+    """Interface of a glass, such as ``dg.lenses.glasses.find("N-BK7")``."""
 
     def index(self, wavelength_nm: Any, /) -> Any:
-        """Index relative to air."""
+        """Returns the index relative to air at wavelengths, nm."""
 
 
-#: A number, one for each wavelength, or a glass.
+#: Refractive index: a number, one for each wavelength, or a glass.
 Index = float | Sequence[float] | HasIndex
 
 
 def wavelength_nodes(from_nm: float, to_nm: float, count: int) -> NDArray[np.float64]:
-    """Wavelengths through which a polynomial in 1/wavelength^2 stays near what lies between.
+    """Returns nodes for polynomial interpolation in 1/wavelength^2.
 
     Args:
-        from_nm: The shortest one.
-        to_nm: The longest one.
-        count: How many, 2 at least; 4 keep most lenses within a micrometre.
+        from_nm: Shortest wavelength, nm.
+        to_nm: Longest wavelength, nm.
+        count: Number of nodes, at least 2; with 4 most lenses are within a micrometre.
 
     Returns:
-        The nodes of Chebyshev with both ends, nm, shape (count,).
+        Chebyshev nodes with both ends, nm, shape (count,).
     """
     count = whole(count, "wavelength nodes", 2, 64, "2 to 64")
     low, high = number(from_nm, "wavelength nodes", above=0), number(to_nm, "wavelength nodes")
@@ -46,10 +46,10 @@ def wavelength_nodes(from_nm: float, to_nm: float, count: int) -> NDArray[np.flo
 
 
 def nodes_of(wavelength: ArrayLike | None) -> list[float]:
-    """The wavelengths as a list, none for None.
+    """Returns wavelengths as a list; None: an empty list.
 
     Raises:
-        UsageError: They do not ascend, or are no wavelengths.
+        UsageError: They do not ascend, or are not wavelengths.
     """
     if wavelength is None:
         return []
@@ -67,7 +67,7 @@ def nodes_of(wavelength: ArrayLike | None) -> list[float]:
 
 
 def with_glass(nm: list[float], *indices: Index) -> list[float]:
-    """The nodes; where a glass needs a wavelength and none is named, the helium d line."""
+    """Returns the nodes; if there are none and a glass needs one, the helium d line."""
     return nm or (
         [DESIGN_WAVELENGTH_NM]
         if any(hasattr(n, "index") and not isinstance(n, (Sequence, np.ndarray)) for n in indices)
@@ -76,10 +76,10 @@ def with_glass(nm: list[float], *indices: Index) -> list[float]:
 
 
 def index_at(n: Index, nm: list[float]) -> list[float]:
-    """The index at each node, or one for all.
+    """Returns the index at each node, or one for all.
 
     Raises:
-        UsageError: The count of numbers is not that of the wavelengths.
+        UsageError: The number of indices is not that of the wavelengths.
     """
     if hasattr(n, "index") and not isinstance(n, (Sequence, np.ndarray)):
         return [float(n.index(x)) for x in nm]
