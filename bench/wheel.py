@@ -1,4 +1,4 @@
-"""What one wheel for all Pythons costs: the same calls through nanobind as a package and linked.
+"""Cost of one wheel for all Pythons: the same calls through nanobind as a package and linked.
 
 Usage: bench/wheel.py LINKED SPLIT [--rounds N]: two Python interpreters, one with a build from
 source, one with the wheel (script/make-wheels). Alternates them and prints nanoseconds per call and
