@@ -12,6 +12,7 @@ import pytest
 
 from daguerre import _core, analysis, lenses
 from daguerre.analysis.bench import Bench
+from daguerre.analysis.illumination import Illumination
 from daguerre.errors import InputError
 from tests.lenses.test_lenses import WAVELENGTHS, lens_of, reference
 
@@ -413,3 +414,11 @@ def disc(rng: np.random.Generator, count: int) -> np.ndarray[Any, Any]:
     """Points of the picture of a ball: a disc, shape (count, 2)."""
     r, turn = np.sqrt(rng.random(count)), 2 * np.pi * rng.random(count)
     return np.column_stack([r * np.cos(turn), r * np.sin(turn)])
+
+
+def test_light_relative_to_a_dark_axis_is_unknown() -> None:
+    """An iris that is tilted by 89 degrees lets no light through on the axis."""
+    dark = Illumination(*np.array([[0.0, 5.0], [0.0, 0.2], [1.0, 0.9], [1.0, 0.9]]))
+    assert np.isnan(dark.relative).all()
+    lit = Illumination(*np.array([[0.0, 5.0], [0.4, 0.2], [1.0, 0.9], [1.0, 0.9]]))
+    assert lit.relative.tolist() == [1.0, 0.5]

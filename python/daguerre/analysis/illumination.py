@@ -40,8 +40,9 @@ class Illumination:
 
     @property
     def relative(self) -> FloatArray:
-        """Against the axis, shape (N,)."""
-        return np.asarray(self.irradiance / self.irradiance[0])
+        """Irradiance over that of the axis, shape (N,); NaN if the axis is dark."""
+        axis = self.irradiance[0]
+        return np.asarray(self.irradiance / axis if axis else np.full_like(self.irradiance, np.nan))
 
 
 @guarded
