@@ -209,7 +209,7 @@ def test_an_anamorphic_picture_says_how_to_view_it() -> None:
     assert attributes(session.metadata)["pixelAspectRatio"] == pytest.approx(squeeze)
     flat = dg.Session(dg.Scene(), camera.with_(lens_model="thick"), resolution=(36, 30))
     assert flat.metadata["pixelAspectRatio"] == 1
-    assert any("squeezes nothing" in note for note in flat.notes)
+    assert any("does not squeeze" in note for note in flat.notes)
     assert lenses.load(LENS).squeeze == 1
 
 
