@@ -38,6 +38,15 @@ if(DG_MISSING)
         "it wants x86-64 Linux with glibc 2.34 or newer, and Python 3.11 or newer.")
 endif()
 
+# On ARM the vector code is compiled once, for NEON: Highway's choice of a target for each function does not
+# reach the constructors that GCC writes for structs of vectors. Highway 1.0.3 has NEON with AES only.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+    target_compile_definitions(hwy::hwy INTERFACE HWY_COMPILE_ONLY_STATIC)
+    if(HWY_VERSION VERSION_LESS 1.0.4)
+        target_compile_options(hwy::hwy INTERFACE -march=armv8-a+crypto)
+    endif()
+endif()
+
 string(REGEX MATCH "^[0-9]+" DG_EMBREE_MAJOR "${embree_VERSION}")
 message(STATUS "Embree ${embree_VERSION}, TBB ${TBB_VERSION}, Highway ${HWY_VERSION}")
 add_library(dg_embree INTERFACE)
