@@ -1,1 +1,1 @@
-"""Linear pictures convolved with large kernels, by Fourier transforms in tiles."""
+"""Convolves linear pictures with large kernels, by Fourier transforms of tiles."""

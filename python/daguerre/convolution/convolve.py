@@ -1,8 +1,8 @@
 """Convolution of linear pictures with large kernels: bloom, stars, diffraction, PSFs of lenses.
 
-Light is spread from each pixel (not gathered): a kernel whose sum is 1 keeps all of it, but for
-what leaves the frame, which is lost as in a camera. By FFT over tiles that overlap when they are
-added, or over bands of rows that overlap when they are read (overlap-add, overlap-save: Stockham
+Each pixel spreads its light (it does not gather). A kernel whose sum is 1 keeps all light except
+what leaves the frame, which is lost as in a camera. FFTs work on tiles that overlap when they are
+added, or on bands of rows that overlap when they are read (overlap-add, overlap-save: Stockham
 1966, High-speed convolution and correlation).
 """
 
@@ -25,26 +25,26 @@ class Spread(Protocol):
     """Spreads the light of a picture, some rows at a time.
 
     Attributes:
-        reach: Rows above and below that it reads.
-        block: Rows that it makes at a time.
+        reach: Rows read above and below each output row.
+        block: Rows computed at a time.
     """
 
     reach: int
     block: int
 
     def rows(self, light: Real, first: int, wanted: Rows) -> Real:
-        """Rows ``wanted`` from light (h, W, I) that begins at the row ``first``."""
+        """Computes rows ``wanted`` from light (h, W, I) that begins at row ``first``."""
 
 
 class Spreader:
-    """Kernels made ready for a picture.
+    """Spreads the light of a picture by kernels that are transformed once.
 
     Args:
-        kernels: Shape (Y, X, h, w, J, I): of points on a regular grid from edge to edge of the
-            frame (its middle, of one), from channel i to j; between them they are blended linearly.
-        picture: Rows and columns.
-        threads: 0: all cores.
-        banded: To make rows ``block`` at a time; else the whole picture at once.
+        kernels: Shape (Y, X, h, w, J, I), from channel i to j, on a regular grid from edge to edge
+            of the frame (a single kernel: at its centre); blended linearly between grid points.
+        picture: Rows and columns of the picture.
+        threads: Number of threads; 0: one for each core.
+        banded: Whether to compute ``block`` rows at a time; else the whole picture at once.
     """
 
     def __init__(
@@ -59,13 +59,13 @@ class Spreader:
         """Spreads light.
 
         Args:
-            light: Shape (h, W, I); all rows that reach ``wanted``, as far as the picture has them.
-            first: The row of the picture at which they begin.
-            wanted: Rows to make.
-            out: Where to put them, overwritten; None: somewhere new.
+            light: Shape (h, W, I); all rows of the picture that reach ``wanted``.
+            first: First row of ``light`` in the picture.
+            wanted: Rows to compute.
+            out: Array to overwrite with the result; None: a new one.
 
         Returns:
-            Shape (rows, W, J), float32; where a channel was not finite its value stays (J = I).
+            Shape (rows, W, J), float32; values that are not finite stay (if J = I).
         """
         whole = bool(np.isfinite(light).all())
         known = light if whole else np.where(np.isfinite(light), light, np.float32(0))
@@ -84,13 +84,13 @@ class Spreader:
 
 
 class EachSpreader:
-    """Channels one after the other, each with a kernel of its own.
+    """Spreads each channel by its own kernel, one channel after the other.
 
     Args:
         kernel: Shape (h, w, C), or (h, w, 1) for all channels.
-        picture: Rows and columns.
-        threads: 0: all cores.
-        banded: Whether light comes in bands of rows, see ``Spreader``.
+        picture: Rows and columns of the picture.
+        threads: Number of threads; 0: one for each core.
+        banded: Whether light comes in bands of rows; see ``Spreader``.
     """
 
     def __init__(
@@ -104,7 +104,7 @@ class EachSpreader:
         self.reach, self.block = self._each[0].reach, self._each[0].block
 
     def rows(self, light: Real, first: int, wanted: Rows) -> Real:
-        """Spreads rows, see ``Spreader``."""
+        """Spreads rows; see ``Spreader``."""
         out = np.empty((wanted.end - wanted.begin, *light.shape[1:]), np.float32)
         for c in range(light.shape[2]):
             one = self._each[c % len(self._each)]
@@ -115,7 +115,7 @@ class EachSpreader:
 def spreader_of(
     kernel: ArrayLike, picture: tuple[int, ...], *, threads: int = 0, banded: bool = True
 ) -> Spread:
-    """Spreader of pictures of shape (H, W, C) by a kernel, in the form that ``convolve`` takes."""
+    """Returns a spreader for pictures (H, W, C), by a kernel of a shape that ``convolve`` takes."""
     count = picture[2]
     k = np.asarray(kernel, np.float32)
     if k.ndim == 2:
@@ -134,16 +134,19 @@ def spreader_of(
 
 @guarded
 def convolve(image: ArrayLike, kernel: ArrayLike, *, threads: int = 0) -> Real:
-    """A picture with each pixel's light spread by a kernel.
+    """Convolves a picture: spreads each pixel's light by a kernel.
 
     Args:
         image: Linear, shape (H, W) or (H, W, C). NaN and infinite values spread no light and stay.
         kernel: Shape (h, w): the same for all channels; (h, w, C): one for each; (h, w, C, C): from
-            each channel (last axis) to each (axis 2). Its middle is at (h // 2, w // 2).
-        threads: 0: all cores.
+            each channel (last axis) to each (axis 2). Its centre is at (h // 2, w // 2).
+        threads: Number of threads; 0: one for each core.
 
     Returns:
         float32, the shape of the image.
+
+    Raises:
+        UsageError: ``image`` or ``kernel`` has another shape, or is empty.
     """
     picture = np.asarray(image, np.float32)
     if picture.ndim not in (2, 3) or 0 in picture.shape:
@@ -155,16 +158,16 @@ def convolve(image: ArrayLike, kernel: ArrayLike, *, threads: int = 0) -> Real:
 
 
 def spread(planes: Real, kernels: Real, *, threads: int = 0, out: Real | None = None) -> Real:
-    """A picture with its light spread by kernels that change over the frame.
+    """Spreads the light of a picture by kernels that change over the frame.
 
     Args:
         planes: Shape (H, W, I).
-        kernels: Shape (Y, X, h, w, J, I), see ``Spreader``.
-        threads: 0: all cores.
-        out: Where to put the result; None: somewhere new.
+        kernels: Shape (Y, X, h, w, J, I); see ``Spreader``.
+        threads: Number of threads; 0: one for each core.
+        out: Array to overwrite with the result; None: a new one.
 
     Returns:
-        Shape (H, W, J), float32; where a channel was not finite its value stays (J = I).
+        Shape (H, W, J), float32; values that are not finite stay (if J = I).
     """
     size = planes.shape[0], planes.shape[1]
     done = Spreader(kernels, size, threads=threads, banded=False)

@@ -1,8 +1,8 @@
 """Fourier transforms of large pictures in float32, on several threads.
 
-NumPy's own transforms (pocketfft): since NumPy 2 they keep float32 and let other threads run. All
-are orthonormal, 1 / sqrt(n) each way: where the factor is 1, NumPy takes it for a double, and so
-computes in double, which takes three times as long (seen in 2.4).
+NumPy's own transforms (pocketfft) keep float32 and let other threads run since NumPy 2. All are
+orthonormal, with a factor of 1 / sqrt(n) each way: with a factor of 1, NumPy computes in double,
+which takes three times as long (seen in 2.4).
 """
 
 from __future__ import annotations
@@ -20,29 +20,29 @@ from numpy.typing import NDArray
 
 Real = NDArray[np.float32]
 Complex = NDArray[np.complex64]
-LINES = 64  # of a spectrum that are multiplied at a time: they stay in the cache
-_fft: Any = np.fft  # its types know of no float32
+LINES = 64  # rows of a spectrum multiplied at a time, so that they stay in the cache
+_fft: Any = np.fft  # the type stubs of np.fft have no float32
 
 
 def fft(values: NDArray[Any], count: int, axis: int, out: Complex | None = None) -> Complex:
-    """Orthonormal transform along an axis, padded with zeros to a length."""
+    """Transforms values along an axis, zero-padded to ``count``; orthonormal."""
     made: Complex = _fft.fft(values, count, axis=axis, norm="ortho", out=out)
     return made
 
 
 def rfft(values: Real, count: int, out: Complex | None = None) -> Complex:
-    """The same of real rows: the first half of the spectrum."""
+    """Transforms real rows, zero-padded to ``count``; returns the first half of the spectrum."""
     made: Complex = _fft.rfft(values, count, axis=1, norm="ortho", out=out)
     return made
 
 
 def thread_count(threads: int) -> int:
-    """Threads to use; 0: one for each core that this process may use."""
+    """Returns the number of threads to use; for 0, that of the cores this process may use."""
     return threads or len(os.sched_getaffinity(0))
 
 
 def in_parallel(threads: int, count: int, work: Callable[[slice], Any]) -> None:
-    """Runs work on slices that cover range(count), one for each thread."""
+    """Runs ``work`` on slices that cover range(count), one for each thread."""
     edges = np.linspace(0, count, threads + 1).astype(int)
     parts = [slice(int(a), int(b)) for a, b in pairwise(edges) if b > a]
     if len(parts) < 2:
@@ -55,7 +55,7 @@ def in_parallel(threads: int, count: int, work: Callable[[slice], Any]) -> None:
 
 @cache
 def fast_sizes(most: int) -> tuple[int, ...]:
-    """Lengths up to most without prime factors above 5: quick to transform."""
+    """Returns lengths up to ``most`` without prime factors above 5, which transform fast."""
     sizes = {1}
     for prime in (2, 3, 5):
         for size in sorted(sizes):
@@ -65,10 +65,10 @@ def fast_sizes(most: int) -> tuple[int, ...]:
 
 
 class Fft2:
-    """Transforms of one size, of arrays that are zero beyond their own.
+    """Two-dimensional transforms of one size; smaller arrays are zero-padded.
 
     Args:
-        shape: Rows and columns that the transform takes as periodic.
+        shape: Rows and columns of the transform, which is periodic.
         threads: Number of threads.
     """
 
@@ -77,7 +77,7 @@ class Fft2:
         self.spectrum_shape = (shape[0], shape[1] // 2 + 1)
 
     def forward(self, values: Real, made: Complex) -> Complex:
-        """Makes the spectrum of values (h, w) with h, w at most ``shape``, padded with zeros."""
+        """Writes the spectrum of values (h, w), zero-padded to ``shape``, into ``made``."""
         columns = self.shape[1]
         made[len(values) :] = 0
 
@@ -95,9 +95,9 @@ class Fft2:
         in_parallel(self.threads, self.spectrum_shape[1], along)
 
     def of_kernel(self, kernel: Real) -> Complex | Real:
-        """Factor on spectra that spreads them by a kernel about (h // 2, w // 2).
+        """Returns the factor on spectra that convolves by a kernel centred at (h // 2, w // 2).
 
-        It is real if the kernel is symmetric: (-x, -y) has the light of (x, y).
+        The factor is real if the kernel is point-symmetric: equal at (x, y) and (-x, -y).
         """
         rows, columns = self.shape
         spectrum = np.zeros(self.spectrum_shape, np.complex64)
@@ -114,7 +114,7 @@ class Fft2:
     def add_product(
         self, total: Complex, spectrum: Complex, kernel: Complex | Real, *, new: bool
     ) -> None:
-        """Adds a product to ``total``, or overwrites it."""
+        """Adds ``spectrum * kernel`` to ``total``; overwrites ``total`` if ``new``."""
 
         def lines(part: slice) -> None:
             for first in range(part.start, part.stop, LINES):
@@ -127,9 +127,9 @@ class Fft2:
         in_parallel(self.threads, self.shape[0], lines)
 
     def inverse(self, spectrum: Complex, rows: slice, space: Real) -> Real:
-        """Rows of what has this spectrum, counted around; the spectrum is overwritten.
+        """Inverts a spectrum, which is overwritten; returns rows, whose numbers wrap around.
 
-        The result lies in ``space``, which has the transform's shape.
+        The result is a view of ``space``, which has the transform's shape.
         """
         count = rows.stop - rows.start
         out = space[:count]
@@ -151,7 +151,7 @@ class Fft2:
 
 
 def around(start: int, count: int, period: int) -> list[tuple[int, slice]]:
-    """A stretch of a circle: where its pieces begin in it, and where they lie on the circle."""
+    """Cuts a range of a periodic axis: start of each piece in the range, its slice of the axis."""
     pieces, at = [], 0
     while at < count:
         first = (start + at) % period
@@ -162,7 +162,7 @@ def around(start: int, count: int, period: int) -> list[tuple[int, slice]]:
 
 
 def wrapped(lines: Real, period: int) -> Real:
-    """Lines whose ends meet, the middles of these at 0."""
+    """Returns lines on a periodic axis, zero-padded, with their centres at 0."""
     count = lines.shape[1]
     out = np.zeros((len(lines), period), np.float32)
     for at, piece in around(-(count // 2), count, period):

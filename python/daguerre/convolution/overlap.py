@@ -1,8 +1,8 @@
-"""How a picture is cut for transforms, and put together again.
+"""Cuts pictures into tiles for transforms, and adds the results.
 
-A float FFT errs by some 1e-7 of the brightest lamp all over its tile. So a large kernel goes in two
-parts: its middle with small tiles, where an error stays next to the lamp, and the faint rest with
-large ones.
+A float32 FFT has an error of about 1e-7 of the brightest lamp all over its tile. So a large kernel
+is split in two: its centre uses small tiles, where the error stays next to the lamp, and the faint
+rest uses large ones.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from numpy.typing import NDArray
 from .fft import Complex, Fft2, Real, around, fast_sizes
 from .rows import Rows
 
-#: bytes that the spectra of kernels and of one tile may take together
+#: Most bytes for the spectra of all kernels and of one tile.
 SPECTRA_BYTES = 640 << 20
-MIDDLE = 65  # px across, of the part of a large kernel that goes by itself
-SMALL_TILE = 4 * MIDDLE  # points across transforms for small kernels
-ROWS = 1024  # that a band reads at most, or twice the kernel's if that is more
-SMALL = 1 << 17  # points of a transform that is left to one thread
+MIDDLE = 65  # width of the centre of a large kernel, px
+SMALL_TILE = 4 * MIDDLE  # most points across transforms for small kernels
+ROWS = 1024  # most rows that a band reads, or twice the kernel's if that is more
+SMALL = 1 << 17  # most points of a transform that uses one thread
 
 Size = tuple[int, int]
 
 
 def parts_of(kernels: Real, picture: Size, threads: int, *, banded: bool) -> list[Part]:
-    """The kernels, or their middle and the rest of them, ready for a picture."""
+    """Returns the transformed kernels, large ones as two parts: their centre and the rest."""
     h, w = kernels.shape[2:4]
     if min(h, w) < 4 * MIDDLE:
         return [Part(kernels, picture, threads, banded=banded)]
@@ -55,10 +55,10 @@ class Part:
 
     Args:
         kernels: Shape (Y, X, h, w, J, I).
-        picture: Rows and columns.
+        picture: Rows and columns of the picture.
         threads: Number of threads.
-        banded: One tile has all rows that are read for a block of rows.
-        without: Part of the kernels that does not count.
+        banded: Whether one tile has all rows that are read for a block of rows.
+        without: Area of the kernels that is set to zero.
     """
 
     def __init__(
@@ -90,7 +90,7 @@ class Part:
                 self._transforms[y, x, j, i] = self._fft.of_kernel(kernel)
 
     def add(self, out: Real, wanted: Rows, light: Real, first: int) -> None:
-        """Adds to rows ``wanted`` the light that begins at the row ``first``."""
+        """Spreads light, which begins at row ``first``, and adds rows ``wanted`` to ``out``."""
         h = self._size[0]
         begin = max(wanted.begin - (h - 1 - h // 2), first)
         read = Rows(begin, min(wanted.end + h // 2, first + len(light)))
@@ -105,7 +105,7 @@ class Part:
         space = _Space(self._fft, self._outs, shared=True)
 
         for row in self._tiles(read, light.shape[1]):
-            # Tiles are added one after the other in their order: the bits do not depend on threads.
+            # Tiles are added in order, so the bits do not depend on the number of threads.
             if self._threads > 1 and len(row) > 1:
                 with ThreadPoolExecutor(self._threads) as pool:
                     made = list(pool.map(alone, row))
@@ -116,7 +116,7 @@ class Part:
                     self._put(out, tile(place, space), place, wanted)
 
     def _tiles(self, read: Rows, width: int) -> Iterator[list[Tile]]:
-        """Tiles that cover these rows, by rows; they begin at the same rows whatever is read."""
+        """Yields rows of tiles that cover ``read``; unless banded, cut at multiples of a block."""
         edges = [read.begin, read.end]
         if not self._banded:
             first = read.begin // self.block * self.block
@@ -129,7 +129,7 @@ class Part:
             ]
 
     def _reached(self, place: Tile, wanted: Rows) -> Rows:
-        """Rows that a tile's light reaches, of those that are wanted."""
+        """Wanted rows that a tile's light reaches."""
         h = self._size[0]
         top, bottom = place.rows.start - h // 2, place.rows.stop + h - 1 - h // 2
         return Rows(max(top, wanted.begin), min(bottom, wanted.end))
@@ -137,7 +137,7 @@ class Part:
     def _spread(
         self, light: Real, place: Tile, wanted: Rows, space: _Space
     ) -> Iterator[tuple[int, Real]]:
-        """Spreads a tile's light, by channel: rows that it reaches, columns around."""
+        """Spreads a tile's light; yields each channel: rows that it reaches, periodic columns."""
         fft, rows = self._fft, self._reached(place, wanted)
         summed: set[int] = set()
         for y, x, i in sorted({(y, x, i) for y, x, _, i in self._transforms}):
@@ -156,7 +156,7 @@ class Part:
             yield j, fft.inverse(space.sums[j], here, space.result(j))
 
     def _share(self, light: Real, place: Tile, y: int, x: int) -> Real | None:
-        """Part of a tile's light that a zone spreads."""
+        """Part of a tile's light that the kernel of zone (y, x) spreads; None: nothing."""
         rows, columns = self._weights[0][y, place.rows], self._weights[1][x, place.columns]
         if not (rows.any() and columns.any()):
             return None
@@ -169,7 +169,7 @@ class Part:
     def _put(
         self, out: Real, planes: Iterable[tuple[int, Real]], place: Tile, wanted: Rows
     ) -> None:
-        """Adds what a tile became where it lies in the frame."""
+        """Adds a tile's result at its place in the frame."""
         rows = self._reached(place, wanted)
         w = self._size[1]
         left = max(place.columns.start - w // 2, 0)
@@ -182,12 +182,12 @@ class Part:
 
 
 class _Space:
-    """Memory for tiles, one after the other: new pages cost as much as the sums on them.
+    """Memory that tiles reuse: allocating new pages would take as long as the sums.
 
     Args:
         fft: The transforms.
-        outs: Channels that are made.
-        shared: Whether one channel's result is done with before the next one is made.
+        outs: Number of output channels.
+        shared: Whether all channels share one result, each used before the next is computed.
     """
 
     def __init__(self, fft: Fft2, outs: int, *, shared: bool) -> None:
@@ -196,16 +196,16 @@ class _Space:
         self._results = [np.empty(fft.shape, np.float32) for _ in range(1 if shared else outs)]
 
     def result(self, j: int) -> Real:
-        """For the channel j."""
+        """Memory for the result of channel j."""
         return self._results[j % len(self._results)]
 
 
 class Plan(NamedTuple):
-    """How a picture is cut.
+    """Sizes into which a picture is cut.
 
     Attributes:
         shape: Shape of the transforms.
-        tile: Rows and columns that one of them takes.
+        tile: Rows and columns of a tile.
     """
 
     shape: Size
@@ -215,18 +215,18 @@ class Plan(NamedTuple):
 def plan(
     picture: Size, kernel: Size, zones: Size, channels: Size, *, most_rows: int | None = None
 ) -> Plan:
-    """The least work whose spectra fit into memory; small kernels get small tiles.
+    """Chooses the cut with the least work whose spectra fit into memory.
 
     Args:
-        picture: Rows and columns.
-        kernel: The same of a kernel.
-        zones: Zones of kernels, down and across.
-        channels: Number of channels from which, and to which, light goes.
-        most_rows: About how many rows may be read for one band; None: as many as there are.
+        picture: Rows and columns of the picture.
+        kernel: Rows and columns of a kernel; small kernels get small tiles.
+        zones: Number of kernels down and across the frame.
+        channels: Number of input and of output channels.
+        most_rows: Most rows read for one band, approximately; None: no limit.
     """
     ins, outs = channels
     count = zones[0] * zones[1] * ins * outs
-    # A point of a transform has half a number of a spectrum: 2 bytes real, 4 complex.
+    # A real transform stores half as many numbers as points: per point 2 bytes real, 4 complex.
     most = SPECTRA_BYTES // (2 * count + 4 * (outs + 2))
     if max(kernel) <= MIDDLE:
         most = min(most, SMALL_TILE**2)
@@ -247,7 +247,7 @@ def plan(
 
 
 class _Cut(NamedTuple):
-    """An axis in equal tiles: their extent, the transform's, how many, and zones of all of them."""
+    """A cut of an axis: size of tiles and of transforms, number of tiles, sum of their zones."""
 
     tile: int
     length: int
@@ -256,7 +256,7 @@ class _Cut(NamedTuple):
 
 
 def _cuts(extent: int, reach: int, zones: int, most: int) -> list[_Cut]:
-    """Ways to cut an axis, from the narrowest tiles that make sense to one of all of it."""
+    """Returns ways to cut an axis, from the narrowest useful tiles to one for the whole axis."""
     sizes = [n for n in fast_sizes(4 * (extent + reach)) if n % 2 == 0]
     weights = hats(extent, zones) > 0
     found: list[_Cut] = []
@@ -273,7 +273,7 @@ def _cuts(extent: int, reach: int, zones: int, most: int) -> list[_Cut]:
 
 
 def hats(count: int, zones: int) -> NDArray[np.float32]:
-    """Weights of zones over the pixels along an axis, shape (zones, count): they add up to 1."""
+    """Weights of zones at the pixels of an axis, shape (zones, count); they add up to 1."""
     if zones == 1:
         return np.ones((1, count), np.float32)
     at = (np.arange(count) + 0.5) / count * (zones - 1)

@@ -1,4 +1,4 @@
-"""Ranges of rows of a picture that is worked through in blocks."""
+"""Ranges of rows, for pictures that are computed in blocks."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from typing import NamedTuple
 
 
 class Rows(NamedTuple):
-    """Rows [begin, end) of the pixels that a picture has."""
+    """Rows [begin, end) of a picture."""
 
     begin: int
     end: int
 
     def grown(self, by: int) -> Rows:
-        """With so many more on either side; the engine cuts off what the picture does not have."""
+        """Extends the range by rows on each side, even beyond the picture; see ``within``."""
         return Rows(self.begin - by, self.end + by)
 
     def within(self, height: int) -> Rows:
-        """Cut to the rows of a picture; where nothing is left, its nearest row."""
+        """Cuts the range to a picture of this height; at least its nearest row stays."""
         begin = min(max(self.begin, 0), height - 1)
         return Rows(begin, min(max(self.end, begin + 1), height))
