@@ -1,6 +1,6 @@
-"""A lens on the bench: spots, wavefronts, PSF, MTF, field figures, and a page of all of them.
+"""Measures a lens: spots, wavefronts, PSF, MTF, figures over the field, and a data sheet.
 
-Everything is made of exact rays through the prescription; docs/lens-bench.md has the formulas.
+All figures come from exact rays through the prescription; docs/lens-bench.md has the formulas.
 """
 
 from .bench import Bench, set_up

@@ -1,4 +1,4 @@
-"""A lens on the bench: its iris set, the film in its place, and exact rays both ways.
+"""A lens on the bench: focused, its iris set, with exact rays in both directions.
 
 Lens frame: mm, +z from the object to the film, z = 0 at the first vertex.
 """
@@ -24,7 +24,7 @@ from daguerre.lenses.setting import By, LensSetting
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-#: F, d and C, nm, and what the eye makes of them (CIE 1924 V)
+#: Wavelengths of the lines F, d and C, nm, and their weights for the eye (CIE 1924 V).
 FDC_NM = (LINE_F, LINE_D, LINE_C)
 FDC_WEIGHTS = (0.181, 0.783, 0.072)
 
@@ -34,12 +34,12 @@ class Rays:
     """Traced rays, each at the last surface that it met.
 
     Attributes:
-        points: There, mm, shape (N, 3).
+        points: Points on that surface, mm, shape (N, 3).
         directions: Unit vectors behind that surface, shape (N, 3).
-        iris: Where they crossed the stop, mm, shape (N, 2); NaN: never.
+        iris: Points where the rays cross the stop, mm, shape (N, 2); NaN if they do not.
         path: Optical path from the origins to ``points``, mm, shape (N,).
         transmittance: Transmittance of the surfaces passed, shape (N,).
-        passed: Neither missed, nor reflected, nor stopped; shape (N,).
+        passed: Whether a ray passed all surfaces, and was not stopped; shape (N,).
     """
 
     points: FloatArray
@@ -60,12 +60,12 @@ class Rays:
 @guarded
 @dataclass(frozen=True)
 class Bench:
-    """A lens as it is used: focused, its iris set.
+    """A lens at one focus, zoom and f-stop.
 
     Attributes:
-        lens: With the gaps of its zoom and focus.
+        lens: The lens, with the gaps of its zoom and focus.
         f_stop: Engraved f-stop, at infinity focus.
-        film_z: Place of the film, mm.
+        film_z: Position of the film along the axis, mm.
         focus_mm: Distance of the object in focus from the entrance pupil, mm; may be infinite.
         field_mm: Half of the image circle, mm: the largest image height of the figures.
     """
@@ -87,13 +87,13 @@ class Bench:
         to_film: bool = True,
         clip: bool = True,
     ) -> Rays:
-        """Traces rays exactly, in double.
+        """Traces rays exactly, in double precision.
 
         Args:
-            origins: Before the first surface (or behind the last one), shape (N, 3), mm.
-            directions: Toward the lens, shape (N, 3).
+            origins: Points before the first surface (or behind the last one), shape (N, 3), mm.
+            directions: Directions toward the lens, shape (N, 3).
             wavelength_nm: One wavelength, nm.
-            to_film: From the object to the film, or back.
+            to_film: Whether rays run from the object to the film; else from film to object.
             clip: Whether clear apertures and the iris stop rays.
         """
         origins = rows(origins, "rays: origins", 3)
@@ -111,11 +111,11 @@ class Bench:
         return Rays(points, out, iris, path, transmittance, passed)
 
     def moved(self, film_z: float) -> Bench:
-        """The same with the film elsewhere, mm."""
+        """Returns this bench with the film at ``film_z``, mm."""
         return replace(self, film_z=film_z)
 
     def stopped(self, f_stop: float) -> Bench:
-        """The same at another f-stop."""
+        """Returns this bench at another f-stop."""
         return replace(self, f_stop=f_stop, iris_radius=_iris_radius(self.lens, self.order, f_stop))
 
     @property
@@ -128,17 +128,17 @@ class Bench:
 
     @property
     def magnification(self) -> float:
-        """Image size / object size of what is in focus; negative: upside down."""
+        """Image size / object size at the focus distance; negative: upside down."""
         return (self.order.back_focal_point - self.film_z) / self.order.efl
 
     @property
     def projection(self) -> str:
-        """Projection that the lens claims: rectilinear unless a fisheye says its law."""
+        """Nominal projection of the lens: ``rectilinear``, or that of a fisheye."""
         return self.lens.nominal.projection or "rectilinear"
 
     @property
     def is_fisheye(self) -> bool:
-        """Whether straight lines are not meant to stay straight."""
+        """Whether the nominal projection is not rectilinear."""
         return self.projection != "rectilinear"
 
 
@@ -156,15 +156,15 @@ def set_up(
 
     Args:
         lens: A lens of the library, or read from a file.
-        f_stop: Wide open if None.
-        focus_m: Distance in focus, m from the entrance pupil; may be infinite.
+        f_stop: F-stop; None: wide open.
+        focus_m: Focus distance from the entrance pupil, m; may be infinite.
         zoom_mm: Focal length of a zoom, mm.
-        by: ``best``: the film where the spot on the axis is smallest; ``paraxial``: where rays
-            close to the axis meet.
-        field_mm: Half of the image circle, mm; None: the one that the lens is made for.
+        by: Position of the film: ``best``: where the spot on the axis is smallest; ``paraxial``:
+            where rays close to the axis meet.
+        field_mm: Half of the image circle, mm; None: that of the lens.
 
     Raises:
-        InputError: A focus, zoom or f-stop that the lens does not have.
+        InputError: The lens does not have this focus, zoom or f-stop.
     """
     return on_bench(lens, LensSetting(f_stop, focus_m, zoom_mm, by), field_mm)
 
@@ -190,7 +190,7 @@ def on_bench(lens: Lens, setting: LensSetting, field_mm: float | None = None) ->
 
 
 def at_film(lens: Lens, film_z: float, field_mm: float) -> Bench:
-    """A lens wide open, its film at a place (mm), the object where that is in paraxial focus."""
+    """Puts a lens on the bench, wide open, with its film at ``film_z`` (mm) in paraxial focus."""
     order = lens.first_order()
     x = film_z - order.back_focal_point
     front = order.front_principal_point - order.front_focal_point
@@ -207,10 +207,10 @@ def at_film(lens: Lens, film_z: float, field_mm: float) -> Bench:
 
 
 def half_image(lens: Lens, order: FirstOrder) -> float:
-    """Half of the image circle, mm: as stated, or from the stated field.
+    """Half of the image circle, mm: the nominal circle, or that of the nominal field.
 
-    Else that of 36 x 24, or 60 degrees off the axis, whichever is smaller. A fisheye's picture may
-    be a circle within its film: the smaller counts.
+    A fisheye has the smaller of both: its picture may be a circle within its film. A lens with
+    neither has the smaller of the circle of 36 x 24 mm and that of 60 degrees from the axis.
     """
     known = []
     if lens.nominal.image_circle_mm:
@@ -222,7 +222,7 @@ def half_image(lens: Lens, order: FirstOrder) -> float:
 
 
 def projected(projection: str, efl: float, angle: ArrayLike) -> FloatArray:
-    """Image height of an ideal lens of a projection at an angle (rad) from the axis, mm.
+    """Image height of a projection, mm, at an angle from the axis, rad.
 
     Source: Miyamoto 1964, Fish Eye Lens, JOSA 54(8).
     """
@@ -241,7 +241,7 @@ def projected(projection: str, efl: float, angle: ArrayLike) -> FloatArray:
 
 
 def _iris_radius(lens: Lens, order: FirstOrder, f_stop: float) -> float:
-    # The pupil's diameter is focal length / f-stop, and so the stop's in proportion.
+    # The pupil's diameter is focal length / f-stop; the stop's is proportional to it.
     if math.isinf(order.stop_semi_diameter):
         raise LensError(
             f"{lens.name}: f-stop: wanted a clear diameter of the stop, or nominal.f_number, "

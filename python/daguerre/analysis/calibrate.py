@@ -1,4 +1,4 @@
-"""Calibration of a lens by its chief rays: the projection that says where it puts things."""
+"""Calibrates a lens by its chief rays: fits a projection that maps directions to pixels."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ from .bench import Bench, FloatArray, on_bench
 from .chief import ChiefRays, chief_rays
 from .least_squares import least_squares
 
-#: Where models start that are none without parameters.
+#: Initial parameters of models that are not valid with zeros.
 STARTS = {"double_sphere": (0.0, 0.5), "eucm": (0.5, 1.0), "omni": (1.0,), "fov": (0.5,)}
-UNFIT = ("equirectangular", "cube")  # pictures of no lens
+UNFIT = ("equirectangular", "cube")  # panoramas, which no lens projects
 #: Names that formats of calibration files use for models.
 OTHER_NAMES = {
     "fisheye": "kannala_brandt",
     "brown_conrady": "opencv",
 }
-#: Parameters fitted by default, the number that OpenCV's own calibration fits.
+#: Number of parameters fitted by default, as in OpenCV's own calibration.
 PARAMETERS = {"opencv": 5}
-#: Numbers of parameters to compare.
+#: Numbers of parameters that ``calibrate_all`` compares.
 COUNTS = {"opencv": (4, 5, 8, 12)}
 ACROSS = 41  # chief rays across the picture
 LEAST = 50  # chief rays that a fit needs
-NOTHING = 1e-13  # what is left of parameters that symmetry forbids
-NEAR = 0.25  # of the picture's half, for the first guess of the focal length
+NOTHING = 1e-13  # smaller parameters are 0 by symmetry, and left over from rounding
+NEAR = 0.25  # radius for the first guess of the focal length, of the picture's shorter side
 
 
 class _PictureKeywords(TypedDict, total=False):
@@ -65,16 +65,16 @@ class CalibrateKeywords(_PictureKeywords, total=False):
 
 @dataclass(frozen=True)
 class ProjectionFit:
-    """A projection that was fitted, and how well it fits.
+    """A fitted projection, and how well it fits.
 
     Attributes:
-        projection: The model.
-        bench: The lens, as it is used.
+        projection: The fitted model.
+        bench: The lens at its setting.
         pixel_pitch_um: Pixel pitch of the picture, um.
-        pixels: Where the lens puts directions, shape (N, 2), pixel centres at integers.
-        directions: Unit, x right, y down, z ahead, from the entrance pupil, shape (N, 3).
-        unseen: Points of the picture that see nothing.
-        camera: The lens as it was calibrated.
+        pixels: Pixels of the chief rays, shape (N, 2), pixel centres at integers.
+        directions: Unit vectors, x right, y down, z ahead, from the entrance pupil, shape (N, 3).
+        unseen: Number of points of the picture without a chief ray.
+        camera: Camera with the lens at this setting.
     """
 
     projection: Projection
@@ -87,17 +87,17 @@ class ProjectionFit:
 
     @property
     def residuals(self) -> FloatArray:
-        """Where the model puts directions, less where the lens does, px, shape (N, 2)."""
+        """Pixels of the model less those of the lens, px, shape (N, 2)."""
         return self.projection.project(self.directions) - self.pixels
 
     @property
     def rms(self) -> float:
-        """RMS of the distances, px: OpenCV's reprojection error."""
+        """RMS length of the residuals, px: OpenCV's reprojection error."""
         return float(np.sqrt((self.residuals**2).sum(axis=1).mean()))
 
     @property
     def largest(self) -> float:
-        """Distance, px."""
+        """Largest length of a residual, px."""
         return float(np.hypot(*self.residuals.T).max())
 
 
@@ -110,17 +110,17 @@ def calibrate(
     resolution: tuple[int, int],
     **keywords: Unpack[CalibrateKeywords],
 ) -> ProjectionFit:
-    """Fits a projection to a lens: least squares of pixels, evenly over the picture.
+    """Fits a projection to a lens, by least squares of pixels evenly over the picture.
 
     Args:
         lens: A lens, its name in the library, or a file.
-        model: One of ``MODELS``, but for panoramas; ``fisheye`` is OpenCV's, kannala_brandt.
+        model: One of ``MODELS`` except panoramas; ``fisheye`` is OpenCV's, kannala_brandt.
         resolution: Width and height of the picture, px.
         {keywords}
 
     Raises:
-        UsageError: No such model, or numbers that are no picture's.
-        InputError: The lens sees what the model cannot show, or nothing.
+        UsageError: ``model`` is unknown, or a number is out of range.
+        InputError: The lens has a wider field than the model, or too little of the picture is lit.
     """
     asked = CALIBRATE.filled({"resolution": resolution, **keywords}, "calibrate")
     model = OTHER_NAMES.get(model, model)
@@ -133,33 +133,33 @@ def calibrate(
 def calibrate_all(
     lens: Lens | str, *, resolution: tuple[int, int], **keywords: Unpack[SeenKeywords]
 ) -> list[ProjectionFit]:
-    """Fits every model that can show what the lens sees, the best (by RMS) first.
+    """Fits every model that covers the field of the lens; returns the best (by RMS) first.
 
     Args: those of :func:`calibrate`; ``opencv`` is fitted with 4, 5, 8 and 12 parameters.
 
     Raises:
-        UsageError: Numbers that are no picture's.
-        InputError: The lens sees nothing.
+        UsageError: A number is out of range.
+        InputError: Too little of the picture is lit.
     """
     asked = {"resolution": resolution, **keywords}
     seen = _see(lens, SEEN.filled(asked, "calibrate_all", "calibrate"))
     found = []
     for model in MODELS:
         for count in COUNTS.get(model, (len(MODELS[model]),)) if model not in UNFIT else ():
-            with contextlib.suppress(InputError):  # too small a field
+            with contextlib.suppress(InputError):  # the model's field is too small
                 found.append(seen.fitted(model, count))
     return sorted(found, key=lambda fit: fit.rms)
 
 
 @dataclass(frozen=True)
 class _Picture:
-    """Picture for which a lens is calibrated, and the light in which.
+    """Picture and wavelength for which a lens is calibrated.
 
     Attributes:
         resolution: Width and height, px.
-        sensor_mm: Width and height; the picture's width is the sensor's.
-        shift_mm: Shift of the sensor, right and up.
-        wavelength_nm: nm.
+        sensor_mm: Width and height of the sensor, mm; the picture spans its width.
+        shift_mm: Shift of the sensor, right and up, mm.
+        wavelength_nm: Wavelength, nm.
     """
 
     resolution: tuple[int, int]
@@ -181,12 +181,12 @@ class _Picture:
 
     @property
     def pitch_mm(self) -> float:
-        """Pixel pitch."""
+        """Pixel pitch, mm."""
         return self.sensor_mm[0] / self.size[0]
 
     @property
     def axis(self) -> FloatArray:
-        """Where the lens's axis meets it, px."""
+        """Point where the lens's axis meets the picture, px."""
         middle = (np.array(self.size) - 1) / 2
         shift = np.array(numbers(self.shift_mm, "calibrate: shift", 2, "two lengths, mm"))
         return np.asarray(middle + shift / self.pitch_mm * (-1, 1))
@@ -201,7 +201,7 @@ class _Seen:
     pixels: FloatArray
     directions: FloatArray
     unseen: int
-    axis: FloatArray  # where it meets the picture, px
+    axis: FloatArray  # point where the axis meets the picture, px
     camera: Camera
 
     def fitted(self, model: str, count: int) -> ProjectionFit:
@@ -255,19 +255,19 @@ def fit_projection(
     name: str = "calibrate",
     axis: FloatArray | None = None,
 ) -> Projection:
-    """Fits the model that puts directions closest to pixels.
+    """Fits a model that maps directions to pixels.
 
     Args:
         model: One of ``MODELS``.
         size: Width and height of the picture, px.
         pixels: Shape (N, 2), pixel centres at integers.
         directions: Shape (N, 3), x right, y down, z ahead.
-        terms: Parameters of the model that are fitted.
+        terms: Number of parameters of the model to fit.
         name: Name of the lens, for messages.
-        axis: About where the principal point is, px; None: the middle.
+        axis: First guess of the principal point, px; None: the centre of the picture.
 
     Raises:
-        InputError: Directions are outside of the model's field.
+        InputError: Directions are outside the model's field.
     """
     middle = (np.array(size) - 1) / 2 if axis is None else axis
     start = np.array([*STARTS.get(model, ()), *[0.0] * terms][:terms])
@@ -292,7 +292,7 @@ def fit_projection(
     def misses(x: FloatArray) -> FloatArray:
         try:
             return np.asarray((made(x).project(directions) - pixels).ravel())
-        except UsageError:  # numbers that make no model
+        except UsageError:  # invalid parameters
             return np.full(2 * len(pixels), np.nan)
 
     first = np.concatenate([[1.0, 1.0, 0.0, 0.0], start])
@@ -303,13 +303,13 @@ def fit_projection(
 def directions_seen(bench: Bench, rays: ChiefRays) -> FloatArray:
     """Directions to points in focus on chief rays, from the paraxial entrance pupil.
 
-    Cameras stand there. In focus is a plane, or for fisheyes, which see beside it, the sphere of
-    that radius.
+    The pupil is the camera's position. The points lie on the plane in focus; for fisheyes, whose
+    field is too wide for a plane, on a sphere with that radius.
 
     Returns:
-        Unit directions, x right, y down, z ahead, shape (N, 3); NaN: none.
+        Unit directions, x right, y down, z ahead, shape (N, 3); NaN where there is no chief ray.
     """
-    # Rays come toward the lens along +z of its frame: x right and y up for who looks out.
+    # Rays come toward the lens along +z of its frame; looking out, x is right and y up.
     d, pupil = rays.directions, np.array([0.0, 0.0, bench.order.entrance_pupil.z])
     seen = -d
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -330,14 +330,14 @@ def directions_seen(bench: Bench, rays: ChiefRays) -> FloatArray:
 def _grid(
     bench: Bench, size: tuple[int, int], pitch: float, axis: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Pixels evenly over the picture, corners included, and their places on the film, mm."""
+    """Pixels evenly over the picture, corners included, and their film points, mm."""
     width, height = size
     rows = max(3, round((ACROSS - 1) * height / width) + 1)
     x, y = np.linspace(-0.5, width - 0.5, ACROSS), np.linspace(-0.5, height - 0.5, min(rows, 101))
     pixels = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-    # The picture stands upside down on the film, whose y is up.
+    # The image on the film, whose y is up, is upside down.
     film = (pixels - axis) * pitch * (-1, 1)
-    if bench.is_fisheye:  # around its circle there is nothing but the barrel
+    if bench.is_fisheye:  # outside its image circle is only the barrel
         inside = np.hypot(*film.T) <= bench.field_mm * (1 + 1e-9)
         pixels, film = pixels[inside], film[inside]
     return pixels, film

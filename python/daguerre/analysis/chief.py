@@ -1,4 +1,4 @@
-"""Chief rays: from points of the film, backward through the middle of the stop."""
+"""Traces chief rays: from film points, backward through the centre of the stop."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench, FloatArray
 
-STEPS = 8  # from the axis to the point; each starts from the last
-NEWTON = 6
-ON_THE_WAY = 1e-3  # of the iris: how well steps before the last are aimed
-EXACT = 1e-11
+STEPS = 8  # from the axis to the film point; each step starts from the one before
+NEWTON = 6  # most iterations of a step
+ON_THE_WAY = 1e-3  # tolerance of all steps but the last, of the iris radius
+EXACT = 1e-11  # tolerance of the last step, of the iris radius
 
 
 @dataclass(frozen=True)
 class ChiefRays:
-    """Rays through the middle of the stop, one for each film point; NaN where there is none.
+    """Rays through the centre of the stop, one for each film point; NaN where there is none.
 
     Attributes:
         film: Film points, mm, shape (N, 2).
         slopes: dx/dz, dy/dz at the film, shape (N, 2).
-        points: On the first surface, shape (N, 3), mm.
-        directions: Light in front of the lens, toward it, unit vectors, shape (N, 3).
+        points: Points on the first surface, shape (N, 3), mm.
+        directions: Unit vectors in front of the lens, toward it, shape (N, 3).
     """
 
     film: FloatArray
@@ -38,7 +38,7 @@ class ChiefRays:
 
     @property
     def angles(self) -> FloatArray:
-        """From the axis, in front of the lens, rad, shape (N,)."""
+        """Angles from the axis, in front of the lens, rad, shape (N,)."""
         d = self.directions
         return np.asarray(np.arctan2(np.hypot(d[:, 0], d[:, 1]), d[:, 2]))
 
@@ -47,10 +47,10 @@ class ChiefRays:
 def chief_rays(
     bench: Bench, film_mm: ArrayLike, wavelength_nm: float = DESIGN_WAVELENGTH_NM
 ) -> ChiefRays:
-    """Chief rays of film points, by Newton's method on exact rays.
+    """Finds the chief rays of film points, by Newton's method on exact rays.
 
-    Film to scene, where even a fisheye's field is a moderate angle. Mounts stop nothing here: a
-    chief ray may lie in the dark of a vignetted field.
+    Rays start at the film, where even a fisheye's field spans moderate angles. Clear apertures are
+    ignored: a chief ray may be vignetted.
 
     Args:
         bench: The lens.
@@ -75,18 +75,18 @@ def chief_rays(
 
 @guarded
 def film_heights(bench: Bench, angles_deg: ArrayLike) -> FloatArray:
-    """Image heights (mm) whose chief rays come from angles (deg) off the axis; NaN: none does."""
+    """Image heights (mm) of chief rays at angles (deg) from the axis; NaN where there is none."""
     wanted = np.radians(line(angles_deg, "film_heights: angles_deg"))
     reach = 1.5 * bench.field_mm
     heights = np.linspace(0, reach, 97)
     angles = chief_rays(bench, heights).angles
     known = np.isfinite(angles)
-    if known.any():  # up to where the angle stops growing
+    if known.any():  # keep heights up to where the angle stops growing
         rising = np.concatenate([[True], np.diff(angles[known]) > 0])
         last = int(np.argmin(rising)) if not rising.all() else len(rising)
         heights, angles = heights[known][:last], angles[known][:last]
     out = np.interp(wanted, angles, heights, right=np.nan)
-    for _ in range(2):  # a secant polish of the interpolation
+    for _ in range(2):  # refine the interpolation by the secant method
         near = chief_rays(bench, out).angles
         far = chief_rays(bench, out * (1 + 1e-5) + 1e-7).angles
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -95,7 +95,7 @@ def film_heights(bench: Bench, angles_deg: ArrayLike) -> FloatArray:
 
 
 def as_film_points(film_mm: ArrayLike) -> FloatArray:
-    """Film points (N, 2) from points, or from heights along y."""
+    """Converts image heights along y to film points (N, 2); points stay as they are."""
     film = np.atleast_1d(np.asarray(film_mm, np.float64))
     if film.ndim == 2:
         return film
@@ -105,7 +105,7 @@ def as_film_points(film_mm: ArrayLike) -> FloatArray:
 def _aimed(
     bench: Bench, film: FloatArray, slopes: FloatArray, nm: float, miss: float
 ) -> FloatArray:
-    """Slopes that meet the middle of the stop within a share of its radius, shape (N, 2)."""
+    """Slopes of rays through the centre of the stop, within a share of its radius, (N, 2)."""
     delta = 1e-5
     across, along = np.array([delta, 0.0]), np.array([0.0, delta])
     for _ in range(NEWTON):

@@ -1,17 +1,17 @@
-"""The point spread of waves on a picture's pixels: discs, rings and stars of an iris.
+"""Diffraction on pixels: the point spread of waves, with the discs, rings and stars of an iris.
 
-Light that converges on a film point is a fan of plane waves with direction cosines a; at d from the
-point the amplitude is the Fourier sum of P(a) exp(i k (W(a) + a d)), P^2 the light along a, W its
-path (wavefronts.py). The square is integrated over each pixel.
+Light that converges on a film point is a fan of plane waves with direction cosines a. At d from the
+point the amplitude is the Fourier sum of P(a) exp(i k (W(a) + a d)), with P^2 the light along a and
+W its optical path (wavefronts.py). The squared amplitude is integrated over each pixel.
 Sources: Born and Wolf, Principles of Optics, 7th ed., sections 8.3 to 8.5; Goodman, Introduction to
 Fourier Optics, 3rd ed., chapters 4 and 5.
 
-The pattern is taken over d in wavelengths. Without aberrations it is the same for all of them, so
-one transform serves every colour, and pixels are more or less of it. By Parseval's theorem the sum
-of the squares is the light of the pupil, so a kernel's sum is the share of the light that falls
-into its window, whatever the shape of the iris.
+Patterns have d in wavelengths. Without aberrations the pattern is the same at all wavelengths, so
+one transform serves them all, and only the size of a pixel in it differs. By Parseval's theorem the
+sum of the squares is the light of the pupil. So a kernel's sum is the share of the light within its
+window, for every shape of the iris.
 
-Axes are the picture's: x to the right, y up, both of the iris as seen along the view.
+Axes are the picture's: x to the right, y up, for the iris too, as seen along the view.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ from daguerre.errors import UsageError
 
 from .iris import Floats, Iris
 
-#: the window that the transform takes as periodic, over the kernel: what leaves it comes in again
+#: Period of the transform over the width of the kernel; light beyond the period wraps around.
 PAD = 1.5
-SAMPLES = 3.0  # of a pattern across its finest fringe, wavelength / span; 2 are needed
-LINES = 128  # transformed at a time
-PUPIL = 512  # points across a pupil at least
-MOST_FRINGES = 3000.0  # across a pattern: what lies beyond is dark
-TAPS = 6  # samples to either side that a pixel's edge looks at
-REACH = 700.0  # of a kernel, in fringes of 550 nm: wavelength x f-number
+SAMPLES = 3.0  # samples across the finest fringe, wavelength / span; at least 2 are needed
+LINES = 128  # lines transformed at a time
+PUPIL = 512  # least number of points across a pupil
+MOST_FRINGES = 3000.0  # largest width of a pattern, in fringes; beyond it is dark
+TAPS = 6  # samples on each side of a pixel's edge that are interpolated
+REACH = 700.0  # half width of a kernel, in fringes at 550 nm: wavelength x f-number
 
 
 class Pupil(Protocol):
@@ -57,28 +57,28 @@ class Pupil(Protocol):
 
     @property
     def perfect(self) -> bool:
-        """Whether the wave is: amplitudes are real, and the same at all wavelengths."""
+        """Whether there are no aberrations: amplitudes are real, and equal at all wavelengths."""
 
     def amplitude(self, x: Floats, y: Floats, wavelength_nm: float) -> NDArray[Any]:
-        """Amplitudes (B, A) on a raster of cosines x (A,) and y (B,); complex if they bend."""
+        """Amplitudes (B, A) on a raster of cosines x (A,) and y (B,); complex if not perfect."""
 
 
 def _line(values: Floats, name: str) -> Floats:
-    """Directions in a row, two at least: their distance is the pitch."""
+    """Checks direction cosines in a row; two or more, as their distance is the pitch."""
     found = line(values, f"amplitude: {name}")
     if len(found) < 2:
-        raise UsageError(f"amplitude: {name}: wanted two directions at least, got {len(found)}")
+        raise UsageError(f"amplitude: {name}: wanted two or more directions, got {len(found)}")
     return np.asarray(found, np.float32)
 
 
 @guarded
 @dataclass(frozen=True)
 class PlainPupil:
-    """The pupil of an ideal lens: the iris alone, under the cone of its f-number.
+    """The pupil of an ideal lens: only an iris that fills the cone of its f-number.
 
     Attributes:
-        f_number: Working f-number, which the film sees; sin of the cone's half angle is 1 / (2 N).
-        iris: Its shape.
+        f_number: Working f-number N at the film; the sine of the cone's half angle is 1 / (2 N).
+        iris: Shape of the iris.
     """
 
     f_number: float
@@ -97,11 +97,11 @@ class PlainPupil:
 
     @property
     def perfect(self) -> bool:
-        """An ideal lens has no aberrations."""
+        """Whether there are no aberrations: always, for an ideal lens."""
         return True
 
     def amplitude(self, x: Floats, y: Floats, wavelength_nm: float) -> Floats:
-        """Amplitudes (B, A): no aberration, so they are real."""
+        """Amplitudes (B, A) on a raster of cosines x (A,) and y (B,); real."""
         x, y = _line(x, "x"), _line(y, "y")
         unit = np.float32(2 * self.f_number)
         pitch = float(unit * (x[1] - x[0]))
@@ -110,14 +110,14 @@ class PlainPupil:
 
 @dataclass(frozen=True)
 class Pattern:
-    """Light about a film point, at distances in wavelengths.
+    """Samples of the light around a film point, with distances in wavelengths.
 
     Attributes:
-        light: Samples: columns along x, rows from the top. Of a perfect wave those from x = -TAPS
-            alone, for its light at (-x, -y) is that at (x, y); shape (2 reach + 1, reach + 1 +
+        light: Samples, columns along x, rows from the top. A perfect wave, whose light is equal at
+            (x, y) and (-x, -y), has only those from x = -TAPS: shape (2 reach + 1, reach + 1 +
             TAPS).
-        spacing: Between samples, wavelengths.
-        total: Sum of the samples of a whole period, that is all light.
+        spacing: Distance of samples, wavelengths.
+        total: Sum of the samples of a whole period, which is all light.
     """
 
     light: Floats
@@ -126,13 +126,13 @@ class Pattern:
 
     @property
     def halved(self) -> bool:
-        """Whether only the right half is there."""
+        """Whether ``light`` has only the right half."""
         return bool(self.light.shape[0] != self.light.shape[1])
 
     def on_pixels(self, wavelength_nm: float, pitch_mm: float, size: int) -> Floats:
-        """Shares of the light in pixels, rows from the top, shape (size, size), odd.
+        """Shares of the light in pixels, rows from the top, shape (size, size); size is odd.
 
-        A perfect wave gives the right half alone, from the middle column on: (size, size // 2 + 1).
+        A perfect wave gives only the right half, from the middle column on: (size, size // 2 + 1).
         """
         pixel = pitch_mm / (1e-6 * wavelength_nm * self.spacing)
         reach = len(self.light) // 2
@@ -140,7 +140,7 @@ class Pattern:
         down = _weights(edges + reach, self.total)
         if not self.halved:
             return np.asarray(pixel_integrals(self.light, *down, *_weights(edges + reach, 1.0)))
-        # The middle column is the right half of it, and that half turned about the point.
+        # The middle column is its own right half, plus that half turned about the point.
         right = np.concatenate([[0.0], edges[size // 2 + 1 :]]) + TAPS
         half = pixel_integrals(self.light, *down, *_weights(right, 1.0))
         half[:, 0] += half[::-1, 0]
@@ -148,29 +148,29 @@ class Pattern:
 
 
 def both_halves(right: Floats) -> Floats:
-    """Kernels (..., size, size) of what perfect waves have from the middle column on."""
+    """Completes right halves of perfect waves to kernels, shape (..., size, size)."""
     return np.concatenate([right[..., ::-1, :0:-1], right], axis=-1)
 
 
 def light_of(right: Floats) -> float:
-    """Sum of a kernel of which the right half is given."""
+    """Sum of a whole kernel, from its right half."""
     return float(2 * right.sum(dtype=np.float64) - right[:, 0].sum(dtype=np.float64))
 
 
 def pattern_of(
     pupil: Pupil, wavelength_nm: float, pitch_mm: float, size: int, *, threads: int = 1
 ) -> Pattern | None:
-    """The pattern of a pupil, wide enough for a window at this wavelength and at longer ones.
+    """Computes the pattern of a pupil, for a window at this wavelength and at longer ones.
 
     Args:
         pupil: Pupil of one film point.
-        wavelength_nm: nm. For a perfect wave it only sets the width.
-        pitch_mm: Pitch of the pixels to be asked for, mm.
+        wavelength_nm: Wavelength, nm. For a perfect wave it only sets the width.
+        pitch_mm: Pixel pitch, mm.
         size: Pixels across.
-        threads: To work on; they change no bit.
+        threads: Number of threads; the result does not depend on it.
 
     Returns:
-        None if the pupil is dark.
+        The pattern, or None if the pupil is dark.
     """
     number(wavelength_nm, "diffraction: wavelength_nm", 1, 1e6)
     number(pitch_mm, "diffraction: pitch_mm", above=0, high=1000)
@@ -196,11 +196,11 @@ def pattern_of(
 
 @guarded
 def far_field(pupil: Pupil, wavelength_nm: float, pitch_mm: float, size: int) -> Floats:
-    """The point spread of one wavelength on pixels.
+    """Computes the point spread of one wavelength on pixels.
 
     Args:
         pupil: Pupil of one film point.
-        wavelength_nm: nm.
+        wavelength_nm: Wavelength, nm.
         pitch_mm: Pixel pitch, mm.
         size: Pixels across, odd: the point is in the middle one.
 
@@ -219,14 +219,14 @@ def far_fields(
     *,
     threads: int = 0,
 ) -> Iterator[Floats]:
-    """``far_field`` of one wavelength after the other, as many at a time as there are threads.
+    """Yields the ``far_field`` of each wavelength, computed on several threads (0: all cores).
 
-    Perfect waves give right halves alone, see ``Pattern.on_pixels``.
+    Perfect waves give only right halves; see ``Pattern.on_pixels``.
     """
     if size % 2 == 0:
         raise ValueError(f"size: wanted an odd number, got {size}")
     if size == 1:
-        yield from (np.ones((1, 1), np.float32) for _ in wavelengths_nm)  # half of it, and whole
+        yield from (np.ones((1, 1), np.float32) for _ in wavelengths_nm)  # half is all
         return
     raster = pitch_mm, size
 
@@ -246,7 +246,7 @@ def far_fields(
 
 
 def window_of(pupil: Pupil, pitch_mm: float, most: int) -> int:
-    """Pixels across a kernel beyond which some 1e-4 of the light falls, odd; at most so many."""
+    """Pixels across a kernel that misses about 1e-4 of the light, odd; about ``most`` or less."""
     span = max(b - a for a, b in zip(pupil.low, pupil.high, strict=True))
     reach = int(REACH * 0.55e-3 / (span * pitch_mm))
     return min(2 * reach + 1, (most - 1) | 1)
@@ -255,7 +255,7 @@ def window_of(pupil: Pupil, pitch_mm: float, most: int) -> int:
 def _raster(span: float, window: float, pixel: float) -> tuple[float, int]:
     """Step of the direction cosines, and length of the transform; window and pixel in wavelengths.
 
-    Samples are no coarser than pixels: between samples a pattern is known less well.
+    Samples are no coarser than pixels, because interpolation between samples is less exact.
     """
     across = max(PAD * window * span, PUPIL)  # samples of the pupil
     least = across * max(SAMPLES, 1 / (span * pixel)) + 8
@@ -264,11 +264,11 @@ def _raster(span: float, window: float, pixel: float) -> tuple[float, int]:
 
 
 def _along(waves: NDArray[Any], length: int, reach: int) -> tuple[NDArray[Any], float]:
-    """Transforms of rows, orthonormal, and their light; of real waves columns 0 .. reach alone."""
+    """Transforms rows, orthonormal; returns also their light. Real waves: columns 0 .. reach."""
     light = float((np.abs(waves).astype(np.float64) ** 2).sum())
     if not np.iscomplexobj(waves):
         return rfft(waves, length)[:, : reach + 1].copy(), light
-    # exp(+i k a d): the transform's sign is the other one, so points count backward.
+    # exp(+i k a d) has the opposite sign of the transform, so columns are reversed.
     along = fft(waves, length, 1)
     return np.concatenate([along[:, reach::-1], along[:, : -reach - 1 : -1]], axis=1), light
 
@@ -288,9 +288,9 @@ def _intensity(
         part = slice(first, first + LINES)
         both = fft(np.concatenate([block[:, part] for block in lines]), length, 0)
         light = both.real**2 + both.imag**2
-        if halved:  # counted along exp(-i): (-x, y), which is (x, -y)
+        if halved:  # exp(-i) along rows gives (-x, y), which equals (x, -y)
             light[1:] = light[:0:-1].copy()
-        # y up is row 0: of exp(+i), so y = +reach stands at the transform's -reach.
+        # Row 0 is y = +reach: by exp(+i), it is at -reach of the transform.
         made[:reach, part] = light[-reach:]
         made[reach:, part] = light[: reach + 1]
 
@@ -303,9 +303,9 @@ def _intensity(
 def _weights(edges: NDArray[np.float64], total: float) -> tuple[NDArray[np.int32], Floats]:
     """Weights of samples in the integrals between edges (counted in samples), over a total.
 
-    Between samples a pattern is what a windowed sinc makes of them; at three samples per fringe it
-    misses some 1e-3 of the finest fringes. All pixels together have each sample once, whatever
-    their edges: no light is lost or made.
+    A windowed sinc interpolates between samples; at three samples per fringe it misses about 1e-3
+    of the finest fringes. Over all pixels the weights of a sample sum to 1, wherever their edges
+    are: no light is lost or added.
     """
     low, high = edges[:-1], edges[1:]
     first = np.floor(low).astype(np.int32) - TAPS + 1

@@ -1,4 +1,4 @@
-"""The figures as plain numbers, for JSON. Lengths in mm; names say other units."""
+"""Converts figures to plain numbers for JSON. Lengths are in mm; names state other units."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .seidel import NAMES
 
 
 def facts(made: Figures) -> dict[str, Any]:
-    """Everything that the data sheet shows, as numbers and lists."""
+    """Returns all figures of the data sheet as numbers and lists."""
     bench, light = made.bench, made.illumination
     working = bench.f_stop * (1 - bench.magnification / bench.order.pupil_magnification)
     return {
@@ -81,6 +81,6 @@ def _seidel(made: Figures) -> dict[str, Any] | None:
 
 
 def _rounded(values: ArrayLike) -> Any:
-    """Nested lists with seven digits."""
+    """Converts values to nested lists, rounded to seven digits."""
     flat = np.asarray(values, np.float64)
     return np.array([float(f"{v:.7g}") for v in flat.ravel()]).reshape(flat.shape).tolist()

@@ -21,12 +21,12 @@ from .pencils import FLAT_FIELD, Pencil, unbounded
 
 @dataclass(frozen=True)
 class FieldCurve:
-    """Where the rays close to the chief ray meet, against the film.
+    """Foci of the rays close to the chief ray, relative to the film.
 
     Attributes:
         height_mm: Image heights, mm, shape (N,).
-        sagittal, tangential: Focus against the film, mm along the axis, positive away from the
-            lens, shape (N,); NaN where no chief ray arrives.
+        sagittal, tangential: Focus relative to the film, mm along the axis, positive away from
+            the lens, shape (N,); NaN where no chief ray arrives.
     """
 
     height_mm: FloatArray
@@ -38,13 +38,13 @@ class FieldCurve:
 def field_curvature(
     bench: Bench, heights_mm: ArrayLike, wavelength_nm: float = DESIGN_WAVELENGTH_NM
 ) -> FieldCurve:
-    """Sagittal and tangential foci over the field, by pairs of rays close to the chief ray.
+    """Computes sagittal and tangential foci over the field from rays close to the chief ray.
 
-    The same as Coddington's equations, taken as a difference of exact rays: it holds for every kind
-    of surface.
+    The result is that of Coddington's equations; differences of exact rays extend it to all kinds
+    of surfaces.
 
     Args:
-        bench: The lens; its focus distance is the object's, a plane.
+        bench: The lens; the object is a plane at its focus distance.
         heights_mm: Image heights along y, mm, shape (N,).
         wavelength_nm: Wavelength, nm.
     """
@@ -59,26 +59,26 @@ def field_curvature(
         rays = light.trace(near, wavelength_nm, clip=False)
         at = light.on_film(rays.at(bench.film_z))
         slope = light.on_film(light.film + rays.directions[:, :2] / rays.directions[:, 2:])
-        for k in range(2):  # neighbours cross where their distance along that axis vanishes
+        for k in range(2):  # rays cross where their distance along that axis is 0
             apart, spread = (v[2 * k, k] - v[2 * k + 1, k] for v in (at, slope))
             out[i, k] = -apart / spread
     return FieldCurve(heights, out[:, 0], out[:, 1])
 
 
 def narrow(bench: Bench, height: float) -> Pencil | None:
-    """The chief ray of an image height, and the axes around it, without looking for its light."""
+    """Pencil of an image height with its chief ray and axes, but not yet bounds of its light."""
     return unbounded(bench, np.array([0.0, height]), bench.focus_mm)
 
 
 @dataclass(frozen=True)
 class Distortion:
-    """Real image heights against those of the lens's law.
+    """Real image heights, and those of the lens's nominal projection.
 
     Attributes:
-        height_mm: Real, mm, shape (N,).
-        angle_deg: Angle of the chief ray in front of the lens, shape (N,).
-        ideal_mm: By the law, shape (N,).
-        law: ``f tan`` or the fisheye's.
+        height_mm: Real image heights, mm, shape (N,).
+        angle_deg: Angle of the chief ray in front of the lens, degrees, shape (N,).
+        ideal_mm: Image heights of the nominal projection, mm, shape (N,).
+        law: Nominal projection: ``rectilinear``, or that of a fisheye.
     """
 
     height_mm: FloatArray
@@ -96,17 +96,17 @@ class Distortion:
 
 @guarded
 def distortion(bench: Bench, heights_mm: ArrayLike) -> Distortion:
-    """Distortion by exact chief rays.
+    """Computes distortion from exact chief rays.
 
     A rectilinear lens is compared with the image of a plane object at the focus distance, a fisheye
-    with its own law of angles, both at the scale of the axis.
+    with its nominal projection; both are scaled to agree near the axis.
 
     Args:
         bench: The lens.
         heights_mm: Image heights along y, mm, shape (N,).
     """
     heights = line(heights_mm, "distortion: heights_mm")
-    # The first is the scale: a film off the paraxial focus is a little larger or smaller.
+    # The first sets the scale, which depends a little on the film's distance from paraxial focus.
     near = np.concatenate([[1e-3 * bench.field_mm], heights])
     angles = chief_rays(bench, near).angles
     if bench.is_fisheye or math.isinf(bench.focus_mm):
@@ -128,7 +128,7 @@ def _object_height(bench: Bench, height: float) -> float:
 def lateral_colour(
     bench: Bench, heights_mm: ArrayLike, wavelengths_nm: Sequence[float] = FDC_NM
 ) -> FloatArray:
-    """How far chief rays of other colours land from that of 587.56 nm, outward, mm.
+    """Distances on the film from the chief ray of 587.56 nm to those of others, outward, mm.
 
     Args:
         bench: The lens.
@@ -152,7 +152,7 @@ def lateral_colour(
 
 
 def _through_the_middle(light: Pencil, nm: float) -> FloatArray:
-    """Window coordinates (1, 2) of the ray through the middle of the stop, by Newton's method."""
+    """Window coordinates (1, 2) of the ray through the centre of the stop, by Newton's method."""
     at, delta = np.zeros(2), 1e-4 * light.bench.pupil_diameter
     for _ in range(3):
         iris = light.trace(at + delta * np.array([[0, 0], [1, 0], [0, 1]]), nm, clip=False).iris
@@ -165,7 +165,7 @@ def _through_the_middle(light: Pencil, nm: float) -> FloatArray:
 
 @guarded
 def axial_colour(bench: Bench, wavelengths_nm: ArrayLike) -> FloatArray:
-    """Paraxial focus of each wavelength against that of 587.56 nm, mm, shape (L,).
+    """Paraxial focus of each wavelength relative to that of 587.56 nm, mm, shape (L,).
 
     The object is at the focus distance; positive is away from the lens.
     """
@@ -187,7 +187,7 @@ def _image_of(order: FirstOrder, object_z: float) -> float:
 def spherical_aberration(
     bench: Bench, shares: ArrayLike, wavelength_nm: float = DESIGN_WAVELENGTH_NM
 ) -> FloatArray:
-    """Where rays from the axis cross it again, against the film, mm, shape (N,).
+    """Points where rays of an axial object point cross the axis, from the film, mm, shape (N,).
 
     Args:
         bench: The lens.

@@ -1,4 +1,4 @@
-"""All figures of one lens at one setting: what the data sheet draws and ``--json`` prints."""
+"""All figures of one lens at one setting, for the data sheet and ``--json``."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from .seidel import SeidelSums, seidel_sums
 from .spots import Spot, spot
 from .wavefronts import Wavefront, wavefront
 
-#: shares of the field at which spots, PSFs and pupils are shown
+#: Shares of the field at which spots, PSFs and pupils are shown.
 FIELDS = (0.0, 0.35, 0.6, 0.8, 1.0)
-#: rays across: enough for pictures of some millimetres, in seconds
+#: Rays across: enough for drawings of a few millimetres, and computed in seconds.
 PSF_GRID, ILLUMINATION_GRID = 160, 56
-#: cycles per mm of the MTF over the field
+#: Spatial frequencies of the MTF over the field, cycles per mm.
 FREQUENCIES = (10.0, 20.0, 40.0)
 CURVE = np.linspace(0, 1, 21)
-#: of the MTF; those of FIELDS are among them
+#: Shares of the field at which the MTF is computed; they include FIELDS.
 MTF_FIELDS = (0.0, 0.15, 0.35, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 PUPIL_SHARES = np.linspace(0, 1, 33)
 COLORS_NM = np.linspace(400, 700, 31)
@@ -39,7 +39,7 @@ COLORS_NM = np.linspace(400, 700, 31)
 
 @dataclass(frozen=True)
 class FieldPoint:
-    """One image height: its light as rays, as waves, and the pupil that it sees."""
+    """Spot, PSF and outline of the pupil at one image height."""
 
     height_mm: float
     angle_deg: float
@@ -50,20 +50,20 @@ class FieldPoint:
 
 @dataclass(frozen=True)
 class Figures:
-    """Figures at one focal length, focus and f-stop. Heights in mm, over the field from 0 to 1.
+    """Figures at one focal length, focus and f-stop.
 
-    The field ends where 2 % of the light is left, if that is within the image circle.
+    The field ends where 2 % of the axis's light is left, if that is within the image circle.
 
     Attributes:
-        points: At FIELDS.
-        frequency: cycles per mm, shape (Q,).
+        points: Spots, PSFs and pupils at FIELDS.
+        frequency: Spatial frequencies, cycles per mm, shape (Q,).
         mtf_waves, mtf_rays: MTF of waves and of rays at MTF_FIELDS, shape (H, Q, 2): sagittal,
             tangential.
-        curves: F, d, C.
-        lateral: Shape (21, 3), mm: F, d, C.
-        axial: At COLORS_NM, mm.
+        curves: Field curvature at F, d and C.
+        lateral: Lateral colour of F, d and C, shape (21, 3), mm.
+        axial: Axial colour at COLORS_NM, mm.
         spherical: Spherical aberration of F, d and C at PUPIL_SHARES, shape (3, 33), mm.
-        on_axis: The wave of 587.56 nm on the axis.
+        on_axis: Wavefront of 587.56 nm on the axis.
     """
 
     bench: Bench
@@ -95,7 +95,7 @@ def figures(bench: Bench, *, psf_pixels: int = 64) -> Figures:
 
     Args:
         bench: The lens at its setting.
-        psf_pixels: Width of the pictures of points, px.
+        psf_pixels: Width of the PSFs, px.
     """
     bench = within_light(bench)
     field = bench.field_mm

@@ -1,6 +1,6 @@
-"""Ghosts of a lens on the bench: which pairs of surfaces light the film, how brightly, and where.
+"""Ghosts of a lens: which pairs of surfaces send light to the film, how much, and where.
 
-Light comes from infinity, from below the axis; its picture is above. All lengths in mm.
+The source is at infinity, below the axis; its image is above. All lengths are in mm.
 """
 
 from __future__ import annotations
@@ -23,28 +23,27 @@ from .bench import Bench
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-#: Wavelengths (nm) of the report and their shares of the light as the eye has it: CIE 1924 V times
-#: D65, every 40 nm.
+#: Wavelengths of the report, nm, every 40 nm, and their weights: CIE 1924 V times D65.
 NM = (450.0, 490.0, 530.0, 570.0, 610.0, 650.0)
 _EYE = (4.4, 22.5, 92.5, 92.0, 45.0, 8.5)
 WEIGHTS = tuple(w / sum(_EYE) for w in _EYE)
 RAYS = 4096
-_DRAWN = 9  # rays of a drawing
+_DRAWN = 9  # most rays of a drawing
 
 
 @dataclass(frozen=True)
 class Ghost:
-    """One way of light by two mirrors.
+    """One ghost: light that is reflected by two surfaces.
 
     Attributes:
-        surfaces: Indices of the surfaces that reflect, in the order in which light meets them;
+        surfaces: Indices of the reflecting surfaces, in the order in which light meets them;
             those of the body follow those of the lens.
-        light: Light that lands on the film, over that of the picture of the same source straight
+        light: Light of the ghost on the film, over that of the image of the same source straight
             ahead.
-        everywhere: The same on the whole plane of the film.
+        everywhere: Light on the whole plane of the film, over the same.
         center: Centre of the light on the film, x and y, mm.
         radius: RMS radius of the light on the film about its centre, mm.
-        points: Where rays land, x, y (mm) and their share, shape (N, 3).
+        points: Points where rays land, x, y (mm), and their shares, shape (N, 3).
     """
 
     surfaces: tuple[int, ...]
@@ -57,17 +56,17 @@ class Ghost:
 
 @guarded(init=True)
 class Ghosts:
-    """The ghosts of a lens for light of one direction, brightest first.
+    """The ghosts of a lens for a distant source, brightest first.
 
     Args:
         bench: The lens.
-        angle_deg: Angle of the source from the axis.
-        film: Width and height of what counts as film, mm; None: 3 : 2 within the image circle.
-        stack: Reflecting parts of the body; None: nothing.
+        angle_deg: Angle of the source from the axis, degrees.
+        film: Width and height of the film, mm; None: 3 : 2 within the image circle.
+        stack: Reflecting parts of the body; None: none.
         rays: Rays over the front of the lens, for each ghost.
 
     Raises:
-        InputError: No light passes the lens, or a body that cannot be.
+        InputError: No light passes the lens, or ``stack`` is invalid.
     """
 
     def __init__(
@@ -102,22 +101,22 @@ class Ghosts:
         ]
 
     def find(self, surfaces: Sequence[int]) -> Ghost:
-        """The ghost of two surfaces, named in either order.
+        """Returns the ghost of two surfaces, given in either order.
 
         Raises:
-            InputError: No such ghost.
+            InputError: There is no such ghost.
         """
         for ghost in self.all:
             if sorted(ghost.surfaces) == sorted(surfaces):
                 return ghost
         reflecting = ", ".join(str(i) for i in self.core.reflecting)
         raise InputError(
-            f"{self.bench.lens.name}: ghost: wanted two different surfaces of {reflecting}, "
+            f"{self.bench.lens.name}: ghost: wanted two different surfaces out of {reflecting}; "
             f"got {','.join(str(i) for i in surfaces)}"
         )
 
     def facts(self) -> list[dict[str, Any]]:
-        """All of them as plain values."""
+        """Returns all ghosts as plain values."""
         return [
             {
                 "surfaces": list(g.surfaces),
@@ -130,12 +129,12 @@ class Ghosts:
         ]
 
     def paths(self, ghost: Ghost) -> list[NDArray[np.float64]]:
-        """Rays of the section that come through, from the left edge of the drawing to the film."""
+        """Rays of a ghost in the meridional section, from the drawing's left edge to the film."""
         angle = math.radians(self.angle_deg)
         direction = [0.0, math.sin(angle), math.cos(angle)]
         low = -(self.bench.lens.surfaces[0].semi_diameter or 0.5 * self.bench.pupil_diameter)
         high = -low
-        for _ in range(3):  # closer, where few of many come through
+        for _ in range(3):  # narrow the range where few rays pass
             found, heights = [], []
             for y in np.linspace(low, high, 401):
                 path = np.asarray(
@@ -155,7 +154,7 @@ class Ghosts:
         return found[step // 2 :: step][:_DRAWN]
 
     def picture(self, pixels: int = 600) -> NDArray[np.float64]:
-        """All ghosts on the film, upright, shape (H, W): light per mm2, of that of the picture."""
+        """All ghosts on the film, upright, shape (H, W): light per mm2, over the image's light."""
         whole(pixels, "picture: pixels", 1, 8192)
         width, height = self.film
         columns, rows = pixels, max(1, round(pixels * height / width))
@@ -164,7 +163,7 @@ class Ghosts:
             if ghost.light <= 0:
                 continue
             x, y, share = ghost.points.T.astype(np.float64)
-            # The film's picture is upside down.
+            # The image on the film is upside down.
             i = np.clip(((0.5 - x / width) * columns).astype(int), 0, columns - 1)
             j = np.clip(((0.5 + y / height) * rows).astype(int), 0, rows - 1)
             np.add.at(image, (j, i), ghost.light * share)

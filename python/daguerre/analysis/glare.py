@@ -1,7 +1,7 @@
-"""Veiling glare of a lens on the bench: what a black patch in a white world shows of the world.
+"""Veiling glare of a lens: light from a white surround in the image of a black patch.
 
-After ISO 9358: the veiling glare index is the light in the middle of the picture of a black patch,
-over what it would be were the patch as white as all around it.
+The veiling glare index follows ISO 9358: the light in the centre of the image of a black patch,
+over the light there if the patch were as white as its surround.
 """
 
 from __future__ import annotations
@@ -31,29 +31,29 @@ _BATCHES = 10
 
 @guarded(init=True)
 class VeilingGlare:
-    """The veiling glare index, and what makes it.
+    """The veiling glare index, and its parts from ghosts and from scatter.
 
-    Walks leave the film, go backward through the lens and say where they come from: from the
-    patch's own direction is the picture, from elsewhere glare. Light is that of a D65 world as the
-    eye sees it; the world is white up to 90 degrees from the axis, and far away.
+    Random walks run from the film backward through the lens. Those that end in the direction of
+    the patch are its image, all others are glare. The surround is far away, white up to 90 degrees
+    from the axis and lit by D65; wavelengths are weighted by the eye's sensitivity.
 
     Args:
         bench: The lens.
-        scatter: How its parts scatter; None: those of a well-made lens.
-        stack: Reflecting parts of the body; None: nothing.
-        patch_mm: Diameter of the picture of the patch, on the axis; None: a tenth of the image
+        scatter: Scatter of the parts of the lens; None: that of a well-made lens.
+        stack: Reflecting parts of the body; None: none.
+        patch_mm: Diameter of the patch's image, on the axis, mm; None: a tenth of the image
             circle's.
-        walks: Walks from the film, all wavelengths together.
+        walks: Number of walks from the film, for all wavelengths together.
         seed: Seed of all random numbers.
 
     Attributes:
         index: Veiling glare index, %.
-        ghosts: Light by reflections alone, over that of the picture; its standard error is
+        ghosts: Light of ghosts, without scatter, over that of the image; its standard error is
             ``ghosts_error``.
-        scatter: The same of light that barrel, blades or surfaces scattered.
+        scatter: Light scattered by barrel, blades or surfaces, over that of the image.
 
     Raises:
-        InputError: A lens whose barrel is not known, or parts that cannot be.
+        InputError: No light reaches the film, the barrel is unknown, or a part is invalid.
     """
 
     def __init__(
@@ -87,7 +87,7 @@ class VeilingGlare:
         )
         picture = sums[:, 0].mean()
         if not picture > 0:
-            raise InputError(f"{bench.lens.name}: veiling glare: no light comes to the film")
+            raise InputError(f"{bench.lens.name}: veiling glare: no light reaches the film")
         shares = sums / picture
         mean, spread = shares.mean(0), shares.std(0, ddof=1) / math.sqrt(_BATCHES)
         self.ghosts, self.scatter = float(mean[1]), float(mean[2])
@@ -96,7 +96,7 @@ class VeilingGlare:
         self.index = 100 * glare / (1 + glare)
 
     def facts(self) -> dict[str, Any]:
-        """All of it as plain values."""
+        """Returns all results as plain values."""
         return {
             "index_percent": self.index,
             "ghosts": self.ghosts,
@@ -110,7 +110,7 @@ class VeilingGlare:
 def _light(
     lens: _core.ScatterLens, spot: float, edge: float, walks: int, seed: int
 ) -> NDArray[np.float64]:
-    """Light of the picture, of ghosts and of scatter, summed by the eye's shares of wavelengths."""
+    """Light of the image, of ghosts and of scatter, summed with the weights of wavelengths."""
     total = np.zeros(3)
     for k, (nm, share) in enumerate(zip(NM, WEIGHTS, strict=True)):
         found = np.asarray(lens.from_film((0.0, 0.0), spot, nm, walks, seed * len(NM) + k))

@@ -1,4 +1,4 @@
-"""How bright the film is over the field, and the shape of the pupil that each point of it sees."""
+"""Illumination over the field, and the shape of the pupil seen from each film point."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from .bench import Bench, FloatArray
 from .chief import chief_rays
 
 GRID = 96
-COARSE = 20  # rays across a pupil whose colour is looked at,
-CORNERS = 48  # and of its outline,
-CHANGE = 0.1  # whose radii change so little with wavelength
-DARK = 0.02  # of the axis's light: figures end there
+COARSE = 20  # rays across a pupil for its transmittance by wavelength
+CORNERS = 48  # corners of its outline
+CHANGE = 0.1  # largest relative change of the outline's radii with wavelength
+DARK = 0.02  # share of the axis's light at which figures end
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,9 @@ class Illumination:
 
     Attributes:
         height_mm: Image heights, mm, shape (N,).
-        irradiance: pi times the irradiance of a scene of radiance 1 over pi: E / L, shape (N,).
+        irradiance: Irradiance on the film over the radiance of the scene, E / L, shape (N,).
         cos4_object: cos^4 of the angle in front of the lens, shape (N,).
-        cos4_film: cos^4 of the angle at the film toward the middle of the paraxial exit pupil
+        cos4_film: cos^4 of the angle at the film toward the centre of the paraxial exit pupil
             (Kolb, Mitchell and Hanrahan 1995), shape (N,).
     """
 
@@ -53,9 +53,9 @@ def relative_illumination(
     *,
     grid: int = GRID,
 ) -> Illumination:
-    """E / L over the field: the pupil's area in direction cosines, times its transmittance.
+    """Computes E / L over the field: the pupil's area in direction cosines times transmittance.
 
-    dE = L T cos(t) dw, and cos(t) dw is the area in direction cosines: exact for any pupil.
+    This is exact for any pupil: dE = L T cos(t) dw, and cos(t) dw is area in direction cosines.
 
     Args:
         bench: The lens.
@@ -79,14 +79,14 @@ def relative_illumination(
 def spectral_illumination(
     bench: Bench, film_mm: ArrayLike, wavelengths_nm: ArrayLike, *, grid: int = GRID
 ) -> FloatArray:
-    """E / L of points anywhere on the film, by wavelength: vignetting and coatings.
+    """Computes E / L of film points by wavelength, with vignetting and coatings.
 
-    A fine grid is traced at the design wavelength alone. Of the others it is known how much larger
-    the pupil's outline is, and the mean of what glass and coatings let through: both are smooth
-    where a grid's rays would come and go at the edge.
+    A fine grid is traced only at the design wavelength. Other wavelengths scale its result by the
+    area of the pupil's outline and the mean transmittance: both are smooth over wavelength, whereas
+    single rays of a grid enter and leave at the edge.
 
     Args:
-        bench: The lens; it may be different on all sides.
+        bench: The lens; it need not be axially symmetric.
         film_mm: Film points, shape (N, 2), mm.
         wavelengths_nm: Wavelengths, shape (L,), nm.
         grid: Rays across the pupil.
@@ -123,7 +123,7 @@ def _by_wavelength(bench: Bench, film: FloatArray, nm: FloatArray, grid: int) ->
 
 
 def within_light(bench: Bench) -> Bench:
-    """The bench with its field cut back to where DARK of the axis's light is left."""
+    """Returns the bench with its field limited to where DARK of the axis's light is left."""
 
     def light(height: float) -> float:
         return _irradiance(bench, _along_y(height), DESIGN_WAVELENGTH_NM, 24)
@@ -146,7 +146,7 @@ def pupil_outline(
     *,
     corners: int = 72,
 ) -> FloatArray:
-    """Edge of the pupil as a film point sees it: the cat's eye.
+    """Outline of the pupil seen from a film point: the cat's eye.
 
     Args:
         bench: The lens.
@@ -155,8 +155,8 @@ def pupil_outline(
         corners: Corners of the outline.
 
     Returns:
-        Direction cosines about the middle of the light, closed, shape (corners + 1, 2); of length 0
-        if it is dark there.
+        Direction cosines of a closed outline, shape (corners + 1, 2); shape (0, 2) if no light
+        arrives.
     """
     whole(corners, "pupil_outline: corners", 3, 1 << 14)
     film = _along_y(height_mm)
@@ -187,7 +187,7 @@ def _edge(
     nm: float,
     steps: int,
 ) -> FloatArray:
-    """How far the light reaches from its middle in each direction, between two bounds, (N,)."""
+    """Distances from the middle of the light to its edge, searched between two bounds, (N,)."""
     for _ in range(steps):
         between = 0.5 * (inner + outer)
         lit = _passes(bench, film, middle + between[:, None] * away, nm) > 0
@@ -196,7 +196,7 @@ def _edge(
 
 
 def _area(radii: FloatArray) -> float:
-    """In an outline of equal angles, but for a factor."""
+    """Area of an outline with equal angles, up to a factor."""
     return float((radii**2).sum())
 
 
@@ -212,7 +212,7 @@ def _irradiance(bench: Bench, film: FloatArray, nm: float, grid: int) -> float:
 def _through(
     bench: Bench, film: FloatArray, nm: float, low: FloatArray, high: FloatArray, grid: int
 ) -> float:
-    """Area of the light in a window of direction cosines, times its transmittance."""
+    """Area of the light within a window of direction cosines, times its transmittance."""
     whole(grid, "illumination: grid", 1, 4096)
     cell = (high - low) / grid
     u = np.arange(grid) + 0.5
@@ -223,7 +223,7 @@ def _through(
 def _lit_window(
     bench: Bench, film: FloatArray, nm: float
 ) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-    """Bounds of the light in direction cosines, and a grid's directions within it."""
+    """Bounds of the light in direction cosines, and directions of a grid within the light."""
     reach = bench.film_z - bench.order.exit_pupil.z
     middle = film / np.hypot(reach, np.hypot(*film)) * np.sign(reach)
     low, high = middle - 1.3 / bench.f_stop, middle + 1.3 / bench.f_stop
@@ -247,9 +247,9 @@ def _lit_window(
 def _passes(
     bench: Bench, film: FloatArray, cosines: FloatArray, nm: float, *, clip: bool = True
 ) -> FloatArray:
-    """Transmittance of rays from a film point under direction cosines, shape (N,)."""
+    """Transmittance of rays from a film point along direction cosines, shape (N,); 0 if stopped."""
     z2 = 1 - (cosines**2).sum(axis=1)
-    # Cosines of the light, which runs toward the film: the ray runs back.
+    # The cosines are those of the light, toward the film; rays run the other way.
     directions = -np.column_stack([cosines * [1, 1], np.sqrt(np.maximum(z2, 1e-9))])
     origins = np.broadcast_to([*film, bench.film_z], directions.shape)
     rays = bench.rays(origins, directions, nm, to_film=False, clip=clip)

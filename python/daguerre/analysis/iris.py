@@ -1,6 +1,6 @@
-"""The opening of an iris as a picture: blades, arcs, a picture of it, and dust that lies on it.
+"""Transmittance of an iris on a raster: blades, arcs, or a picture, with dust on them.
 
-One unit is the radius of the circle of equal area, as in ``core/optics/lens/stop.h``; x to the
+The unit is the radius of the circle of equal area, as in ``core/optics/lens/stop.h``; x to the
 right and y up, seen along the view.
 """
 
@@ -29,12 +29,12 @@ class Iris:
     """An iris shape, and the dirt on it.
 
     Attributes:
-        blades: How many; 0: round.
+        blades: Number of blades; 0: round.
         rotation: Rotation of the blades, degrees.
         curvature: Curvature of their edges: 1 is round, 0 straight.
-        picture: Transmittance of an iris that is a picture, row 0 on top, shape (H, W).
-        mask: Transmittance of dust, scratches, an eyelash, shape (H, W), or None: clean.
-        mask_half: Half of the width that the mask covers; None: all of the opening.
+        picture: Picture of the iris's transmittance instead, row 0 on top, shape (H, W).
+        mask: Transmittance of dust and scratches, shape (H, W); None: clean.
+        mask_half: Half of the width that the mask covers; None: that of the whole opening.
     """
 
     blades: int = 0
@@ -55,24 +55,24 @@ class Iris:
 
     @property
     def outer_radius(self) -> float:
-        """Nothing is open beyond."""
+        """Radius beyond which nothing is open."""
         return float(self.shape.outer_radius)
 
     def amplitude(self, x: Floats, y: Floats, pitch: float) -> Floats:
         """Amplitude of a wave behind cells of a raster: 1 where the iris is open.
 
-        Edges count by their share of a cell, greys by the root of the light that they let through.
+        Cells at an edge have their open share; grey parts the square root of their transmittance.
 
         Args:
-            x: Middles of the cells, to the right.
-            y: The same upward; the two broadcast.
-            pitch: Sides of the cells: edges are as soft as that.
+            x: Centres of the cells along x.
+            y: Centres of the cells along y; ``x`` and ``y`` broadcast.
+            pitch: Side of a cell, which is also the width of soft edges.
         """
         try:
             np.broadcast_shapes(np.shape(x), np.shape(y))
         except ValueError:
             shapes = f"{np.shape(x)} and {np.shape(y)}"
-            raise UsageError(f"amplitude: x, y: wanted shapes that agree, got {shapes}") from None
+            raise UsageError(f"amplitude: x, y: wanted shapes that match, got {shapes}") from None
         if self.picture is not None:
             pixel = float(np.sqrt(np.pi / self.picture.sum(dtype=np.float64)))
             open_share = np.sqrt(_sampled(self.picture, x / pixel, y / pixel))
@@ -88,7 +88,7 @@ class Iris:
 
 
 def iris_of(camera: Camera, mask_half: float | None = None) -> Iris:
-    """The iris of a camera: its blades or picture, and the mask on it."""
+    """Returns the iris of a camera: its blades or picture, and its mask."""
     from daguerre.setup.iris import mask_of
 
     picture = camera.aperture_image
@@ -103,7 +103,7 @@ def iris_of(camera: Camera, mask_half: float | None = None) -> Iris:
 
 
 def _inside(shape: _core.Iris, x: Floats, y: Floats) -> Floats:
-    """Distance from the edge, positive where it is open."""
+    """Distance from the edge, positive where the iris is open."""
     if not shape.edges:
         return np.asarray(1 - np.hypot(x, y), np.float32)
     depth: Floats | None = None
@@ -120,7 +120,7 @@ def _inside(shape: _core.Iris, x: Floats, y: Floats) -> Floats:
 
 
 def _sampled(picture: Floats, x: Floats, y: Floats) -> Floats:
-    """Bilinear, at pixels about the middle (x right, y up); 0 outside."""
+    """Samples a picture bilinearly, x right and y up from its centre, in pixels; 0 outside."""
     height, width = picture.shape
     column = np.broadcast_to(
         x + np.float32(0.5 * width + 0.5), np.broadcast_shapes(x.shape, y.shape)

@@ -1,4 +1,4 @@
-"""Nonlinear least squares for a handful of unknowns.
+"""Nonlinear least squares for a few unknowns.
 
 Source: Nocedal and Wright, Numerical Optimization, 2nd ed., section 10.3 (Levenberg-Marquardt).
 """
@@ -11,10 +11,10 @@ import numpy as np
 
 from .bench import FloatArray
 
-STEP = 1e-6  # of differences, with unknowns of size 1
-STEPS = 200
+STEP = 1e-6  # step of finite differences, for scaled unknowns
+STEPS = 200  # most iterations
 STILL = 1e-15  # relative change of the sum of squares that ends the search
-STUCK = 1e12  # damping at which nothing gets better
+STUCK = 1e12  # damping that ends the search: no step improves the fit
 
 
 def least_squares(
@@ -23,10 +23,10 @@ def least_squares(
     """Finds the unknowns with the smallest sum of squares near a start.
 
     Args:
-        misses: Residuals for unknowns, shape (N,); NaN where a step leads out of what is known, and
-            the step is not taken.
-        start: Unknowns, shape (K,), where all misses are known.
-        scale: Sizes of steps that mean much the same, shape (K,).
+        misses: Residuals for unknowns, shape (N,); NaN outside their domain, where no step is
+            taken.
+        start: First guess of the unknowns, shape (K,), with finite residuals.
+        scale: Steps of the unknowns with comparable effect, shape (K,).
     """
     at, damping = np.array(start, np.float64), 1e-3
     found = misses(at)
@@ -53,7 +53,7 @@ def _slopes(
     scale: FloatArray,
     here: FloatArray,
 ) -> FloatArray:
-    """Derivatives by scaled unknowns, shape (N, K); one-sided beside what is not known."""
+    """Derivatives by scaled unknowns, shape (N, K); one-sided at the edge of the domain."""
     out = np.empty((len(here), len(at)))
     for k, size in enumerate(scale):
         delta = np.zeros(len(at))

@@ -1,9 +1,8 @@
-"""The pupil of a real lens as the film sees it: an iris, cut by mounts, and bent by aberrations.
+"""The pupil of a real lens seen from the film: an iris, clipped by mounts, with aberrations.
 
-Rays that leave the lens with direction cosines a toward the film point crossed the iris at a place
-that is a smooth function of a. That function is fitted, so the edges of blades stay as sharp and as
-straight as any raster shows them; where mounts stop rays is traced and smoothed. The wavefront is
-that of ``wavefronts``.
+A ray with direction cosines a toward the film point crosses the iris at a point that is a smooth
+function of a. That function is fitted, so blades keep sharp and straight edges on any raster.
+Clipping by mounts is traced on a raster and smoothed. The wavefront comes from ``wavefronts``.
 """
 
 from __future__ import annotations
@@ -25,8 +24,8 @@ from .iris import Floats, Iris
 from .pencils import Pencil, pencil
 from .wavefronts import Wavefront, wavefront
 
-RAYS = 72  # across the window, for the fits
-MOUNTS = 192  # directions across, at which mounts are looked for
+RAYS = 72  # rays across the window, for the fits
+MOUNTS = 192  # directions across the raster of the mounts
 IRIS_DEGREE = 7
 PATH_DEGREE = 12
 DESIGN_NM = 550.0
@@ -34,17 +33,17 @@ DESIGN_NM = 550.0
 
 @dataclass(frozen=True)
 class LensPupil:
-    """The part of the iris that a film point sees, and the wave that comes from there.
+    """The part of the iris seen from a film point, and the wave that comes from it.
 
     Attributes:
-        low, high: Direction cosines along x and y of the picture, between which there is light.
-        iris: Its shape; a unit is its radius.
-        to_iris: Coefficients of Chebyshev polynomials of the cosines scaled to [-1, 1]: places on
-            the iris, shape (D, D, 2), rows of y.
-        mounts: Whether mounts let light through, on a raster of the cosines, rows of y (upward),
-            shape (M, M).
-        paths: W in mm by wavelength (nm), coefficients (D, D) like those of ``to_iris``; empty: a
-            perfect wave.
+        low, high: Bounds of the light in direction cosines along x and y of the picture.
+        iris: Shape of the iris, in units of its radius.
+        to_iris: Coefficients of Chebyshev polynomials that map the cosines, scaled to [-1, 1], to
+            points on the iris, shape (D, D, 2), rows of y.
+        mounts: Share of light that mounts let pass, on a raster of the cosines, rows of y
+            (upward), shape (M, M).
+        paths: Coefficients (D, D) of W in mm by wavelength (nm), like those of ``to_iris``; empty:
+            a perfect wave.
     """
 
     low: tuple[float, float]
@@ -56,11 +55,11 @@ class LensPupil:
 
     @property
     def perfect(self) -> bool:
-        """Whether the wave is: none was asked for."""
+        """Whether there are no aberrations: ``paths`` is empty."""
         return not self.paths
 
     def amplitude(self, x: Floats, y: Floats, wavelength_nm: float) -> NDArray[Any]:
-        """Amplitudes on a raster of cosines x (A,) and y (B,)."""
+        """Amplitudes (B, A) on a raster of cosines x (A,) and y (B,); complex if not perfect."""
         u, v = (_scaled(a, *ends) for a, *ends in zip((x, y), self.low, self.high, strict=True))
         places = [_evaluated(self.to_iris[:, :, k], u, v) for k in range(2)]
         pitch = float(np.hypot(*(np.ptp(p[len(p) // 2, [0, -1]]) for p in places)) / (len(x) - 1))
@@ -75,7 +74,7 @@ class LensPupil:
         return np.asarray(waves * np.exp(1j * phase), np.complex64)
 
     def _mounted(self, u: FloatArray, v: FloatArray) -> Floats:
-        """Openness of the mounts, its edge as sharp as their raster is fine."""
+        """Share of light that mounts let pass (B, A); its edges are as sharp as their raster."""
         if self.mounts.all():
             return np.ones((len(v), len(u)), np.float32)
         n = len(self.mounts)
@@ -93,16 +92,16 @@ def lens_pupil(
     iris: Iris | None = None,
     wavelengths_nm: Sequence[float] = (),
 ) -> LensPupil | None:
-    """The pupil of a point of the film.
+    """Computes the pupil seen from a film point.
 
     Args:
         bench: The lens.
-        film_mm: The point, (x, y) in the lens's frame.
-        iris: Its shape; None: round.
-        wavelengths_nm: At which to find the wavefront; none: a perfect wave.
+        film_mm: Film point (x, y) in the lens frame, mm.
+        iris: Shape of the iris; None: round.
+        wavelengths_nm: Wavelengths of the wavefronts, nm; empty: a perfect wave.
 
     Returns:
-        None if no light arrives there.
+        The pupil, or None if no light arrives there.
     """
     iris = iris or Iris()
     wide = replace(bench, iris_radius=bench.iris_radius * iris.outer_radius)
@@ -112,7 +111,7 @@ def lens_pupil(
     at = light.grid(RAYS)
     free = light.trace(at, DESIGN_NM, clip=False)
     lit = light.trace(at, DESIGN_NM).passed
-    cosines = -free.directions[:, :2]  # of the picture: it stands upside down on the film
+    cosines = -free.directions[:, :2]  # of the picture, which is upside down on the film
     if np.count_nonzero(lit) < 16:
         return None
     margin = 1.5 * np.ptp(cosines[lit], axis=0) / RAYS
@@ -131,7 +130,7 @@ def lens_pupil(
 
 
 def _about(at: FloatArray, lit: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Rays next to the light: others, far out, may leave in the same directions."""
+    """Selects rays near the light: others, far out, may leave in the same directions."""
     low, high = at[lit].min(axis=0), at[lit].max(axis=0)
     reach = 0.6 * (high - low)
     return np.asarray((np.abs(at - 0.5 * (low + high)) <= reach).all(axis=1))
@@ -145,25 +144,25 @@ def zone_pupils(
     wavelengths_nm: Sequence[float] = (),
     center_mm: tuple[float, float] = (0.0, 0.0),
 ) -> list[list[Pupil]]:
-    """Pupils of a regular grid of points of the frame, from its upper left corner to the other.
+    """Computes the pupils of a regular grid of points, from upper left to lower right corner.
 
     Args:
         bench: The lens.
-        frame_mm: Width and height of the frame.
-        zones: Points along each side; 1: its middle.
-        iris: Its shape.
-        wavelengths_nm: Wavelengths of the waves, nm; see ``lens_pupil``.
-        center_mm: Where on the film the middle of the frame is.
+        frame_mm: Width and height of the frame, mm.
+        zones: Points along each side; 1: only the centre.
+        iris: Shape of the iris; None: round.
+        wavelengths_nm: Wavelengths of the wavefronts, nm; see ``lens_pupil``.
+        center_mm: Film point of the frame's centre, mm.
 
     Returns:
-        Rows of pupils. A point without light has the middle's, or the first one that has any.
+        Rows of pupils. A point without light has the pupil of the centre, or the first lit one.
     """
     share = np.linspace(-0.5, 0.5, zones) if zones > 1 else np.zeros(1)
     found = [
         [
             lens_pupil(
                 bench,
-                # The picture stands upside down on the film: its left is at positive x.
+                # The picture is upside down on the film: its left is at positive x.
                 (center_mm[0] - float(x) * frame_mm[0], center_mm[1] + float(y) * frame_mm[1]),
                 iris,
                 wavelengths_nm,
@@ -173,7 +172,7 @@ def zone_pupils(
         for y in share
     ]
     lit = [p for row in found for p in row if p is not None]
-    if not lit:  # corners alone, beyond the image circle
+    if not lit:  # only corners, all outside the image circle
         lit = [p for p in [lens_pupil(bench, center_mm, iris, wavelengths_nm)] if p is not None]
     if not lit:
         raise InputError(f"{bench.lens.name}: no light arrives at the film")
@@ -182,7 +181,7 @@ def zone_pupils(
 
 
 def _mounts(light: Pencil, to_window: FloatArray) -> Floats:
-    """Where mounts let rays pass, on a raster of scaled cosines, edges softened against stairs."""
+    """Share of light that mounts let pass on a raster of scaled cosines, with smoothed edges."""
     free = replace(light, bench=replace(light.bench, iris_radius=np.inf))
     u = (np.arange(MOUNTS) + 0.5) / MOUNTS * 2 - 1
     window = np.stack([_evaluated(to_window[:, :, k], u, u, np.float64) for k in range(2)], -1)
@@ -197,7 +196,7 @@ def _mounts(light: Pencil, to_window: FloatArray) -> Floats:
 
 
 def _path(light: Pencil, nm: float, low: FloatArray, high: FloatArray) -> FloatArray | None:
-    """Coefficients of W over the picture's cosines."""
+    """Coefficients of W in the picture's cosines; None: no light arrives."""
     wave: Wavefront | None = wavefront(light, nm, grid=96)
     if wave is None:
         return None
@@ -208,12 +207,12 @@ def _path(light: Pencil, nm: float, low: FloatArray, high: FloatArray) -> FloatA
 
 
 def _scaled(v: NDArray[Any], low: float | FloatArray, high: float | FloatArray) -> FloatArray:
-    """From [low, high] to [-1, 1]."""
+    """Maps [low, high] to [-1, 1]."""
     return np.asarray((np.asarray(v, np.float64) - low) * 2 / (np.subtract(high, low)) - 1)
 
 
 def _fitted(at: FloatArray, values: FloatArray, degree: int) -> FloatArray:
-    """Coefficients (D, D, ...), rows of y, of total degree ``degree`` at most."""
+    """Fits coefficients (D, D, ...), rows of y, of total degree ``degree`` or less."""
     basis = chebyshev.chebvander2d(at[:, 1], at[:, 0], [degree, degree])
     i, j = np.indices((degree + 1, degree + 1)).reshape(2, -1)
     kept = i + j <= degree
@@ -225,7 +224,7 @@ def _fitted(at: FloatArray, values: FloatArray, degree: int) -> FloatArray:
 def _evaluated(
     coefficients: FloatArray, u: FloatArray, v: FloatArray, dtype: type = np.float32
 ) -> NDArray[Any]:
-    """On the raster of u (columns) and v (rows)."""
+    """Evaluates a polynomial on the raster of u (columns) and v (rows)."""
     degree = len(coefficients) - 1
     rows, columns = chebyshev.chebvander(v, degree), chebyshev.chebvander(u, degree)
     return np.asarray((rows @ coefficients @ columns.T), dtype)

@@ -1,4 +1,4 @@
-"""Modulation transfer: how much of a grating's contrast the lens keeps."""
+"""Modulation transfer function: the share of a grating's contrast that the lens keeps."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .wavefronts import ComplexArray, wavefront
 
 @guarded
 def geometric_mtf(rays: Spot, freq_per_mm: ArrayLike) -> FloatArray:
-    """MTF of rays alone: the modulus of the spot's Fourier transform.
+    """Computes the MTF of rays, without diffraction: the modulus of the spot's Fourier transform.
 
     Args:
         rays: From ``spot``.
@@ -45,15 +45,15 @@ def diffraction_mtf(
     grid: int | None = None,
     dz: float = 0.0,
 ) -> FloatArray:
-    """MTF of waves: the autocorrelation of the pupil, summed over wavelengths as the eye sees them.
+    """Computes the MTF of waves: the pupil's autocorrelation, in a weighted sum of wavelengths.
 
     Args:
         light: From ``pencil``.
         freq_per_mm: Spatial frequencies, cycles per mm, shape (F,).
         wavelengths_nm: Wavelengths, nm, shape (L,).
         weights: Weights of the wavelengths, shape (L,).
-        grid: Directions across; as many as the aberration asks for if None.
-        dz: The film this much further from the lens, mm.
+        grid: Directions across; None: as many as the aberrations need.
+        dz: Shift of the film away from the lens, mm.
 
     Returns:
         Modulation in [0, 1], shape (F, 2): sagittal (lines along the radius), tangential.
@@ -72,7 +72,7 @@ def diffraction_mtf(
         if wave is None:
             continue
         transfer = _transfer(wave.defocused(dz).pupil_function)
-        lag = f * 1e-6 * nm / wave.step  # the shift of the pupil against itself, in steps
+        lag = f * 1e-6 * nm / wave.step  # shift of the pupil, in steps
         for k in range(2):
             total[:, k] += weight * _interpolated(transfer[k], lag)
         light_sum += weight
@@ -81,7 +81,7 @@ def diffraction_mtf(
 
 @guarded
 def perfect_mtf(freq_per_mm: ArrayLike, f_number: float, wavelength_nm: float) -> FloatArray:
-    """MTF of a lens without aberration and a round pupil, shape (F,).
+    """MTF of a lens without aberrations and with a round pupil, shape (F,).
 
     Source: Goodman, Introduction to Fourier Optics, 3rd ed., section 6.3.
     """
@@ -90,7 +90,7 @@ def perfect_mtf(freq_per_mm: ArrayLike, f_number: float, wavelength_nm: float) -
 
 
 def _transfer(pupil: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-    """Autocorrelations along columns (sagittal) and rows (tangential), at lags of whole steps."""
+    """Autocorrelations across columns (sagittal) and rows (tangential), at lags of whole steps."""
     n = len(pupil)
     out = []
     for axis in (1, 0):

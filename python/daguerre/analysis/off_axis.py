@@ -1,4 +1,4 @@
-"""Lenses on the bench that are turned, or whose elements are, as cameras have them."""
+"""Benches with a tilted lens, or with elements that are decentred or tilted, as in cameras."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from daguerre.setup.tilt import turn
 
 from .bench import Bench, FloatArray
 
-#: First and last surface, shift along x and y (mm), turn about x and y (degrees).
+#: First and last surface, shift along x and y (mm), tilt about x and y (degrees).
 Move = tuple[tuple[int, int], tuple[float, float], tuple[float, float]]
 
 
 def off_axis(bench: Bench, moves: Sequence[Move] = (), tilt: tuple[float, float] = (0, 0)) -> Bench:
-    """A lens that was focused as if it were straight, with its parts moved.
+    """Moves elements and tilts the lens of a bench, which was focused without them.
 
     Args:
         bench: The lens.
         moves: Moves of its elements, in the form of ``Camera.decenter``.
-        tilt: Turn of all of it about the centre of its entrance pupil, about x, then the film's
-            y, degrees (``Camera.tilt``). The film stays across z, and where the lens's axis meets
-            it it has its distance.
+        tilt: Tilt of the whole lens about the centre of its entrance pupil, about x, then the
+            film's y, degrees (``Camera.tilt``). The film stays normal to z and keeps its distance
+            along the lens's axis.
     """
     lens = bench.lens
     for surfaces, shift, turned in moves:
@@ -37,6 +37,6 @@ def off_axis(bench: Bench, moves: Sequence[Move] = (), tilt: tuple[float, float]
 
 
 def _turned(lens: Lens, matrix: FloatArray, pivot_z: float) -> Lens:
-    """All surfaces turned about a point of the axis."""
+    """Turns all surfaces about a point on the axis."""
     group = Group(0, len(lens.surfaces) - 1, tilt=angles(matrix), pivot_mm=pivot_z)
     return lens.rebuilt(placed(lens.surfaces, group))

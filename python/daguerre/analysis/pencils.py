@@ -1,4 +1,4 @@
-"""All the light of one object point that reaches the film: where to send rays."""
+"""Pencils: all the light of one object point that reaches the film, and rays through it."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 from .bench import Bench, FloatArray, Rays
 from .chief import chief_rays
 
-COARSE = 41  # rays across, of the search for the light's outline
-FLAT_FIELD = math.radians(75)  # beyond it a flat object has no place: points lie on a sphere
+COARSE = 41  # rays across, in the search for the light's bounds
+FLAT_FIELD = math.radians(75)  # beyond it object points lie on a sphere, not on a plane
 
 
 @guarded
@@ -24,17 +24,17 @@ FLAT_FIELD = math.radians(75)  # beyond it a flat object has no place: points li
 class Pencil:
     """Rays from one object point through a window in front of the lens.
 
-    The window lies across the chief ray, at ``center``; ``sagittal`` and ``tangential`` are its
-    axes, and the image plane's. It bounds the light that passes, tightly.
+    The window is normal to the chief ray, at ``center``, with the axes ``sagittal`` and
+    ``tangential``. It bounds the light that passes tightly.
 
     Attributes:
         bench: The lens.
-        film: Where the chief ray meets the film, mm, shape (2,).
+        film: Film point of the chief ray, mm, shape (2,).
         angle: Angle of the chief ray in front of the lens, rad.
-        source: The object point, mm, shape (3,), or None: infinitely far.
+        source: Object point, mm, shape (3,); None: infinitely far.
         direction: Unit vector of the chief ray, shape (3,).
-        low, high: The window in its axes, mm, shape (2,).
-        radial: Unit vector on the film along which the field runs, shape (2,).
+        low, high: Bounds of the window along its axes, mm, shape (2,).
+        radial: Unit vector on the film in the direction of the field, shape (2,).
     """
 
     bench: Bench
@@ -52,7 +52,7 @@ class Pencil:
     def trace(
         self, at: FloatArray, wavelength_nm: float = DESIGN_WAVELENGTH_NM, *, clip: bool = True
     ) -> Rays:
-        """Rays through window coordinates (N, 2), mm."""
+        """Traces rays through window coordinates (N, 2), mm."""
         at = rows(at, "trace: at", 2)
         through = self.center + at[:, :1] * self.sagittal + at[:, 1:] * self.tangential
         if self.source is None:
@@ -73,7 +73,7 @@ class Pencil:
         return np.stack(np.meshgrid(x, y), -1).reshape(-1, 2)
 
     def flux(self, at: FloatArray) -> FloatArray:
-        """Light through equal cells of the window: 1 in its middle, shape (N,)."""
+        """Light through equal cells of the window, 1 at ``center``, shape (N,)."""
         at = rows(at, "flux: at", 2)
         if self.source is None:
             return np.ones(len(at))
@@ -81,7 +81,7 @@ class Pencil:
         return np.asarray((distance2 / (distance2 + (at**2).sum(axis=1))) ** 1.5)
 
     def on_film(self, points: FloatArray) -> FloatArray:
-        """Film points (N, 2) about the chief ray's, along the sagittal and tangential axes."""
+        """Film points (N, 2) relative to the chief ray's, on the sagittal and tangential axes."""
         off = rows(points, "on_film: points", 2) - self.film
         r = self.radial
         return np.column_stack([off @ [r[1], -r[0]], off @ r])
@@ -94,16 +94,19 @@ def pencil(
     *,
     distance_mm: float | None = None,
 ) -> Pencil | None:
-    """The light of the object point whose chief ray meets a film point.
+    """Finds the light of the object point whose chief ray meets a film point.
 
     Args:
         bench: The lens.
         film_mm: Image height along y, or film point (x, y), mm.
         distance_mm: Distance of the object point's plane from the entrance pupil, along the axis,
-            mm; for fields beyond 75 degrees the distance itself. None: the plane in focus.
+            mm; beyond 75 degrees from the axis, the point's own distance. None: the focus distance.
 
     Returns:
-        None if none of its light arrives.
+        The pencil, or None if none of its light arrives.
+
+    Raises:
+        InputError: The distance is not positive.
     """
     film = np.array([0.0, film_mm] if np.isscalar(film_mm) else film_mm, np.float64)
     distance = bench.focus_mm if distance_mm is None else distance_mm
@@ -112,7 +115,7 @@ def pencil(
 
 
 def unbounded(bench: Bench, film: FloatArray, distance_mm: float) -> Pencil | None:
-    """The chief ray of a film point (2,) and the axes around it, its light not yet looked for."""
+    """Pencil of a film point (2,) with its chief ray and axes, but not yet bounds of its light."""
     if not distance_mm > 0:
         raise InputError(f"distance: wanted more than 0, got {distance_mm / 1e3:g} m")
     chief = chief_rays(bench, film[None, :])
@@ -140,7 +143,7 @@ def unbounded(bench: Bench, film: FloatArray, distance_mm: float) -> Pencil | No
 def _source(
     bench: Bench, on_lens: FloatArray, direction: FloatArray, distance: float
 ) -> FloatArray | None:
-    """The point of the chief ray at a distance: on a plane, or of wide fields on a sphere."""
+    """Point of the chief ray at a distance: on a plane, or for wide fields on a sphere."""
     if math.isinf(distance):
         return None
     pupil = np.array([0.0, 0.0, bench.order.entrance_pupil.z])
@@ -152,12 +155,12 @@ def _source(
 
 
 def _bounded(wide: Pencil) -> Pencil | None:
-    """The same with the window around the light that passes."""
+    """Returns the pencil with bounds around the light that passes; None: no light passes."""
     bench, delta = wide.bench, 1e-3 * wide.bench.pupil_diameter
     probes = wide.trace(np.array([[0, 0], [delta, 0], [0, delta]]), clip=False)
     scale = np.array([bench.iris_radius, bench.iris_radius])
     if probes.passed.all():
-        # How the window maps to the iris, close to the chief ray.
+        # Map from the window to the iris, close to the chief ray.
         jacobian = (probes.iris[1:] - probes.iris[0]).T / delta
         inverse = np.linalg.inv(jacobian) if abs(np.linalg.det(jacobian)) > 1e-9 else np.eye(2)
         scale = bench.iris_radius * np.linalg.norm(inverse, axis=1)

@@ -1,4 +1,4 @@
-"""The point spread function: the picture of one point of light in the scene."""
+"""The point spread function: the image of a point source."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from .pencils import Pencil
 from .spots import Spot, spot
 from .wavefronts import Wavefront, wavefront
 
-#: wavelengths (nm) and weights of white light as the eye sees it (CIE 1924 V)
+#: Wavelengths (nm) of white light, and their weights for the eye (CIE 1924 V).
 WHITE_NM = (470.0, 510.0, 555.0, 610.0, 650.0)
 WHITE_WEIGHTS = (0.091, 0.503, 1.0, 0.503, 0.107)
-MAX_GRID = 288
-MOST_POINTS = 320  # across the picture of waves, before they are summed to pixels
+MAX_GRID = 288  # most directions across that are traced
+MOST_POINTS = 320  # most points across the PSF of waves, before they are summed to pixels
 
 
 @guarded
 @dataclass(frozen=True)
 class Psf:
-    """Light on the film about the chief ray's point.
+    """Light of an object point in a window on the film.
 
     Attributes:
         image: Share of the light in each pixel, rows along the tangential axis (upward from row
-            0), columns along the sagittal one; shape (n, n). The sum is what falls in the window.
-        half_mm: Half of the window, mm.
-        center: Centre of the window: sagittal and tangential, mm from the chief ray's point.
-        diffraction: Whether light was a wave.
+            0), columns along the sagittal one; shape (n, n). Their sum is the share in the window.
+        half_mm: Half of the window's width, mm.
+        center: Centre of the window, sagittal and tangential, mm from the chief ray's film point.
+        diffraction: Whether diffraction is included.
     """
 
     image: FloatArray
@@ -47,14 +47,14 @@ class Psf:
 
     @property
     def line_widths(self) -> tuple[float, float]:
-        """Widths of the line spread, light / peak, sagittal and tangential, mm."""
+        """Widths (light / peak) of the line spread functions, sagittal and tangential, mm."""
         sums = (self.image.sum(axis=0), self.image.sum(axis=1))
         sagittal, tangential = (float(s.sum() / s.max()) * self.pixel_mm for s in sums)
         return sagittal, tangential
 
     @property
     def axis_mm(self) -> FloatArray:
-        """Middles of the pixels about the window's middle, mm, shape (n,)."""
+        """Pixel centres relative to the window's centre, mm, shape (n,)."""
         n = len(self.image)
         return np.asarray((np.arange(n) + 0.5) * self.pixel_mm - self.half_mm)
 
@@ -70,23 +70,23 @@ def geometric_psf(
     grid: int = 88,
     dz: float = 0.0,
 ) -> Psf:
-    """The PSF of rays alone: right where the blur is far larger than diffraction's.
+    """Computes the PSF of rays: correct if the blur is much larger than diffraction.
 
     Args:
         light: From ``pencil``.
         wavelengths_nm: Wavelengths, nm, shape (L,).
         weights: Weights of the wavelengths, shape (L,).
-        half_mm: Half of the window, mm; all of the light if None.
-        pixels: Width of the picture, px.
+        half_mm: Half of the window's width, mm; None: enough for all rays.
+        pixels: Width of the PSF, px.
         grid: Rays across, for each wavelength.
-        dz: The film this much further from the lens, mm.
+        dz: Shift of the film away from the lens, mm.
     """
     rays = spot(light, wavelengths_nm, weights, grid=grid, jitter=True).moved(dz)
     return binned(rays, half_mm, pixels)
 
 
 def binned(rays: Spot, half_mm: float | None, pixels: int) -> Psf:
-    """A spot as a picture of square pixels about its centroid."""
+    """Sums the rays of a spot in square pixels around its centroid."""
     whole(pixels, "point spread: pixels", 1, 8192)
     center = rays.centroid
     off = rays.points - center
@@ -107,21 +107,20 @@ def diffraction_psf(
     dz: float = 0.0,
     max_grid: int = MAX_GRID,
 ) -> Psf | None:
-    """The PSF of waves: |sum of exp(i k (W + a x + b y))|^2 over the directions of the light.
+    """Computes the PSF of waves: |sum of exp(i k (W + a x + b y))|^2 over directions of light.
 
     Args:
         light: From ``pencil``.
-        wavelengths_nm: Wavelengths, nm, shape (L,), each a wave of its own.
+        wavelengths_nm: Wavelengths, nm, shape (L,); their waves do not interfere.
         weights: Weights of the wavelengths, shape (L,).
-        half_mm: Half of the window, mm; the spot and three Airy discs if None.
-        pixels: Width of the picture, px.
-        dz: The film this much further from the lens, mm.
-        max_grid: Directions across that are traced at most.
+        half_mm: Half of the window's width, mm; None: the spot and three Airy radii.
+        pixels: Width of the PSF, px.
+        dz: Shift of the film away from the lens, mm.
+        max_grid: Most directions across that are traced.
 
     Returns:
-        None if no light arrives, or if the blur is so large against the wavelength that its
-        fringes would ask for more than ``max_grid`` directions across: ``geometric_psf`` is for
-        that.
+        The PSF, or None if no light arrives, or if the fringes of a large blur need more than
+        ``max_grid`` directions across; then use ``geometric_psf``.
     """
     rays = spot(light, wavelengths_nm, weights, grid=32).moved(dz)
     if not len(rays.weights):
@@ -143,7 +142,7 @@ def waves_of(
     about: FloatArray,
     max_grid: int = MAX_GRID,
 ) -> list[Wavefront]:
-    """Wavefronts fine enough for a reach (mm) about an image point; none if max_grid is not."""
+    """Wavefronts fine enough for a reach (mm) about an image point; none if over ``max_grid``."""
     grids = [grid_for(light, nm, reach_mm) for nm in wavelengths_nm]
     if max(grids) > max_grid:
         return []
@@ -162,8 +161,8 @@ def psf_of(
     center: FloatArray,
     dz: float = 0.0,
 ) -> Psf:
-    """The PSF of several wavelengths' waves about one point, with their shares of the light."""
-    # Points are close enough for the finest fringes; pixels are their sums.
+    """Computes the PSF of several wavelengths around one point, from their shares of the light."""
+    # Points are close enough for the finest fringes, then summed to pixels.
     sine = min(0.5 * wave.step * len(wave.amplitude) for wave in waves)
     finest = 0.2e-6 * min(wave.wavelength_nm for wave in waves) / sine
     each = max(1, min(int(np.ceil(2 * half_mm / pixels / finest)), MOST_POINTS // pixels))
@@ -178,9 +177,9 @@ def psf_of(
 
 @guarded
 def strehl_ratio(wave: Wavefront) -> float:
-    """Peak of the light against that of a perfect wave through the same pupil.
+    """Peak of the PSF over that of a perfect wave through the same pupil.
 
-    It is that of the brightest point within half an Airy disc about the wave's own point.
+    The peak is the brightest point within about an Airy radius of the wave's image point.
     """
     reach = 0.6e-6 * wave.wavelength_nm / (0.5 * wave.step * len(wave.amplitude))
     x = np.linspace(-reach, reach, 21)
@@ -190,7 +189,7 @@ def strehl_ratio(wave: Wavefront) -> float:
 
 
 def grid_for(light: Pencil, nm: float, reach_mm: float) -> int:
-    """Directions across so that neighbours differ by less than half a wave at a reach, mm."""
+    """Directions across for which neighbours differ by less than half a wave at a reach, mm."""
     number(reach_mm, "point spread: half_mm and dz: reach on the film, mm", 0, 1000)
     sine = 0.5 / light.bench.f_stop
     wanted = 2 * (2 * sine) * reach_mm / (1e-6 * nm) * 1.3
@@ -214,9 +213,9 @@ def _intensity(wave: Wavefront, x: FloatArray) -> FloatArray:
 
 @guarded
 def point_spread(light: Pencil, *, max_grid: int = MAX_GRID, **options: object) -> Psf:
-    """Waves where they matter, rays where the blur is larger than waves can show.
+    """Computes the PSF of waves, or of rays if the blur needs more than ``max_grid`` directions.
 
-    Takes what ``diffraction_psf`` takes.
+    Options are those of ``diffraction_psf``.
     """
     waves = diffraction_psf(light, max_grid=max_grid, **options)  # type: ignore[arg-type]
     return waves if waves is not None else geometric_psf(light, **options)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Third-order aberrations by surface: Seidel's five sums, and two of colour."""
+"""Third-order aberrations by surface: the five Seidel sums, and two of colour."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MEANINGS = (
     "axial colour",
     "lateral colour",
 )
-WIDEST_FIELD_DEG = 45.0  # a paraxial chief ray of more says little
+WIDEST_FIELD_DEG = 45.0  # a paraxial chief ray at a larger angle is meaningless
 
 
 @guarded
@@ -32,8 +32,8 @@ class SeidelSums:
     """Welford's sums, mm of wavefront, for the edge of the pupil and of the field.
 
     Attributes:
-        surfaces: Columns S1, S2, S3, S4, S5, C1 and C2 (F against C), shape (surfaces, 7).
-        field_deg: The field they belong to.
+        surfaces: Columns S1, S2, S3, S4, S5, C1 and C2 (from F to C), shape (surfaces, 7).
+        field_deg: Field angle of the sums, degrees.
     """
 
     surfaces: FloatArray
@@ -47,9 +47,9 @@ class SeidelSums:
 
 @guarded
 def seidel_sums(bench: Bench, wavelength_nm: float = DESIGN_WAVELENGTH_NM) -> SeidelSums | None:
-    """The sums at the bench's aperture, focus and field (45 degrees for wider lenses).
+    """Computes the Seidel sums at the bench's aperture, focus and field (at most 45 degrees).
 
-    None for a lens without axial symmetry: it has other aberrations than these.
+    Returns None for a lens without axial symmetry, or with its entrance pupil at infinity.
     """
     order = bench.order
     if not bench.lens.prescription.is_axially_symmetric or math.isinf(order.entrance_pupil.z):

@@ -20,10 +20,10 @@ GRID = 48
 @guarded
 @dataclass(frozen=True)
 class Spot:
-    """Rays of one object point on the film, of one or more wavelengths.
+    """Rays of one object point on the film, at one or more wavelengths.
 
     Attributes:
-        points: Sagittal and tangential, mm about the chief ray of 587.56 nm, shape (N, 2).
+        points: Sagittal and tangential, mm from the chief ray of 587.56 nm, shape (N, 2).
         weights: Share of the light, shape (N,), sum 1.
         wavelength_nm: Wavelength of each ray, nm, shape (N,).
         slopes: dx/dz and dy/dz on the same axes, shape (N, 2).
@@ -46,11 +46,11 @@ class Spot:
         return math.sqrt(float(self.weights @ (off**2).sum(axis=1)))
 
     def moved(self, dz: float) -> Spot:
-        """The spot on a film that stands dz (mm) further from the lens."""
+        """Returns the spot on a film that is ``dz`` (mm) further from the lens."""
         return Spot(self.points + dz * self.slopes, self.weights, self.wavelength_nm, self.slopes)
 
     def encircled_energy(self, radii_mm: FloatArray) -> FloatArray:
-        """Share of the light within radii (mm) about the centroid, shape of ``radii_mm``."""
+        """Share of the light within radii (mm) around the centroid, shape of ``radii_mm``."""
         off = self.points - self.centroid
         distance = np.hypot(off[:, 0], off[:, 1])
         order = np.argsort(distance)
@@ -58,7 +58,7 @@ class Spot:
         return np.asarray(total[np.searchsorted(distance[order], radii_mm, side="right")])
 
     def energy_radius(self, share: float) -> float:
-        """Radius (mm) about the centroid within which a share of the light falls."""
+        """Radius (mm) around the centroid that contains a share of the light."""
         off = self.points - self.centroid
         distance = np.hypot(off[:, 0], off[:, 1])
         order = np.argsort(distance)
@@ -76,18 +76,21 @@ def spot(
     grid: int = GRID,
     jitter: bool = False,
 ) -> Spot:
-    """The spot of one object point, by a grid of equal cells of the light in front of the lens.
+    """Traces the spot of one object point, by a grid of equal cells in front of the lens.
 
     Args:
         light: From ``pencil``.
         wavelengths_nm: Wavelengths, nm, shape (L,).
         weights: Weights of the wavelengths, shape (L,).
         grid: Rays across.
-        jitter: Each ray somewhere in its cell, always the same: no pattern of the grid is left.
+        jitter: Whether to move each ray within its cell, against patterns; always by the same.
+
+    Raises:
+        UsageError: The numbers of weights and of wavelengths differ.
     """
     if len(weights) != len(wavelengths_nm):
         raise UsageError(
-            f"spot: weights: wanted {len(wavelengths_nm)}, one of each wavelength, "
+            f"spot: weights: wanted {len(wavelengths_nm)}, one for each wavelength, "
             f"got {len(weights)}"
         )
     at = light.grid(grid)
@@ -109,11 +112,14 @@ def spot(
 
 @guarded
 def best_film_z(spots: Sequence[Spot], film_z: float) -> float:
-    """Place of the film (mm) with the smallest mean square of several spots' sizes.
+    """Finds the film position (mm) with the smallest mean square size of several spots.
 
     Args:
-        spots: Spots of the fields that count, all on the film at ``film_z``.
-        film_z: Where that film stands, mm.
+        spots: Spots on the film at ``film_z``, one for each field point.
+        film_z: Position of that film, mm.
+
+    Raises:
+        UsageError: No spot has rays with different slopes.
     """
     top = bottom = 0.0
     for item in spots:
@@ -122,5 +128,5 @@ def best_film_z(spots: Sequence[Spot], film_z: float) -> float:
         top += float(item.weights @ (at * slope).sum(axis=1))
         bottom += float(item.weights @ (slope**2).sum(axis=1))
     if not bottom:
-        raise UsageError("best_film_z: spots: wanted rays of several slopes, got none")
+        raise UsageError("best_film_z: spots: wanted rays with different slopes, got none")
     return film_z - top / bottom

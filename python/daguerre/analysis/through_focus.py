@@ -1,4 +1,4 @@
-"""A point of light on a series of films, in numbers and in pictures."""
+"""Through-focus series: the image of a point source on films at several positions."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ PIXELS = 96
 
 @dataclass(frozen=True)
 class Step:
-    """The point on one film.
+    """The image of a point source on one film.
 
     Attributes:
-        dz: Shift of the film from its place, away from the lens, mm.
-        psf: In white light.
-        rays: F, d and C.
-        facts: Figures for programs: mm, shares.
+        dz: Shift of the film from its position, away from the lens, mm.
+        psf: PSF in white light.
+        rays: Spot at F, d and C.
+        facts: Figures as plain values: lengths in mm, shares of the light.
     """
 
     dz: float
@@ -33,14 +33,14 @@ class Step:
 
 
 def series(light: Pencil, count: int = 9) -> list[Step]:
-    """The PSF on films around that of the bench; one only: on that film.
+    """Computes the PSF on films around that of the bench.
 
-    Steps are so that the blur of each differs from the next by about the size of the sharpest. All
-    are of waves, or all of rays where the widest blur has fringes too fine to be drawn.
+    From one film to the next, the blur changes by about the size of the sharpest PSF. All PSFs are
+    of waves, or all of rays if the fringes of the widest blur are too fine to be drawn.
 
     Args:
         light: From ``pencil``.
-        count: Films, an odd number.
+        count: Number of films, odd; 1: only the bench's film.
     """
     bench, rays = light.bench, spot(light, grid=96)
     airy = 1.22e-6 * max(WHITE_NM) * bench.f_stop

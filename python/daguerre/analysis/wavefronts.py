@@ -1,11 +1,11 @@
 """The wave that converges on an image point, as a function of direction.
 
 Behind the lens the light of one object point is a fan of plane waves, one along each ray. W(a, b)
-is the optical path of the one with direction cosines a, b from the object to the image point: from
-the object along the ray, to the foot of the perpendicular from that point. The amplitude at a film
-point d away is the Fourier sum of exp(i k (W + a dx + b dy)), whatever the aperture and the field:
-no sphere of reference is needed. Source: Debye 1909, as in Born and Wolf, Principles of Optics, 7th
-ed., section 8.8; W is the angle characteristic's form of the aberration function (section 5.1).
+is the optical path of the wave with direction cosines a, b: from the object along the ray, to the
+foot of the perpendicular from the image point. The amplitude at a film point d away is the Fourier
+sum of exp(i k (W + a dx + b dy)), for every aperture and field, without a reference sphere. Source:
+Debye 1909, as in Born and Wolf, Principles of Optics, 7th ed., section 8.8; W is the angle
+characteristic's form of the aberration function (section 5.1).
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from .pencils import Pencil
 
 ComplexArray = NDArray[np.complex128]
 
-DEGREE = 5  # in each direction, of the map from directions to the window
-PROBES = 25  # rays across, to fit it
+DEGREE = 5  # degree in each axis of the map from directions to the window
+PROBES = 25  # rays across to fit the map
 
 
 @guarded
@@ -36,10 +36,10 @@ class Wavefront:
 
     Attributes:
         step: Step of the direction cosines between neighbours.
-        cosines: Along the sagittal and tangential axes, shape (n, n, 2).
-        path: W in mm, 0 on average over the light, shape (n, n).
+        cosines: Direction cosines along the sagittal and tangential axes, shape (n, n, 2).
+        path: W in mm, with mean 0 over the light, shape (n, n).
         amplitude: Square root of the light, 0 where none passes, shape (n, n).
-        wavelength_nm: nm.
+        wavelength_nm: Wavelength, nm.
     """
 
     step: float
@@ -50,7 +50,7 @@ class Wavefront:
 
     @property
     def lit(self) -> BoolArray:
-        """Where light passes, shape (n, n)."""
+        """Whether light passes, shape (n, n)."""
         return np.asarray(self.amplitude > 0)
 
     @property
@@ -60,19 +60,19 @@ class Wavefront:
 
     @property
     def rms_waves(self) -> float:
-        """Root mean square of W over the light, less its best plane: in wavelengths."""
+        """RMS of W over the light, less its best-fit plane, in wavelengths."""
         w, a = self.waves[self.lit], self.cosines[self.lit]
         basis = np.column_stack([np.ones(len(w)), a])
         return float(np.std(w - basis @ np.linalg.lstsq(basis, w, rcond=None)[0]))
 
     @property
     def pupil_function(self) -> ComplexArray:
-        """Amplitude and phase, complex, shape (n, n)."""
+        """Complex amplitude, shape (n, n)."""
         k = 2e6 * np.pi / self.wavelength_nm
         return np.asarray(self.amplitude * np.exp(1j * k * self.path))
 
     def defocused(self, dz: float) -> Wavefront:
-        """The same about a point dz (mm) further from the lens along the axis."""
+        """Returns the wavefront about a point ``dz`` (mm) further from the lens along the axis."""
         cos_z = np.sqrt(np.maximum(0.0, 1 - (self.cosines**2).sum(axis=-1)))
         path = self.path + dz * cos_z
         return Wavefront(self.step, self.cosines, path, self.amplitude, self.wavelength_nm)
@@ -86,16 +86,16 @@ def wavefront(
     grid: int = 64,
     about: FloatArray | None = None,
 ) -> Wavefront | None:
-    """The wavefront of one object point, from the optical paths of exact rays.
+    """Computes the wavefront of one object point, from the optical paths of exact rays.
 
     Args:
         light: From ``pencil``.
         wavelength_nm: Wavelength, nm.
         grid: Directions across.
-        about: The image point, sagittal and tangential, mm from the chief ray's; 0 if None.
+        about: Image point, sagittal and tangential, mm from the chief ray's; None: the chief ray's.
 
     Returns:
-        None if no light arrives.
+        The wavefront, or None if no light arrives.
     """
     whole(grid, "wavefront: grid", 2, 4096)
     about = None if about is None else rows(about, "wavefront: about", 2)[0]
@@ -105,7 +105,7 @@ def wavefront(
     at = window.reshape(-1, 2)
     rays = light.trace(at, wavelength_nm)
     off = light.on_film(rays.at(light.bench.film_z)) - (0 if about is None else about)
-    # dW/da = -(where the ray lands): from the ray's own direction to the grid's.
+    # dW/da = -(the ray's film point): extends W from the ray's direction to the grid's.
     path = _path_to(light, rays, about)
     path = path - (off * (cosines.reshape(-1, 2) - _cosines(light, rays))).sum(axis=1)
     share = np.where(rays.passed, light.flux(at) * rays.transmittance, 0.0)
@@ -139,10 +139,10 @@ def _cosines(light: Pencil, rays: Rays) -> FloatArray:
 def _directions(
     light: Pencil, nm: float, count: int
 ) -> tuple[FloatArray | None, FloatArray, float]:
-    """Window coordinates whose rays leave on a regular grid of directions, and that grid.
+    """Window coordinates of rays that leave on a regular grid of directions, the grid, its step.
 
-    The map is a polynomial fitted to a few rays; what it misses is made good to second order by the
-    rays' own directions.
+    The map is a polynomial fitted to a few rays. Its error is corrected to second order by the
+    directions of the traced rays.
     """
     at = light.grid(PROBES)
     rays = light.trace(at, nm, clip=False)
@@ -162,6 +162,6 @@ def _directions(
     fit = np.linalg.solve(
         basis.T @ basis + 1e-12 * np.eye(basis.shape[1]), basis.T @ at[near]
     ).reshape(DEGREE + 1, DEGREE + 1, 2)
-    ladder = chebyshev.chebvander(u / half, DEGREE)  # the grid is a product: so is the sum
+    ladder = chebyshev.chebvander(u / half, DEGREE)  # the grid is a product of axes
     window = np.einsum("xi,ijk,yj->yxk", ladder, fit, ladder, optimize=True)
     return window, wanted, step
