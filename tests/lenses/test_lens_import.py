@@ -279,7 +279,7 @@ def test_zemax_notes(old: str, new: str, note: str, tmp_path: Path) -> None:
 def test_code_v_notes(tmp_path: Path) -> None:
     text = write.seq(ASPHERE)
     assert imported(text, tmp_path, ".seq").notes == (
-        "no EPD, FNO or NAO: the f-number follows from the stop's clear diameter",
+        "no EPD, FNO, NA or NAO: the f-number follows from the stop's clear diameter",
     )
     more = "EPD 11; VUY .1 .2\nTEM 40\nREX 3; PIK THI S1 S2; XYZ 1"
     notes = imported(text.replace("STO", f"STO\n{more}"), tmp_path, ".seq").notes

@@ -230,7 +230,7 @@ class _Reader:
     def _pupil(self, index: int) -> Pupil | None:
         if self.pupil is None and self.pupils is None:
             self.unread.add(
-                "no EPD, FNO or NAO: the f-number follows from the stop's clear diameter"
+                "no EPD, FNO, NA or NAO: the f-number follows from the stop's clear diameter"
             )
             return None
         keyword, line = self.pupil or ("", self.pupils)
