@@ -18,7 +18,7 @@ import api
 
 ROOT = Path(__file__).resolve().parents[3]
 DOCS = ROOT / "docs"
-WORKER = "manual/iframe-worker.js"
+PARTS = ("iframe-worker.js", "site.css", "site.js")
 LINK = re.compile(
     r"(\]\()([^)\s#]+)(#[^)\s]*)?((?: \"[^\"]*\")?\))"
     r"|((?:href|src)=\")([^\"#]+)(#[^\"]*)?(\")"
@@ -140,7 +140,8 @@ def stage(folder: Path) -> list[str]:
         generated = place.startswith("api/") and place != "api/README.md"
         pages.write(place, text if generated else pages.relinked(text, DOCS / place, place))
     pages.add_sources()
-    copy(Path(__file__).with_name("iframe-worker.js"), folder / WORKER)
+    for name in PARTS:
+        copy(Path(__file__).with_name(name), folder / "manual" / name)
     return pages.missing
 
 
