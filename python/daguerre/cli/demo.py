@@ -25,8 +25,8 @@ def demo(
         str, option("--res", metavar="WxH", help="Size of the picture, px [720x480].")
     ] = "720x480",
     spp: Annotated[
-        int, option("--spp", metavar="N", help="Samples per pixel, at least 1 [40].")
-    ] = 40,
+        int, option("--spp", metavar="N", help="Samples per pixel, at least 1 [32].")
+    ] = 32,
 ) -> int:
     """Renders a demo scene: a table-top at night.
 
