@@ -118,6 +118,12 @@ def test_anchors_of_links_exist() -> None:
     assert broken == []
 
 
+def test_pipes_in_code_of_a_table_lose_their_backslashes(tools: Any) -> None:
+    """A forge needs them there, and a site shows them."""
+    text = r"| `--lens NAME\|<FILE>` | `a|b` |"
+    assert tools["stage"].pipes(text) == ("| <code>--lens NAME&#124;&lt;FILE&gt;</code> | `a|b` |")
+
+
 def test_links_out_of_docs_become_pages_of_the_site(tools: Any, tmp_path: Path) -> None:
     stage = tools["stage"]
     pages = stage.Pages(tmp_path)

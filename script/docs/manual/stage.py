@@ -8,6 +8,7 @@ Files of the repository that pages link to (programs, scenes, SECURITY.md) becom
 
 from __future__ import annotations
 
+import html
 import os
 import re
 import shutil
@@ -19,6 +20,7 @@ import api
 ROOT = Path(__file__).resolve().parents[3]
 DOCS = ROOT / "docs"
 PARTS = ("iframe-worker.js", "site.css", "site.js")
+PIPES = re.compile(r"`([^`\n]*\\\|[^`\n]*)`")
 LINK = re.compile(
     r"(\]\()([^)\s#]+)(#[^)\s]*)?((?: \"[^\"]*\")?\))"
     r"|((?:href|src)=\")([^\"#]+)(#[^\"]*)?(\")"
@@ -67,9 +69,9 @@ class Pages:
         """The text of a page with its links as the site has them."""
         parts, end = [], 0
         for fence in FENCE.finditer(text):
-            parts += [self.links(text[end : fence.start()], file, place), fence[0]]
+            parts += [self.links(pipes(text[end : fence.start()]), file, place), fence[0]]
             end = fence.end()
-        return "".join([*parts, self.links(text[end:], file, place)])
+        return "".join([*parts, self.links(pipes(text[end:]), file, place)])
 
     def links(self, text: str, file: Path, place: str) -> str:
         """Links outside code."""
@@ -102,6 +104,15 @@ class Pages:
                 self.write(place, self.relinked(file.read_text("utf-8"), file, place))
             else:
                 self.write(place, listing(file))
+
+
+def pipes(text: str) -> str:
+    """Code with pipes in tables as HTML: a site shows the backslashes that a forge needs."""
+
+    def changed(match: re.Match[str]) -> str:
+        return f"<code>{html.escape(match[1], quote=False)}</code>".replace("\\|", "&#124;")
+
+    return PIPES.sub(changed, text)
 
 
 def is_picture(file: Path) -> bool:
