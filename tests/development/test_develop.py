@@ -223,7 +223,7 @@ def test_an_ocio_view():
     assert got[0] == pytest.approx([0.349] * 3, abs=0.01)
     assert got[1].min() > 0.99
     assert got[2].max() < 0.01
-    with pytest.raises(dg.UsageError, match="look: wanted ocio: and one of"):
+    with pytest.raises(dg.UsageError, match="look: wanted ocio: and a view of"):
         develop(frame([0, 0, 0]), look="ocio:nothing")
 
 

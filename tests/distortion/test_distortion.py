@@ -146,7 +146,7 @@ def test_a_lens_ends_where_its_picture_ends():
     focal = fisheye.focal_length_mm
     assert np.isfinite(fisheye.undistort([[19 / focal, 0]])).all()
     assert np.isnan(fisheye.undistort([[20.5 / focal, 0]])).all()
-    with pytest.raises(InputError, match="the same on all sides"):
+    with pytest.raises(InputError, match="wanted an axially symmetric lens"):
         LensDistortion(set_up(lenses.load(SQUEEZED)), 10.0)
 
 

@@ -31,7 +31,10 @@ def bayer_of(raw: Raw) -> Raw:
         return raw
     height, width = (side // 4 * 4 for side in raw.mosaic.shape)
     if not height or not width:
-        raise InputError("raw: mosaic: wanted at least 4 x 4 photosites of a Quad-Bayer mosaic")
+        rows, columns = raw.mosaic.shape
+        raise InputError(
+            f"raw: mosaic: wanted at least 4 x 4 photosites for Quad-Bayer, got {columns} x {rows}"
+        )
     four = raw.mosaic[:height, :width].reshape(height // 2, 2, width // 2, 2)
     numbers = four.sum(axis=(1, 3), dtype=np.uint32)
     shift = max(raw.sensor.bit_depth + 2 - 16, 0)

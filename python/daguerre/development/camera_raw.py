@@ -74,15 +74,16 @@ def opened_raw(path: str | os.PathLike[str]) -> Iterator[Any]:
     except rawpy.LibRawError as error:
         reason = error.args[0] if error.args else error
         reason = reason.decode() if isinstance(reason, bytes) else str(reason)
-        raise InputError(f"{path}: not a raw file that can be read: {reason}") from None
+        raise InputError(f"{path}: LibRaw cannot read it as a raw file: {reason}") from None
 
 
 def _shot(path: Any, opened: Any, tags: Mapping[str, Any], demosaic: Demosaic) -> Channels:
     grey = opened.num_colors == 1
     if not grey and (opened.num_colors != 3 or opened.raw_pattern is None):
+        mosaic = "without a mosaic" if opened.raw_pattern is None else "in a mosaic"
         raise InputError(
-            f"{path}: colours: wanted a mosaic of red, green and blue, or none; got "
-            f"{opened.num_colors} colours"
+            f"{path}: colours: wanted a mosaic of red, green and blue, or grey alone; got "
+            f"{opened.num_colors} colours {mosaic}"
         )
     neutral = np.ones(3) if grey else _neutral(path, opened)
     matrix = _grey if grey else _camera_from_xyz(path, opened, tags)
@@ -121,7 +122,9 @@ def _neutral(path: Any, opened: Any) -> FloatArray:
     if not (factors > 0).all():
         factors = np.array(opened.daylight_whitebalance[:3], np.float64)
     if not (factors > 0).all():
-        raise InputError(f"{path}: white balance: wanted the camera's, got none")
+        raise InputError(
+            f"{path}: white balance: wanted the camera's or daylight factors, got none"
+        )
     return np.asarray(factors.min() / factors)
 
 
@@ -139,7 +142,7 @@ def _camera_from_xyz(path: Any, opened: Any, tags: Mapping[str, Any]) -> Matrix:
     if not known:
         daylight = np.asarray(opened.rgb_xyz_matrix, np.float64)[:3]
         if not daylight.any():
-            raise InputError(f"{path}: ColorMatrix1: wanted the camera's colours, got none")
+            raise InputError(f"{path}: ColorMatrix1: wanted the camera's colour matrix, got none")
         known = [(6504.0, daylight)]
     (first, one), (last, other) = known[0], known[-1]
 
@@ -189,7 +192,7 @@ def tags_of(path: str | os.PathLike[str]) -> dict[str, Any]:
     extras.need("tifffile", f"{path}: a raw file")
     import tifffile
 
-    log = logging.getLogger("tifffile")  # what is wrong with a file, LibRaw says, and once
+    log = logging.getLogger("tifffile")  # LibRaw reports a bad file, once
     level = log.level
     log.setLevel(logging.CRITICAL + 1)
     try:

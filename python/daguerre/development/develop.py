@@ -62,7 +62,7 @@ class Recipe:
         if not self.view:
             look_of(self.look)
         elif self.colour_space == "rec2020":
-            raise UsageError("develop: colour_space: OCIO views are of srgb or p3, got 'rec2020'")
+            raise UsageError("develop: colour_space: wanted srgb or p3 for OCIO, got 'rec2020'")
 
     @property
     def view(self) -> str:
@@ -207,7 +207,7 @@ def _with_grain(
     size = source.metadata.get("sensorOverallDimensions")
     if size is None:
         raise UsageError(
-            "develop: grain: wanted a frame that knows its sensor's size "
+            "develop: grain: wanted the sensor's size in the frame's metadata "
             "(sensorOverallDimensions), got none"
         )
     sensor = tuple(float(value) for value in size)

@@ -44,7 +44,8 @@ def size_note(raw: Raw) -> str | None:
     if min(height, width) >= least:
         return None
     what = "develops X-Trans" if xtrans else "opens DNG"
-    return f"LibRaw {what} from {least} x {least} px: other programs may refuse {width} x {height}"
+    limit = f"LibRaw {what} from {least} x {least} px"
+    return f"{limit}, the picture has {width} x {height}: other programs may fail to open it"
 
 
 def put_dng(target: Path | IO[bytes], raw: Raw, preview: NDArray[np.uint8] | None = None) -> None:

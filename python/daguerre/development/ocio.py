@@ -33,7 +33,7 @@ def view_of(light: NDArray[np.float32], view: str, space: str = "srgb") -> NDArr
     known = list(config.getViews(display))
     if view not in known:
         raise UsageError(
-            f"develop: look: wanted ocio: and one of {', '.join(map(repr, known))}; "
+            f"develop: look: wanted ocio: and a view of {', '.join(map(repr, known))}; "
             f"got {view!r}{suggest(view, known)}"
         )
     transform = ocio.DisplayViewTransform(src=LINEAR, display=display, view=view)

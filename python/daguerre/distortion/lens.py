@@ -55,8 +55,8 @@ class LensDistortion(Radial):
     def __post_init__(self) -> None:
         if not self.bench.lens.prescription.is_axially_symmetric:
             raise InputError(
-                f"{self.bench.lens.name}: distortion: wanted a lens that is the same on all sides "
-                "(LensMap is for others)"
+                f"{self.bench.lens.name}: distortion: wanted an axially symmetric lens, got "
+                "another (use LensMap)"
             )
 
     @cached_property
@@ -104,7 +104,10 @@ def _angles(
     good = np.isfinite(angles) & (chief.directions[:, 2] > 0.02)
     count = len(good) if good.all() else int(np.argmin(good))
     if count < 8:
-        raise InputError(f"{bench.lens.name}: distortion: wanted chief rays, got hardly any")
+        raise InputError(
+            f"{bench.lens.name}: distortion: wanted chief rays at 8 or more image heights from the "
+            f"axis, got {count}"
+        )
     end = heights[count - 1] if count < len(good) else reach_mm
     x, y = heights[:count] ** 2, angles[:count] / heights[:count]
     fit = Chebyshev.fit(x, y, min(DEGREE, count // 2), domain=[0, end**2])

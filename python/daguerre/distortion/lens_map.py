@@ -73,7 +73,10 @@ class LensMap(Distortion):
         ideal = _ideal_points(self.bench, at * self._half * self.focal_mm, self.wavelength_nm)
         cosines, known = _cosines(ideal), np.isfinite(ideal).all(axis=1)
         if known.sum() < LEAST:
-            raise InputError(f"{self.bench.lens.name}: distortion: wanted chief rays, got too few")
+            raise InputError(
+                f"{self.bench.lens.name}: distortion: wanted {LEAST} chief rays or more, got "
+                f"{known.sum()}"
+            )
         return at[known], cosines[known]
 
     @cached_property
@@ -148,7 +151,9 @@ def _scales(bench: Bench) -> tuple[float, float]:
     ideal = _ideal_points(bench, film, DESIGN_WAVELENGTH_NM)
     across, down = (2 * step / math.hypot(*(ideal[k + 1] - ideal[k])) for k in (0, 2))
     if not (math.isfinite(across) and math.isfinite(down)):
-        raise InputError(f"{bench.lens.name}: distortion: wanted chief rays, got none on the axis")
+        raise InputError(
+            f"{bench.lens.name}: distortion: wanted chief rays near the axis, got none"
+        )
     if bench.lens.squeeze == 1:
         across = down = math.sqrt(across * down)
     return across, down

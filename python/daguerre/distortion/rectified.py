@@ -62,7 +62,7 @@ class RectifiedView:
             self._principal = np.zeros(2)
         else:
             if lens.projection.model == "cube":
-                raise UsageError("stmap: a cube has no picture that could be straightened")
+                raise UsageError("stmap: projection: wanted one that can be undistorted, got cube")
             film = lens.projection.film(self.setup.frame_size_mm[0])
             self._focal, self._principal = map(np.array, (film["focal_mm"], film["principal_mm"]))
 
