@@ -174,7 +174,7 @@ def test_a_number_needs_frames(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert render(tmp_path, file, "--frames", "1") == 0
     shown = ["--calibration", file, "-o", str(tmp_path / "one.exr"), "--lens", "pinhole"]
     assert main(["render", str(tmp_path / "set.gltf"), *shown]) == 2
-    assert "# stands for the number of a frame; wanted --frames" in capsys.readouterr().err
+    assert "wanted --frames for # in the name, got none" in capsys.readouterr().err
 
 
 def test_a_hole_in_a_take_of_pictures_is_named(tmp_path: Path) -> None:
@@ -184,7 +184,9 @@ def test_a_hole_in_a_take_of_pictures_is_named(tmp_path: Path) -> None:
     model.write_text(model.read_text().replace("IMG_0002.jpg", "other.jpg"))
     take = calibration.read(tmp_path / "model", "IMG_####.jpg")
     take.check(1, 1 / 24, 24)
-    with pytest.raises(dg.InputError, match=r"frame 2: .*IMG_0002.jpg, got none; it has 3 frames"):
+    with pytest.raises(
+        dg.InputError, match=r"frame 2: .*IMG_0002.jpg, got none; the take has 3 frames"
+    ):
         take.check(2, 2 / 24, 24)
     with pytest.raises(dg.UsageError, match="wanted --frames"):
         take.check(None, 0, 24)
@@ -198,7 +200,7 @@ def test_faults_of_takes_have_a_place(tmp_path: Path) -> None:
         (f"{last}\n\n{first}\n", "line 3: timing: wanted times that rise strictly"),
         (f"{first}\n{last[:-1]}\n", "line 2: JSON"),
         (f"{first}\n[1]\n", "line 2"),
-        ("\n", "wanted at least one, got none"),
+        ("\n", "wanted at least one sample, got none"),
     ]:
         path.write_text(text)
         with pytest.raises(dg.InputError, match=message) as error:
@@ -208,7 +210,7 @@ def test_faults_of_takes_have_a_place(tmp_path: Path) -> None:
     with pytest.raises(dg.UsageError, match=r"wanted pictures named IMG_#+.jpg, got IMG_0003.jpg"):
         calibration.read(tmp_path / "model", "IMG_#####.jpg")
     take = calibration.read(by_time(tmp_path))
-    with pytest.raises(dg.UsageError, match="wanted one moment of a camera"):
+    with pytest.raises(dg.UsageError, match="wanted a single calibration, got a take"):
         calibration.write(tmp_path / "x.json", take, "opentrackio")
 
 

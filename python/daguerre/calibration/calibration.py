@@ -139,8 +139,8 @@ def check_field(made: Projection, where: str) -> None:
     if made.model in WHOLE and dark.any() and not math.isfinite(fold):
         u, v = border[dark][0]
         raise InputError(
-            f"{where}: {made.model}: pixel ({u:.4g}, {v:.4g}) sees nothing, as the distortion "
-            "folds before it: wanted one that is valid all over the picture"
+            f"{where}: {made.model}: pixel ({u:.4g}, {v:.4g}) sees nothing, because the distortion "
+            "folds before it; wanted a distortion without folds in the picture"
         )
     if made.model in WHOLE and dark.any():
         reach = max(math.hypot(a - x, b - y) for a in (0, width - 1) for b in (0, height - 1))
@@ -155,7 +155,7 @@ def check_field(made: Projection, where: str) -> None:
         return
     raise InputError(
         f"{where}: {made.model}: the radial polynomial folds at {fold:.4g} px from the principal "
-        f"point ({angle:.4g} degrees): wanted it to rise up to the {what} of the picture, "
+        f"point ({angle:.4g} degrees); wanted no fold up to the {what} of the picture, at "
         f"{reach:.4g} px"
     )
 
@@ -168,12 +168,14 @@ def field_notes(made: Projection) -> list[str]:
     if made.model in FISHEYES and not np.isfinite(made.unproject(ends)).all():
         fold = made.core.largest_radius * math.sqrt(fx * fy)
         if math.isfinite(fold):
-            notes.append(f"its picture is a circle of {fold:.4g} px around the principal point")
+            notes.append(
+                f"its picture is a circle of {fold:.4g} px radius around the principal point"
+            )
     away = _from_middle(x / width, y / height)
     if away > 0.1 > 3 * _from_middle(x / height, y / width):
         notes.append(
             f"the principal point is ({x:.4g}, {y:.4g}) in {width} x {height} px, near the middle "
-            f"of {height} x {width} px: are width and height exchanged?"
+            f"of {height} x {width} px: are width and height swapped?"
         )
     return notes
 

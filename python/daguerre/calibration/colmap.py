@@ -97,9 +97,9 @@ def _lines(path: Path, every: int = 1) -> Iterator[tuple[str, list[str]]]:
                     yield f"{path}: line {number}", line.split()
                 count += 1
     except OSError as error:
-        raise InputError(f"{path}: wanted a text file of COLMAP's: {error.strerror}") from None
+        raise InputError(f"{path}: wanted a COLMAP text file: {error.strerror}") from None
     except UnicodeDecodeError:
-        raise InputError(f"{path}: wanted text in UTF-8 (COLMAP's .bin is not read)") from None
+        raise InputError(f"{path}: wanted UTF-8 text, got other bytes (.bin is not read)") from None
 
 
 def _camera(where: str, words: list[str]) -> tuple[str, Projection]:
@@ -144,7 +144,7 @@ def _image(
     if not abs(size - 1) < 1e-3:
         raise InputError(f"{where}: wanted a quaternion of length 1, got {size:.4g}")
     if words[8] not in cameras:
-        raise InputError(f"{where}: wanted a camera of cameras.txt, got {short(words[8])}")
+        raise InputError(f"{where}: wanted a CAMERA_ID of cameras.txt, got {short(words[8])}")
     camera_from_world = np.eye(4)
     camera_from_world[:3, :3] = _rotation(turn / size)
     camera_from_world[:3, 3] = unit_m * values[4:]
@@ -166,7 +166,7 @@ def _number(where: str, word: str) -> float:
     except ValueError:
         value = np.nan
     if not abs(value) < 1e15:
-        raise InputError(f"{where}: wanted a finite number, got {short(word)}")
+        raise InputError(f"{where}: wanted a finite number below 1e15 in size, got {short(word)}")
     return value
 
 

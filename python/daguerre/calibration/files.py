@@ -95,15 +95,15 @@ def read_all(
     colmap.check_unit(unit_m)
     where = "calibration" if isinstance(source, dict) else str(source)
     if rectified and not (pair or kind == "ros"):
-        raise UsageError(f"{where}: rectified: wanted ROS or a stereo pair of OpenCV, got {kind}")
+        raise UsageError(f"{where}: rectified: wanted ROS or an OpenCV stereo pair, got {kind}")
     if unit_m != 1 and not (pair or kind in ("colmap", "transforms")):
         raise UsageError(
-            f"{where}: unit: wanted COLMAP, transforms.json or a stereo pair of OpenCV, got {kind}"
+            f"{where}: unit: wanted COLMAP, transforms.json or an OpenCV stereo pair, got {kind}"
         )
     if model is not None and kind != "opencv":
-        raise UsageError(f"{where}: model: wanted none, as {kind} says it; got {model!r}")
+        raise UsageError(f"{where}: model: wanted none for {kind}, got {model!r}")
     if size is not None and kind in ("kalibr", "ros", "colmap"):
-        raise UsageError(f"{where}: size: wanted none, as {kind} says it; got {short(size)}")
+        raise UsageError(f"{where}: size: wanted none for {kind}, got {short(size)}")
     if kind == "kalibr":
         return kalibr.read_kalibr(source)
     if kind == "colmap":
@@ -163,7 +163,7 @@ def write(path: str | Path, calibration: Calibration | Sequence[Calibration], fo
     kind = _format(format, WRITTEN)
     several = [calibration] if isinstance(calibration, Calibration) else list(calibration)
     if any(isinstance(one, Take) for one in several):
-        raise UsageError(f"calibration: {kind}: wanted one moment of a camera, got a take of many")
+        raise UsageError(f"calibration: {kind}: wanted a single calibration, got a take")
     if kind == "kalibr":
         text = kalibr.write_kalibr(several)
     elif len(several) != 1:

@@ -60,7 +60,7 @@ def read_kalibr(source: Source) -> dict[str, Calibration]:
     for item in root.members():  # a misnamed camera would otherwise be skipped silently
         is_camera = isinstance(item.value, dict) and "camera_model" in item.value
         if is_camera and item.key not in names:
-            item.fail(f"wanted the name cam{len(names)}, cam{len(names) + 1}, ... of a camera")
+            item.fail(f"wanted the name cam{len(names)}, cam{len(names) + 1}, ... for a camera")
     found, camera_from_first = {}, np.eye(4)
     shifts = [root.need(str(name)).number_of("timeshift_cam_imu", 0.0) for name in names]
     for i, name in enumerate(map(str, names)):
@@ -117,7 +117,10 @@ def write_kalibr(calibrations: Sequence[Calibration]) -> str:
         lines += [f"  timeshift_cam_imu: {one.delay_s!r}"] if one.delay_s else []
         now = np.asarray(np.linalg.inv(FLIP @ one.rig_from_camera @ FLIP), np.float64)
         if i == 0 and not np.allclose(now, np.eye(4), atol=1e-12):
-            raise InputError("calibration: Kalibr: wanted a first camera that stands at the rig's")
+            raise InputError(
+                "calibration: Kalibr: wanted a first camera whose rig_from_camera is the identity, "
+                "got another pose"
+            )
         if i > 0:
             lines += ["  T_cn_cnm1:", *_rows(now @ np.linalg.inv(before))]
         before = now

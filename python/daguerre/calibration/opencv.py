@@ -76,7 +76,7 @@ def _check_spelling(root: Item) -> None:
         name = str(item.key)
         near = [one for one in COEFFICIENTS if len(one) > SHORT]
         if len(name) > SHORT and get_close_matches(name, near, cutoff=0.8):
-            item.fail(f"wanted {COEFFICIENTS[0]}, or no such name{suggest(name, near)}")
+            item.fail(f"unknown name: wanted {COEFFICIENTS[0]} or none{suggest(name, near)}")
 
 
 def model_of(root: Item, model: str | None = None) -> str:
@@ -122,7 +122,7 @@ def coefficients(made: Projection, counts: Sequence[int]) -> tuple[float, ...]:
     """
     if made.model not in ("opencv", "rectilinear", "kannala_brandt"):
         raise InputError(
-            f"calibration: OpenCV and ROS have the models opencv and kannala_brandt, got "
+            "calibration: wanted rectilinear, opencv or kannala_brandt for OpenCV or ROS, got "
             f"{made.model}"
         )
     used = list(made.parameters)

@@ -26,7 +26,7 @@ import numpy as np
 
 from daguerre.doors import guarded
 from daguerre.errors import InputError
-from daguerre.files.json_item import Item
+from daguerre.files.json_item import Item, short
 from daguerre.files.source import Source
 
 from .calibration import Calibration, FloatArray, projection
@@ -61,7 +61,7 @@ def read_opentrackio(source: Source, *, size: tuple[int, int] | None = None) -> 
     offset = _offset(lens, "projectionOffset")
     moved = lens.get("distortionOffset")
     if moved is not None and any(_offset(lens, "distortionOffset")):
-        moved.fail("wanted distortion about the projection's centre (0, 0), got another centre")
+        moved.fail("wanted (0, 0), the centre of the projection, got another offset")
     model, values = _distortion(lens, focal)
     made = projection(
         root.file,
@@ -145,7 +145,7 @@ def _transform(item: Item) -> FloatArray:
     """Pose from pan (about z), tilt (turned x), then roll (turned y), degrees, and shift, m."""
     scale = item.get("scale")
     if scale is not None and any(scale.number_of(axis, 1.0) != 1 for axis in "xyz"):
-        scale.fail("wanted a camera that is not scaled (1, 1, 1)")
+        scale.fail(f"wanted x, y and z of 1, got {short(scale.value)}")
     turn, shift = item.need("rotation"), item.need("translation")
     made = np.eye(4)
     made[:3, 3] = [shift.number_of(axis, 0.0) for axis in "xyz"]
@@ -168,13 +168,15 @@ def write_opentrackio(calibration: Calibration) -> str:
     """
     made, pitch = calibration.projection, calibration.pixel_pitch
     if pitch is None:
-        raise InputError("calibration: OpenTrackIO: wanted a pixel pitch, as its lengths are mm")
+        raise InputError(
+            "calibration: OpenTrackIO: wanted a pixel pitch for lengths in mm, got none"
+        )
     values = (*made.parameters, *[0.0] * 14)[:14]
     named = next((name for name, model in MODELS.items() if model == made.model), None)
     if (named is None and made.model != "rectilinear") or any(values[8:]):
         raise InputError(
-            "calibration: OpenTrackIO: wanted rectilinear, opencv_inverse, or opencv without prism "
-            f"and tilt; got {made.model}"
+            "calibration: OpenTrackIO: wanted rectilinear, or opencv or opencv_inverse without "
+            f"prism and tilt; got {made.model} with {len(made.parameters)} parameters"
         )
     focal = made.focal[0] * pitch * 1e-3
     down = pitch * 1e-3 * made.focal[0] / made.focal[1]  # mm: one focal length serves both axes

@@ -34,7 +34,7 @@ def load(source: Source) -> Item:
     path = Path(source)
     if path.suffix.lower() == ".jsonl":
         raise InputError(
-            f"{path}: wanted one calibration, got lines of several, as of a take of OpenTrackIO"
+            f"{path}: wanted one calibration, got a file for several, such as an OpenTrackIO take"
         )
     data = read_bytes(path)
     if data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<"):
@@ -63,7 +63,7 @@ def read_bytes(path: Path) -> bytes:
             data = file.read(most + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{path}: wanted a calibration file: {reason}") from None
+        raise InputError(f"{path}: cannot read the calibration file: {reason}") from None
     if len(data) > most:
         raise InputError(f"{path}: wanted a calibration of at most {most >> 20} MiB, got more")
     return data
@@ -87,7 +87,7 @@ def needed(root: Item, wanted: str, *names: str) -> Item:
     """Finds a member like :func:`first`, but requires it."""
     found = first(root, *names)
     if found is None:
-        root.fail(f"missing: wanted {wanted} ({' or '.join(names)}), got none of them")
+        root.fail(f"missing: wanted {wanted} ({' or '.join(names)}), got none")
     return found
 
 
@@ -149,12 +149,12 @@ def agreed(
     size = told or given
     if size is None:
         item.fail(
-            f"missing: wanted the size of the picture ({names}), got none; size=(W, H) or "
-            "--calibration-size gives it"
+            f"missing: wanted the size of the picture ({names}), got none; set size=(W, H) or "
+            "--calibration-size"
         )
     if given is not None and size != tuple(given):
         item.fail(
-            f"has pictures of {size[0]} x {size[1]} px: wanted no size or this one, got "
+            f"wanted the size of its pictures, {size[0]} x {size[1]} px, or none; got "
             f"{given[0]} x {given[1]}"
         )
     return size
@@ -164,7 +164,7 @@ def camera_matrix(item: Item) -> tuple[tuple[float, float], tuple[float, float]]
     """Reads focal lengths and principal point from a camera matrix, px."""
     k = matrix(item, 3, 3)
     if k[0, 1] != 0:
-        item.fail(f"wanted pixels without skew, got {k[0, 1]:g} at row 1, column 2")
+        item.fail(f"wanted no skew (0 at row 1, column 2), got {k[0, 1]:g}")
     if k[1, 0] != 0 or (k[2] != (0, 0, 1)).any():
         item.fail(f"wanted [fx 0 cx; 0 fy cy; 0 0 1], got {k.tolist()}")
     if min(k[0, 0], k[1, 1]) <= 0:
@@ -173,12 +173,13 @@ def camera_matrix(item: Item) -> tuple[tuple[float, float], tuple[float, float]]
 
 
 def rigid(item: Item) -> FloatArray:
-    """Reads a rotation and a shift, shape (4, 4)."""
+    """Reads a rotation and a translation, shape (4, 4)."""
     pose = matrix(item, 4, 4)
     turned = pose[:3, :3]
     odd = np.abs(turned @ turned.T - np.eye(3)).max() > 1e-4 or np.linalg.det(turned) < 0
     if odd or (np.abs(pose[3] - (0, 0, 0, 1)) > 1e-9).any():
-        item.fail(f"wanted a rotation and a shift (last row 0 0 0 1), got {short(pose.tolist())}")
+        got = short(pose.tolist())
+        item.fail(f"wanted a rotation and a translation (last row 0 0 0 1), got {got}")
     return pose
 
 

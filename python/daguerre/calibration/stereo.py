@@ -155,6 +155,6 @@ def _too_far(stands: FloatArray) -> tuple[str, ...]:
     if baseline <= LONGEST_M:
         return ()
     return (
-        f"the cameras stand {baseline:.4g} m apart: the lengths of the file are probably those of "
-        "a board in other units (--calibration-unit, unit_m)",
+        f"the cameras are {baseline:.4g} m apart: the file's lengths are probably in the unit of "
+        "the calibration board (--calibration-unit, unit_m)",
     )

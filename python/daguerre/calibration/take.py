@@ -68,14 +68,14 @@ class Take(Calibration):
         first, last = self.samples[0][0], self.samples[-1][0]
         if self.pattern and frame is None:
             raise UsageError(
-                f"--calibration {self.file}:{self.pattern}: # stands for the number of a frame; "
-                "wanted --frames"
+                f"--calibration {self.file}:{self.pattern}: wanted --frames for # in the name, "
+                "got none"
             )
         if self.pattern and frame not in {moment for moment, _ in self.samples}:
             raise InputError(
                 f"{self.file}: frame {frame}: wanted the pose of "
-                f"{with_number(self.pattern, frame or 0)}, got none; it has {len(self.samples)} "
-                f"frames of {first:g} .. {last:g}"
+                f"{with_number(self.pattern, frame or 0)}, got none; the take has "
+                f"{len(self.samples)} frames of {first:g} .. {last:g}"
             )
         number(fps, f"{self.file}: fps", above=0)
         if not self.pattern and not first - 0.5 / fps <= time_s <= last + 0.5 / fps:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files import json_text
-from daguerre.files.json_item import Item
+from daguerre.files.json_item import Item, short
 from daguerre.files.source import Source
 
 from .calibration import Calibration
@@ -51,7 +51,7 @@ def read_take(samples: Samples, *, size: tuple[int, int] | None = None) -> Take:
     """
     file, listed = _listed(samples)
     if not listed:
-        raise InputError(f"{file}: wanted at least one, got none")
+        raise InputError(f"{file}: wanted at least one sample, got none")
     still: dict[str, Any] = {}
     found: list[tuple[float, Calibration]] = []
     begin = (0.0, 0.0)
@@ -59,7 +59,7 @@ def read_take(samples: Samples, *, size: tuple[int, int] | None = None) -> Take:
         try:
             root = sample if isinstance(sample, Item) else load(sample)
             if not isinstance(root.value, dict):
-                root.fail("wanted a sample, names and values")
+                root.fail(f"wanted a sample with names and values, got {short(root.value)}")
             still = still | {k: v for k, v in root.value.items() if k == "static"}
             clock = _time(root, i)
             one = read_opentrackio(still | root.value, size=size)

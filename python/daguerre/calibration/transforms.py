@@ -86,7 +86,7 @@ def _projection(item: Item, root: Item, size: tuple[int, int] | None) -> Project
     for name in COEFFICIENTS:
         other = told(name)
         if other is not None and name not in names and other.number() != 0:
-            other.fail(f"wanted {', '.join(names) or 'no coefficients'} of {model}, got {name}")
+            other.fail(f"wanted {', '.join(names) or 'no coefficients'} for {model}, got {name}")
     center = number("cx", width / 2) - 0.5, number("cy", height / 2) - 0.5
     values = tuple(number(name, 0.0) for name in names)
     if not any(values) and model == "opencv":
