@@ -221,9 +221,9 @@ def test_bad_measurements_say_so() -> None:
         charts.edge_response(upright)
     with pytest.raises(InputError, match="one edge"):
         charts.edge_response(np.full((32, 32), 0.5))
-    with pytest.raises(InputError, match="one shape"):
+    with pytest.raises(InputError, match="wanted the picture's shape"):
         charts.texture_response(np.ones((4, 4)), np.ones((4, 5)))
-    with pytest.raises(InputError, match="some texture"):
+    with pytest.raises(InputError, match="wanted texture"):
         charts.texture_response(np.eye(8), np.ones((8, 8)))
     with pytest.raises(UsageError, match="bend"):
         charts.edge_response(upright, bend=-1)

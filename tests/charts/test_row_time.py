@@ -124,9 +124,9 @@ EDGE = np.tile(np.arange(9) > 4, (40, 1)).astype(float)
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"turn_rate": None}, "either turn_rate or fps, got none"),
+        ({"turn_rate": None}, "either turn_rate or fps, got neither"),
         ({"fps": 25}, "either turn_rate or fps, got both"),
-        ({"turn_rate": 0}, "turn_rate: wanted a camera that turns"),
+        ({"turn_rate": 0}, "turn_rate: wanted a rate other than 0"),
         ({"turn_rate": None, "fps": 25}, "at least two pictures"),
         ({"turn_rate": None, "fps": 25, "regions": [EDGE, EDGE]}, "edge that moves"),
         ({"corner": (315, 0)}, r"9 x 40 px.*320 x 240.*got 315, 0"),
@@ -135,7 +135,7 @@ EDGE = np.tile(np.arange(9) > 4, (40, 1)).astype(float)
         ({"regions": np.zeros(4)}, r"got \(4,\)"),
         ({"regions": np.full((40, 9), np.nan)}, "finite light"),
         ({"regions": np.ones((40, 9))}, "wanted an edge"),
-        ({"still": EDGE[:, 1:]}, r"the same region, \(40, 9\), got \(40, 8\)"),
+        ({"still": EDGE[:, 1:]}, r"the regions, \(40, 9\), got \(40, 8\)"),
     ],
 )
 def test_what_tells_no_row_time_is_refused(changes: dict[str, Any], message: str) -> None:

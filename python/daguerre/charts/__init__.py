@@ -69,7 +69,8 @@ def make(name: str, **parameters: Any) -> Chart:
     for parameter in parameters:
         if parameter not in known:
             raise UsageError(
-                f"chart {name}: {parameter}: wanted {', '.join(known)}{suggest(parameter, known)}"
+                f"chart {name}: parameter: wanted {', '.join(known)}; got {short(parameter)}"
+                f"{suggest(parameter, known)}"
             )
     number(parameters.get("width", 1.0), "chart: width", 1e-4, 1e4)
     return KINDS[name](**parameters)

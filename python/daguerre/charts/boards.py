@@ -175,6 +175,6 @@ def _board(
     name: str, size: tuple[float, float], shown: list[Patch], truth: dict[str, Any]
 ) -> Chart:
     if max(size) > 1e4:
-        raise UsageError(f"chart: a board of {max(size):g} m; wanted at most 10 km")
+        raise UsageError(f"chart: size: wanted at most 10 km, got a board of {max(size):g} m")
     paper = Patch("paper", rectangle((0, 0), size), grey(WHITE), PAPER_LAYER)
     return Chart(name, size, (paper, *shown), grey(SURROUND), truth)

@@ -51,7 +51,9 @@ def checked(dictionary: str, first: int, count: int) -> tuple[str, int]:
         )
     known = DICTIONARIES[name][2]
     if count > known:
-        raise UsageError(f"chart: the board has {count} markers, {name} only {known}")
+        raise UsageError(
+            f"chart: dictionary: wanted {count} markers for the board, got {name} with {known}"
+        )
     return name, whole(first, "chart: first", 0, known - count)
 
 

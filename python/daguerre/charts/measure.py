@@ -80,7 +80,8 @@ def edge_response(region: ArrayLike, *, bend: int = 1) -> EdgeResponse:
     turned = np.gradient(place)
     if np.ptp(place) < 1:
         raise InputError(
-            "edge: wanted one that crosses a column of pixels (slanted by some degrees)"
+            "edge: region: wanted an edge slanted by 1 px or more from end to end, got "
+            f"{np.ptp(place):.2g} px"
         )
     across = np.cos(np.arctan(turned))[:, None]  # from along the row to across the edge
     distance = (np.arange(columns)[None] - place[:, None]) * across
@@ -109,7 +110,7 @@ def plane(values: ArrayLike, where: str, least: int = 2) -> FloatArray:
         )
     if not np.isfinite(light).all():
         raise InputError(
-            f"{where}: wanted finite light, got {(~np.isfinite(light)).sum()} that is not"
+            f"{where}: wanted finite light, got others in {(~np.isfinite(light)).sum()} pixels"
         )
     return light
 
@@ -168,7 +169,7 @@ def places(points: ArrayLike, metadata: Mapping[str, Any]) -> FloatArray:
     except KeyError as error:
         raise InputError(f"chart: metadata: wanted {error}, got none") from None
     except (TypeError, ValueError):
-        wanted = "a matrix worldToNDC and a resolution"
+        wanted = "a matrix worldToNDC and a resolution of two numbers"
         raise InputError(f"chart: metadata: wanted {wanted}, got others") from None
     flat = rows(points, "places: points", 2)
     seen = np.c_[flat, np.zeros(len(flat)), np.ones(len(flat))] @ matrix
@@ -192,7 +193,7 @@ def means(
         Means, shape (patches, C) or (patches,).
     """
     if "patches" not in chart.truth:
-        raise InputError(f"chart: wanted one of patches, got {chart.name}")
+        raise InputError(f"chart: wanted patches (color or step-wedge), got {chart.name}")
     pixels = np.asarray(picture)
     if pixels.ndim not in (2, 3):
         raise UsageError(f"means: picture: wanted shape (H, W) or (H, W, C), got {pixels.shape}")
@@ -206,7 +207,7 @@ def means(
         part = pixels[max(y0, 0) : max(y1, 0), max(x0, 0) : max(x1, 0)]
         if part.size == 0:
             raise InputError(
-                f"chart: patch {patch['name']!r}: wanted it in the picture, got it outside"
+                f"chart: patch {patch['name']!r}: wanted pixels in the picture, got none"
             )
         found.append(part.reshape(-1, *part.shape[2:]).mean(axis=0))
     return np.asarray(found, np.float64)
@@ -236,7 +237,9 @@ def star_modulation(
     for r in line(radii, "star: radii"):
         ring = (np.abs(radius - r) < 0.75) & (r > 0)
         if ring.sum() < 3:
-            raise InputError(f"star: radii: wanted circles in the picture, got one of {r:g} px")
+            raise InputError(
+                f"star: radii: wanted circles in the picture, got a radius of {r:g} px"
+            )
         basis = np.c_[
             np.ones(ring.sum()), np.cos(cycles * angle[ring]), np.sin(cycles * angle[ring])
         ]
@@ -265,11 +268,11 @@ def texture_response(picture: ArrayLike, reference: ArrayLike) -> tuple[FloatArr
     """
     a, b = plane(picture, "texture: picture"), plane(reference, "texture: reference")
     if a.shape != b.shape:
-        raise InputError(f"texture: wanted two planes of one shape, got {a.shape} and {b.shape}")
+        raise InputError(f"texture: reference: wanted the picture's shape {a.shape}, got {b.shape}")
     rows, columns = a.shape
     window = np.hanning(rows)[:, None] * np.hanning(columns)[None]
     if np.ptp(b) == 0:
-        raise InputError("texture: reference: wanted some texture, got even light")
+        raise InputError("texture: reference: wanted texture, got uniform light")
     seen, wanted = (np.fft.fft2((p - p.mean()) * window) for p in (a, b))
     frequency = np.hypot(*np.meshgrid(np.fft.fftfreq(columns), np.fft.fftfreq(rows)))
     steps = min(rows, columns) // 2

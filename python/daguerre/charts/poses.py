@@ -90,7 +90,10 @@ def _pose(
                     return _camera_pose(turn, ahead * far)
             distance *= FURTHER
         place = 0.5 + (place - 0.5) * CLOSER_IN
-    raise UsageError("poses: wanted a projection that sees the whole board, and less of a margin")
+    raise UsageError(
+        f"poses: wanted a projection that sees the whole board with a margin of {margin:g}, got no "
+        "such pose (a smaller margin may help)"
+    )
 
 
 def _seen(projection: Projection, points: FloatArray, normal: FloatArray, margin: float) -> bool:

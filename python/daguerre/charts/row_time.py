@@ -80,7 +80,7 @@ def row_time(
         InputError: There is no such edge, or the camera did not turn.
     """
     if (turn_rate is None) == (fps is None):
-        got = "none" if fps is None else "both"
+        got = "neither" if fps is None else "both"
         raise UsageError(f"row time: wanted either turn_rate or fps, got {got}")
     shots = _shots(regions)
     view = _View.of(projection, shots, corner)
@@ -91,7 +91,9 @@ def row_time(
     if turn_rate is not None:
         rate = math.radians(number(turn_rate, "row time: turn_rate", -1e6, 1e6))
         if rate == 0:
-            raise UsageError("row time: turn_rate: wanted a camera that turns, got 0")
+            raise UsageError(
+                "row time: turn_rate: wanted a rate other than 0 degrees per second, got 0"
+            )
         (*_, lean), (*_, error) = _fit(np.eye(len(shots))[shot], lines, turned)
         return view.told(lean / rate, error / abs(rate), rate)
     interval = 1 / number(fps, "row time: fps", 1e-6, 1e9)
@@ -100,7 +102,7 @@ def row_time(
     steps = np.column_stack([np.ones(len(shot)), shot.astype(np.float64)])
     (_, step, lean), (_, step_error, lean_error) = _fit(steps, lines, turned)
     if abs(step) <= SURE * step_error:
-        raise InputError("row time: wanted an edge that moves from picture to picture")
+        raise InputError("row time: wanted an edge that moves between pictures, got one at rest")
     time = lean / step * interval
     error = math.hypot(lean_error, lean / step * step_error) / abs(step) * interval
     return view.told(time, error, step / interval)
@@ -108,7 +110,7 @@ def row_time(
 
 @dataclass(frozen=True)
 class _View:
-    """A region of a picture, its lines of pixels across the edge.
+    """Region of a picture, with its lines of pixels across the edge.
 
     With an upright edge they are rows, and the camera turns right; with a level one they are
     columns, and it turns up.
@@ -126,21 +128,21 @@ class _View:
         (height, width), size = shots.shape[1:], projection.size
         if min(x, y) < 0 or x % 1 or y % 1 or x + width > size[0] or y + height > size[1]:
             raise UsageError(
-                f"row time: corner: wanted whole pixels, and the region of {width} x {height} px "
-                f"in the projection's picture of {size[0]} x {size[1]}; got {x:g}, {y:g}"
+                f"row time: corner: wanted whole pixels and a region of {width} x {height} px "
+                f"inside the projection's picture of {size[0]} x {size[1]}; got {x:g}, {y:g}"
             )
         return cls(projection, (int(x), int(y)), (height, width))
 
     @property
     def is_upright(self) -> bool:
-        """Whether the edge is."""
+        """Whether the edge is upright."""
         return self.shape[0] >= self.shape[1]
 
     def turned(self, shot: FloatArray, line: FloatArray | None) -> tuple[FloatArray, FloatArray]:
-        """Lines that see the edge, and how far the camera had turned then, radians.
+        """Returns the lines that see the edge, and the camera's angle at their times, radians.
 
-        The line's plane is that at rest; None: the line lies along the axis of the turn, and what
-        is told is up to a constant.
+        ``line`` is the edge's plane at rest; None: the edge lies along the axis of the turn, and
+        angles have an unknown constant offset.
         """
         lines, (side, along, ahead) = self._edge(shot)
         angle = np.arctan2(side, ahead)
@@ -149,17 +151,17 @@ class _View:
         return lines, -angle if self.is_upright else angle  # y is down
 
     def line_at_rest(self, still: ArrayLike) -> FloatArray:
-        """The unit normal of the plane through the camera in which the edge lies."""
+        """Returns the unit normal of the plane through the camera and the edge."""
         light = plane(still, "row time: still", LEAST)
         if light.shape != self.shape:
             raise InputError(
-                f"row time: still: wanted the same region, {self.shape}, got {light.shape}"
+                f"row time: still: wanted the shape of the regions, {self.shape}, got {light.shape}"
             )
         _, directions = self._edge(light)
         return np.asarray(np.linalg.svd(directions.T)[2][2])
 
     def told(self, signed: float, error: float, rate: float) -> RowTime:
-        """With names: the sign of the time is the order of the lines."""
+        """Returns the result; the sign of the time gives the order of the lines."""
         time = abs(float(signed))
         first, last = ("top", "bottom") if self.is_upright else ("left", "right")
         order = "none" if time <= SURE * error else first if signed > 0 else last
@@ -167,21 +169,21 @@ class _View:
         return RowTime(time, time * lines, order, math.degrees(rate), float(error))
 
     def _edge(self, shot: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Lines that see it, and directions there: the way of the turn, along its axis, ahead."""
+        """Returns lines that see the edge, and directions to it: in the turn, its axis, ahead."""
         light = shot if self.is_upright else shot.T
         lines, place = _follow(light)
         pixels = np.column_stack([place, lines] if self.is_upright else [lines, place])
         seen = self.projection.unproject(pixels + self.corner)
         if not np.isfinite(seen).all():
-            raise InputError("row time: the projection sees nothing where the edge is")
+            raise InputError("row time: wanted an edge in view of the projection, got one outside")
         order = (0, 1, 2) if self.is_upright else (1, 0, 2)
         return lines.astype(np.float64), seen.T[list(order)]
 
 
 def _follow(light: FloatArray) -> tuple[NDArray[np.int_], FloatArray]:
-    """Rows that see the edge, and where: the middle of its slope, near a curve through all.
+    """Returns rows that see the edge, and its position: centre of its slope, near a curve.
 
-    The window narrows to the edge's own width, so that noise of what it parts is left out.
+    The window narrows to the edge's width, which leaves out noise on both sides.
     """
     slope, rows = np.diff(light, axis=1), np.arange(len(light))
     at = np.arange(slope.shape[1]) + 0.5
@@ -191,7 +193,9 @@ def _follow(light: FloatArray) -> tuple[NDArray[np.int_], FloatArray]:
         contrast = weights.sum(axis=1)
         known = np.abs(contrast) > CONTRAST * np.median(np.abs(contrast))
         if known.sum() < LEAST:
-            raise InputError(f"row time: wanted an edge in {LEAST} lines of pixels or more")
+            raise InputError(
+                f"row time: wanted an edge in {LEAST} lines of pixels or more, got {known.sum()}"
+            )
         weights = weights[known] / contrast[known, None]
         place = weights @ at
         away = at - np.polyval(np.polyfit(rows[known], place, BEND), rows)[:, None]
@@ -201,9 +205,9 @@ def _follow(light: FloatArray) -> tuple[NDArray[np.int_], FloatArray]:
 
 
 def _angle_at_rest(normal: FloatArray, height: FloatArray, near: FloatArray) -> FloatArray:
-    """Where a line in a plane is seen at heights over the horizon of the turn, radians.
+    """Angles of a line in a plane, by height above the horizon of the turn, radians.
 
-    n . (sin a, h, cos a) = 0 has two solutions; the one that is near is taken.
+    n . (sin a, h, cos a) = 0 has two solutions; the one closer to ``near`` is taken.
     """
     side, along, ahead = normal
     middle = math.atan2(side, ahead)
@@ -216,9 +220,9 @@ def _angle_at_rest(normal: FloatArray, height: FloatArray, near: FloatArray) -> 
 def _fit(
     shifts: FloatArray, lines: FloatArray, turned: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Least squares of angles by what shifts them and by lines: coefficients, standard errors.
+    """Fits angles by shifts and lines (least squares); returns coefficients, standard errors.
 
-    Lines far off are left out, such as those on which squares of a board meet.
+    Outliers are left out, such as lines on which squares of a board meet.
     """
     basis, kept = np.column_stack([shifts, lines]), np.ones(len(lines), bool)
     for _ in range(TIMES):
