@@ -72,7 +72,7 @@ def photons_per_lux_s(radiance: FloatArray) -> FloatArray:
     """Photons per um2 and nm for 1 lux s of a light with Y = 1, at ``NM``."""
     radiance = np.asarray(radiance)
     if radiance.shape != NM.shape or radiance.dtype.kind not in "iuf":
-        wanted = f"its light at {len(NM)} wavelengths"
+        wanted = f"a spectrum at {len(NM)} wavelengths"
         raise UsageError(f"white: wanted {wanted}, got {shown(radiance)}")
     watts = radiance / EFFICACY / (observer()[:, 1] @ radiance)
     return np.asarray(watts * NM * 1e-9 / (PLANCK * LIGHT) * 1e-12)

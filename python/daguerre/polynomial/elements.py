@@ -140,5 +140,5 @@ def _about(about: ArrayLike, nodes: list[float]) -> tuple[list[float], list[list
 
 def _surface(form: Form) -> _core.Surface:
     if not isinstance(form, Form):
-        raise UsageError(f"form: wanted one of sphere(50), plane() ..., got {short(form)}")
+        raise UsageError(f"form: wanted a form such as sphere(50) or plane(), got {short(form)}")
     return form.surface

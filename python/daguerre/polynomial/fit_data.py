@@ -98,10 +98,10 @@ def from_dict(data: Any) -> _core.LensFit:
     try:
         return _read(data)
     except CoreError as error:
-        raise InputError(f"lens fit: wanted data of the form {FORMAT}, got {error}") from None
+        raise InputError(f"lens fit: wanted data in the format {FORMAT}, got {error}") from None
     except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
         text = f"{type(error).__name__}: {error}"
-        raise InputError(f"lens fit: wanted data of the form {FORMAT}, got {text}") from None
+        raise InputError(f"lens fit: wanted data in the format {FORMAT}, got {text}") from None
 
 
 def _read(data: dict[str, Any]) -> _core.LensFit:

@@ -81,5 +81,8 @@ def _film(lens: lenses.Lens, given: tuple[float, float] | None) -> tuple[float, 
         return width, height
     width, height = numbers(given, "lens fit: film", 2, "width and height in mm")
     if not (0 < width < 1e4 and 0 < height < 1e4):
-        raise UsageError(f"lens fit: film: wanted width and height in mm, got {short(given)}")
+        raise UsageError(
+            "lens fit: film: wanted width and height above 0 and below 10000 mm, got "
+            f"{short(given)}"
+        )
     return width, height

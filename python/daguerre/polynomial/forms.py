@@ -55,9 +55,11 @@ def asphere(radius: float, terms: Mapping[int, float], k: float = 0.0) -> Form:
         k: Conic constant.
     """
     if not isinstance(terms, Mapping):
-        raise UsageError(f"asphere: wanted powers of r and their factors, got {short(terms)}")
+        raise UsageError(
+            f"asphere: terms: wanted a dict of coefficients by power of r, got {short(terms)}"
+        )
     powers = {
-        whole(p, "asphere: powers of r", 1, MAX_POWER): number(a, f"asphere: factor of r^{p}")
+        whole(p, "asphere: power of r", 1, MAX_POWER): number(a, f"asphere: coefficient of r^{p}")
         for p, a in terms.items()
     }
     radius, k = _length(radius), number(k, "asphere: k")

@@ -225,7 +225,9 @@ class LensFit:
         """
         core = _core.LensFit.from_bytes(data)
         if core is None:
-            raise InputError("lens fit: wanted the bytes of a fit, got others or damaged ones")
+            raise InputError(
+                "lens fit: wanted bytes of this version's to_bytes, got others or damaged ones"
+            )
         return cls(core)
 
     def __repr__(self) -> str:
@@ -244,5 +246,7 @@ def _each(wavelength_nm: ArrayLike, count: int) -> FloatArray:
     """Wavelengths of ``count`` rays, from one for all or one for each."""
     found = wavelengths(wavelength_nm, "lens fit: wavelength_nm")
     if found.shape not in ((), (1,), (count,)):
-        raise UsageError(f"lens fit: wavelength_nm: wanted 1 or {count}, got {found.shape}")
+        raise UsageError(
+            f"lens fit: wavelength_nm: wanted shape () or ({count},), got {found.shape}"
+        )
     return np.broadcast_to(found, (count,))

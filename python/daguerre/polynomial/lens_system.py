@@ -97,5 +97,5 @@ def _pair(ghost: tuple[int, int]) -> tuple[int, int]:
         raise UsageError(
             f"from_lens: ghost: wanted two surfaces (i, j), got {short(ghost)}"
         ) from None
-    first, second = (whole(i, "from_lens: ghost: two surfaces", -1, 1 << 30) for i in (one, other))
+    first, second = (whole(i, "from_lens: ghost: surface", -1, 1 << 30) for i in (one, other))
     return first, second

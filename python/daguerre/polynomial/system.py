@@ -143,11 +143,13 @@ class System:
         given: Any = object_distance  # of any type yet
         endless = isinstance(given, float) and math.isinf(given)
         if not endless and not number(object_distance, "seidel: object_distance"):
-            raise UsageError("seidel: object_distance: wanted mm from the pupil, got 0")
+            raise UsageError(
+                "seidel: object_distance: wanted a distance from the pupil other than 0 mm, got 0"
+            )
         terms = self._terms(wavelength, pupil, object_distance)
         if terms is None:
             raise UsageError(
-                "Seidel terms: wanted degree 3 at least and axial symmetry about the base ray, "
+                "seidel: wanted a degree of at least 3 and axial symmetry about the base ray, "
                 f"got degree {self.degree}" + ("" if self.degree < 3 else " without symmetry")
             )
         return terms

@@ -40,7 +40,7 @@ def wavelength_nodes(from_nm: float, to_nm: float, count: int) -> NDArray[np.flo
     low, high = number(from_nm, "wavelength nodes", above=0), number(to_nm, "wavelength nodes")
     if not low < high:
         raise UsageError(
-            f"wavelength nodes: wanted 0 < from < to in nm, got {from_nm!r} to {to_nm!r}"
+            f"wavelength nodes: wanted 0 < from_nm < to_nm, got {from_nm!r} to {to_nm!r}"
         )
     return np.asarray(_core.wavelength_nodes(low, high, count), np.float64)
 
@@ -61,7 +61,7 @@ def nodes_of(wavelength: ArrayLike | None) -> list[float]:
         or (np.diff(nm) <= 0).any()
     ):
         raise UsageError(
-            f"wavelength: wanted one in nm, or several that ascend, got {wavelength!r}"
+            f"wavelength: wanted one above 0 nm, or several that ascend, got {wavelength!r}"
         )
     return [float(x) for x in nm]
 
