@@ -242,7 +242,7 @@ def test_interrupted_rigs_go_on_with_the_camera_that_is_not_complete(tmp_path: P
         (
             ["-o", "x.exr", "--calibration", "chain.yaml", "--calibration-size", "4x3"],
             2,
-            "none, as",
+            "none for kalibr",
         ),
         (
             ["-o", "x.exr", "--calibration-unit", "mm"],
