@@ -17,9 +17,9 @@ from .display_file import turn_notes, turned
 from .photograph import Photograph, RawNumbers
 from .shot_facts import shot_facts
 
-#: LibRaw's numbers of turns, and those of EXIF.
+#: EXIF orientation by LibRaw's flip.
 _TURNS = {0: 1, 3: 3, 5: 8, 6: 6}
-#: Photosites each way in which the cells of every known mosaic repeat.
+#: Common period of all known mosaics, photosites.
 _PERIOD = 12
 
 
@@ -59,7 +59,7 @@ def _numbers(path: Path, opened: Any, tags: Mapping[str, Any], turn: int) -> Raw
         black[index] = level
     all_cells = cells[np.ix_(np.arange(height) % _PERIOD, np.arange(width) % _PERIOD)]
     return RawNumbers(
-        # A copy: LibRaw's own numbers go with the file.
+        # A copy: LibRaw frees its own values when the file is closed.
         mosaic=np.array(upright(opened.raw_image_visible, turn), np.uint16, order="C"),
         cells=shortest(upright(all_cells, turn)[:_PERIOD, :_PERIOD]),
         channels=channels,
@@ -70,7 +70,7 @@ def _numbers(path: Path, opened: Any, tags: Mapping[str, Any], turn: int) -> Raw
 
 
 def shortest(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """The smallest square cell that repeats."""
+    """Finds the smallest square cell that repeats."""
     for side in (1, 2, 4, 6):
         tiled = np.tile(cells[:side, :side], (_PERIOD // side, _PERIOD // side))
         if np.array_equal(tiled[: cells.shape[0], : cells.shape[1]], cells):
@@ -79,7 +79,7 @@ def shortest(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 
 def _with_others(opened: Any, tags: Mapping[str, Any]) -> dict[str, Any]:
-    """The tags, and from LibRaw those that files other than TIFF keep in ways of their own."""
+    """Adds LibRaw's values for missing tags, as of files that are not TIFF."""
     other, lens = getattr(opened, "other", None), getattr(opened, "lens", None)
     more = {
         "PhotographicSensitivity": getattr(other, "iso_speed", None),

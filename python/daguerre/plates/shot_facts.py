@@ -11,7 +11,7 @@ from typing import Any
 
 from daguerre.io.exif import FULL_FRAME_DIAGONAL_MM, rational
 
-#: EXIF's names, and ours; of several the first that is there counts.
+#: EXIF's names and ours; the first one present counts.
 _NUMBERS = {
     "ExposureTime": "expTime",
     "FNumber": "aperture",
@@ -46,7 +46,7 @@ def shot_facts(tags: Mapping[str, Any], size: tuple[int, int]) -> dict[str, Any]
     for theirs, ours in _NUMBERS.items():
         value = exif_number(tags.get(theirs))
         if value is not None and value > 0:
-            # Fractions come as floats of 32 bits: 1/125 s as 0.00800000038.
+            # Fractions may be 32-bit floats: 1/125 s is 0.00800000038.
             above, below = rational(value)
             facts.setdefault(ours, above / below)
     for theirs, ours in _TEXTS.items():
@@ -58,7 +58,7 @@ def shot_facts(tags: Mapping[str, Any], size: tuple[int, int]) -> dict[str, Any]
 
 
 def exif_number(value: Any) -> float | None:
-    """A finite number; a rational may be a pair, and of a list of others the first counts."""
+    """Converts to a finite number: a pair is a rational; of other lists the first one counts."""
     try:
         if isinstance(value, tuple | list):
             value = float(value[0]) / float(value[1]) if len(value) == 2 else value[0]
@@ -69,7 +69,7 @@ def exif_number(value: Any) -> float | None:
 
 
 def _by_focal_plane(tags: Mapping[str, Any], size: tuple[int, int]) -> tuple[float, float] | None:
-    """Pixels over their density on the sensor; a picture that was made smaller keeps both tags."""
+    """Sensor size, mm, from pixels and their density; reduced pictures keep both tags."""
     unit = _UNITS_MM.get(int(exif_number(tags.get("FocalPlaneResolutionUnit")) or 2))
     across = exif_number(tags.get("FocalPlaneXResolution"))
     down = exif_number(tags.get("FocalPlaneYResolution")) or across
@@ -83,7 +83,7 @@ def _by_focal_plane(tags: Mapping[str, Any], size: tuple[int, int]) -> tuple[flo
 def _by_equivalent(
     tags: Mapping[str, Any], facts: Mapping[str, Any], size: tuple[int, int]
 ) -> tuple[float, float] | None:
-    """By the focal length of the same diagonal field on 36 x 24 mm, a whole number of mm."""
+    """Sensor size, mm, from the equivalent focal length: same diagonal field on 36 x 24 mm."""
     equivalent = exif_number(tags.get("FocalLengthIn35mmFilm"))
     focal = facts.get("nominalFocalLength")
     if not equivalent or equivalent <= 0 or focal is None:
@@ -94,5 +94,5 @@ def _by_equivalent(
 
 
 def _plausible(sensor: tuple[float, float]) -> tuple[float, float] | None:
-    """Sizes that sensors have; wrong units of some files give others."""
+    """Returns a credible sensor size, else None; some files have wrong units."""
     return sensor if all(1 <= side <= 250 for side in sensor) else None

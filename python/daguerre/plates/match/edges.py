@@ -1,8 +1,8 @@
-"""Straight edges of a picture that are fit for measuring sharpness.
+"""Finds straight edges of a picture that are fit for measuring sharpness.
 
-Blocks whose gradients all lie across one direction hold one straight edge (structure tensor:
-Bigun and Granlund 1987, Optimal orientation detection of linear symmetry). ISO 12233 wants edges
-that are slanted by a few degrees against rows or columns, between two even sides.
+A block whose gradients all have one direction has one straight edge (structure tensor: Bigun and
+Granlund 1987, Optimal orientation detection of linear symmetry). ISO 12233 requires edges that are
+slanted by a few degrees against rows or columns, between two uniform sides.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float32]
-#: Side of a block, px of the picture that is looked at; blocks overlap by half.
+#: Side of a block, px of the searched picture; blocks overlap by half.
 BLOCK = 24
-#: Slants against the nearer axis, degrees; how far gradients must agree, 0 to 1.
+#: Range of slants against the nearer axis, degrees; least coherence of gradients, 0 to 1.
 _SLANTS, _COHERENCE = (2.0, 20.0), 0.9
-#: Candidates that are looked at, at most.
+#: Largest number of candidates.
 MOST = 240
 
 
@@ -26,8 +26,8 @@ class Candidate:
     """A block with an edge.
 
     Attributes:
-        y: Middle of the block, rows of the picture that is looked at.
-        x: Columns.
+        y: Centre of the block, row of the searched picture.
+        x: Its column.
         strength: Energy of its gradients.
     """
 
@@ -37,10 +37,10 @@ class Candidate:
 
 
 def candidates(light: Floats) -> list[Candidate]:
-    """Blocks with one slanted edge, the strongest first.
+    """Finds blocks with one slanted edge, the strongest first.
 
     Args:
-        light: Light, shape (H, W); of large pictures a smaller one will do.
+        light: Light, shape (H, W); reduced if the picture is large.
     """
     half = BLOCK // 2
     rows, columns = (side // half for side in light.shape)

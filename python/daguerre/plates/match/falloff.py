@@ -15,11 +15,11 @@ from .regions import overview
 FloatArray = NDArray[np.float64]
 Floats = NDArray[np.float32]
 Terms = tuple[float, float, float]
-#: Cells of the picture along its longer side of which means are fitted.
+#: Number of cells along the longer side of the picture; their means are fitted.
 _CELLS = 48
-#: Share of the light by which an even surface may differ from the fit.
+#: Largest relative RMS residual of an even surface.
 UNEVEN = 0.03
-#: Gradient from the middle to a corner, over the light in the middle, that a surface may have.
+#: Largest gradient from the middle to a corner, relative to the light in the middle.
 STEEP = 0.25
 
 
@@ -70,12 +70,12 @@ def polynomial(terms: Terms, r2: FloatArray) -> FloatArray:
 def fitted(
     light: FloatArray, r2: FloatArray, more: FloatArray | None = None
 ) -> tuple[Terms, float, FloatArray]:
-    """The polynomial through light at squared radii, RMS of what it leaves, and ``more`` in it.
+    """Fits the polynomial; returns it, the relative RMS residual and the coefficients of ``more``.
 
     Args:
         light: Any scale, shape (N,).
         r2: Squared radii, shape (N,).
-        more: Functions that may go with it and are left out, relative to the middle, shape (N, M).
+        more: Other functions to fit and leave out of the polynomial, shape (N, M).
     """
     columns = np.stack([np.ones_like(r2), r2, r2**2, r2**3], axis=1)
     if more is not None:
@@ -112,7 +112,7 @@ def falloff_of(flat: Photograph) -> Falloff:
 
 
 def _means(flat: Photograph) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Means of light over cells of the picture, and where they are: the corners are at 1."""
+    """Means of light over cells, and y and x of their centres; the corners are at distance 1."""
     plane, _ = overview(flat)
     clipped = _top(flat)
     if (plane >= clipped).mean() > 1e-3:

@@ -1,8 +1,8 @@
-"""Flat blocks of developed pictures, chosen by what is coarser than their noise.
+"""Finds flat blocks of developed pictures, by structure that is coarser than their noise.
 
-Noise of developed pictures is not white, so its own low frequencies cannot be told from its high
-ones. Blocks are judged by means of 8 x 8 px, in which little noise is left, and measured by all
-that is finer.
+Noise of developed pictures is not white, so its low frequencies do not follow from its high ones.
+Blocks are selected by means of 8 x 8 px, which have little noise left, and measured by their
+variance.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ from .grain import SIDE
 from .texture import roughness
 
 FloatArray = NDArray[np.float64]
-#: Blocks that are looked at, and those that must be flat.
+#: Approximate number of blocks to examine, and least number of flat ones.
 _MOST, LEAST = 9000, 12
 _BINS, _FLATTEST = 16, 0.2
-#: Noise of flat blocks differs little; what has more than this times the low ones is texture.
+#: Variances above this multiple of a low quantile are texture, as those of noise differ little.
 _TEXTURE, _USUAL = 1.6, 0.1
-#: Variance of means of 8 x 8 px over that of pixels: white noise has 1/64, grain of 4 px a quarter,
-#: edges nearly 1.
+#: Largest variance of means of 8 x 8 px over that of pixels: white noise has 1/64, grain of 4 px
+#: 1/4, edges nearly 1.
 _COARSE = 0.35
-#: Noise changes slowly with level: a bin whose variance is so many times the next one's is texture.
+#: A bin with this multiple of its neighbours' variance is texture: noise changes slowly with level.
 _PEAK = 4.0
-#: Deviation of numbers for screens that no camera's noise has; text and patterns do.
+#: Display-encoded deviation above that of any camera's noise; text and patterns have it.
 _LOUDEST = 0.12
-#: Variance below which there is none.
+#: Variance that counts as 0.
 _NOTHING = 1e-14
-#: Median roughness of a level's blocks; of noise 0.6. Those that texture leaves are nearer to 1.
+#: Largest median roughness of a level's blocks: noise has 0.6, remaining texture nearly 1.
 _SMOOTH = 0.72
 _CELL = 8
-#: Share of pixels at either end of the numbers that a channel of a block may have.
+#: Largest share of pixels of a channel at either end of the range.
 _CLIPPED = 0.15
 
 
@@ -55,12 +55,12 @@ class FlatBlocks:
     variance: FloatArray
 
     def only(self, chosen: NDArray[np.intp]) -> FlatBlocks:
-        """Those of some numbers."""
+        """Selects blocks by index."""
         return FlatBlocks(self.corner[chosen], self.level[chosen], self.variance[chosen])
 
 
 def flat_blocks(photograph: Photograph) -> FlatBlocks | None:
-    """The flat blocks of a developed picture; None: there are too few."""
+    """Finds the flat blocks of a developed picture; None: there are too few."""
     blocks, structure = _blocks(photograph)
     variance = blocks.variance.mean(axis=1)
     small = structure <= _COARSE * np.maximum(variance, _NOTHING)
@@ -87,7 +87,7 @@ def flat_blocks(photograph: Photograph) -> FlatBlocks | None:
 
 
 def rounding(photograph: Photograph) -> float:
-    """Variance of rounding to whole numbers, which a file made of the noise adds again."""
+    """Variance of rounding to integers, which a new file adds again."""
     pixels = photograph.pixels
     assert pixels is not None
     if not np.issubdtype(pixels.dtype, np.integer):
@@ -96,13 +96,13 @@ def rounding(photograph: Photograph) -> float:
 
 
 def alike(variance: FloatArray) -> NDArray[np.bool_]:
-    """Which variances are those of noise: near the lower ones, which texture does not have."""
+    """Mask of variances near the low ones, which are those of noise rather than texture."""
     usual = np.quantile(variance, _USUAL)
     return np.asarray(variance <= _TEXTURE * max(float(usual), _NOTHING))
 
 
 def _without_peaks(bins: list[NDArray[np.intp]], variance: FloatArray) -> list[NDArray[np.intp]]:
-    """Bins of levels without those whose noise is far above the next ones': texture alone."""
+    """Bins of levels without those far above their neighbours, which have only texture."""
     each = np.array([variance[part].mean() for part in bins])
     beside = np.minimum(np.r_[each[1:2], each[:-1]], np.r_[each[1:], each[-2:-1]])
     if len(each) < 3:
@@ -112,7 +112,7 @@ def _without_peaks(bins: list[NDArray[np.intp]], variance: FloatArray) -> list[N
 
 
 def _blocks(photograph: Photograph) -> tuple[FlatBlocks, FloatArray]:
-    """Blocks all over the picture that are not clipped, and how much structure they have."""
+    """Unclipped blocks all over the picture, and the variance of their coarse structure."""
     pixels = photograph.pixels
     assert pixels is not None
     rows, columns = (side // SIDE for side in pixels.shape[:2])
@@ -139,7 +139,7 @@ def _blocks(photograph: Photograph) -> tuple[FlatBlocks, FloatArray]:
 
 
 def _inside(blocks: NDArray[Any]) -> NDArray[np.bool_]:
-    """Which blocks have hardly a pixel at either end of the numbers."""
+    """Mask of blocks with few pixels at either end of the range."""
     if not np.issubdtype(blocks.dtype, np.integer):
         return np.asarray(blocks.max(axis=(1, 2, 3)) > 0)
     ends = (blocks == 0) | (blocks == np.iinfo(blocks.dtype).max)

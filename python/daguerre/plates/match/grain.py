@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
-#: Side of the blocks that spectra are taken of, px; frequencies are multiples of 1 / SIDE.
+#: Side of the blocks for spectra, px; frequencies are multiples of 1 / SIDE.
 SIDE = 32
 HALF = SIDE // 2 + 1
 #: Frequencies of an FFT without their signs.
@@ -60,5 +60,5 @@ class Grain:
 
 
 def whole_spectrum(quadrant: FloatArray) -> FloatArray:
-    """Power at all frequencies in the order of FFT, (SIDE, SIDE, ...), of (HALF, HALF, ...)."""
+    """Expands power (HALF, HALF, ...) to all frequencies in FFT order, (SIDE, SIDE, ...)."""
     return np.asarray(quadrant[np.ix_(FOLDED, FOLDED)])

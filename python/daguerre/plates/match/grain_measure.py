@@ -15,9 +15,9 @@ from .grain import FOLDED, HALF, SIDE, Grain, whole_spectrum
 from .likely import likely
 
 FloatArray = NDArray[np.float64]
-#: Levels at which the noise is told, at most, and blocks for each, at least.
+#: Largest number of levels, and least number of blocks for each.
 _LEVELS, _EACH = 10, 6
-#: Blocks of which spectra are taken, at most.
+#: Largest number of blocks for spectra.
 _MOST = 1500
 
 
@@ -44,7 +44,7 @@ def grain_of(
 def _likely(
     photograph: Photograph, found: FlatBlocks, electrons: float, notes: list[str]
 ) -> FlatBlocks | None:
-    """Flat blocks that are no texture, with a note of the others."""
+    """Selects flat blocks that are not texture; adds a note on the others."""
     kept, fault = likely(photograph, found, electrons)
     if fault is not None:
         count = 0 if kept is None else len(kept.corner)
@@ -58,7 +58,7 @@ def _likely(
 
 
 def _grain(photograph: Photograph, found: FlatBlocks) -> Grain:
-    """The noise of flat blocks."""
+    """Measures the noise of flat blocks."""
     linear = photograph.kind == "linear"
     curves = [_curve(found.level[:, c], found.variance[:, c], photograph) for c in range(3)]
     count = min(len(levels) for levels, _ in curves)
@@ -82,7 +82,7 @@ def _curve(
 def _spectra(photograph: Photograph, found: FlatBlocks, plain: Grain) -> FloatArray:
     """Mean cross power of blocks by frequency, both signs as one, (HALF, HALF, 3, 3).
 
-    Planes were taken off, so the lowest frequencies are those beside them.
+    Planes were subtracted, so the lowest frequencies are filled in from their neighbours.
     """
     chosen = np.linspace(0, len(found.corner) - 1, min(len(found.corner), _MOST)).astype(int)
     window = np.outer(*2 * [np.hanning(SIDE + 1)[:SIDE]])[:, :, None]
@@ -94,7 +94,7 @@ def _spectra(photograph: Photograph, found: FlatBlocks, plain: Grain) -> FloatAr
 
 
 def folded(power: FloatArray) -> FloatArray:
-    """The mean of both signs of the frequencies, (HALF, HALF, ...) of (SIDE, SIDE, ...)."""
+    """Averages both signs of the frequencies, from (SIDE, SIDE, ...) to (HALF, HALF, ...)."""
     total = np.zeros((HALF, HALF, *power.shape[2:]))
     count = np.zeros((HALF, HALF))
     np.add.at(total, np.ix_(FOLDED, FOLDED), power)
@@ -105,7 +105,7 @@ def folded(power: FloatArray) -> FloatArray:
 
 
 def unit_power(quadrant: FloatArray) -> FloatArray:
-    """Cross power scaled so that each channel's own has the mean 1; without noise it is white."""
+    """Scales cross power so that each channel has mean power 1; white if there is no noise."""
     mean = whole_spectrum(quadrant).mean(axis=(0, 1))
     own = np.sqrt(np.maximum(np.diag(mean), 0))
     if not (own > 0).all():
@@ -116,7 +116,7 @@ def unit_power(quadrant: FloatArray) -> FloatArray:
 def _standard(
     photograph: Photograph, found: FlatBlocks, plain: Grain, chosen: NDArray[np.intp]
 ) -> Iterator[FloatArray]:
-    """Blocks without their gradient, in standard deviations, shape (SIDE, SIDE, 3)."""
+    """Yields blocks without their gradient, in standard deviations, shape (SIDE, SIDE, 3)."""
     assert photograph.pixels is not None
     for i in chosen:
         y, x = found.corner[i]
@@ -128,7 +128,7 @@ def _standard(
 
 
 def without_plane(block: FloatArray) -> FloatArray:
-    """A block, shape (h, w, C), less the plane through it."""
+    """Subtracts the fitted plane from a block, shape (h, w, C)."""
     height, width = block.shape[:2]
     y = (np.arange(height) - (height - 1) / 2)[:, None, None]
     x = (np.arange(width) - (width - 1) / 2)[None, :, None]

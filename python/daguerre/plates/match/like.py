@@ -18,7 +18,7 @@ from .grain_draw import with_grain
 from .plate_camera import PlateCamera
 
 Floats = NDArray[np.float32]
-#: Planes of a frame that hold light: those that sensors and development read, and catchers.
+#: Planes of a frame with light: those for sensors and development, and catchers.
 _LIGHT = ("rgb", "xyz", "channels", "bands", "catcher", "catcher_channels")
 _RATIOS = ("catcher_ratio", "catcher_ratio_channels")
 

@@ -97,7 +97,7 @@ def likely(
 
 
 def expected(level: FloatArray, electrons: float) -> FloatArray:
-    """Variance of numbers for screens that electrons and reading explain, shape of the levels."""
+    """Display-encoded variance due to electrons and read noise, shape of the levels."""
     light = np.maximum(srgb.to_linear(level), 1e-6)
     slope = (srgb.from_linear(light * 1.001) - srgb.from_linear(light * 0.999)) / (0.002 * light)
     dark = np.hypot(_DARK / electrons, _DARK_SHARE)
@@ -105,7 +105,7 @@ def expected(level: FloatArray, electrons: float) -> FloatArray:
 
 
 def _likeness(photograph: Photograph, part: FlatBlocks) -> float:
-    """Correlation of green's slow changes with those of red and blue, the mean."""
+    """Mean correlation of green's slow changes with those of red and blue."""
     pixels = photograph.pixels
     assert pixels is not None
     blocks = np.stack([pixels[y : y + SIDE, x : x + SIDE] for y, x in part.corner])

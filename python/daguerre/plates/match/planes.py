@@ -1,4 +1,4 @@
-"""Blocks of photosites of one place in the mosaic's cell, as Bayer and mono mosaics have them."""
+"""Cuts blocks of photosites at one position of the mosaic's cell, for Bayer and mono mosaics."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from daguerre.plates.photograph import RawNumbers
 
 from .blocks import Blocks, cosines, inside, joined
 
-#: Side of a block, in photosites of one place in the cell.
+#: Side of a block, in photosites at one position of the cell.
 SIDE = 8
 _LOW, _HIGH = slice(1, 4), slice(4, 8)
 
 
 def blocks_of_planes(raw: RawNumbers, most: int) -> Blocks:
-    """Blocks all over a mosaic, about ``most``."""
+    """Cuts about ``most`` blocks from all over a mosaic."""
     rows, columns = raw.cells.shape
     height, width = raw.mosaic.shape
     count = (height // (SIDE * rows)) * (width // (SIDE * columns)) * rows * columns
@@ -26,7 +26,7 @@ def blocks_of_planes(raw: RawNumbers, most: int) -> Blocks:
 
 
 def _of_plane(raw: RawNumbers, y: int, x: int, every: int) -> Blocks:
-    """Blocks of the photosites of one place in the cell: every so many rows of blocks."""
+    """Blocks of photosites at (y, x) of the cell, from each ``every``-th row of blocks."""
     rows, columns = raw.cells.shape
     plane = raw.mosaic[y::rows, x::columns]
     channel = int(raw.cells[y, x])

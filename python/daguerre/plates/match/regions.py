@@ -1,4 +1,4 @@
-"""Parts of a photograph as one plane of light, for finding edges and measuring them."""
+"""Cuts parts of a photograph as one plane of light, to find and measure edges."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 from daguerre.plates.photograph import Photograph, RawNumbers
 
 Floats = NDArray[np.float32]
-#: Half of the side of a region that is measured, px.
+#: Half the side of a measured region, px.
 HALF = 28
 
 
 def overview(photograph: Photograph) -> tuple[Floats, int]:
-    """The whole picture as one plane, smaller, and how many pixels one of its own stands for."""
+    """Reduces the picture to one plane; returns it and the side of its pixels, px."""
     if photograph.raw is not None:
-        # Squares of 3 x 3 of X-Trans have as many of each channel everywhere.
+        # Each square of 3 x 3 of X-Trans has the same number of each channel.
         side = {1: 2, 6: 3}.get(len(photograph.raw.cells), len(photograph.raw.cells))
         return _cell_means(photograph.raw, side), side
     assert photograph.pixels is not None
@@ -26,7 +26,7 @@ def overview(photograph: Photograph) -> tuple[Floats, int]:
 
 
 def _cell_means(raw: RawNumbers, side: int) -> Floats:
-    """Means of squares of so many photosites, each with the same share of channels."""
+    """Means of squares of ``side`` photosites, each with the same share of channels."""
     height, width = (length // side * side for length in raw.mosaic.shape)
     total = np.zeros((height // side, width // side), np.float32)
     for i in range(side):
@@ -37,9 +37,9 @@ def _cell_means(raw: RawNumbers, side: int) -> Floats:
 
 
 def centred(photograph: Photograph, y: int, x: int) -> Floats | None:
-    """Light about the edge that is near a place, shape (2 HALF, 2 HALF); None: of no use.
+    """Light around an edge near a place, shape (2 HALF, 2 HALF); None: not usable.
 
-    An edge beside the middle would have its tails cut off on one side.
+    An edge off the centre would lose its tails on one side.
     """
     part = region(photograph, y, x)
     if part is None:
@@ -61,7 +61,7 @@ def _middle(part: Floats) -> NDArray[np.float64]:
 
 
 def region(photograph: Photograph, y: int, x: int) -> Floats | None:
-    """Light about a place, shape (2 HALF, 2 HALF); None: too near the border, or clipped."""
+    """Light around a place, shape (2 HALF, 2 HALF); None: too near the border, or clipped."""
     width, height = photograph.size
     if not (HALF <= y <= height - HALF and HALF <= x <= width - HALF):
         return None
@@ -82,9 +82,9 @@ def _developed(photograph: Photograph, rows: slice, columns: slice) -> Floats | 
 
 
 def _raw(raw: RawNumbers, rows: slice, columns: slice) -> Floats | None:
-    """The mosaic with each channel scaled from dark side to light side of the edge: as if grey.
+    """Scales each channel of the mosaic to 0 .. 1 from the dark to the light side of the edge.
 
-    So all photosites sample one edge, and none of them is interpolated.
+    So all photosites sample one grey edge without interpolation.
     """
     part = raw.mosaic[rows, columns]
     if (part >= raw.white).mean() > 0.001 or (part == 0).mean() > 0.01:
@@ -106,7 +106,7 @@ def _raw(raw: RawNumbers, rows: slice, columns: slice) -> Floats | None:
 
 
 def _sides(part: Floats, channel: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Masks of the dark and the light side: outer quarters, across the nearer axis of the edge."""
+    """Masks of the dark and light sides: outer quarters, across the axis nearest to the edge."""
     quarter = len(part) // 4
     main = np.bincount(channel.ravel()).argmax()
     mask = channel == main

@@ -81,7 +81,7 @@ def _edges(photograph: Photograph) -> Iterator[EdgeResponse]:
 
 
 def _is_good(measured: EdgeResponse, part: NDArray[np.float32], *, raw: bool) -> bool:
-    """One edge between even sides, with enough contrast for its noise."""
+    """Whether there is one edge between uniform sides, with enough contrast for its noise."""
     step = measured.high - measured.low
     if not step > 0 or not np.isfinite(measured.response[:40]).all():
         return False

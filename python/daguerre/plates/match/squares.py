@@ -1,7 +1,7 @@
-"""Blocks of squares of four photosites of one colour that touch, as X-Trans and Quad-Bayer have.
+"""Cuts blocks of squares of four adjacent photosites of one colour, for X-Trans and Quad-Bayer.
 
-The difference a - b - c + d of a square measures the noise, over two photosites, where pictures
-have least; its mean is independent of that. Means of 4 x 4 squares judge whether a block is flat.
+The difference a - b - c + d of a square measures the noise over two photosites, where pictures
+have least detail; the mean is independent of it. Means of 4 x 4 squares select flat blocks.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from daguerre.plates.photograph import RawNumbers
 
 from .blocks import Blocks, cosines, inside, joined
 
-#: Squares along a side of a block: 16 differences and 9 low coefficients, as other blocks have.
+#: Squares along a side of a block: 16 differences and 9 low coefficients, as in other blocks.
 SIDE = 4
 
 
 def blocks_of_squares(raw: RawNumbers, most: int) -> Blocks:
-    """Blocks all over a mosaic, about ``most``."""
+    """Cuts about ``most`` blocks from all over a mosaic."""
     places = list(_places(raw.cells))
     (rows, columns), (height, width) = raw.cells.shape, raw.mosaic.shape
     count = (height // (SIDE * rows)) * (width // (SIDE * columns)) * len(places)
@@ -29,7 +29,7 @@ def blocks_of_squares(raw: RawNumbers, most: int) -> Blocks:
 
 
 def _places(cells: NDArray[np.uint8]) -> Iterator[tuple[int, int]]:
-    """Upper left photosites of squares of one colour within the cell."""
+    """Yields upper left photosites of squares of one colour within the cell."""
     rows, columns = cells.shape
     for y in range(rows - 1):
         for x in range(columns - 1):

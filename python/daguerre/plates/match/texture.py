@@ -18,20 +18,20 @@ from .blocks import cosines
 from .grain import FOLDED, SIDE
 
 Floats = NDArray[np.float32]
-#: Mean power of 3 x 3 frequencies over the 72 around them; noise of 1 block in 100 has more.
+#: Power of 3 x 3 frequencies over that of the 72 around them, which 1 noise block in 100 exceeds.
 _LINE = 6.5
-#: Power that is added to both, of the mean: zeros of JPEG are not what lines stand out of.
+#: Share of the mean power added to that around a line, so that zeros of JPEG do not make lines.
 _FLOOR = np.float32(0.02)
-#: Deviation of the variances of a block's 16 cells, over their mean; noise of a sensor has 0.2 to
-#: 0.4. JPEG leaves some cells more than others: it grows by the share of cosines that it made zero.
+#: Largest relative deviation of the variances of a block's 16 cells; sensor noise has 0.2 to 0.4.
+#: JPEG makes cells unequal, so the limit grows with the share of zero cosines above _ZEROS.
 _UNEVEN, _UNEVEN_ZEROS, _ZEROS = 0.45, 2.2, 0.55
-#: Cosines that count as zero, standard deviations of rounding.
+#: Cosines below this many standard deviations of rounding count as zero.
 _ZERO = 2.4
 _CELL, _SMOOTH = 8, 5
-#: Rounding's variances below which a block holds too few numbers to be judged.
+#: Blocks with less variance, over that of rounding, have too few distinct values to be judged.
 _FEW = 4.0
 _AT_ONCE = 512
-#: Frequencies that are judged: not what is coarser, nor the mosaic's own pattern of two pixels.
+#: Frequencies to judge, without coarse structure and the mosaic's pattern of two pixels.
 _JUDGED = (
     (FOLDED[:, None] < SIDE // 2 - 1)
     & (FOLDED < SIDE // 2 - 1)
@@ -42,7 +42,7 @@ _JUDGED = (
 def roughness(
     photograph: Photograph, corner: NDArray[np.intp], rounding: float
 ) -> NDArray[np.float32]:
-    """How much texture blocks have.
+    """Measures the texture of blocks.
 
     Args:
         photograph: A developed picture.
@@ -50,8 +50,8 @@ def roughness(
         rounding: Variance of rounding to whole numbers.
 
     Returns:
-        float32, shape (N,): about 0.6 for noise, which 1 block in 50 brings above 1; 0 for what
-        has hardly a number beside the mean.
+        float32, shape (N,): about 0.6 for noise (1 block in 50 exceeds 1); 0 for blocks with
+        hardly any value but the mean.
     """
     found = [np.zeros(0, np.float32)]
     for light in _greys(photograph, corner):
@@ -64,7 +64,7 @@ def roughness(
 
 
 def _greys(photograph: Photograph, corner: NDArray[np.intp]) -> Iterator[Floats]:
-    """Means of the channels of blocks without their planes, some hundred at once, (n, 32, 32)."""
+    """Yields means of channels without their planes, some hundred blocks at once, (n, 32, 32)."""
     pixels = photograph.pixels
     assert pixels is not None
     for at in range(0, len(corner), _AT_ONCE):
@@ -82,7 +82,7 @@ def _without_planes(light: Floats) -> Floats:
 
 
 def _line(light: Floats) -> Floats:
-    """How far the strongest line of a block's spectrum stands out, shape (n,)."""
+    """Power of the strongest line of a block's spectrum over its surroundings, shape (n,)."""
     window = np.hanning(SIDE + 1)[:SIDE].astype(np.float32)
     waves = np.fft.fft2(light * window[:, None] * window)
     power = np.asarray(np.square(waves.real) + np.square(waves.imag), np.float32)
@@ -94,14 +94,14 @@ def _line(light: Floats) -> Floats:
 
 
 def _zeros(light: Floats, rounding: float) -> Floats:
-    """Share of the cosines of 8 x 8 px, as JPEG has them, that are about zero, shape (n,)."""
+    """Share of JPEG's cosines of 8 x 8 px that are about zero, shape (n,)."""
     cells = SIDE // _CELL
     basis = np.kron(np.eye(cells, dtype=np.float32), cosines(_CELL))
     return np.asarray((np.abs(basis @ light @ basis.T) < _ZERO * rounding).mean(axis=(1, 2)))
 
 
 def _unevenness(light: Floats) -> Floats:
-    """Relative deviation of the variances of cells, of what is finer than 5 px, shape (n,)."""
+    """Relative deviation of the cells' variances of detail finer than 5 px, shape (n,)."""
     fine = light - _averaged(light, _row(_SMOOTH))
     cells = SIDE // _CELL
     squares = np.square(fine).reshape(-1, cells, _CELL, cells, _CELL).mean(axis=(2, 4))
@@ -111,19 +111,19 @@ def _unevenness(light: Floats) -> Floats:
 
 
 def _averaged(blocks: Floats, mean: Floats) -> Floats:
-    """Means over squares: along rows and columns by the same matrix."""
+    """Averages along rows and columns by the same matrix."""
     return np.asarray(mean @ blocks @ mean.T, np.float32)
 
 
 def _ring(width: int) -> Floats:
-    """Matrix of means over so many neighbours, of which the first is beside the last."""
+    """Matrix of means over ``width`` neighbours; the ends wrap around."""
     apart = np.abs(np.subtract.outer(np.arange(SIDE), np.arange(SIDE)))
     near = np.minimum(apart, SIDE - apart) <= width // 2
     return np.asarray(near / np.float32(width), np.float32)
 
 
 def _row(width: int) -> Floats:
-    """Matrix of means over so many neighbours; the ends go on as they are."""
+    """Matrix of means over ``width`` neighbours; the end values continue."""
     at = np.clip(np.add.outer(np.arange(SIDE), np.arange(width) - width // 2), 0, SIDE - 1)
     found = np.zeros((SIDE, SIDE), np.float32)
     np.add.at(found, (np.arange(SIDE)[:, None], at), np.float32(1 / width))

@@ -21,24 +21,24 @@ FloatArray = NDArray[np.float64]
 #: Least number of flat blocks for a fit.
 LEAST = 64
 _BINS, _FINE_BINS, _FIRST_SHARE, _ROUNDS = 24, 96, 0.1, 6
-#: Width of a bin, standard deviations of a photosite; the mean of a block has an eighth of one.
+#: Width of a bin, standard deviations of a photosite; a block's mean has 1/8 of that deviation.
 _BIN_WIDTH = 2.0
-#: Mean squares of flat blocks over their variance: 1 in 100 of the low ones is larger than that,
-#: and 1 in 10000 of the high ones (chi-square of 9 and 16).
+#: Largest mean squares of flat blocks over their variance: 1 in 100 of the low ones is larger, and
+#: 1 in 10000 of the high ones (chi-square of 9 and 16).
 _FLAT, _OUTLIER = 2.41, 2.90
-#: Slopes of blocks that are gradients, over the variance; edges have larger ones.
+#: Largest slope of gradients, over the variance; edges have larger ones.
 _STEEP = 1000.0
-#: Standard deviations between a block's mean and the ends of the numbers.
+#: Least distance of a block's mean from the ends of the range, standard deviations.
 _CLEAR = 5.0
 ROUNDING = 1 / 12  # DN^2
-#: Relative difference of the gains that channels tell, at most.
+#: Largest relative difference of the channels' gains.
 _ONE_GAIN = 0.5
-#: Share of what blocks have too much that the gain is off by, and how much is chance: a part, and
-#: a number over the root of the number of blocks, of the spread and of the mean of low squares.
+#: Error of the gain over the excess of the blocks' mean squares; excess due to chance: a share plus
+#: a number over sqrt(blocks), one for their spread and one for the mean of low ones.
 _OFF, _CHANCE, _BY_COUNT = 0.4, 0.05, (5.0, 1.5)
-#: Such an error from which on the gain is not told.
+#: Error of the gain by texture above which there is no result.
 _TOO_MIXED = 0.3
-#: No sensor has photosites that differ so much; texture looks like them.
+#: Largest PRNU of a sensor; texture looks like more.
 MOST_PRNU = 0.05
 
 
@@ -161,7 +161,7 @@ def _flat(blocks: Blocks, span: tuple[float, float], where: str) -> tuple[Blocks
 
 
 def _first_guess(blocks: Blocks) -> tuple[FloatArray, FloatArray]:
-    """Levels, and the variance in the blocks of each bin of levels that have least structure."""
+    """Levels, and the variance of the blocks with least structure in each bin of levels."""
     order = np.argsort(blocks.level)
     found = []
     for part in np.array_split(order, min(_BINS, len(order) // 8)):
@@ -173,10 +173,9 @@ def _first_guess(blocks: Blocks) -> tuple[FloatArray, FloatArray]:
 
 
 def _fit(level: FloatArray, variance: FloatArray, last: _Line | None) -> _Line:
-    """Least squares over bins of levels, weighted by the variance of a variance.
+    """Fits bins of levels by least squares, weighted by the variance of a variance.
 
-    No coefficient is below 0: one after the other those are left out, of s^2 first, which is the
-    least sure.
+    Negative coefficients of s^2, then of 1, are set to 0.
     """
     number = np.arange(len(level)) if last is None else _bins(level, last)
     count = np.bincount(number)
@@ -195,17 +194,17 @@ def _fit(level: FloatArray, variance: FloatArray, last: _Line | None) -> _Line:
         kept.remove(max(low))
     values, errors = np.zeros(3), np.zeros(3)
     values[kept] = found
-    known = sorted({0, 1, *kept})  # that the first is held at 0 makes it no surer
+    known = sorted({0, 1, *kept})  # setting the first to 0 does not reduce its error
     sure = _inverse(columns[:, known])
     errors[known] = np.sqrt(np.maximum(np.diag(sure), 0) * 2 / HIGH_COUNT)
     return _Line((values[0], values[1], values[2]), (errors[0], errors[1], errors[2]))
 
 
 def _bins(level: FloatArray, line: _Line) -> NDArray[np.intp]:
-    """Number of each block's bin: wider than the noise of its mean, from the darkest block on.
+    """Index of each block's bin, from the darkest on; bins are wider than the noise of a mean.
 
-    A weight by a block's own level would prefer, of equal blocks in the dark, those whose mean
-    noise has lowered, and lift the line there.
+    Weights by a block's own level would prefer dark blocks whose mean noise has lowered, and so
+    raise the line there.
     """
     a, g, _ = line.values
     if not g > 0:
@@ -217,13 +216,13 @@ def _bins(level: FloatArray, line: _Line) -> NDArray[np.intp]:
 
 
 def _smooth(level: FloatArray, variance: FloatArray) -> FloatArray:
-    """The trend of variances, for the weights of a first fit."""
+    """Linear trend of variances, for the weights of the first fit."""
     trend = np.polyval(np.polyfit(level, variance, 1), level)
     return np.asarray(np.maximum(trend, 0.1 * variance.mean()))
 
 
 def _inverse(columns: FloatArray) -> FloatArray:
-    """Inverse of the normal matrix, whose columns are of very different size."""
+    """Inverse of the normal matrix, whose columns differ widely in size."""
     scale = np.linalg.norm(columns, axis=0)
     scale[scale == 0] = 1
     unit = columns / scale
@@ -231,10 +230,10 @@ def _inverse(columns: FloatArray) -> FloatArray:
 
 
 def _texture_among(flat: Blocks, line: _Line) -> float:
-    """Relative error of the gain by texture that was taken for flat; 0 where there is none.
+    """Relative error of the gain by texture among the flat blocks; 0: there is none.
 
-    Mean squares of noise spread about their mean by a known amount, and low frequencies have as
-    much as high ones; texture makes both larger.
+    The spread of the mean squares of noise is known, and low frequencies have as much power as
+    high ones; texture makes both larger.
     """
     expected = line(flat.level)
     spread = float(np.square(flat.high / expected - 1).mean() * HIGH_COUNT / 2)
@@ -245,7 +244,7 @@ def _texture_among(flat: Blocks, line: _Line) -> float:
 
 
 def _gain_of(flat: Blocks, channel: int, line: _Line) -> float:
-    """Gain of one channel, with the other terms of all."""
+    """Gain of one channel, with the other terms from the common fit."""
     chosen = flat.only(flat.channel == channel)
     if len(chosen.level) < LEAST:
         return float("nan")

@@ -53,7 +53,7 @@ def mirror_balls(asked: Asked) -> Source:
 
 
 def _one_unit(views: list[View]) -> bool:
-    """Whether light is in cd/m2; all sides must agree."""
+    """Checks that all sides have one unit; returns whether it is cd/m2."""
     absolute = all(view.exposures.absolute for view in views)
     if not absolute and len(views) > 1 and any(view.exposures.absolute for view in views):
         raise InputError(
@@ -71,7 +71,7 @@ def _share(made: Unwrapped) -> float:
 def _ball(
     asked: Asked, view: View, circle: Circle | None, yaw: float
 ) -> tuple[Ball, dict[str, Any]]:
-    """The ball of a view, found or as given, and facts of it."""
+    """Returns the ball of a view, found or as given, and facts for JSON."""
     outline = _outline(view, circle)
     focal = _focal_px(asked, view)
     ball = seen_ball(outline.circle, outline.points, view.shots[0].size, focal)
@@ -116,7 +116,7 @@ def _focal_px(asked: Asked, view: View) -> float:
 
 
 def shading(asked: Asked, paths: list[Path], circle: Circle | None, yaw: float) -> Any:
-    """Shading of a matt ball, its view, and facts of the ball."""
+    """Returns the shading of a matt ball, its view, and facts for JSON."""
     view = read_view(paths, asked.ev if asked.ball == "grey" else None, asked.reading)
     ball, facts = _ball(asked, view, circle, yaw)
     turn = world_from_camera(yaw + asked.rotate, asked.pitch)

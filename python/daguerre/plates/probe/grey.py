@@ -83,7 +83,7 @@ def shading_of(
 
 
 def _blocks(light: NDArray[np.float32], at: NDArray[np.int64], step: int) -> FloatArray:
-    """Means of step x step px about places, so that all pixels help against noise."""
+    """Means of step x step px around places, so that all pixels reduce noise."""
     if step < 3:
         return light[at[:, 1], at[:, 0]].astype(np.float64)
     height, width = light.shape[:2]
@@ -140,14 +140,14 @@ def _sun_direction(soft: FloatArray, normals: FloatArray, luma: FloatArray) -> F
 def _error_with(
     direction: FloatArray, soft: FloatArray, normals: FloatArray, luma: FloatArray
 ) -> float:
-    """Mean square that a sun and soft light of at least 0 leave."""
+    """Mean square residual of a sun and non-negative soft light."""
     columns = np.hstack([soft, np.maximum(normals @ direction, 0)[:, None]])
     found = _positive(columns, luma[:, None])
     return float(((columns @ found - luma[:, None]) ** 2).mean())
 
 
 def _gains(tried: FloatArray, normals: FloatArray, q: FloatArray, left: FloatArray) -> FloatArray:
-    """Sum of squares that a sun in each direction explains; none where it would be negative."""
+    """Sum of squares explained by a sun in each direction; 0 where it would be negative."""
     found = np.zeros(len(tried))
     for start in range(0, len(tried), 200):
         part = slice(start, start + 200)
@@ -166,7 +166,7 @@ def _amount(direction: FloatArray, normals: FloatArray, q: FloatArray, left: Flo
 
 
 def _about(direction: FloatArray, spread: float) -> FloatArray:
-    """Directions within an angle (rad) of one, shape (N, 3)."""
+    """Directions within an angle (rad) of a direction, shape (N, 3)."""
     side = np.cross(direction, np.eye(3)[int(np.abs(direction).argmin())])
     side /= np.linalg.norm(side)
     other = np.cross(direction, side)
@@ -176,9 +176,9 @@ def _about(direction: FloatArray, spread: float) -> FloatArray:
 
 
 def _positive(columns: FloatArray, target: FloatArray) -> FloatArray:
-    """Least squares with soft light of at least 0 in 500 directions.
+    """Least squares with soft light that is non-negative in 500 directions.
 
-    Where it is negative, an equation asks for 0, and more firmly each round.
+    Where it is negative, an equation requires 0, with more weight each round.
     """
     everywhere = basis(scattered(500))
     extra = columns.shape[1] - everywhere.shape[1]

@@ -1,7 +1,7 @@
-"""Spherical harmonics of order 2 and what they do on a matt surface.
+"""Spherical harmonics of order 2 and their irradiance of a matt surface.
 
 The irradiance of a surface with normal n by light of coefficients L_lm is the sum of
-A_l L_lm Y_lm(n) with A = pi, 2 pi / 3, pi / 4: higher orders hardly show on a matt ball. Source:
+A_l L_lm Y_lm(n) with A = pi, 2 pi / 3, pi / 4: higher orders hardly matter on a matt ball. Source:
 Ramamoorthi and Hanrahan, An Efficient Representation for Irradiance Environment Maps, SIGGRAPH
 2001, equations 3 and 8.
 """
@@ -32,7 +32,7 @@ def basis(toward: FloatArray) -> FloatArray:
 
 
 def scattered(count: int) -> FloatArray:
-    """Directions evenly over the sphere: a Fibonacci lattice, shape (N, 3)."""
+    """Evenly distributed directions on the sphere (Fibonacci lattice), shape (N, 3)."""
     i = np.arange(count) + 0.5
     z, turn = 1 - 2 * i / count, math.pi * (1 + math.sqrt(5)) * i
     flat = np.sqrt(1 - z * z)

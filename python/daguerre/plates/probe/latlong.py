@@ -17,20 +17,20 @@ FloatArray = NDArray[np.float64]
 
 
 def directions(width: int, height: int, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Unit directions of places in px, shape (..., 3)."""
+    """Unit directions of points in px, shape (..., 3)."""
     azimuth, polar = 2 * np.pi * (x / width - 0.5), np.pi * y / height
     flat = np.sin(polar)
     return np.stack([flat * np.sin(azimuth), np.cos(polar), -flat * np.cos(azimuth)], axis=-1)
 
 
 def centres(width: int, height: int) -> FloatArray:
-    """Directions of all pixels' middles, shape (H, W, 3)."""
+    """Directions of all pixel centres, shape (H, W, 3)."""
     x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
     return directions(width, height, x, y)
 
 
 def place(direction: FloatArray, width: int, height: int) -> tuple[float, float]:
-    """The place (x, y) in px of a direction, shape (3,)."""
+    """Point (x, y), px, of a direction, shape (3,)."""
     x, y, z = direction / np.linalg.norm(direction)
     return width * (0.5 + math.atan2(x, -z) / math.tau), height * math.acos(y) / math.pi
 

@@ -88,6 +88,6 @@ def _variance(shot: Shot, curve: FloatArray) -> NDArray[np.float32]:
 
 
 def _say(top: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Factor on a photograph's weight near saturation."""
+    """Factor on a photograph's weight, which falls near saturation."""
     t = np.clip((CLIPPED - top) / (CLIPPED - _FADE), 0, 1)
     return np.asarray(t * t * (3 - 2 * t))

@@ -20,16 +20,16 @@ from .sampling import between
 
 #: Longer side of the picture in which edges vote, px.
 _SMALL = 320
-#: Radii that are tried, as shares of the shorter side.
+#: Range of tried radii, as shares of the shorter side.
 _LEAST, _MOST = 0.06, 0.52
 _ANGLES = 720
-#: Share of the rim that must be seen as an edge.
+#: Least share of the rim with an edge.
 _RIM = 0.4
 #: Least cosine between an edge's gradient and the radius.
 _ASLANT = 0.85
 #: Least step of tones over two pixels that is an edge.
 _STEP = 0.01
-#: Circles that are looked at closely.
+#: Number of circles to examine closely.
 _LOOKS = 12
 
 
@@ -70,14 +70,14 @@ def find_outline(light: NDArray[np.float32], where: str) -> Outline:
 
 
 def _tones(light: NDArray[np.float32]) -> FloatArray:
-    """Luminance with its highlights rolled off; a curve that bends much would shift soft edges."""
+    """Luminance with rolled-off highlights; a strongly bent curve would shift soft edges."""
     found = luminance(light)
     usual = float(np.quantile(found, 0.8)) or float(found.mean())
     return found / (found + usual)
 
 
 def _candidates(grey: FloatArray) -> list[Circle]:
-    """Circles with the most votes, px of the picture; those that differ."""
+    """Finds distinct circles with the most votes, px of the picture."""
     step = max(max(grey.shape) / _SMALL, 1.0)
     size = (max(round(grey.shape[1] / step), 8), max(round(grey.shape[0] / step), 8))
     small = _soft(_box(grey, *size))
@@ -101,7 +101,7 @@ def _candidates(grey: FloatArray) -> list[Circle]:
 
 
 def _box(grey: FloatArray, width: int, height: int) -> FloatArray:
-    """A smaller picture, of means."""
+    """Reduces a picture by means."""
     if grey.shape == (height, width):
         return grey
     rows = np.linspace(0, grey.shape[0], height + 1).astype(int)[:-1]
@@ -112,7 +112,7 @@ def _box(grey: FloatArray, width: int, height: int) -> FloatArray:
 
 
 def _soft(picture: FloatArray) -> FloatArray:
-    """Blurred by 1 px, so that gradients have the direction of an edge and not of its steps."""
+    """Blurs by 1 px, so that gradients have the direction of an edge and not of its steps."""
     for axis in (0, 1):
         for _ in range(2):
             edge = np.pad(picture, [(1, 1) if i == axis else (0, 0) for i in (0, 1)], mode="edge")
@@ -128,13 +128,13 @@ def _best(
     radius: float,
     shape: tuple[int, ...],
 ) -> tuple[float, tuple[float, float]]:
-    """Most votes for a middle at a radius, by length of the circle, and it (row, column)."""
+    """Most votes for a centre over the root of the radius, and that centre (row, column)."""
     votes = np.zeros(shape[0] * shape[1])
     for side in (radius, -radius):
         middle = np.rint(edges + side * toward).astype(int)
         inside = ((middle >= 0) & (middle < shape)).all(axis=1)
         at = middle[inside] @ (shape[1], 1)
-        # A circle whose rim is brighter than its surroundings here and darker there has both.
+        # Both signs: parts of a rim may be brighter, others darker than the surroundings.
         votes += np.bincount(at, weights[inside], minlength=votes.size)
     spread = votes.reshape(shape)
     near = [np.roll(spread, (a, b), (0, 1)) for a in (-1, 0, 1) for b in (-1, 0, 1)]
@@ -144,7 +144,7 @@ def _best(
 
 
 def _fitted(grey: FloatArray, circle: Circle) -> Outline | None:
-    """The circle through the strongest edges near another; None: there are too few."""
+    """Fits a circle to the strongest edges near another; None: there are too few."""
     outline = None
     for reach in (0.08, 0.03, 0.015):
         points = _edges_near(grey, circle, reach)
@@ -161,7 +161,7 @@ def _fitted(grey: FloatArray, circle: Circle) -> Outline | None:
 
 
 def _edges_near(grey: FloatArray, circle: Circle, reach: float) -> FloatArray:
-    """The strongest edge along each radius near a circle, px, shape (N, 2)."""
+    """Finds the strongest edge along each radius near a circle, px, shape (N, 2)."""
     x, y, radius = circle
     span = max(reach * radius, 3.0)
     steps = np.arange(-span, span + 1e-9, 0.5)
@@ -171,7 +171,7 @@ def _edges_near(grey: FloatArray, circle: Circle, reach: float) -> FloatArray:
     height, width = grey.shape
     inside = ((at_x > 0) & (at_x < width) & (at_y > 0) & (at_y < height)).all(axis=1)
     profile = between(grey, at_x[inside], at_y[inside])
-    # Over two pixels, so that the middle of a soft edge counts.
+    # Over two pixels, to find the middle of a soft edge.
     slope = np.abs(profile[:, 4:] - profile[:, :-4])
     best = slope.argmax(axis=1)
     inner = np.clip(best, 1, slope.shape[1] - 2)
@@ -186,7 +186,7 @@ def _edges_near(grey: FloatArray, circle: Circle, reach: float) -> FloatArray:
 
 
 def _across(grey: FloatArray, points: FloatArray, way: FloatArray) -> NDArray[np.bool_]:
-    """Whether edges at points stand across the radius there, not aslant."""
+    """Mask of points whose edge is perpendicular to the radius."""
     x, y = points.T
     dx = between(grey, x + 1, y) - between(grey, x - 1, y)
     dy = between(grey, x, y + 1) - between(grey, x, y - 1)

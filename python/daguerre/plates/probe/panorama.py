@@ -44,7 +44,7 @@ def resized(image: NDArray[np.float32], width: int, height: int) -> NDArray[np.f
 
 
 def _means(image: NDArray[Any], before: FloatArray, after: FloatArray, axis: int) -> FloatArray:
-    """Means between edges ``after`` of what is even between edges ``before``."""
+    """Means between edges ``after`` of values that are constant between edges ``before``."""
     values = np.moveaxis(image.astype(np.float64), axis, 0)
     steps = np.diff(before).reshape(-1, *[1] * (values.ndim - 1))
     sums = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values * steps, axis=0)])

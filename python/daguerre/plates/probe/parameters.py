@@ -43,12 +43,12 @@ class ProbeKeywords(TypedDict, total=False):
 
 
 def _list(example: str) -> Callable[[str, str], tuple[float, ...]]:
-    """A reader of any count of numbers between commas."""
+    """Makes a parser of any number of values between commas."""
     return lambda flag, text: units.numbers(flag, text, text.count(",") + 1, example)
 
 
 def _fov(flag: str, text: str) -> float:
-    """An angle, degrees, or ``far``, which is 0."""
+    """Parses an angle, degrees, or ``far``, which is 0."""
     if text.strip().lower() == "far":
         return 0.0
     angle = units.angle_deg(flag, text)

@@ -57,9 +57,9 @@ def recover(pictures: list[NDArray[np.uint8]], stops: tuple[float, ...]) -> Floa
 
 
 def _channel(numbers: NDArray[np.uint8], offsets: FloatArray) -> FloatArray:
-    """Light of each number, shape (256,), of numbers (J, N)."""
+    """Recovers the light of each value, shape (256,), from values (J, N)."""
     base = np.log(np.maximum(srgb_curve()[:, 0], 0.25 / 12.92 / 255))
-    light = np.ones(numbers.shape)  # weights of each, lowered where a pixel moved
+    light = np.ones(numbers.shape)  # weights, lowered where a pixel moved
     found = base
     for _ in range(_ROUNDS):
         found = base + _solve(numbers, base, offsets, _hat()[numbers] * light)
@@ -71,13 +71,13 @@ def _channel(numbers: NDArray[np.uint8], offsets: FloatArray) -> FloatArray:
 
 
 def _hat() -> FloatArray:
-    """Trust in each number: none at its ends."""
+    """Weight of each value; 0 at both ends of the range."""
     z = np.arange(NODES)
     return np.where((z >= _LOW) & (z <= _HIGH), np.minimum(z, 255 - z) / 127.5, 0)
 
 
 def _agreeing(light: FloatArray, weights: FloatArray) -> FloatArray:
-    """Tukey's weights of how a pixel's light in one photograph agrees with that in all."""
+    """Tukey's weights by the agreement of a pixel's light in one photograph with that in all."""
     mean = (weights * light).sum(axis=0) / np.maximum(weights.sum(axis=0), 1e-9)
     off = np.abs(light - mean)
     several = (weights > 0).sum(axis=0) > 1
@@ -92,7 +92,7 @@ def _solve(
     """Curve less ``base``, shape (256,): weighted least squares with E eliminated."""
     weights = weights * ((weights > 0).sum(axis=0) > 1)
     total = np.maximum(weights.sum(axis=0), 1e-12)
-    known = offsets[:, None] - base[numbers]  # what is left for the curve to explain
+    known = offsets[:, None] - base[numbers]  # residual for the curve
     mean = (weights * known).sum(axis=0) / total
     normal = np.diag(np.bincount(numbers.ravel(), weights.ravel(), NODES)).astype(np.float64)
     right = np.bincount(numbers.ravel(), (weights * (known - mean)).ravel(), NODES)
@@ -103,5 +103,5 @@ def _solve(
     share = max(float(weights.sum()) / NODES, 1e-12)
     bend = np.diff(np.eye(NODES), 2, axis=0)
     normal += _SMOOTH * share * NODES**2 / 100 * bend.T @ bend
-    normal += share / NODES  # g is known but for a constant
+    normal += share / NODES  # g has an arbitrary constant
     return np.asarray(np.linalg.solve(normal + 1e-9 * share * np.eye(NODES), right))

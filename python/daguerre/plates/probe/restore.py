@@ -102,7 +102,7 @@ def _irradiance(light: NDArray[np.float32], normals: FloatArray) -> FloatArray:
 
 
 def clipped_facts(light: NDArray[np.float32], clipped: NDArray[np.bool_]) -> dict[str, float]:
-    """Share of the sphere that is clipped, its position, and the least light of it."""
+    """Share of the sphere that is clipped, its position, and the lower limit of its light."""
     height, width = light.shape[:2]
     angles = solid_angles(width, height)[:, None] * clipped
     total = float((luminance(light) * solid_angles(width, height)[:, None]).sum())

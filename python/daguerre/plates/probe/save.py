@@ -95,7 +95,7 @@ def _turn(sun: Sun) -> tuple[float, float, float, float]:
     """
     a, b = np.array([0.0, 0.0, -1.0]), -np.array(sun.direction)
     real = 1 + float(a @ b)
-    if real < 1e-9:  # half a turn, about any axis across
+    if real < 1e-9:  # half a turn about any perpendicular axis
         return 0.0, 1.0, 0.0, 0.0
     x, y, z = np.cross(a, b)
     length = math.sqrt(x * x + y * y + z * z + real * real)

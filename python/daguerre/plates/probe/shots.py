@@ -131,7 +131,7 @@ def _raw(file: Path, white: White, notes: Notes) -> Shot:
 def _plateau(light: NDArray[np.float32], one_of: int) -> NDArray[np.float64]:
     """Saturation of linear light: its highest value, if several pixels share it.
 
-    In a single picture these pixels must be few and bright, as else they may be an even sky.
+    In a single picture these pixels must be few and bright; otherwise they may be an even sky.
     """
     top = light.max(axis=2)
     highest = float(top.max())

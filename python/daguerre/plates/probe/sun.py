@@ -131,7 +131,7 @@ def _sun(
 
 
 def _brightest(found: FloatArray, angles: FloatArray, clipped: NDArray[np.bool_]) -> int:
-    """Index of the brightest pixel: in the clipped area with the most light, if there is one."""
+    """Index of the brightest pixel, in the clipped area with the most light if there is one."""
     left, best, index = clipped.copy(), 0.0, int(found.argmax())
     for _ in range(64):
         if not left.any():
@@ -146,7 +146,7 @@ def _brightest(found: FloatArray, angles: FloatArray, clipped: NDArray[np.bool_]
 
 
 def _connected(mask: NDArray[np.bool_], start: Any) -> NDArray[np.bool_]:
-    """Pixels of a mask that are connected with a given one; left and right edges are neighbours."""
+    """Pixels of a mask connected with a given one; left and right edges are neighbours."""
     part = np.zeros_like(mask)
     part[start] = mask[start]
     count = 0
@@ -161,12 +161,12 @@ def _connected(mask: NDArray[np.bool_], start: Any) -> NDArray[np.bool_]:
 
 
 def _half(found: FloatArray, peak: Any) -> NDArray[np.bool_]:
-    """Pixels that are connected with the peak and at least half as bright."""
+    """Pixels connected with the peak and at least half as bright."""
     return _connected(found >= 0.5 * found[peak], peak)
 
 
 def _diameter(solid_angle: float) -> float:
-    """Diameter of a cap of a solid angle, degrees."""
+    """Angular diameter of a cap with this solid angle, degrees."""
     return math.degrees(2 * math.acos(max(1 - solid_angle / math.tau, -1)))
 
 
@@ -176,7 +176,7 @@ def _mean_direction(toward: FloatArray, weights: FloatArray) -> FloatArray:
 
 
 def _ring(cosine: FloatArray, diameter: float) -> NDArray[np.bool_]:
-    """Surroundings of a source: between 3 and 7 degrees beside its edge."""
+    """Mask of a source's surroundings, 3 to 7 degrees beyond its edge."""
     inner, outer = (math.cos(math.radians(diameter / 2 + beside)) for beside in (3.0, 7.0))
     return np.asarray((cosine < inner) & (cosine > outer))
 
@@ -189,7 +189,7 @@ def _place(
     cosine: FloatArray,
     diameter: float,
 ) -> NDArray[np.bool_]:
-    """Pixels of the source: its core, and what glows about it, up to 3 degrees beside."""
+    """Pixels of the source: its core, and its glow up to 3 degrees beyond its edge."""
     least = max(2 * around, around + _EDGE * (float(found[peak]) - around))
     near = cosine > math.cos(math.radians(diameter / 2 + 3.0))
     return _connected((found > least) & near | core, peak)
@@ -210,7 +210,7 @@ def with_disc(rest: NDArray[np.float32], sun: Sun) -> NDArray[np.float32]:
 
 
 def _coverage(direction: FloatArray, width: int, height: int, radius: float) -> FloatArray:
-    """Share of each pixel that lies within an angle (rad) of a direction, from 8 x 8 places."""
+    """Share of each pixel that lies within an angle (rad) of a direction, by 8 x 8 samples."""
     from .latlong import directions
 
     fine = 8

@@ -20,7 +20,7 @@ from .sampling import between
 PHOTOGRAPHER = (8.0, 25.0)
 #: Angles from the camera between which the rim fades out, degrees.
 RIM = (110.0, 165.0)
-#: Least weight, of pixels that another photograph shows better.
+#: Least weight, for directions that another photograph shows better.
 LEAST = 1e-4
 _ROWS = 16
 
@@ -31,7 +31,7 @@ class SeenBall:
 
     Attributes:
         light: Linear light, shape (H, W, 3).
-        clipped: Where it is clipped, shape (H, W).
+        clipped: Mask of clipped pixels, shape (H, W).
         ball: The ball in the camera's frame.
         world_from_camera: Rotation, shape (3, 3).
     """
@@ -44,7 +44,7 @@ class SeenBall:
 
 @dataclass(frozen=True)
 class Unwrapped:
-    """An environment: light (H, W, 3), where it is clipped and where no ball shows it (H, W)."""
+    """Environment: light (H, W, 3), masks of clipped pixels and of those that no ball shows."""
 
     light: NDArray[np.float32]
     clipped: NDArray[np.bool_]
@@ -52,16 +52,16 @@ class Unwrapped:
 
 
 def usual_width(seen: list[SeenBall]) -> int:
-    """Columns for about one pixel of the environment per pixel at the middle of the ball."""
+    """Width for about one pixel of the environment per pixel at the middle of the ball."""
     circumference = math.pi * max(one.ball.circle[2] for one in seen)
     return int(min(max(2 ** math.ceil(math.log2(circumference)), 256), 8192))
 
 
 def unwrap(seen: list[SeenBall], width: int, height: int) -> Unwrapped:
-    """Mirror balls as an environment; means over each pixel.
+    """Unwraps mirror balls to an environment; pixels are means.
 
     Args:
-        seen: Photographs, of one exposure scale.
+        seen: Photographs with a common scale of light.
         width: Columns, px.
         height: Rows, px.
     """
@@ -78,7 +78,7 @@ def unwrap(seen: list[SeenBall], width: int, height: int) -> Unwrapped:
 def _rows(
     seen: list[SeenBall], size: tuple[int, int], rows: slice, fine: int
 ) -> tuple[NDArray[np.float32], NDArray[np.bool_], NDArray[np.bool_]]:
-    """Rows of the environment, each pixel from fine x fine places."""
+    """Makes rows of the environment, each pixel from fine x fine samples."""
     width, height = size
     count = rows.stop - rows.start
     x = (np.arange(width * fine) + 0.5) / fine
@@ -101,7 +101,7 @@ def _rows(
 
 
 def _weight(angle: FloatArray) -> FloatArray:
-    """Weight of what a ball shows at an angle from the camera, degrees."""
+    """Weight of directions by their angle from the camera, degrees."""
     return np.asarray(_rise(angle, *PHOTOGRAPHER) * (1 - _rise(angle, *RIM)) + LEAST)
 
 
