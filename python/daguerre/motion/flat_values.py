@@ -1,4 +1,4 @@
-"""Values of any kind as a row of numbers and a rest, to measure how far two values differ."""
+"""Flattens values to numbers and a rest, to measure how far two values differ."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ROUNDING = 1e-4
 
 @dataclass
 class Flat:
-    """A value taken apart.
+    """Flattened value.
 
     Attributes:
         value: The value itself.
@@ -44,7 +44,7 @@ def flat(value: Any) -> Flat:
 
 def _take(value: Any, numbers: list[float], into: Flat) -> None:
     if isinstance(value, np.ndarray) and value.size <= _MAX_ARRAY and value.dtype.kind in "iuf":
-        if value.shape == (4, 4):  # a place is no size
+        if value.shape == (4, 4):  # rotation and position have separate scales
             _add(value[:3, :3].ravel().tolist(), numbers, into)
             _add(value[:3, 3].tolist(), numbers, into)
         else:
@@ -75,9 +75,9 @@ def _add(values: list[float], numbers: list[float], into: Flat) -> None:
 
 
 def changes(values: list[Flat]) -> FloatArray:
-    """Largest change of each number over all values, taken over its group; one row.
+    """Largest change within the group of each number over all values, one row.
 
-    It is at least ``_ROUNDING`` of the number's size, so that rounding does not count as motion.
+    It is at least ``_ROUNDING`` of the group's largest number, so that rounding is not motion.
     """
     rows = np.array([v.numbers for v in values if len(v.numbers) == len(values[0].numbers)])
     if not rows.size:

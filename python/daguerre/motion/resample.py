@@ -1,4 +1,4 @@
-"""Resampling of values over time to keys over one interval, which the core interpolates.
+"""Resamples values over time to keys over one interval, which the core interpolates.
 
 Each function states its error bound: for numbers, transforms, vertices. A jump becomes two keys at
 the same time. A single key means that nothing changes in the interval.
@@ -22,7 +22,7 @@ from .values import Dynamic
 FloatArray = NDArray[np.float64]
 #: Error bound relative to the change of a number, or to the radius of a mesh.
 BOUND = 1e-4
-#: Error bound relative to the length of a path: 0.05 px of one across a picture of 2500 px.
+#: Error bound relative to the length of a path: 0.05 px for a path across 2500 px.
 PATH_BOUND = 2e-5
 #: Change relative to size, below which a value has only changed by rounding.
 _STILL = 1e-12
@@ -53,7 +53,7 @@ def resample(dynamic: Dynamic, open_s: float, close_s: float) -> tuple[list[floa
     keys = subdivision.keys(fits)
     times, values = [keys[0][0]], [keys[0][1].value]
     for (_, a), (time, b) in itertools.pairwise(keys):
-        if a.rest != b.rest and times[-1] != time:  # nothing lies between two names
+        if a.rest != b.rest and times[-1] != time:  # names change in steps
             times.append(time)
             values.append(a.value)
         times.append(time)
@@ -63,7 +63,7 @@ def resample(dynamic: Dynamic, open_s: float, close_s: float) -> tuple[list[floa
 
 def _near(value: Flat, a: Flat, b: Flat, s: float, limits: FloatArray) -> bool:
     if not value.rest == a.rest == b.rest or len(limits) != len(value.numbers):
-        return False  # a part came, or went
+        return False  # a part has been added or removed
     gap = np.abs(value.numbers - ((1 - s) * a.numbers + s * b.numbers))
     return bool((gap <= limits).all())
 
@@ -105,7 +105,7 @@ def resample_transform(
     def fits(checks: list[Check[FloatArray]]) -> list[bool]:
         if not checks:
             return []
-        # A row of pairs of keys; what lies between one pair and the next is not asked for.
+        # Pairs of keys in one row; times between pairs are not evaluated.
         pairs = np.array([key for a, b, _, _ in checks for key in (a, b)])
         row = _core.Motion.keys(np.arange(float(len(pairs))), pairs)
         between = row.many(2.0 * np.arange(len(checks)) + [s for _, _, s, _ in checks])

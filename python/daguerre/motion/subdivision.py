@@ -1,4 +1,4 @@
-"""Sampling of a value over an interval: cut at breaks, halved until interpolation fits."""
+"""Samples a value over an interval: cuts at breaks, halves until interpolation fits."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ import numpy as np
 from .values import Dynamic
 
 T = TypeVar("T")
-#: Error of an interpolation: of values a and b, s (0 .. 1), and the true value at s between them.
+#: Check of an interpolation: values a and b, s (0 .. 1), and the true value at s between them.
 Check = tuple[T, T, float, T]
-#: Whether values are near enough.
+#: Function that returns which checks are within tolerance.
 Fits = Callable[[list[Check[T]]], Sequence[bool]]
 
 #: Maximum number of keys of one value, and of halvings of a piece between two breaks.
@@ -23,19 +23,19 @@ MAX_BREAKS = MAX_KEYS // 4
 _MAX_HALVINGS = 10
 _MAX_SAMPLES = 64
 QUARTERS = (0.25, 0.5, 0.75)
-#: Places of the first samples: uneven, so that periodic motion does not look constant.
+#: Positions of the first samples: uneven, so that periodic motion does not look constant.
 FIRST = (0.137, 0.25, 0.418, 0.5, 0.75, 0.873)
 
 
 def samples(dynamic: Dynamic, open_s: float, close_s: float) -> list[tuple[float, Any]]:
-    """Some times of an interval, ends and breaks among them, and the values there."""
+    """Samples an interval at its ends, breaks and times between; returns times and values."""
     between = (open_s + s * (close_s - open_s) for s in FIRST)
     some = some_breaks(dynamic, open_s, close_s, _MAX_SAMPLES)
     return [(t, dynamic.at(t)) for t in sorted({open_s, close_s, *some, *between})]
 
 
 def some_breaks(dynamic: Dynamic, open_s: float, close_s: float, most: int) -> list[float]:
-    """Breaks inside of an interval; if there are more than ``most``, every second, third, ..."""
+    """Breaks inside an interval; if there are more than ``most``, every second, third, ..."""
     if most == 0:
         return []
     found = np.unique(np.asarray(dynamic.breaks(open_s, close_s), np.float64))
@@ -67,7 +67,7 @@ class Subdivision(Generic[T]):
         self._cuts = [open_s, *some_breaks(dynamic, open_s, close_s, most_breaks)]
         if close_s > open_s:
             self._cuts.append(close_s)
-        # The last moment before a break, where the value may jump; the end is none.
+        # Last moment before each break inside, where the value may jump.
         self._before = {t: math.nextafter(t, -math.inf) for t in self._cuts[1:-1]}
         self._dynamic, self._taken = dynamic, taken
         self._known: dict[float, T] = {}
@@ -80,7 +80,7 @@ class Subdivision(Generic[T]):
         return [self._known[t] for t in times]
 
     def keys(self, fits: Fits[T]) -> list[tuple[float, T]]:
-        """Times in rising order, two equal ones where the value jumps, and the values at them."""
+        """Returns keys in rising order of time; a jump has two keys at the same time."""
         inner = list(self._before)
         held = fits([(self._left_of(t), self._left_of(t), 0.0, self._known[t]) for t in inner])
         jumps = {t for t, fit in zip(inner, held, strict=True) if not fit}
@@ -92,7 +92,7 @@ class Subdivision(Generic[T]):
         return keys
 
     def _halved(self, fits: Fits[T]) -> list[float]:
-        """Times between the cuts at which there must be keys."""
+        """Times between the cuts at which keys are needed."""
         active, found = list(pairwise(self._cuts)), []
         checks: Sequence[float] = FIRST
         for _ in range(min(_MAX_HALVINGS, int(math.log2(MAX_KEYS / len(self._cuts))))):
@@ -105,7 +105,7 @@ class Subdivision(Generic[T]):
     def _failing(
         self, spans: list[tuple[float, float]], checks: Sequence[float], fits: Fits[T]
     ) -> list[tuple[float, float]]:
-        """Spans within which interpolation between the ends does not fit."""
+        """Spans in which interpolation between the ends does not fit."""
         inside = [(a, b, s, a + s * (b - a)) for a, b in spans for s in checks]
         self._look([time for *_, time in inside])
         listed = [(self._known[a], self._left_of(b), s, self._known[t]) for a, b, s, t in inside]

@@ -323,7 +323,7 @@ def _value(value: Any, where: str, interpolation: str | None) -> Any:
         return bool(value) if isinstance(value, np.bool_) else value
     if isinstance(value, int | float):
         finite = number(value, where, error=InputError)
-        return value if interpolation == "step" else finite  # whole numbers stay whole
+        return value if interpolation == "step" else finite  # integers stay integers
     numbers = to_numbers(value, where, "value", "numbers, a name or a flag")
     if numbers.dtype.kind != "f":
         numbers = numbers.astype(np.float64)
