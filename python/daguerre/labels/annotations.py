@@ -28,7 +28,7 @@ from .categories import Categories, Category, Thing
 
 Box = tuple[float, float, float, float]
 NO_GROUP = 0xFFFFFFFF
-#: The camera's frame as OpenCV has it, x right, y down, z ahead, from Daguerre's.
+#: From Daguerre's camera frame to OpenCV's (x right, y down, z ahead).
 FLIP = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
@@ -186,14 +186,14 @@ class _Seen:
         )
 
     def _ends(self, i: int, whole: int) -> NDArray[np.float64]:
-        """Low and high corner of the whole object, px, in coordinates of the whole picture."""
+        """Lower and upper limits of the whole object, px, in the whole picture."""
         outline: NDArray[np.float64] = self.outlines[i].reshape(2, 2) - self.corner
         if not whole:
             return outline
         pixels = self.silhouettes[i].reshape(2, 2) - self.corner
         if not self.open[i] and np.isfinite(outline).all():
             return outline
-        # Edges that are all out of view do not bound a face that fills the picture.
+        # If all edges are out of view, they do not bound a face that fills the picture.
         low = np.fmin(outline[0], pixels[0])
         return np.stack([low, np.fmax(outline[1], pixels[1])])
 
@@ -222,7 +222,7 @@ def _beside(ends: NDArray[np.float64], shown: NDArray[np.float64]) -> float:
 
 
 def _intrinsics(truth: GroundTruth, moment: Moment) -> dict[str, Any]:
-    """Intrinsics; empty for cameras without: real lenses, tilted lenses, moving shifts."""
+    """Intrinsics; empty for real lenses, tilted lenses and moving shifts."""
     camera, setup = truth.camera.frozen_at(moment.scene.time), moment.setup
     width, height = truth.resolution
     (x0, y0), model = truth.crop[:2], setup.lens.model
@@ -230,7 +230,7 @@ def _intrinsics(truth: GroundTruth, moment: Moment) -> dict[str, Any]:
         made = camera.projection
         scale = width / made.size[0]
         focal = [scale * f for f in made.focal]
-        (x, y), rows = made.center, made.size[1]  # middles coincide: a shape's rows may be rounded
+        (x, y), rows = made.center, made.size[1]  # equal centres: a shape's rows may be rounded
         center = [scale * (x + 0.5) - 0.5, scale * (y + 0.5 - rows / 2) + height / 2 - 0.5]
         named: dict[str, Any] = {"model": made.model, "parameters": list(made.parameters)}
     elif model in IDEAL and not any(camera.tilt):

@@ -78,7 +78,7 @@ class Categories:
         path = Path(path)
         try:
             if not path.is_file():
-                raise InputError(f"{path}: categories: wanted a JSON file, there is none")
+                raise InputError(f"{path}: categories: wanted a JSON file, got no such file")
             if path.stat().st_size > _MAX_BYTES:
                 raise InputError(f"{path}: categories: wanted at most {_MAX_BYTES} bytes, got more")
             data = path.read_bytes()
@@ -110,7 +110,7 @@ class Categories:
 
     def _ruled(self, scene: Scene, rules: Sequence[Rule]) -> Iterator[Thing]:
         taken: set[int] = set()
-        for name, instances in scene.nodes.items():  # parents come first
+        for name, instances in scene.nodes.items():  # parents before children
             rule = next((r for r in rules if fnmatchcase(name, r.pattern)), None)
             left = tuple(i for i in instances if i not in taken) if rule else ()
             taken.update(left)
@@ -136,7 +136,7 @@ def base_name(name: str) -> str:
 
 
 def _nodes(scene: Scene) -> dict[str, list[int]]:
-    """Instances of each node, by its name; instances without a node stand alone."""
+    """Instances of each node by name; each instance without a node is its own object."""
     nodes: dict[str, list[int]] = {}
     for i, instance in enumerate(scene.instances):
         nodes.setdefault(instance.name or f"instance {i}", []).append(i)
@@ -185,7 +185,7 @@ def _category(item: Item) -> Category | None:
 
 
 def _numbered(root: Item, known: dict[str, Category]) -> dict[str, Category]:
-    """Gives categories without an id the free ids from 1 on, in the order of the file."""
+    """Assigns free ids from 1 on to categories without one, in the order of the file."""
     taken: dict[int, str] = {}
     for category in known.values():
         if category.id and taken.setdefault(category.id, category.name) != category.name:

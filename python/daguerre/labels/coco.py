@@ -140,7 +140,7 @@ def _box3(box: Box3) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Converts numbers to JSON, rounded to nine digits; texts stay."""
+    """Converts numbers to JSON, rounded to nine digits; text stays unchanged."""
     if isinstance(value, str):
         return value
     if isinstance(value, np.ndarray | list | tuple):

@@ -1,8 +1,8 @@
 """Raymaps: the ray of each pixel, for programs without lens models.
 
 A ray is the chief ray of the pixel's centre, as for ground truth (docs/ground-truth.md): it runs
-through the middle of what the pixel sees. Its time is the pixel's own: with a rolling shutter each
-line has another.
+through the middle of what the pixel sees. Its time is that of the pixel; a rolling shutter gives
+each line its own.
 """
 
 from __future__ import annotations
@@ -140,7 +140,7 @@ def rays_of(
     opens, _ = shutter.interval(camera, scene.time, size)
     begin = opens + GT_TIMES[gt_time] * shutter.shutter_time(camera)
     duration = shutter.core_shutter(now, size).duration_s
-    # An exposure of length 0 is at the scene's time.
+    # An exposure of length 0 takes place at the scene's time.
     at = scene.at(begin + duration / 2)
     setup = set_up(at, now, size, core_scene, overscan)
     settings = _core.RenderSettings()
