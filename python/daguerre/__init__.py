@@ -2,23 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from importlib import import_module
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import compiled, forks  # noqa: F401
-from .camera.camera import Camera
-from .camera.lens_scatter import LensScatter
-from .camera.projection import Projection
-from .camera.rolling_shutter import RollingShutter
 from .compiled import __version__
-from .doors import guarded
 from .errors import DaguerreError, InputError, MismatchError, OutputError, UsageError
-from .motion.values import Keys, Spin, keys, spin
-from .scene.lights import DirectionalLight, PointLight, SphereLight, SpotLight
-from .scene.materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
-from .scene.scene import Scene
 
 if TYPE_CHECKING:
     from . import (
@@ -35,13 +24,20 @@ if TYPE_CHECKING:
         stocks,
     )
     from .analysis.calibrate import calibrate, calibrate_all
+    from .camera.camera import Camera
+    from .camera.lens_scatter import LensScatter
+    from .camera.projection import Projection
+    from .camera.rolling_shutter import RollingShutter
     from .exposure import metering
     from .frame.frame import Frame
     from .frame.raw import Raw
+    from .io.exr.read import load_frame
+    from .io.load import load
     from .labels.annotations import annotate
     from .labels.categories import Categories
     from .maps.ray_map import RayMap, raymap
     from .maps.st_maps import StMaps, stmaps
+    from .motion.values import Keys, Spin, keys, spin
     from .plates.composite.composite import composite
     from .plates.match.match import match_plate
     from .plates.match.plate_camera import PlateCamera
@@ -53,6 +49,9 @@ if TYPE_CHECKING:
     from .rendering.rig import render_rig, stereo_pair
     from .rendering.session import Session
     from .rendering.settings import RenderSettings
+    from .scene.lights import DirectionalLight, PointLight, SphereLight, SpotLight
+    from .scene.materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
+    from .scene.scene import Scene
 
 __all__ = [
     "Camera",
@@ -121,11 +120,32 @@ __all__ = [
 
 # Imported on first use, so that `import daguerre` and the command line start quickly.
 _LAZY = {
+    "Camera": "camera.camera",
+    "LensScatter": "camera.lens_scatter",
+    "Projection": "camera.projection",
+    "RollingShutter": "camera.rolling_shutter",
+    "Keys": "motion.values",
+    "Spin": "motion.values",
+    "keys": "motion.values",
+    "spin": "motion.values",
+    "DirectionalLight": "scene.lights",
+    "PointLight": "scene.lights",
+    "SphereLight": "scene.lights",
+    "SpotLight": "scene.lights",
+    "Conductor": "scene.materials",
+    "Dielectric": "scene.materials",
+    "Diffuse": "scene.materials",
+    "Gltf": "scene.materials",
+    "Material": "scene.materials",
+    "TextureSlot": "scene.materials",
+    "Scene": "scene.scene",
     "Categories": "labels.categories",
     "annotate": "labels.annotations",
     "calibrate": "analysis.calibrate",
     "calibrate_all": "analysis.calibrate",
     "Diffraction": "rendering.diffraction",
+    "load": "io.load",
+    "load_frame": "io.exr.read",
     "Frame": "frame.frame",
     "Raw": "frame.raw",
     "RayMap": "maps.ray_map",
@@ -166,42 +186,5 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-@guarded
-def load(
-    path: str | Path,
-    *,
-    time: float = 0.0,
-    variant: str | None = None,
-    allow_dirs: Sequence[str | Path] = (),
-    **options: Any,
-) -> Scene:
-    """Reads a scene file (.glb, .gltf, or a registered format) at a time, s.
-
-    A file without a camera gets a camera named ``framing`` that has everything in view.
-
-    Args:
-        path: The file.
-        time: Time at which animations are evaluated, s.
-        variant: Material variant, one of ``Scene.variants``; default: the materials as in the file.
-        allow_dirs: Folders, besides the file's own, from which it may read files.
-        **options: Options of a registered format (``docs/importers.md``).
-
-    Raises:
-        InputError: The file cannot be used; the message names the file and the place in it.
-        UsageError: The file's format has no such option.
-    """
-    from .io.load import load as read
-
-    return read(path, time=time, variant=variant, allow_dirs=allow_dirs, **options)
-
-
-@guarded
-def load_frame(path: str | Path) -> Frame:
-    """Reads a picture (.exr) of Daguerre or another program, with all channels and metadata.
-
-    Raises:
-        InputError: The file cannot be read; the message names it.
-    """
-    from .io.exr.read import read_frame
-
-    return read_frame(path)
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -549,7 +549,7 @@ def test_command_line_is_quoted(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_help_does_not_load_what_it_does_not_need() -> None:
     code = (
         "import sys; from daguerre.cli import main; main(['--help']);"
-        "heavy = ('OpenEXR', 'OpenImageIO', 'matplotlib');"
+        "heavy = ('numpy', 'OpenEXR', 'OpenImageIO', 'matplotlib');"
         "print([m for m in heavy if m in sys.modules], file=sys.stderr)"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -76,3 +76,11 @@ def test_each_kind_of_difference_is_seen() -> None:
     stale = {"what": "added", "name": "dg.merge*", "why": "a reason"}
     assert unexplained(before, before, [stale]) == [f"no such difference: {stale}"]
     assert unexplained(before, before | {"dg.merge": "", "dg.merge(a)": ""}, [stale]) == []
+
+
+def test_each_public_name_is_listed_and_loads() -> None:
+    """Completion reads `dir`; names are imported on first use."""
+    import daguerre as dg
+
+    assert set(dg.__all__) <= set(dir(dg))
+    assert [name for name in dg.__all__ if not hasattr(dg, name)] == []

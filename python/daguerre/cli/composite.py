@@ -92,14 +92,14 @@ def _run(shots: list[Shot], how: dict[str, Any], shown: progress.Silent, *, resu
 
 
 def _make(shot: Shot, how: dict[str, Any], shown: progress.Silent) -> None:
-    from daguerre.io.exr.read import read_frame
+    from daguerre.io.exr.read import load_frame
     from daguerre.plates.composite import remarks
     from daguerre.plates.composite.composite import composite as put
     from daguerre.plates.composite.composite import save
     from daguerre.plates.files import read
 
     try:
-        source, frame = read(shot.plate), read_frame(shot.objects)
+        source, frame = read(shot.plate), load_frame(shot.objects)
         made = put(source, frame, **how, seed=shot.seed)
     except InputError as error:
         if shot.frame is None:

@@ -175,9 +175,9 @@ def _tell_speed(film: float, camera: float | None) -> None:
 
 
 def _frame(path: Path) -> Frame:
-    from daguerre.io.exr.read import read_frame
+    from daguerre.io.exr.read import load_frame
 
-    return read_frame(path)
+    return load_frame(path)
 
 
 def _taken(frame: Frame, used: dict[str, Any], wanted: dict[str, Any]) -> Raw | Frame:

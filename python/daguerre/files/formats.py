@@ -50,7 +50,7 @@ class Format:
 _GLTF, _FRAMES = "daguerre.io.gltf.reader", "daguerre.io.frame_files"
 _DEVELOPED = "daguerre.development.raw_files"
 _EXR, _PNG, _JPEG, _TIFF = (".exr",), (".png",), (".jpg", ".jpeg"), (".tif", ".tiff")
-_READ_EXR = "daguerre.io.exr.read:read_frame"
+_READ_EXR = "daguerre.io.exr.read:load_frame"
 _SHOWN, _CODED = ("tone",), ("quality", "bits")
 _FORMATS = [
     Format("glTF 2.0", "scene", (".glb", ".gltf"), f"{_GLTF}:read",

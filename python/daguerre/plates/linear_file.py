@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from daguerre.errors import InputError
-from daguerre.io.exr.read import read_frame
+from daguerre.io.exr.read import load_frame
 
 from .display_file import alpha_notes
 from .photograph import Photograph
@@ -19,7 +19,7 @@ def read_linear(path: Path) -> Photograph:
     Raises:
         InputError: The file cannot be read, has no colours, or a pixel is not finite.
     """
-    frame = read_frame(path).without_overscan()
+    frame = load_frame(path).without_overscan()
     bad = np.argwhere(~np.isfinite(frame.rgb).all(axis=2))
     if len(bad):
         y, x = bad[0]

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from daguerre.color.adaptation import adaptation_of_xyz
 from daguerre.color.spectra import rgb_from_xyz, xyz_of
+from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files.json_item import clean
 from daguerre.frame.cryptomatte import taken
@@ -26,8 +27,11 @@ from .parts import Planes
 from .reader import ExrReader
 
 
-def read_frame(path: str | os.PathLike[str]) -> Frame:
-    """Reads a picture (the first part of the file) with all its channels and facts.
+@guarded
+def load_frame(path: str | os.PathLike[str]) -> Frame:
+    """Reads a picture (.exr) of Daguerre or another program, with all channels and metadata.
+
+    If a file has several parts, it reads the first.
 
     Args:
         path: ``.exr``.

@@ -21,7 +21,7 @@ from daguerre.frame.frame import Frame
 from daguerre.frame.over import AUTO, change_of_rgb
 from daguerre.frame.picture import Picture
 from daguerre.frame.raw import Raw
-from daguerre.io.exr.read import read_frame
+from daguerre.io.exr.read import load_frame
 from daguerre.plates.files import read
 from daguerre.plates.match.like import PlateLook
 from daguerre.plates.match.plate_camera import PlateCamera
@@ -67,7 +67,7 @@ def composite(
         UsageError: ``form`` is unknown, or ``scale`` is not positive.
     """
     look = _look(like_plate)
-    frame = objects if isinstance(objects, Frame) else read_frame(objects)
+    frame = objects if isinstance(objects, Frame) else load_frame(objects)
     source = plate if isinstance(plate, Frame | Raw | Photograph) else read(plate)
     seen = frame.without_overscan() if look is None else look.seen(frame, seed)
     if isinstance(source, Photograph) and source.kind == "raw":
