@@ -115,7 +115,7 @@ LIE: dict[str, tuple[Exr, str]] = {
     "version 3": (Exr(flags=1), "wanted OpenEXR 2"),
     "channel not UTF-8": (Exr(names=(b"B", b"G", b"R", b"\xff\xfe")), "names in UTF-8"),
     "channel twice": (Exr(names=(b"B", b"G", b"G", b"R")), "wanted it once"),
-    "no channels": (Exr(names=()), "channels: wanted some, got none"),
+    "no channels": (Exr(names=()), "channels: wanted at least one, got none"),
     "10000 channels": (Exr(names=many(10000)), "channels: wanted a list of channels"),
     "long channel": (Exr(names=(b"B", b"G", b"R", b"R" * 300)), "wanted a list of channels"),
     "luminance and chroma": (

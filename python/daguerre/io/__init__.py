@@ -1,1 +1,1 @@
-"""File formats: one folder or file each, bytes on one side and the object model on the other."""
+"""File formats: each folder or file converts between a format's bytes and Daguerre's objects."""

@@ -1,7 +1,7 @@
-"""EXIF as a camera writes it: small rationals (1/125 as 1/125), lens and body by name.
+"""Writes EXIF blocks like a camera: short fractions such as 1/125, names of lens and body.
 
-The block is a little TIFF file: a main directory and, from its tag 34665, the one of the exposure.
-It goes as it is into JPEG (APP1) and PNG (eXIf); TIFF and DNG have the same tags in their own
+The block is a small TIFF file: a main directory, whose tag 34665 points to the EXIF directory.
+JPEG (APP1) and PNG (eXIf) embed the block unchanged; TIFF and DNG have the same tags in their own
 directories. Tags, types and units: Exif 3.0 (CIPA DC-008-2023), 4.6.
 """
 
@@ -16,18 +16,18 @@ from fractions import Fraction
 from typing import Any
 
 BYTE, ASCII, SHORT, LONG, RATIONAL, UNDEFINED, SRATIONAL, DOUBLE = 1, 2, 3, 4, 5, 7, 10, 12
-#: Type and values of a tag; texts are str, everything else a tuple.
+#: Type and values by tag; texts are str, other values tuples.
 Tags = dict[int, tuple[int, Any]]
 
 EXIF_DIRECTORY = 34665
-#: Width over height of the frame does not matter: equivalents are taken over diagonals.
+#: 35 mm equivalents are computed from diagonals, whatever the aspect ratio.
 FULL_FRAME_DIAGONAL_MM = math.hypot(36, 24)
 _FORMATS = {BYTE: "B", SHORT: "H", LONG: "I", RATIONAL: "2I", UNDEFINED: "B", SRATIONAL: "2i"}
 _LIMIT = 2**31 - 1
 
 
 def rational(value: float) -> tuple[int, int]:
-    """The simplest fraction within a millionth: 0.008 is 1/125, also when it was a float32."""
+    """Simplest fraction within one millionth of a value: 0.008 is 1/125, also from a float32."""
     for denominator in (10**power for power in range(1, 8)):
         fraction = Fraction(value).limit_denominator(denominator)
         if abs(fraction - Fraction(value)) <= abs(Fraction(value)) / 10**6:
@@ -38,7 +38,7 @@ def rational(value: float) -> tuple[int, int]:
 
 
 def main_tags(metadata: Mapping[str, Any]) -> Tags:
-    """The tags of the main directory: who made the file, with what, and when."""
+    """Tags of the main directory: camera, software, date and orientation."""
     texts = {
         271: metadata.get("cameraMake"),
         272: metadata.get("cameraModel"),
@@ -51,12 +51,12 @@ def main_tags(metadata: Mapping[str, Any]) -> Tags:
 
 
 def exposure_tags(metadata: Mapping[str, Any]) -> Tags:
-    """The tags of the exposure, those that ``metadata`` (names of OpenEXR) knows."""
+    """Tags of the EXIF directory for facts in ``metadata``, which has OpenEXR's names."""
     tags: Tags = {36864: (UNDEFINED, tuple(b"0232"))}
     tags |= {at: (RATIONAL, value) for at, value in rationals(metadata).items()}
     if iso := _number(metadata, "isoSpeed"):
         tags[34855] = (SHORT, (min(round(iso), 65535),))
-        tags[34864] = (SHORT, (1,))  # the standard output sensitivity of ISO 12232
+        tags[34864] = (SHORT, (1,))  # standard output sensitivity, ISO 12232
         tags[34865] = (LONG, (round(iso),))
     if metadata.get("exposure_compensation") is not None:
         tags[37380] = (SRATIONAL, rational(float(metadata["exposure_compensation"])))
@@ -74,13 +74,13 @@ def _lens_tags(metadata: Mapping[str, Any]) -> Tags:
         tags[41989] = (SHORT, (min(round(focal * scale), 65535),))
     if span := _focal_lengths(metadata.get("camera")):
         shortest, longest = (rational(round(focal, 1)) for focal in span)
-        # Its fastest stops are not known: a prescription has the stop that it is used at.
+        # 0/0: the widest f-numbers are unknown, as a prescription has only the one in use.
         tags[42034] = (RATIONAL, (*shortest, *longest, 0, 0, 0, 0))
     return tags
 
 
 def _focal_lengths(camera: Any) -> tuple[float, float] | None:
-    """Shortest and longest of a real lens, mm."""
+    """Shortest and longest focal length of a lens with a prescription, mm; None: no such lens."""
     if not isinstance(camera, Mapping) or not camera.get("lens_sha256"):
         return None
     if zoom := camera.get("zoom_range_mm"):
@@ -90,12 +90,12 @@ def _focal_lengths(camera: Any) -> tuple[float, float] | None:
 
 
 def block(metadata: Mapping[str, Any], size: tuple[int, int], srgb: bool) -> bytes:
-    """A whole EXIF block.
+    """Makes a complete EXIF block.
 
     Args:
-        metadata: Facts of the frame.
+        metadata: Metadata of the frame.
         size: Width and height of the picture, px.
-        srgb: Whether its colours are sRGB; the standard has no number for others.
+        srgb: Whether its colours are sRGB; the standard has no code for other spaces.
     """
     main, exposure = main_tags(metadata), exposure_tags(metadata)
     exposure |= {40961: (SHORT, (1 if srgb else 65535,))}
@@ -107,11 +107,11 @@ def block(metadata: Mapping[str, Any], size: tuple[int, int], srgb: bool) -> byt
 
 
 def directory(tags: Tags, offset: int) -> bytes:
-    """An image file directory (TIFF 6.0, section 2), little-endian, and the values it points to.
+    """Makes a little-endian image file directory (TIFF 6.0, section 2) with its values.
 
     Args:
-        tags: By number.
-        offset: Where in the file it will begin, even.
+        tags: Type and values by tag number.
+        offset: Position of the directory in the file, bytes; even.
     """
     entries, values = b"", b""
     after = offset + 2 + 12 * len(tags) + 4
@@ -125,9 +125,9 @@ def directory(tags: Tags, offset: int) -> bytes:
 
 
 def with_rationals(block: bytes, values: Mapping[int, tuple[int, int]]) -> bytes:
-    """An EXIF block with other fractions in tags that it has.
+    """Replaces fractions of existing tags in an EXIF block.
 
-    OpenImageIO writes 1/48 s as 20833/1000000.
+    This undoes OpenImageIO's 20833/1000000 for 1/48 s.
     """
     data = bytearray(block)
     order = "<" if data[:2] == b"II" else ">"
@@ -144,16 +144,16 @@ def with_rationals(block: bytes, values: Mapping[int, tuple[int, int]]) -> bytes
 
 
 def rationals(metadata: Mapping[str, Any]) -> dict[int, tuple[int, int]]:
-    """Exposure time, f-number, distance and focal length, where known, by tag."""
+    """Known exposure time, f-number, focus distance and focal length as fractions, by tag."""
     names = {33434: "expTime", 33437: "aperture", 37382: "focus", 37386: "nominalFocalLength"}
     known = {at: _number(metadata, name) for at, name in names.items()}
     return {at: rational(value) for at, value in known.items() if value}
 
 
 def date(metadata: Mapping[str, Any]) -> str:
-    """When the picture was taken; without ``capDate`` now, or as SOURCE_DATE_EPOCH says.
+    """Date and time of capture: ``capDate``, else SOURCE_DATE_EPOCH (UTC), else the local time.
 
-    The variable is the one of reproducible-builds.org: with it the same picture is the same file.
+    With this variable of reproducible-builds.org, equal pictures give equal files.
     """
     if metadata.get("capDate"):
         return str(metadata["capDate"])
@@ -173,7 +173,7 @@ def _packed(kind: int, value: Any) -> tuple[bytes, int]:
 
 
 def _number(metadata: Mapping[str, Any], name: str) -> float | None:
-    """A fact that EXIF can hold: positive and finite."""
+    """Number in the metadata; None if missing, or not positive and finite, as EXIF needs."""
     value = metadata.get(name)
     if value is None or not math.isfinite(float(value)) or float(value) <= 0:
         return None

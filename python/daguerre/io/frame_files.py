@@ -1,4 +1,4 @@
-"""Frames and pictures into files, as the table of formats calls for them."""
+"""Writers of frames and pictures that the table of formats calls."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from .png import write_png
 
 
 def as_exr(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
-    """Everything that a frame has; a tone is for pictures alone and changes nothing here."""
+    """Writes all data of a frame; ``tone`` has no effect on linear files."""
     write_exr(path, frame)
 
 
 def as_png(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
-    """A picture for the eye, with the facts of the shot."""
+    """Writes a display picture with EXIF, without overscan."""
     write_png(path, frame.without_overscan(), tone)
 
 
 def as_picture(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
-    """A picture for the eye, with a color profile."""
+    """Writes a display picture with EXIF and an ICC profile, without overscan."""
     shown = frame.without_overscan()
     picture(path, Picture(shown.encoded(tone), "srgb", shown.metadata))
 
@@ -31,6 +31,6 @@ def as_picture(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -
 def picture(
     path: str | os.PathLike[str], shown: Picture, quality: int = 95, bits: int | None = None
 ) -> None:
-    """A developed picture."""
+    """Writes a developed picture."""
     space, facts = shown.colour_space, shown.metadata
     write_picture(path, shown.pixels, space, facts, quality=quality, bits=bits)

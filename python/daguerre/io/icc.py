@@ -1,7 +1,7 @@
-"""ICC profiles of the colour spaces that Daguerre writes, made here: three primaries and a curve.
+"""Makes ICC profiles of the colour spaces that Daguerre writes: three primaries and a curve.
 
-A matrix profile of version 4 (ICC.1:2022): the primaries adapted to D50 by Bradford's matrix, the
-transfer function as parametric curve 3, which is sRGB's and that of ITU-R BT.2020 exactly.
+They are matrix profiles of version 4 (ICC.1:2022): primaries adapted to D50 by Bradford's matrix,
+and parametric curve 3, which is exact for the transfer functions of sRGB and ITU-R BT.2020.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from daguerre.color.illuminants import D65_STATED, xyz_of_xy
 from daguerre.color.spaces import COLOR_SPACES, xyz_from_rgb
 
 FloatArray = NDArray[np.float64]
-#: The white of profiles' connection space as ICC.1 writes it, XYZ.
+#: White of the profile connection space, XYZ, with the digits of ICC.1.
 D50_XYZ = (0.9642, 1.0, 0.8249)
 
 
 @cache
 def profile(name: str) -> bytes:
-    """The profile of a colour space of ``COLOR_SPACES``."""
+    """Makes the profile of a colour space of ``COLOR_SPACES``."""
     space = COLOR_SPACES[name]
     to_d50 = adaptation_of_xyz(xyz_of_xy(D65_STATED), np.array(D50_XYZ))
     columns = (to_d50 @ xyz_from_rgb(space)).T
@@ -40,7 +40,7 @@ def profile(name: str) -> bytes:
 
 
 def _file(tags: dict[bytes, bytes]) -> bytes:
-    """Header, table of tags and data; equal data are kept once (ICC.1:2022, 7)."""
+    """Joins header, tag table and data; equal data are stored once (ICC.1:2022, 7)."""
     table, data, places = struct.pack(">I", len(tags)), b"", {}
     start = 128 + 4 + 12 * len(tags)
     for tag, value in tags.items():
@@ -64,5 +64,5 @@ def _text(text: str) -> bytes:
 
 
 def _fixed(values: tuple[float, ...] | FloatArray) -> bytes:
-    """s15Fixed16 numbers."""
+    """Encodes s15Fixed16 numbers."""
     return b"".join(struct.pack(">i", round(float(value) * 65536)) for value in values)

@@ -1,8 +1,8 @@
-"""Pictures into arrays: textures from bytes, environments from files.
+"""Decodes pictures: textures from bytes, environments from files.
 
-OpenImageIO decodes; what it forgives or prints itself (a cut-off JPEG becomes grey, libpng writes
-to stderr) is refused here first. Its Python wheel cannot read from memory, so bytes pass through a
-temporary file.
+OpenImageIO decodes. Truncated and corrupt files are rejected here first, as it fills a truncated
+JPEG with grey and libpng writes to stderr. Its Python wheel cannot read from memory, so bytes pass
+through a temporary file.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from . import ktx2
 from .exr.reader import ExrReader, is_exr, light_names
 
 MAX_PIXELS = 16384 * 16384
-#: Decoded, of one texture and of one environment (16384 x 8192 in float is 1.5 GiB).
+#: Largest decoded size of a texture and of an environment (16384 x 8192 in float is 1.5 GiB).
 MAX_BYTES = 1 << 30
 MAX_ENVIRONMENT_BYTES = 2 << 30
-#: A colour of an environment: three of them still add up in float.
+#: Largest colour channel of an environment: the sum of three still fits a float.
 MAX_LIGHT = 1e38
 _PNG_MAGIC = b"\x89PNG\r\n\x1a\n"
 # Bits by colour type (PNG specification, 11.2.1).
@@ -37,18 +37,18 @@ _PNG_DEPTHS = {0: (1, 2, 4, 8, 16), 2: (8, 16), 3: (1, 2, 4, 8), 4: (8, 16), 6: 
 
 
 def decode(data: bytes | memoryview, where: str) -> NDArray[np.uint8] | NDArray[np.float32]:
-    """Decodes a PNG, JPEG, WebP or KTX2; straight alpha, row 0 on top.
+    """Decodes a PNG, JPEG, WebP or KTX2 image; straight alpha, row 0 at the top.
 
     Args:
-        data: The bytes of the file.
-        where: File and JSON path, for complaints.
+        data: Bytes of the file.
+        where: File and JSON path, for messages.
 
     Returns:
-        Shape (H, W, 1..4); uint8, or float32 in 0 .. 1 from 16-bit pictures (rounding them to 8
-        bits would show as steps in normal maps).
+        Shape (H, W, 1..4); uint8, or float32 in 0 .. 1 from 16-bit pictures, as 8 bits would show
+        steps in normal maps.
 
     Raises:
-        InputError: None of these, truncated, corrupt or absurdly large.
+        InputError: The format is another, or the image is truncated, corrupt or too large.
     """
     data = bytes(data)
     if data.startswith(ktx2.MAGIC):
@@ -93,7 +93,7 @@ def read_environment(path: str | Path) -> NDArray[np.float32]:
         Linear RGB, float32, shape (H, W, 3), row 0 at the zenith.
 
     Raises:
-        InputError: It cannot be read, has no colour, or holds NaN, Inf or negative light.
+        InputError: The file cannot be read, has no colour, or has NaN, Inf or negative light.
     """
     file = Path(path)
     if not file.is_file():
@@ -112,7 +112,7 @@ def read_environment(path: str | Path) -> NDArray[np.float32]:
 
 
 def _checked_light(file: Path, rgb: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Light that is finite and not negative, everywhere."""
+    """Checks that light is finite and not negative in all pixels."""
     for name, bad in (("finite", ~(np.abs(rgb) <= MAX_LIGHT)), ("non-negative", rgb < 0)):
         count = int(bad.any(axis=2).sum())
         if count:
@@ -125,22 +125,22 @@ def _checked_light(file: Path, rgb: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def read_file(path: Path, *, floats: bool = False) -> tuple[NDArray[Any], Any]:
-    """Pixels of a picture in their own type, shape (H, W, C), as they lie in the file; its facts.
+    """Reads pixels in the type of the file, shape (H, W, C), not turned upright, and its header.
 
     Args:
-        path: A format that OpenImageIO decodes. PNG and JPEG that are cut off are refused here.
-        floats: Pixels as floats instead, integers scaled to 0 .. 1, premultiplied by alpha.
+        path: File in a format that OpenImageIO decodes.
+        floats: Return float32 instead: integers scaled to 0 .. 1, premultiplied by alpha.
 
     Returns:
-        The pixels, straight alpha, and OpenImageIO's specification.
+        The pixels, with straight alpha unless ``floats``, and OpenImageIO's ``ImageSpec``.
 
     Raises:
-        InputError: It cannot be decoded, is cut off or absurdly large.
+        InputError: The file cannot be decoded, is truncated or too large.
     """
     with path.open("rb") as stream:
         start = stream.read(8)
     if is_exr(path):
-        raise InputError(f"{path}: wanted a picture of another kind, got an OpenEXR by its bytes")
+        raise InputError(f"{path}: wanted another format, got OpenEXR (by its first bytes)")
     if start.startswith(_PNG_MAGIC):
         _check_png(path.read_bytes(), str(path))
     elif start.startswith(b"\xff\xd8\xff"):
@@ -150,7 +150,7 @@ def read_file(path: Path, *, floats: bool = False) -> tuple[NDArray[Any], Any]:
 
 
 def _check_jpeg(data: bytes, where: str) -> None:
-    """Refuses one without an end: libjpeg fills what is missing with grey."""
+    """Checks for an end marker, as libjpeg fills missing pixels with grey."""
     if data.rfind(b"\xff\xd9") < data.rfind(b"\xff\xda"):
         raise InputError(f"{where}: truncated JPEG: wanted an end marker, got none")
 
@@ -158,8 +158,8 @@ def _check_jpeg(data: bytes, where: str) -> None:
 def _read(
     name: str, where: str, limit: int = MAX_BYTES, *, floats: bool = False
 ) -> tuple[NDArray[Any], Any, str]:
-    """Pixels, the specification, and the name of the format: see :func:`read_file`."""
-    import OpenImageIO as oiio  # 30 MB that a scene without pictures does without
+    """Returns pixels, ``ImageSpec`` and the name of the format; see :func:`read_file`."""
+    import OpenImageIO as oiio  # takes 30 MB, which scenes without pictures save
 
     try:
         name.encode()
@@ -202,7 +202,7 @@ def _check_size(
 
 
 def _check_png(data: bytes, where: str) -> None:
-    """Chunks complete and their checksums right (PNG specification, chapters 5 and 11)."""
+    """Checks chunks, checksums and header (PNG specification, chapters 5 and 11)."""
     offset, packed, header, start = len(_PNG_MAGIC), 0, b"", b""
     while True:
         if offset + 12 > len(data):
@@ -211,7 +211,7 @@ def _check_png(data: bytes, where: str) -> None:
         end = offset + 12 + length
         if end > len(data):
             raise InputError(
-                f"{where}: truncated PNG: wanted {end} bytes at least, got {len(data)}"
+                f"{where}: truncated PNG: wanted at least {end} bytes, got {len(data)}"
             )
         (stored,) = struct.unpack_from(">I", data, end - 4)
         if kind[:1].isupper() and zlib.crc32(data[offset + 4 : end - 4]) != stored:
@@ -244,7 +244,7 @@ def _check_png(data: bytes, where: str) -> None:
 
 
 def _rgb(pixels: NDArray[Any], spec: Any, file: Path) -> NDArray[Any]:
-    """The colour channels: R, G, B wherever they stand, or one grey."""
+    """Selects the colour channels: R, G, B in any position, or one grey."""
     names = [str(name).rsplit(".", 1)[-1].upper() for name in spec.channelnames]
     if all(name in names for name in "RGB"):
         return pixels[:, :, [names.index(name) for name in "RGB"]]
@@ -254,7 +254,7 @@ def _rgb(pixels: NDArray[Any], spec: Any, file: Path) -> NDArray[Any]:
 
 
 def _linear(file: Path) -> tuple[NDArray[np.float32], int]:
-    """Light of an EXR in its display window, outside of its data 0, and its orientation."""
+    """Reads an EXR's display window, 0 outside its data window, and its orientation."""
     with ExrReader(file) as reader:
         names = light_names(list(reader.channels), str(file))
         full = (reader.full_size[1], reader.full_size[0])
@@ -273,7 +273,7 @@ def _linear(file: Path) -> tuple[NDArray[np.float32], int]:
 
 
 def _radiance_exposure(file: Path) -> float:
-    """Product of the EXPOSURE lines: Radiance's pixels are light times this (filefmts.pdf)."""
+    """Product of the EXPOSURE lines, by which Radiance multiplies light (filefmts.pdf)."""
     with file.open("rb") as stream:
         lines = stream.read(8192).split(b"\n\n", 1)[0].splitlines()
     exposure = 1.0
@@ -284,12 +284,12 @@ def _radiance_exposure(file: Path) -> float:
             except ValueError:
                 exposure = -1.0
     if not 1e-30 < exposure < 1e30:
-        raise InputError(f"{file}: EXPOSURE: wanted a positive number below 1e30, got another")
+        raise InputError(f"{file}: EXPOSURE: wanted a positive number, 1e-30 to 1e30, got another")
     return exposure
 
 
 def upright(pixels: NDArray[Any], orientation: int) -> NDArray[Any]:
-    """A picture, shape (H, W) or (H, W, C), with its Exif orientation 1 .. 8 undone."""
+    """Undoes EXIF orientation 1 .. 8 of a picture, shape (H, W) or (H, W, C)."""
     if orientation >= 5:
         pixels = pixels.swapaxes(0, 1)
     if orientation in (2, 3, 6, 7):

@@ -1,4 +1,4 @@
-"""Pictures that shape a photograph: images of an iris."""
+"""Reads pictures of an iris opening."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from .images import read_file
 
 
 def read_grey(path: Path) -> NDArray[np.float32]:
-    """The opening of an iris, shape (H, W): 1 lets light through, 0 stops it.
+    """Reads the opening of an iris, shape (H, W): 1 lets light through, 0 stops it.
 
     Raises:
-        InputError: It cannot be read, or has no opening.
+        InputError: The file cannot be read, or has no opening.
     """
     pixels = _read(path)[:, :, :3]
     grey = np.ascontiguousarray(pixels.mean(axis=2), np.float32)
@@ -27,9 +27,9 @@ def read_grey(path: Path) -> NDArray[np.float32]:
 
 
 def _read(path: Path) -> NDArray[np.float32]:
-    """Pixels (H, W, C), integers scaled to 0 .. 1."""
+    """Reads pixels, shape (H, W, C), integers scaled to 0 .. 1."""
     if not path.is_file():
-        raise InputError(f"{path}: no such picture")
+        raise InputError(f"{path}: wanted an image file, got no such file")
     if is_exr(path):
         return _of_exr(path)
     return np.asarray(read_file(path, floats=True)[0], np.float32)

@@ -1,8 +1,8 @@
-"""KTX 2.0 textures of KHR_texture_basisu: ETC1S and UASTC to RGB(A), level 0 alone.
+"""Decodes KTX 2.0 textures of KHR_texture_basisu: ETC1S and UASTC to RGB(A), level 0 only.
 
-The header is checked here, so that no size that a file claims is believed; the package
-``opengl_basisu`` (the extra ``compression``), Binomial's transcoder, does the rest. The header's
-transfer function is not read: in glTF the use of a texture tells it.
+The header and its sizes are checked here. Binomial's transcoder, the package ``opengl_basisu`` of
+the extra ``compression``, does the rest. The header's transfer function is not read, as in glTF the
+use of a texture sets it.
 Source: KTX file format specification 2.0, chapter 3; KHR_texture_basisu.
 """
 
@@ -23,10 +23,10 @@ _NONE, _BASIS_LZ, _ZSTD = 0, 1, 2
 
 
 def size(data: bytes, where: str) -> tuple[int, int]:
-    """Width and height by a header that is complete and of a plain 2D texture.
+    """Checks the header of a plain 2D texture; returns width and height, px.
 
     Raises:
-        InputError: It is not, or its level 0 is not where or as large as it must be.
+        InputError: The header is truncated or of another kind, or level 0 does not fit the file.
     """
 
     def fail(what: str, wanted: object, got: object) -> NoReturn:
@@ -57,10 +57,10 @@ def size(data: bytes, where: str) -> tuple[int, int]:
 
 
 def decode(data: bytes, where: str) -> NDArray[np.uint8]:
-    """Pixels of level 0 of a file whose ``size`` was asked, shape (H, W, 3 or 4).
+    """Decodes level 0 of a file that ``size`` has checked, shape (H, W, 3 or 4).
 
     Raises:
-        InputError: The payload is broken, or the package is not installed.
+        InputError: The data are damaged, or the package is not installed.
     """
     package = extras.missing_for("KHR_texture_basisu")
     if package:

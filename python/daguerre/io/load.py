@@ -1,4 +1,4 @@
-"""Scene files of any format into scenes that can be looked at."""
+"""Loads scene files of any format; a scene without a camera gets one."""
 
 from __future__ import annotations
 

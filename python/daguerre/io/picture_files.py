@@ -1,6 +1,6 @@
-"""Developed pictures into files: JPEG, PNG, TIFF and EXR, with profile and EXIF.
+"""Writes developed pictures: JPEG, PNG, TIFF and EXR, with profile and EXIF.
 
-OpenImageIO codes JPEG and PNG, tifffile TIFF. The EXIF block is our own and put in afterwards:
+OpenImageIO encodes JPEG and PNG, tifffile TIFF. :mod:`daguerre.io.exif` makes the EXIF block, as
 OpenImageIO writes 1/48 s as 20833/1000000.
 """
 
@@ -38,19 +38,19 @@ def write_picture(
     quality: int = 95,
     bits: int | None = None,
 ) -> None:
-    """Writes a developed picture, whole or not at all.
+    """Writes a developed picture atomically.
 
     Args:
-        path: Its ending chooses the format; JPEG has 8 bits, TIFF 16 or 8, PNG 8 or 16, EXR linear
-            floats.
-        pixels: Encoded with the curve of ``space``, 0 to 1, shape (H, W, 3).
-        space: Name of ``icc.COLOR_SPACES``.
-        metadata: Facts for EXIF, by the names of OpenEXR.
+        path: File; its suffix sets the format: JPEG with 8 bits, TIFF with 16 or 8, PNG with 8 or
+            16, EXR with linear floats.
+        pixels: Values encoded with the curve of ``space``, 0 to 1, shape (H, W, 3).
+        space: Name in ``daguerre.color.spaces.COLOR_SPACES``.
+        metadata: Metadata for EXIF, with OpenEXR's names.
         quality: JPEG quality, 1 to 100.
-        bits: Bits per channel; default: 8, for TIFF 16.
+        bits: Bits per channel; default: 16 for TIFF, else 8.
 
     Raises:
-        UsageError: Another ending, a quality beyond 1 to 100, or bits that the format lacks.
+        UsageError: The suffix is unknown, or the format does not have this quality or bits.
         OutputError: The file cannot be written.
     """
     suffix = check_written(path, written("picture"))
@@ -80,10 +80,10 @@ def _bits(path: str | os.PathLike[str], suffix: str, bits: int | None) -> int:
 
 
 def _coded(suffix: str, numbers: NDArray[Any], space: str, quality: int, path: str) -> bytes:
-    """JPEG or PNG by OpenImageIO, with the profile.
+    """Encodes JPEG or PNG by OpenImageIO, with the profile.
 
-    Through a pipe: where a disk, or the size that a file may have, ends, libjpeg ends the whole
-    process.
+    It writes into a pipe, as libjpeg ends the whole process on a full disk or at the limit of a
+    file's size.
     """
     import OpenImageIO as oiio
 
@@ -98,7 +98,7 @@ def _coded(suffix: str, numbers: NDArray[Any], space: str, quality: int, path: s
     picture = oiio.ImageBuf(spec)
 
     def write(name: str) -> None:
-        # One call, which never holds the interpreter's lock: the reader of the pipe needs it.
+        # This call releases the interpreter's lock, which the reader of the pipe needs.
         if not picture.write(name, kind, suffix[1:]):
             reason = str(picture.geterror() or "unknown reason").replace(name, path)
             raise OutputError(f"{path}: cannot write: {reason}")
@@ -109,7 +109,7 @@ def _coded(suffix: str, numbers: NDArray[Any], space: str, quality: int, path: s
 
 
 def _through_a_pipe(write: Callable[[str], None]) -> bytes:
-    """Bytes that a function writes to the file that it is given the name of."""
+    """Returns the bytes that ``write`` writes to the file it is given."""
     pipe, end = os.pipe()
     with ThreadPoolExecutor(1) as reader, os.fdopen(pipe, "rb") as source:
         data = reader.submit(source.read)
@@ -121,7 +121,7 @@ def _through_a_pipe(write: Callable[[str], None]) -> bytes:
 
 
 def _jpeg_with(data: bytes, block: bytes, _: str) -> bytes:
-    """A JPEG file with this EXIF block, in the place of one that it may have."""
+    """Sets the EXIF block of a JPEG file."""
     head, at = data[:2], 2
     while data[at + 1] != 0xDA:  # up to the start of the scan
         end = at + 2 + int.from_bytes(data[at + 2 : at + 4], "big")
@@ -129,14 +129,14 @@ def _jpeg_with(data: bytes, block: bytes, _: str) -> bytes:
             head += data[at:end]
         at = end
     segment = b"Exif\0\0" + block
-    # JFIF (APP0) stays first, as its standard wants it.
+    # JFIF (APP0) stays first, as its standard requires.
     after = 4 + int.from_bytes(head[4:6], "big") if head[3] == 0xE0 else 2
     app1 = b"\xff\xe1" + struct.pack(">H", len(segment) + 2) + segment
     return head[:after] + app1 + head[after:] + data[at:]
 
 
 def _png_with(data: bytes, block: bytes, space: str) -> bytes:
-    """A PNG file with an EXIF block and the code points of its colours (PNG 3rd edition, 11.3)."""
+    """Sets the EXIF block and cICP code points of a PNG file (PNG 3rd edition, 11.3)."""
     if not png_chunks.is_complete(BytesIO(data)):
         raise OutputError("PNG: the file is not complete; is the disk full?")
     cicp = bytes([*spaces.COLOR_SPACES[space].cicp, 0, 1])
@@ -154,7 +154,7 @@ def _write_tiff(temp: Path, numbers: NDArray[Any], space: str, metadata: Mapping
 
 
 def _of_size(metadata: Mapping[str, Any], width: int, height: int) -> dict[str, Any]:
-    """The facts without the place in a whole that a picture of another size no longer has."""
+    """Metadata without resolution and crop if these do not fit the picture's size."""
     size, crop = metadata.get("resolution"), metadata.get("crop")
     x0, y0, x1, y1 = crop or (0, 0, *(size or (width, height)))
     if (x1 - x0, y1 - y0) == (width, height):
@@ -168,7 +168,7 @@ def _write_linear(
     space: str,
     metadata: Mapping[str, Any],
 ) -> None:
-    """Linear light in the primaries of the space, with the frame's attributes."""
+    """Writes linear light in the primaries of the space, with the attributes of a frame."""
     from daguerre.frame.frame import Frame
 
     from .exr.write import attributes, write_parts

@@ -1,4 +1,4 @@
-"""PNG for the eye: 8 bits, sRGB, with what a photographer expects in the EXIF block."""
+"""Writes display pictures as PNG: 8 bits, sRGB, with exposure and lens in EXIF."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .png_chunks import checksum, chunks, is_complete
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
 
-#: metadata name -> EXIF name in OpenImageIO
+#: EXIF name in OpenImageIO by metadata name.
 EXIF = {
     "expTime": "ExposureTime",
     "aperture": "FNumber",
@@ -31,7 +31,7 @@ EXIF = {
 
 
 class PngWriter:
-    """Writes a PNG row by row; the disk, and not memory, holds what is done."""
+    """Writes a PNG row by row, so that memory holds only the rows in work."""
 
     def __init__(
         self,
@@ -45,14 +45,14 @@ class PngWriter:
         """Opens a file.
 
         Args:
-            path: Where; put :func:`daguerre.files.atomic.atomic_path` around it.
-            width: px.
-            height: px.
-            metadata: Metadata of a frame; facts that EXIF has a name for are kept.
-            target: Name for messages, if it is another.
+            path: File; use :func:`daguerre.files.atomic.atomic_path` for an atomic write.
+            width: Columns, px.
+            height: Rows, px.
+            metadata: Metadata of a frame, of which EXIF gets exposure and lens.
+            target: Name for messages; default: ``path``.
 
         Raises:
-            OutputError: It cannot be written.
+            OutputError: The file cannot be written.
         """
         import OpenImageIO as oiio
 
@@ -74,10 +74,10 @@ class PngWriter:
         self._check(self._output.open(str(path), spec))
 
     def write(self, pixels: NDArray[np.uint8]) -> None:
-        """The next rows, shape (rows, W, 3).
+        """Writes the next rows, shape (rows, W, 3).
 
         Raises:
-            OutputError: The disk is full, or gone.
+            OutputError: The disk is full, or not available.
         """
         end = self._next + len(pixels)
         rows = np.ascontiguousarray(pixels)
@@ -88,18 +88,18 @@ class PngWriter:
         """Completes the file.
 
         Raises:
-            OutputError: The disk is full, or gone.
+            OutputError: The disk is full, or not available.
         """
         self._check(self._output.close())
         with self._path.open("r+b") as file:
             _put_rationals(file, self._rationals)
-        # libpng's writer need not notice a full disk, so what is there is read back.
+        # libpng may not notice a full disk, so the file is read back.
         with self._path.open("rb") as file:
             if not is_complete(file):
                 raise self._error("the file is not complete; is the disk full?")
 
     def _check(self, done: bool) -> None:
-        # OpenImageIO may say that all is well and keep an error, a line for each block.
+        # OpenImageIO may return success and keep an error, with a line for each block.
         if not done or self._output.has_error:
             lines = str(self._output.geterror()).splitlines() or ["unknown reason"]
             raise self._error(lines[0].strip())
@@ -110,13 +110,13 @@ class PngWriter:
 
 
 def write_png(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
-    """Writes the display picture of a frame, atomically."""
+    """Writes the display picture of a frame atomically."""
     with atomic_path(path) as temp:
         _write(temp, frame, tone, path)
 
 
 def png_bytes(frame: Frame, tone: str = "srgb") -> bytes:
-    """The same file as bytes, for notebooks."""
+    """Returns the same file as bytes, for notebooks."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "frame.png"
         _write(path, frame, tone, path)
@@ -131,7 +131,7 @@ def _write(path: Path, frame: Frame, tone: str, target: str | os.PathLike[str]) 
 
 
 def _put_rationals(file: BinaryIO, values: Mapping[int, tuple[int, int]]) -> None:
-    """Exposure times and stops as a camera writes them; EXIF comes before the pixels."""
+    """Sets short fractions such as 1/48 in the EXIF chunk, which comes before the pixels."""
     for chunk in chunks(file):
         if chunk.kind == b"eXIf" and chunk.intact:
             block = exif.with_rationals(chunk.data, values)

@@ -1,4 +1,4 @@
-"""Chunks of PNG files: read in order, made, and checked for completeness.
+"""Reads, encodes and checks the chunks of PNG files.
 
 Source: PNG specification, 3rd edition, 5.3 (chunk layout) and 5.5 (checksums).
 """
@@ -13,7 +13,7 @@ SIGNATURE_BYTES = 8
 
 
 class Chunk(NamedTuple):
-    """One chunk; ``at`` is where its data begin in the file."""
+    """One chunk; ``at``: position of its data in the file, bytes."""
 
     kind: bytes
     data: bytes
@@ -22,7 +22,7 @@ class Chunk(NamedTuple):
 
 
 def chunks(file: BinaryIO) -> Iterator[Chunk]:
-    """Reads one chunk after the other; a cut-off one is not intact."""
+    """Reads chunks in order; a truncated one is not ``intact``."""
     file.seek(SIGNATURE_BYTES)
     while len(head := file.read(8)) == 8:
         kind, at = head[4:], file.tell()
@@ -31,7 +31,7 @@ def chunks(file: BinaryIO) -> Iterator[Chunk]:
 
 
 def is_complete(file: BinaryIO) -> bool:
-    """Whether every chunk has its checksum and the last one is IEND."""
+    """Whether all checksums fit and the file ends with IEND."""
     for chunk in chunks(file):
         if not chunk.intact:
             return False
@@ -41,7 +41,7 @@ def is_complete(file: BinaryIO) -> bool:
 
 
 def encoded(kind: bytes, data: bytes) -> bytes:
-    """A chunk as it stands in a file."""
+    """Encodes a chunk: length, kind, data and checksum."""
     return len(data).to_bytes(4, "big") + kind + data + checksum(kind, data)
 
 

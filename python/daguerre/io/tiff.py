@@ -1,4 +1,4 @@
-"""TIFF files with tags by number and an EXIF directory, written by tifffile."""
+"""Writes TIFF files with any tags and an EXIF directory, by tifffile."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from daguerre.files import extras
 from . import exif
 from .exif import Tags
 
-#: Photometric interpretation of mosaics, and of raw pictures without.
+#: Photometric interpretation of mosaics, and of raw pictures without a mosaic.
 CFA, LINEAR_RAW = 32803, 34892
 _PHOTOMETRIC, _CHILDREN = 262, 330
-#: tifffile refuses to write the tag of the EXIF directory; this number, which nobody uses, keeps
-#: its place until it is put right.
+#: Placeholder for the tag of the EXIF directory, which tifffile cannot write; this number is unused
+#: and is replaced afterwards.
 _PLACE = exif.EXIF_DIRECTORY + 1
-#: Type and, per value, the numbers that stand for it.
+#: Types whose values are two numbers each.
 _PAIRS = (exif.RATIONAL, exif.SRATIONAL)
 
 
@@ -31,9 +31,9 @@ class TiffImage:
 
     Attributes:
         pixels: Shape (H, W) or (H, W, 3), uint8 or uint16.
-        photometric: Name that tifffile has for it, or its number.
-        tags: More tags.
-        reduced: Whether it is a small one beside the picture itself.
+        photometric: Photometric interpretation: tifffile's name, or the number.
+        tags: Additional tags.
+        reduced: Whether it is a thumbnail of the main picture.
     """
 
     pixels: NDArray[Any]
@@ -43,20 +43,20 @@ class TiffImage:
 
     @property
     def grey_raw(self) -> bool:
-        """Whether it is raw and has one sample per pixel, without a mosaic."""
+        """Whether it is a raw picture of one sample per pixel, without a mosaic."""
         return self.photometric == LINEAR_RAW and self.pixels.ndim == 2
 
 
 def write_tiff(target: Path | IO[bytes], images: list[TiffImage], exposure: Tags) -> None:
-    """Writes images, those after the first as its children, and the directory of the exposure.
+    """Writes images, those after the first as its children, and the EXIF directory.
 
     Args:
-        target: Where; a path is replaced, a stream is written from its start.
-        images: The first is the one that plain readers show.
+        target: File, which is replaced, or stream, which is written from its start.
+        images: Images; simple readers show the first.
         exposure: Tags of the EXIF directory.
 
     Raises:
-        UsageError: The package that writes TIFF is not installed.
+        UsageError: The package tifffile is not installed.
     """
     if isinstance(target, Path):
         with target.open("w+b") as stream:
@@ -78,10 +78,10 @@ def write_tiff(target: Path | IO[bytes], images: list[TiffImage], exposure: Tags
                 software=False,
             )
     _append_exposure(target, exposure)
-    if len(images) == 2:  # a LONG as DNG has it; tifffile writes the type IFD
+    if len(images) == 2:  # DNG has a LONG; tifffile writes the type IFD
         place, child = _entry(target, _first_directory(target), _CHILDREN)
         _set_entry(target, place, (_CHILDREN, exif.LONG, 1, child))
-    if images[-1].grey_raw:  # tifffile wants three samples of it
+    if images[-1].grey_raw:  # tifffile needs three samples for it
         at = _first_directory(target)
         if len(images) > 1:
             at = _entry(target, at, _CHILDREN)[1]
@@ -90,7 +90,7 @@ def write_tiff(target: Path | IO[bytes], images: list[TiffImage], exposure: Tags
 
 
 def _extra(number: int, kind: int, value: Any) -> tuple[int, int, int, Any, bool]:
-    """A tag as tifffile takes it."""
+    """Converts a tag to tifffile's form."""
     if kind == exif.ASCII:
         return number, kind, 0, value.encode("utf-8"), True
     count = len(value) // (2 if kind in _PAIRS else 1)
@@ -100,7 +100,7 @@ def _extra(number: int, kind: int, value: Any) -> tuple[int, int, int, Any, bool
 
 
 def _append_exposure(stream: IO[bytes], exposure: Tags) -> None:
-    """Puts the EXIF directory at the end of the file, where the first directory then points."""
+    """Appends the EXIF directory and points the first directory to it."""
     end = stream.seek(0, 2)
     stream.write(b"\0" * (end % 2) + exif.directory(exposure, end + end % 2))
     place, _ = _entry(stream, _first_directory(stream), _PLACE)
@@ -113,7 +113,7 @@ def _first_directory(stream: IO[bytes]) -> int:
 
 
 def _entry(stream: IO[bytes], directory: int, tag: int) -> tuple[int, int]:
-    """Where in the file an entry of a directory stands, and its value or the place of that."""
+    """Position of a directory's entry in the file, and its value or the position of its values."""
     stream.seek(directory)
     (count,) = struct.unpack("<H", stream.read(2))
     entries = np.frombuffer(stream.read(12 * count), "<u2,<u2,<u4,<u4")

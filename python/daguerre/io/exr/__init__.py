@@ -1,1 +1,1 @@
-"""OpenEXR files: frames written and read, rows in blocks, headers."""
+"""Reads and writes OpenEXR files: frames, blocks of rows, headers."""

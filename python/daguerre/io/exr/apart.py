@@ -1,8 +1,8 @@
-"""Pictures that only a library can unpack, unpacked in a process of their own.
+"""Unpacks pictures of other compressions in a separate process.
 
-Libraries that decode PIZ, PXR24, B44, DWA, HTJ2K and RLE have ended programs on damaged files.
-Here the damage ends another process: :mod:`daguerre.io.exr.transcode` writes the pixels plainly
-into a temporary file, which our own code reads with the same checks as any other file.
+Libraries that decode PIZ, PXR24, B44, DWA, HTJ2K and RLE have crashed on damaged files. Here only
+another process crashes: :mod:`daguerre.io.exr.transcode` writes plain pixels into a temporary file,
+which is then read with the same checks as any other file.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from daguerre.errors import InputError
 from . import transcode
 from .layout import COMPRESSIONS, Layout
 
-#: Seconds for a picture of no size, and bytes a second after that.
+#: Time limit: seconds for any picture, and bytes per second in addition.
 PATIENCE, PACE = 8.0, 50e6
 
 
 def plain_copy(layout: Layout, folder: TemporaryDirectory[str]) -> Path:
-    """Writes the first part of a file into a folder, with its pixels not packed.
+    """Writes the first part of a file into a folder, with plain pixels.
 
     Raises:
-        InputError: It cannot be decoded; whatever became of the process that tried.
+        InputError: The file cannot be decoded, or the process failed, crashed or took too long.
     """
     kind = COMPRESSIONS[layout.compression][0]
     if layout.index != 0:
@@ -66,7 +66,7 @@ def plain_copy(layout: Layout, folder: TemporaryDirectory[str]) -> Path:
 
 
 def _reason(code: int, text: str, path: str) -> str:
-    """One line of what the process said, or how it ended."""
+    """One line of the process's output, or the signal that ended it."""
     if code < 0:
         try:
             return f"the decoder ended by {signal.Signals(-code).name}"

@@ -1,4 +1,4 @@
-"""Chunks of a part: where they are, held against their own headers and the length of the file."""
+"""Finds the chunks of a part; checks their places, headers and lengths against the file."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from daguerre.errors import InputError
 
 from .layout import NONE, ZIP, ZIPS, Layout
 
-#: Most bytes that one byte becomes; None: nothing is known.
+#: Largest growth of a byte when unpacked, by compression; no entry: unknown.
 _GROWTH = {NONE: 1, 1: 64, ZIPS: DEFLATE_LIMIT, ZIP: DEFLATE_LIMIT, 5: 2 * DEFLATE_LIMIT}
 
 
@@ -21,13 +21,13 @@ CUT = ": the file is cut off or damaged"
 
 
 class Chunks:
-    """The chunks of a part at full size, by row and column of chunks; threads may share it."""
+    """Chunks of a part at full resolution, by row and column of chunks; threads may share it."""
 
     def __init__(self, stream: BinaryIO, layout: Layout) -> None:
-        """Looks all of them up.
+        """Finds and checks all chunks.
 
         Raises:
-            InputError: One lies outside of the file, is another's, or cannot hold its pixels.
+            InputError: A chunk is outside of the file, is another one, or cannot hold its pixels.
         """
         self.layout, self._stream, self._lock = layout, stream, Lock()
         self._size = stream.seek(0, 2)
@@ -38,23 +38,23 @@ class Chunks:
         self._found = [self._checked(i, place) for i, place in enumerate(places.tolist())]
 
     def data(self, row: int, column: int) -> bytes:
-        """The packed bytes of a chunk."""
+        """Reads the packed bytes of a chunk."""
         return self._read(*self._found[row * self.layout.across + column])
 
     def box(self, row: int, column: int) -> tuple[int, int, int, int]:
-        """Columns and rows [x0, x1) x [y0, y1) of a chunk, from the corner of the data window."""
+        """Columns [x0, x1) and rows [y0, y1) of a chunk, from the corner of the data window."""
         layout = self.layout
         wide, tall = layout.tile[0] if layout.tile else layout.width, layout.step
         x, y = column * wide, row * tall
         return x, min(x + wide, layout.width), y, min(y + tall, layout.height)
 
     def unpacked(self, row: int, column: int) -> int:
-        """Bytes of a chunk's pixels."""
+        """Size of a chunk's unpacked pixels, bytes."""
         x0, x1, y0, y1 = self.box(row, column)
         return (x1 - x0) * (y1 - y0) * self.layout.pixel
 
     def _checked(self, index: int, place: int) -> tuple[int, int]:
-        """Place and length of the packed bytes."""
+        """Checks a chunk; returns position and length of its packed bytes."""
         layout = self.layout
         row, column = divmod(index, layout.across)
         wanted = [column, row, 0, 0] if layout.tile else [layout.box[1] + row * layout.step]
@@ -75,7 +75,7 @@ class Chunks:
         if not max(least, 1) <= length <= most:
             raise self._error(where, f"{max(least, 1)} to {most} bytes", f"{length}")
         if place + head + length > self._size:
-            wish = f"a file of {place + head + length} bytes at least"
+            wish = f"a file of at least {place + head + length} bytes"
             raise self._error(where, wish, f"{self._size}{CUT}")
         return place + head, length
 

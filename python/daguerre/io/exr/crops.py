@@ -1,4 +1,4 @@
-"""Joining crops: pictures that were drawn in parts become one file, in bands of little memory."""
+"""Joins crops of a picture into one file, in bands of rows, which needs little memory."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from .reader import ExrReader
 from .rows import ExrWriter
 
 BAND = 64  # rows at a time
-Box = tuple[int, int, int, int]  # first column and row, and those past the last
-#: Attributes that each crop has for itself: counts are added, those of adaptive sampling and light
-#: paths stay where all agree, the others are left out.
+Box = tuple[int, int, int, int]  # first column and row, and last column and row plus 1
+#: Attributes that may differ between crops: counts are added, those of adaptive sampling and light
+#: paths stay if all agree, others are left out.
 COUNTS = ("daguerre:bad_samples", "daguerre:motion_missing")
 IF_ALIKE = ("daguerre:light_paths", "daguerre:noise", "daguerre:denoised_noise")
 ADAPTIVE = ("daguerre:samples", "daguerre:samples_min", "daguerre:samples_max")
@@ -35,18 +35,18 @@ OWN = (
 
 
 def join_crops(paths: Sequence[str | os.PathLike[str]], out: str | os.PathLike[str]) -> Box:
-    """Writes the picture that crops of it make up, with their bits and what they say alike.
+    """Joins crops into a picture with the same pixels, bit by bit, and the attributes they share.
 
     Args:
         paths: Crops of one picture (``.exr``) that fill a rectangle, without overlaps.
         out: File to write; it may be one of them.
 
     Returns:
-        Pixels of the picture that are there now.
+        Box of the joined pixels.
 
     Raises:
         InputError: A file cannot be read.
-        MismatchError: Crops of different pictures, or that overlap, or leave a gap.
+        MismatchError: Crops belong to different pictures, overlap, or leave a gap.
         OutputError: The file cannot be written.
     """
     if not paths:
@@ -64,7 +64,7 @@ def join_crops(paths: Sequence[str | os.PathLike[str]], out: str | os.PathLike[s
 
 
 def box_of(crop: ExrReader) -> Box:
-    """Pixels that a file has."""
+    """Box of the pixels in a file."""
     x, y = crop.corner
     return x, y, x + crop.width, y + crop.height
 
@@ -75,20 +75,20 @@ def _check_alike(first: ExrReader, other: ExrReader) -> None:
     names = sorted(n for n in {*a, *b} - free if a.get(n) != b.get(n))
     if names:
         raise MismatchError(
-            f"{other.path}: is no crop of the picture of {first.path}; different: "
+            f"{other.path}: is no crop of the picture of {first.path}; they differ in: "
             + ", ".join(_difference(name, first, other) for name in names)
         )
 
 
 def _difference(name: str, first: ExrReader, other: ExrReader) -> str:
-    """A name, and its values where they are short."""
+    """Name of an attribute, with both values if they are short."""
     values = [str(one.facts.get(name, "none")) for one in (other, first)]
     short = all(len(value) <= 40 for value in values) and values[0] != values[1]
     return f"{clean(name)} ({values[0]}, wanted {values[1]})" if short else clean(name)
 
 
 def _window(crops: list[ExrReader]) -> Box:
-    """The rectangle that they fill."""
+    """Rectangle that the crops fill; checks for overlaps and gaps."""
     boxes = [box_of(crop) for crop in crops]
     for i, a in enumerate(boxes):
         for k, b in enumerate(boxes[:i]):
@@ -103,7 +103,7 @@ def _window(crops: list[ExrReader]) -> Box:
     if area != filled:
         raise MismatchError(
             f"merge: wanted crops that fill {x1 - x0} x {y1 - y0} px at ({x0}, {y0}), "
-            f"got {area - filled} px less"
+            f"got gaps of {area - filled} px"
         )
     return x0, y0, x1, y1
 
@@ -127,7 +127,7 @@ def _value(crop: ExrReader, name: str) -> tuple[str, bytes] | None:
 
 
 def _rows(crops: list[ExrReader], window: Box, top: int, bottom: int) -> dict[str, NDArray[Any]]:
-    """Rows [top, bottom) of the picture, by channel."""
+    """Reads rows [top, bottom) of the picture, by channel."""
     shape = bottom - top, window[2] - window[0]
     planes = {name: np.empty(shape, dtype) for name, dtype in crops[0].channels.items()}
     for crop in crops:
@@ -143,9 +143,9 @@ def _rows(crops: list[ExrReader], window: Box, top: int, bottom: int) -> dict[st
 
 
 def are_crops(paths: Sequence[str | os.PathLike[str]]) -> bool:
-    """Whether files have different pixels of a picture, so that joining is meant and not adding.
+    """Whether files have different boxes of pixels, so that ``merge`` joins and does not add them.
 
-    A file that cannot be read is no crop: whoever reads it next says why.
+    If a file cannot be read: False; the next reader gives the error.
     """
     boxes = set()
     for path in paths:

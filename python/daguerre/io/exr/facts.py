@@ -1,7 +1,7 @@
-"""Facts of a picture out of its attributes, each with the type that it has where we write it.
+"""Converts attributes of a file to metadata, and checks their types.
 
-A stranger's file may say ``expTime`` as a text, or places of bad samples that are none: what has
-another type than the standard gives it, or than we give it, is no fact and is left out.
+Other programs may write ``expTime`` as a text, or wrong places of bad samples. Attributes of other
+types than the standard or Daguerre give them are left out.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from . import write as exr
 
 
 def read_facts(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """Facts by the names of ``Frame.metadata``: of the standard and of Daguerre."""
+    """Returns metadata with the names of ``Frame.metadata``, from standard and own attributes."""
     standard: tuple[tuple[tuple[str, ...], Callable[[Any], bool]], ...] = (
         (exr.FLOATS, is_number),
         (exr.STRINGS, _is_text),
@@ -44,7 +44,7 @@ def read_facts(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _own(name: str, value: Any) -> Any:
-    """JSON as what it says; a whole number that travelled as text as a number; None: no fact."""
+    """Decodes an own attribute: JSON, or a long integer stored as text; None: wrong type."""
     if name in exr.OWN_NUMBERS:
         number = _whole(value) if isinstance(value, str) else value
         return number if is_number(number) else None
@@ -67,7 +67,7 @@ def _whole(text: str) -> int | None:
 
 
 def is_number(value: Any) -> bool:
-    """Whether it is a number; True and False are none."""
+    """Whether a value is a number, and not True or False."""
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
@@ -88,7 +88,7 @@ def _are_sixteen(value: Any) -> bool:
 
 
 def _are_places(value: Any) -> bool:
-    """Lists of column, row and sample."""
+    """Whether a value is a list of [column, row, sample]."""
     return isinstance(value, list) and all(
         isinstance(place, list) and len(place) == 3 and all(map(is_number, place))
         for place in value
@@ -96,12 +96,12 @@ def _are_places(value: Any) -> bool:
 
 
 def are_texts(value: Any) -> bool:
-    """Whether it is a list of texts."""
+    """Whether a value is a list of texts."""
     return isinstance(value, list) and all(map(_is_text, value))
 
 
 def _is_balance(value: Any) -> bool:
-    """Checks for x and y of a white."""
+    """Whether a value is the x, y of a white."""
     return isinstance(value, list) and len(value) == 2 and all(map(_is_finite, value))
 
 

@@ -1,4 +1,4 @@
-"""Headers of an OpenEXR file as bytes: what nobody here understands is kept all the same.
+"""Reads and makes headers of OpenEXR files; attributes of unknown types are kept as bytes.
 
 Layout: "OpenEXR File Layout", https://openexr.com/en/latest/OpenEXRFileLayout.html
 """
@@ -17,9 +17,9 @@ from daguerre.errors import InputError
 MAGIC = 20000630
 TILED, LONG_NAMES, DEEP, MULTIPART = 0x200, 0x400, 0x800, 0x1000
 KNOWN_FLAGS = TILED | LONG_NAMES | DEEP | MULTIPART
-#: Bytes that are read for headers at first, and at most.
+#: Bytes read for headers: at first, and at most.
 FIRST_READ, MAX_HEADER = 1 << 16, 1 << 26
-#: Attributes of all headers together, and bytes of a name.
+#: Limits: attributes of all headers together, and bytes of a name.
 MAX_ATTRIBUTES, MAX_NAME = 1 << 16, 255
 MAX_CHANNELS = 4096
 PIXEL_TYPES = ("uint32", "float16", "float32")
@@ -27,7 +27,7 @@ PIXEL_TYPES = ("uint32", "float16", "float32")
 
 @dataclass(frozen=True)
 class ExrChannel:
-    """A channel: its name, and the type of its pixels as numpy names it."""
+    """A channel: its name, and the type of its pixels in numpy's terms."""
 
     name: str
     dtype: str
@@ -50,16 +50,16 @@ class ExrHeader:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """The values of all attributes whose type is known."""
+        """Values of all attributes of known type, by name."""
         known = {name: _decoded(*typed) for name, typed in self.attributes.items()}
         return {name: value for name, value in known.items() if value is not None}
 
     @property
     def channels(self) -> list[ExrChannel]:
-        """In the order of the file: that of their names' bytes.
+        """Channels in the order of the file, which sorts names by their bytes.
 
         Raises:
-            ValueError: The list is broken, or has more than 4096.
+            ValueError: The list is damaged, or has more than 4096 channels.
         """
         data, at = self.attributes["channels"][1], 0
         found: list[ExrChannel] = []
@@ -77,7 +77,7 @@ class ExrHeader:
 
 @dataclass(frozen=True)
 class ExrHeaders:
-    """The headers of a file: where they end, and how long the file is, in bytes."""
+    """Headers of a file, their end and the size of the file, bytes."""
 
     parts: list[ExrHeader]
     end: int
@@ -89,10 +89,10 @@ class _CutError(ValueError):
 
 
 def read_headers(path: Path) -> ExrHeaders:
-    """The headers of all parts; no more of a file is read than they have.
+    """Reads the headers of all parts, and not the whole file.
 
     Raises:
-        InputError: It is no OpenEXR file, is cut off, or its headers are broken or endless.
+        InputError: It is not an OpenEXR file, is truncated, or a header is damaged or too long.
     """
     # A pipe might never end. Path.exists fails for names that are too long.
     if os.path.exists(path) and not (path.is_file() or path.is_dir()):  # noqa: PTH110
@@ -114,7 +114,7 @@ def read_headers(path: Path) -> ExrHeaders:
 
 
 def _broken(path: Path, got: str) -> str:
-    return f"{path}: header: wanted that of an OpenEXR file, got {got}"
+    return f"{path}: header: wanted an OpenEXR header, got {got}"
 
 
 def _headers(data: bytes, path: Path) -> tuple[list[ExrHeader], int]:
@@ -144,7 +144,7 @@ def _headers(data: bytes, path: Path) -> tuple[list[ExrHeader], int]:
 
 
 def header_bytes(header: ExrHeader) -> bytes:
-    """Magic number, version and attributes of a scanline file of one part."""
+    """Encodes magic number, version and attributes of a scanline file of one part."""
     out = [struct.pack("<ii", MAGIC, 2 | (header.flags & LONG_NAMES))]
     for name, (kind, data) in header.attributes.items():
         out += [_text(name), _text(kind), struct.pack("<i", len(data)), data]
@@ -160,7 +160,7 @@ def new_header(
         names: Names of the channels, sorted.
         corner: First pixel of the data window, px.
         size: Width and height of the data window, px.
-        full: Those of the display window, which begins at (0, 0), px.
+        full: Width and height of the display window, which begins at (0, 0), px.
     """
     window = struct.pack("<4i", *corner, corner[0] + size[0] - 1, corner[1] + size[1] - 1)
     attributes = {
@@ -177,7 +177,7 @@ def new_header(
 
 
 def channel_list(channels: list[ExrChannel]) -> bytes:
-    """The value of the attribute ``channels``."""
+    """Encodes the value of the attribute ``channels``."""
     rows = [
         _text(c.name) + struct.pack("<4i", PIXEL_TYPES.index(c.dtype), 0, 1, 1) for c in channels
     ]
@@ -189,7 +189,7 @@ def _text(text: str) -> bytes:
 
 
 def _attributes(data: bytes, at: int, before: int) -> tuple[dict[str, tuple[str, bytes]], int]:
-    """Attributes of one part, and where it ends; ``before`` of them were read already."""
+    """Reads attributes of one part, and its end; earlier parts have ``before`` attributes."""
     found: dict[str, tuple[str, bytes]] = {}
     while True:
         if at >= len(data):
@@ -224,7 +224,7 @@ _FORMATS = {
 
 
 def _decoded(kind: str, data: bytes) -> Any:
-    """None: of a type that is not decoded, or broken."""
+    """Decodes a value; None: unknown type, or damaged."""
     try:
         if kind == "string":
             return data.decode("utf-8", "replace")

@@ -1,11 +1,11 @@
-"""Parts of an OpenEXR file as they lie in it, checked before any pixel is unpacked.
+"""Layout of the parts of an OpenEXR file, checked before any pixel is unpacked.
 
-A :class:`Layout` says how large a part is, which channels it has and where its chunks are. What
-a header claims is held against the format and the length of the file here, by our own code, so that
-no library meets a claim that nobody has checked.
+A :class:`Layout` has the size and channels of a part and the places of its chunks. This module
+checks headers against the format and the length of the file, so that libraries get only checked
+values.
 
-Sources: "OpenEXR File Layout", https://openexr.com/en/latest/OpenEXRFileLayout.html; the numbers of
-rows in a chunk: "OpenEXR Technical Introduction", "Data Compression".
+Sources: "OpenEXR File Layout", https://openexr.com/en/latest/OpenEXRFileLayout.html; rows of
+a chunk: "OpenEXR Technical Introduction", "Data Compression".
 """
 
 from __future__ import annotations
@@ -20,31 +20,31 @@ from daguerre.files.json_item import short
 
 from .header import DEEP, MULTIPART, PIXEL_TYPES, TILED, ExrHeader, ExrHeaders, read_headers
 
-#: Name and rows of a chunk by the number of the compression.
+#: Name of each compression and rows of its chunks; the index is its number.
 COMPRESSIONS = (
     ("NONE", 1), ("RLE", 1), ("ZIPS", 1), ("ZIP", 16), ("PIZ", 32), ("PXR24", 16), ("B44", 32),
     ("B44A", 32), ("DWAA", 32), ("DWAB", 256), ("HTJ2K256", 256), ("HTJ2K32", 32),
 )  # fmt: skip
 NONE, ZIPS, ZIP = 0, 2, 3
-#: Coordinates of windows: half of what 32 bits hold, so that differences fit, too (the library's).
+#: Limit of coordinates of windows, as in the library: their differences fit 32 bits.
 MAX_PLACE = 1 << 30
 BYTES = dict(zip(PIXEL_TYPES, (4, 2, 4), strict=True))
 
 
 @dataclass(frozen=True)
 class Layout:
-    """A part of flat pixels that fits the file.
+    """A part of flat pixels, checked against the file.
 
     Attributes:
         path: The file.
         header: The part's header.
         index: Number of the part.
-        channels: Types by name, as numpy names them, in the order of the file.
-        compression: Number of :data:`COMPRESSIONS`.
-        box: Data window: first column and row, and the last, px.
+        channels: Numpy type names by channel, in the order of the file.
+        compression: Index in :data:`COMPRESSIONS`.
+        box: Data window: first column and row, last column and row, px.
         tile: Width and height of tiles, px; None: scanlines.
-        table: Place of its list of chunks in the file, bytes.
-        data: Place of the first byte behind all lists of chunks.
+        table: Position of its list of chunks in the file, bytes.
+        data: Position of the first byte after all lists of chunks.
     """
 
     path: Path
@@ -69,7 +69,7 @@ class Layout:
 
     @property
     def name(self) -> str:
-        """The part's name; empty if it has none."""
+        """Name of the part; empty if it has none."""
         kind, data = self.header.attributes.get("name", ("", b""))
         return data.decode("utf-8", "replace") if kind == "string" else ""
 
@@ -90,37 +90,38 @@ class Layout:
 
     @property
     def step(self) -> int:
-        """Rows of a chunk."""
+        """Rows in a chunk."""
         return self.tile[1] if self.tile else COMPRESSIONS[self.compression][1]
 
     @property
     def steps(self) -> int:
-        """Chunks from the first row to the last."""
+        """Number of chunks from top to bottom."""
         return -(-self.height // self.step)
 
     @property
     def across(self) -> int:
-        """Chunks from the first column to the last."""
+        """Number of chunks from left to right."""
         return -(-self.width // self.tile[0]) if self.tile else 1
 
 
 def read_layouts(path: Path, wanted: int | None = None) -> list[Layout]:
-    """The parts of a file with their places.
+    """Reads and checks the layouts of the parts of a file.
 
     Args:
         path: The file.
-        wanted: Number of the one part that matters; the others may be of any kind. None: all do.
+        wanted: Number of the only part to check; others may be of any kind. None: all parts.
 
     Raises:
-        InputError: It is no OpenEXR file; or a part that matters is deep, subsampled, broken,
-            larger than its file can be, or of an unknown kind.
+        InputError: It is not an OpenEXR file; or a checked part is deep, subsampled, damaged,
+            larger than its file can hold, or of an unknown kind.
     """
     headers = read_headers(path)
     counts = [_chunk_count(path, header) for header in headers.parts]
     if headers.end + 8 * sum(counts) > headers.size:
         raise InputError(
-            f"{path}: {sum(counts)} blocks of pixels: wanted {headers.end + 8 * sum(counts)} bytes "
-            f"at least, got {headers.size}: the file is cut off or damaged"
+            f"{path}: {sum(counts)} blocks of pixels: wanted at least "
+            f"{headers.end + 8 * sum(counts)} bytes, got {headers.size}: "
+            "the file is cut off or damaged"
         )
     ends = [headers.end + 8 * sum(counts[: i + 1]) for i in range(len(counts))]
     found = range(len(counts)) if wanted is None else (wanted,)
@@ -138,7 +139,7 @@ def _layout(path: Path, headers: ExrHeaders, index: int, table: int, data: int) 
 
 
 def _value(path: Path, header: ExrHeader, name: str, kind: str, size: int | None) -> bytes:
-    """The bytes of an attribute that must be there."""
+    """Bytes of a required attribute, checked for type and size."""
     found, data = header.attributes.get(name, ("", b""))
     if found != kind or (size is not None and len(data) != size):
         got = f"{short(found)} of {len(data)} bytes" if found else "none"
@@ -147,8 +148,8 @@ def _value(path: Path, header: ExrHeader, name: str, kind: str, size: int | None
 
 
 def _kind(header: ExrHeader) -> str:
-    """The type of a part: scanlineimage, tiledimage, deepscanline, deeptile."""
-    if not header.flags & MULTIPART:  # the flags alone say it
+    """Type of a part: scanlineimage, tiledimage, deepscanline, deeptile."""
+    if not header.flags & MULTIPART:  # single parts have it in the flags
         deep = "deeptile" if header.flags & TILED else "deepscanline"
         flat = "tiledimage" if header.flags & TILED else "scanlineimage"
         return deep if header.flags & DEEP else flat
@@ -189,7 +190,7 @@ def _channels(path: Path, header: ExrHeader) -> dict[str, str]:
             error
         )
     if not channels:
-        raise InputError(f"{path}: channels: wanted some, got none")
+        raise InputError(f"{path}: channels: wanted at least one, got none")
     found: dict[str, str] = {}
     for channel in channels:
         if any("\ud800" <= letter <= "\udfff" for letter in channel.name):
@@ -229,9 +230,9 @@ def _tiles(path: Path, header: ExrHeader) -> tuple[int, int, int]:
 
 
 def _chunk_count(path: Path, header: ExrHeader) -> int:
-    """Entries of a part's list of chunks, of all its levels.
+    """Number of chunks of a part, in all its levels.
 
-    Deep parts, which nobody here reads, are believed: the places behind them are checked anyway.
+    The count of deep parts, which are not read, is not checked, but the places after them are.
     """
     kind, data = header.attributes.get("chunkCount", ("", b""))
     told: int | None = struct.unpack("<i", data)[0] if kind == "int" and len(data) == 4 else None
@@ -256,16 +257,16 @@ def _tile_count(size: tuple[int, int], width: int, height: int, mode: int) -> in
     down = [-(-n // height) for n in _level_sizes(size[1], mode >> 4)]
     if mode & 15 == 0:
         return across[0] * down[0]
-    if mode & 15 == 2:  # a rip-map: every width with every height
+    if mode & 15 == 2:  # rip-map: every width with every height
         return sum(across) * sum(down)
-    levels = max(len(across), len(down))  # a mip-map: the shorter side stays at one pixel
+    levels = max(len(across), len(down))  # mip-map: the shorter side stays at one pixel
     across += [1] * (levels - len(across))
     down += [1] * (levels - len(down))
     return sum(a * b for a, b in zip(across, down, strict=True))
 
 
 def _level_sizes(size: int, up: int) -> list[int]:
-    """Sizes of the levels of one side, each half of the one before, rounded down or up."""
+    """Sizes of the levels along one side; each is half of the one before, rounded down or up."""
     found, level = [size], 0
     while found[-1] > 1:
         level += 1

@@ -1,7 +1,7 @@
-"""The one reader of the pixels of OpenEXR files: any part of them, in bands of rows.
+"""Reads the pixels of any part of an OpenEXR file, in bands of rows.
 
-Our own code reads plain and deflated pixels (NONE, ZIPS, ZIP), which is all that Daguerre writes;
-:mod:`daguerre.io.exr.apart` has the other kinds unpacked by another process.
+This code reads plain and deflated pixels (NONE, ZIPS, ZIP), which are all that Daguerre writes;
+:mod:`daguerre.io.exr.apart` has other compressions unpacked by another process.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from .unpack import inflated
 
 Planes = dict[str, NDArray[Any]]
 OURS = (NONE, ZIPS, ZIP)
-_SMALL = 1 << 20  # bytes that are not worth a thread, nor a look at the memory that is free
+_SMALL = 1 << 20  # bytes; below this, neither threads nor a check of free memory pay
 
 
 class PartReader:
-    """Pixels of a part; ``rows`` reads some of them, in any order.
+    """Reader of the pixels of a part; ``rows`` reads some of them, in any order.
 
     Attributes:
         path: The file.
-        layout: Where what is in it.
-        channels: Types by name, as numpy names them, in the order of the file.
+        layout: Layout of the part in the file.
+        channels: Numpy type names by channel, in the order of the file.
         width: Columns, px.
         height: Rows, px.
     """
@@ -43,7 +43,7 @@ class PartReader:
         """Opens a file.
 
         Raises:
-            InputError: It cannot be read, is cut off, or does not fit its header.
+            InputError: The file cannot be read, is truncated, or does not fit its header.
         """
         self.path, self.layout, self.channels = layout.path, layout, layout.channels
         self.width, self.height = layout.width, layout.height
@@ -61,15 +61,15 @@ class PartReader:
             raise
 
     def rows(self, begin: int, end: int, names: Collection[str] | None = None) -> Planes:
-        """Rows [begin, end), counted from the first of the data window, by channel.
+        """Reads rows [begin, end), counted from the top of the data window, by channel.
 
         Args:
             begin: First row.
             end: Row past the last.
-            names: Channels; None: all.
+            names: Channels to read; None: all.
 
         Raises:
-            InputError: The file is damaged there, or there is too little memory.
+            InputError: These rows are damaged, or there is too little memory.
         """
         if self.layout.compression not in OURS:
             return self._plain().rows(begin, end, names)
@@ -86,7 +86,7 @@ class PartReader:
             blocks = self._blocks(row)
             for column, block in enumerate(blocks):
                 self._put(planes, (begin, end), row, column, block)
-            if row == steps[-1] and end % step:  # the next band begins with it
+            if row == steps[-1] and end % step:  # the next band begins in this block
                 last = row, blocks
 
         if self.layout.compression == NONE or len(steps) == 1 or size < _SMALL:
@@ -99,7 +99,7 @@ class PartReader:
         return planes
 
     def check_memory(self, size: int) -> None:
-        """Holds ``size`` bytes against the memory that is free.
+        """Checks that ``size`` bytes fit into free memory.
 
         Raises:
             InputError: They do not fit.
@@ -114,7 +114,7 @@ class PartReader:
             )
 
     def close(self) -> None:
-        """Lets go of the file."""
+        """Closes the file and removes temporary files."""
         self._stream.close()
         if self._copy is not None:
             self._copy.close()
@@ -122,7 +122,7 @@ class PartReader:
             self._folder.cleanup()
 
     def __del__(self) -> None:
-        """Sources of rows live as long as what is made of them; nobody closes those."""
+        """Closes the file for readers that live as long as an object made from them."""
         if hasattr(self, "_stream"):
             self.close()
 
@@ -133,7 +133,7 @@ class PartReader:
         self.close()
 
     def _blocks(self, row: int) -> list[NDArray[np.uint8]]:
-        """The chunks of a row of them, unpacked."""
+        """Returns the unpacked chunks of a row of chunks."""
         at, kept = self._kept
         if at == row:
             return kept
@@ -144,7 +144,7 @@ class PartReader:
         try:
             if self.layout.compression != NONE:
                 return inflated(data, size)
-            if len(data) != size:  # somebody cut the file off while it was read
+            if len(data) != size:  # the file was truncated while it was read
                 raise ValueError(f"wanted {size} bytes of pixels, got {len(data)}")
         except ValueError as error:
             _, _, y0, y1 = self._chunks.box(row, column)
@@ -154,7 +154,7 @@ class PartReader:
     def _put(
         self, planes: Planes, rows: tuple[int, int], row: int, column: int, block: NDArray[np.uint8]
     ) -> None:
-        """A chunk's pixels into the planes: row by row, in each the channels one after another."""
+        """Copies a chunk's pixels into planes; each row has its channels one after another."""
         x0, x1, y0, y1 = self._chunks.box(row, column)
         top, bottom = max(y0, rows[0]), min(y1, rows[1])
         lines = block.reshape(y1 - y0, -1)[top - y0 : bottom - y0]
@@ -167,7 +167,7 @@ class PartReader:
             at += width
 
     def _plain(self) -> PartReader:
-        """The same pixels, unpacked by another process."""
+        """Returns a reader of the same pixels, unpacked by another process."""
         if self._copy is None:
             self.check_memory(self.layout.size)
             self._folder = TemporaryDirectory(prefix="daguerre-", ignore_cleanup_errors=True)
@@ -175,6 +175,6 @@ class PartReader:
             layout = read_layouts(path, 0)[0]
             same = (layout.channels, layout.box) == (self.channels, self.layout.box)
             if not (same and layout.compression == NONE):
-                raise InputError(f"{self.path}: cannot be decoded: its pixels came back as others")
+                raise InputError(f"{self.path}: cannot be decoded: its copy has other pixels")
             self._copy = PartReader(layout)
         return self._copy

@@ -1,7 +1,7 @@
-"""OpenEXR files as frames: what Daguerre wrote comes back whole; of others, what is there.
+"""Reads OpenEXR files as frames: Daguerre's own completely, others as far as they go.
 
-The counterpart of :mod:`daguerre.io.exr.write`. Colors of other primaries become Rec.709; white is
-adapted, so that (1, 1, 1) stays white.
+The counterpart of :mod:`daguerre.io.exr.write`. Colours of other primaries become Rec.709, with
+white adapted, so that (1, 1, 1) stays white.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
     If a file has several parts, it reads the first.
 
     Args:
-        path: ``.exr``.
+        path: An ``.exr`` file.
 
     Returns:
-        The frame. ``xyz`` is made of ``rgb``; channels that are no part of a frame are among its
-        ``aovs``, by name. Half floats become floats.
+        The frame. ``xyz`` is computed from ``rgb``; other channels are in ``aovs``, by name. Half
+        floats become floats.
 
     Raises:
-        InputError: It cannot be read, or has neither R, G, B nor Y.
+        InputError: The file cannot be read, or has neither R, G, B nor Y.
     """
     with ExrReader(path) as reader:
         planes = reader.rows(0, reader.height)
@@ -82,7 +82,7 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
 
 
 def _place(reader: ExrReader) -> dict[str, Any]:
-    """Size of the whole picture and the part of it that is there; overscan lies beside it."""
+    """Size of the whole picture, and the box in the file; overscan lies outside of the picture."""
     (x, y), (left, top) = reader.corner, reader.full_corner
     x0, y0 = x - left, y - top
     width, height = reader.full_size
@@ -95,7 +95,7 @@ def _writable(plane: NDArray[Any]) -> NDArray[Any]:
 
 
 def _group(planes: Planes, names: list[str]) -> NDArray[np.float32] | None:
-    """Takes channels out of ``planes``; None: there are none, or one is missing."""
+    """Removes channels from ``planes`` and stacks them; None: no names, or one is missing."""
     if not names or not all(name in planes for name in names):
         return None
     return np.stack([planes.pop(name) for name in names], axis=2)
@@ -112,7 +112,7 @@ def _rgb(planes: Planes, path: str | os.PathLike[str]) -> NDArray[np.float32]:
 
 
 def _to_rec709(chromaticities: Any) -> NDArray[np.float64] | None:
-    """Rec.709 from RGB of other primaries and white; None: they are Rec.709."""
+    """Matrix to Rec.709 from other primaries and white; None: already Rec.709, or invalid."""
     if not isinstance(chromaticities, tuple) or len(chromaticities) != 8:
         return None
     if np.allclose(chromaticities, exr.REC709, atol=2e-4):

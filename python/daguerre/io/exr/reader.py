@@ -1,4 +1,4 @@
-"""OpenEXR files as pictures: the first part, with its windows and facts."""
+"""Reads the first part of an OpenEXR file, with its windows and attributes."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from .parts import PartReader
 
 
 class ExrReader(PartReader):
-    """The first part of a file.
+    """Reader of the first part of a file.
 
     Attributes:
-        header: Its header.
-        facts: The values of its attributes.
+        header: Header of the part.
+        facts: Values of its attributes, by name.
         corner: First pixel of the data window, px.
         full_corner: First pixel of the display window, px.
         full_size: Width and height of the display window, px.
@@ -30,7 +30,7 @@ class ExrReader(PartReader):
         """Opens a file.
 
         Raises:
-            InputError: It cannot be read, or its windows make no sense.
+            InputError: The file cannot be read, or a window is missing, empty or too large.
         """
         layout = read_layouts(Path(path), 0)[0]
         self.path = layout.path
@@ -57,7 +57,7 @@ class ExrReader(PartReader):
 
 
 def is_exr(path: str | os.PathLike[str]) -> bool:
-    """Whether a file begins as OpenEXR does, whatever its name; False if it cannot be read."""
+    """Whether a file begins like OpenEXR, whatever its name; False if it cannot be read."""
     try:
         with Path(path).open("rb") as stream:
             return stream.read(4) == MAGIC.to_bytes(4, "little")
@@ -66,16 +66,16 @@ def is_exr(path: str | os.PathLike[str]) -> bool:
 
 
 def light_names(names: Sequence[str], where: str) -> list[str]:
-    """The channels of red, green and blue, or one of grey three times.
+    """Finds the channels of red, green and blue, or a grey one, which is returned three times.
 
-    Those of no layer come first; a layer has all three of its own.
+    Channels without a layer come first; else all three come from one layer.
 
     Args:
         names: Names of all channels.
-        where: The file, for complaints.
+        where: The file, for messages.
 
     Raises:
-        InputError: There are none.
+        InputError: There are no such channels.
     """
     layers = sorted(
         {name.rpartition(".")[0] for name in names}, key=lambda name: (name != "", name)

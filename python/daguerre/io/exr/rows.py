@@ -1,9 +1,9 @@
-"""OpenEXR written in bands of rows, so that a picture need not fit into memory.
+"""Writes OpenEXR in bands of rows, so that a picture need not fit into memory.
 
-OpenEXR's Python module writes whole pictures only, and drops attributes that it does not know when
-it writes rows; so rows are written here, as the format describes it: scanline blocks, plain or
-deflated (https://openexr.com/en/latest/OpenEXRFileLayout.html,
-"Predictor and interleaving": OpenEXR Technical Introduction).
+OpenEXR's Python module writes whole pictures only, and drops attributes that it does not know. So
+this module writes scanline blocks itself, plain or deflated
+(https://openexr.com/en/latest/OpenEXRFileLayout.html; predictor and interleaving: OpenEXR Technical
+Introduction).
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ DEFLATE_LEVEL = 4  # OpenEXR's own default
 
 
 class ExrWriter:
-    """Writes a scanline file row by row, with the attributes of the file that it was made from."""
+    """Writes a scanline file row by row, with the attributes of a source file."""
 
     def __init__(self, path: Path, source: ExrHeader, attributes: Mapping[str, str] = {}) -> None:
         """Opens a file.
 
         Args:
-            path: Where; put :func:`daguerre.files.atomic.atomic_path` around it.
-            source: Its attributes are kept, but for how pixels are packed.
-            attributes: Texts to add.
+            path: File; use :func:`daguerre.files.atomic.atomic_path` for an atomic write.
+            source: Header whose attributes are kept, except those of the packing of pixels.
+            attributes: Text attributes to add.
         """
         packed = source.facts.get("compression", NONE)
         self._compression = NONE if packed == NONE else ZIP
@@ -60,10 +60,10 @@ class ExrWriter:
         self._stream.write(bytes(8 * self._blocks(self._height)))
 
     def write(self, planes: Planes) -> None:
-        """The next rows, by channel, in the types of the file.
+        """Writes the next rows, by channel, in the types of the file.
 
         Raises:
-            OutputError: The disk is full, or gone.
+            OutputError: The disk is full, or not available.
         """
         self._waiting.append(planes)
         rows = sum(len(next(iter(p.values()))) for p in self._waiting)
@@ -101,7 +101,7 @@ class ExrWriter:
         return -(-rows // self._block)
 
     def _packed(self, planes: Planes) -> bytes:
-        """A block of rows: row by row, in each the channels one after another."""
+        """Packs a block of rows; each row has its channels one after another."""
         count = len(next(iter(planes.values())))
         lines = [
             np.ascontiguousarray(planes[c.name], np.dtype(c.dtype).newbyteorder("<"))

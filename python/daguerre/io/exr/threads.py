@@ -1,7 +1,7 @@
-"""Threads of the package OpenEXR: there while a file is written, since a fork would lose them.
+"""Runs the threads of the package OpenEXR only while a file is written, as a fork loses them.
 
-A process that is forked has one thread. To the package those of its parent still seem to be there,
-so it would wait for them for ever.
+A forked process has one thread. The package would still count its parent's threads, and wait for
+them for ever.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ _torn = False
 
 @contextmanager
 def threads(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Lets the package compress on many threads, which is most of the time of writing.
+    """Lets the package compress on several threads, as compression takes most of the time.
 
     Args:
-        path: The file that is written, for complaints.
+        path: The file that is written, for messages.
 
     Raises:
-        OutputError: This process was forked while another thread of its parent was in here.
+        OutputError: This process was forked while another thread of its parent wrote an .exr.
     """
     import OpenEXR
 
@@ -34,7 +34,7 @@ def threads(path: str | os.PathLike[str]) -> Iterator[None]:
     if _torn:
         raise OutputError(
             f"{path}: cannot write: this process was forked while its parent wrote an .exr; start "
-            "processes by spawn or forkserver, or fork when nothing is written"
+            "processes by spawn or forkserver, or fork while no .exr is written"
         )
     with _changing:
         _writers += 1

@@ -1,9 +1,9 @@
-"""Another program that unpacks what :mod:`daguerre.io.exr.unpack` does not: a crash is its own.
+"""Program that unpacks what :mod:`daguerre.io.exr.unpack` does not; it may crash by itself.
 
-Run as a file, ``python -I -S transcode.py IN OUT PACKAGE BYTES``: it knows nothing of Daguerre, and
-imports next to nothing, as every import is paid for once per picture. PACKAGE is the folder of
-OpenImageIO, BYTES the size of the pixels. OUT is IN's first part at full size, in plain scanlines:
-its channels and windows, and nothing else.
+Run it as ``python -I -S transcode.py IN OUT PACKAGE BYTES``. It imports nothing of Daguerre and
+little else, since each picture pays for every import. PACKAGE is the folder of OpenImageIO, BYTES
+the size of the pixels. OUT becomes IN's first part at full resolution in plain scanlines, with its
+channels and windows and no other attributes.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ SPARE = 1 << 30  # of the address space, for the program itself
 
 
 def limit(size: int) -> None:
-    """Bounds memory and the length of files, and leaves no core dump, where the system can."""
+    """Limits memory and file sizes and disables core dumps, where the system can."""
     try:
         import resource
     except ImportError:  # Windows
@@ -31,7 +31,7 @@ def limit(size: int) -> None:
 
 
 def transcode(source: str, target: str) -> str:
-    """Writes the plain file; returns what was wrong."""
+    """Writes the plain file; returns an error message, or an empty string."""
     import OpenImageIO as oiio
 
     oiio.attribute("threads", 4)
@@ -53,8 +53,8 @@ def transcode(source: str, target: str) -> str:
 
 
 if __name__ == "__main__":
-    if sys.platform != "win32":  # there the package looks for its DLLs
-        sys.path.append(sys.argv[3])  # its compiled module alone: a third of its time to import
+    if sys.platform != "win32":  # on Windows the package looks for its DLLs
+        sys.path.append(sys.argv[3])  # its compiled module alone imports in a third of the time
     sys.path.append(f"{sys.argv[3]}/..")
     limit(int(sys.argv[4]))
     wrong = transcode(sys.argv[1], sys.argv[2])

@@ -1,4 +1,4 @@
-"""Deflated pixels of OpenEXR as plain ones, by libdeflate; nothing else touches their bytes."""
+"""Unpacks deflated pixels of OpenEXR by libdeflate."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from daguerre import _core
 
 
 def inflated(data: bytes, size: int) -> NDArray[np.uint8]:
-    """The bytes of a block.
+    """Unpacks a block.
 
     Args:
-        data: Those of the file; plain where deflating would not have paid.
+        data: Bytes in the file; plain pixels if deflating did not make them smaller.
         size: Bytes of the pixels, at least one.
 
     Raises:
-        ValueError: They are damaged, or of another size.
+        ValueError: The data are damaged, or give another size.
     """
     if len(data) == size:
         return np.frombuffer(data, np.uint8)

@@ -1,6 +1,6 @@
-"""OpenEXR: the channels and attributes of a frame, by the names of the format and of Daguerre.
+"""Writes frames as OpenEXR, with channels and attributes of the standard and of Daguerre.
 
-Standard attributes: OpenEXR "Standard Optional Attributes"; those with ``daguerre:`` are our own.
+Standard attributes: OpenEXR "Standard Optional Attributes"; own ones begin with ``daguerre:``.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .threads import threads
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
 
-#: Rec.709: red, green, blue and white as x, y.
+#: Rec.709 primaries and white: x, y of red, green, blue and white.
 REC709 = (*itertools.chain(*P709), *D65_STATED)
 
 FLOATS = (
@@ -58,11 +58,11 @@ Channels = Mapping[str, NDArray[np.float32] | NDArray[np.uint32]]
 
 
 def attributes(metadata: Mapping[str, Any]) -> dict[str, Any]:
-    """EXR header attributes with the types of the standard.
+    """Converts metadata to header attributes with the types of the standard.
 
     Args:
-        metadata: Facts by name, units and frames as the standard has them (matrices act on row
-            vectors). Unknown names, and None, are left out.
+        metadata: Metadata by name, with the standard's units and frames (matrices act on row
+            vectors). Unknown names and None are left out.
     """
     found: dict[str, Any] = {
         "chromaticities": REC709,
@@ -91,12 +91,12 @@ def attributes(metadata: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]]:
-    """The channels of a frame by the names of the file, all that it has.
+    """Returns all channels of a frame, by their names in the file.
 
-    R G B A, its AOVs, flare.R/G/B, catcher.R/G/B and catcher_ratio.R/G/B, variance.R/G/B,
-    samples.Y, its mattes (CryptoObject00.R), those of its sensor (sensor.R; catcher_sensor.R,
-    catcher_ratio_sensor.R) and its bands of wavelengths (bands.0380-0405, nm). An array of three
-    planes stands for three channels, as OpenEXR has it: no copies are made.
+    These are R G B A, AOVs, flare.R/G/B, catcher.R/G/B and catcher_ratio.R/G/B, variance.R/G/B,
+    samples.Y, mattes (CryptoObject00.R), sensor channels (sensor.R; catcher_sensor.R,
+    catcher_ratio_sensor.R) and wavelength bands (bands.0380-0405, nm). An array of three planes is
+    three channels, as in the package OpenEXR, which saves copies.
     """
     planes: dict[str, NDArray[np.float32] | NDArray[np.uint32]] = {"RGB": frame.rgb}
     planes["A"] = frame.alpha
@@ -138,12 +138,12 @@ def band_names(count: int) -> list[str]:
 
 
 def header(frame: Frame) -> dict[str, Any]:
-    """Attributes of a frame, with the names of its mattes."""
+    """Header attributes of a frame, with the names of its mattes."""
     return attributes(frame.metadata) | cryptomatte.attributes(frame.cryptomatte)
 
 
 def write_exr(path: str | os.PathLike[str], frame: Frame) -> None:
-    """Writes a frame, atomically, as one multichannel part."""
+    """Writes a frame atomically as one multichannel part."""
     write_parts(path, [("beauty", header(frame), channels(frame))], frame)
 
 
@@ -153,7 +153,7 @@ def write_parts(
     """Writes parts (name, attributes, channels) that share the windows of ``frame``.
 
     Raises:
-        OutputError: The file cannot be written; nothing is left of it.
+        OutputError: The file cannot be written; no partial file is left.
     """
     _write(path, parts, _windows(frame.metadata, frame.rgb.shape))
 
@@ -164,10 +164,10 @@ def write_planes(
     planes: Channels,
     metadata: Mapping[str, Any],
 ) -> None:
-    """Writes channels that are no picture; their place is told by resolution and crop.
+    """Writes channels that are not a picture; ``metadata`` gives resolution and crop.
 
     Raises:
-        OutputError: The file cannot be written; nothing is left of it.
+        OutputError: The file cannot be written; no partial file is left.
     """
     windows = _windows(metadata, next(iter(planes.values())).shape)
     _write(path, [("map", dict(header), planes)], windows)
@@ -195,7 +195,7 @@ def _write(
 
 
 def without_infinity(value: Any) -> Any:
-    """JSON has no infinity; the text "inf" is read back by every float()."""
+    """Replaces infinity, which JSON lacks, by the text "inf", which float() reads."""
     if isinstance(value, dict):
         return {key: without_infinity(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):
@@ -213,7 +213,7 @@ def jsonable(value: Any) -> Any:
 
 
 def _windows(metadata: Mapping[str, Any], shape: tuple[int, ...]) -> dict[str, Any]:
-    """A crop keeps its place in the display window; overscan reaches out of it."""
+    """Data and display window: a crop keeps its place; overscan extends outside of the display."""
     height, width = shape[:2]
     full_width, full_height = metadata.get("resolution") or (width, height)
     x0, y0 = (metadata.get("crop") or (0, 0))[:2]
@@ -233,7 +233,7 @@ def _plane(name: str, plane: NDArray[Any]) -> NDArray[np.float32] | NDArray[np.u
 
 
 def _pair(value: Any) -> NDArray[np.float32]:
-    """A v2f; one number stands for both axes."""
+    """Converts to a v2f; one number is used for both axes."""
     return np.ascontiguousarray(np.broadcast_to(np.asarray(value, np.float32), (2,)))
 
 
@@ -243,7 +243,7 @@ def _positive(value: Any) -> bool:
 
 
 def _rational(value: Any) -> Fraction:
-    """``rational`` has a signed 32-bit numerator; 23.976... becomes 24000/1001."""
+    """Converts to a short fraction for ``rational``: 23.976... becomes 24000/1001."""
     if isinstance(value, tuple | list):
         return Fraction(int(value[0]), int(value[1]))
     fraction = Fraction(value)
@@ -252,7 +252,7 @@ def _rational(value: Any) -> Fraction:
 
 
 def _number(value: Any) -> int | float | str:
-    """EXR integers have 32 bits; a longer one (a seed) travels as text."""
+    """Converts a number; integers beyond 32 bits (seeds) become text, as EXR has only 32 bits."""
     if isinstance(value, int | np.integer):
         return int(value) if -(2**31) <= int(value) < 2**31 else str(int(value))
     return float(value)
