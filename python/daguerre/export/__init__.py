@@ -1,4 +1,4 @@
-"""Fitted lenses as code: C, GLSL, OSL for Blender's custom camera, NumPy; and as JSON."""
+"""Exports fitted lenses: C, GLSL, OSL for Blender's custom camera, NumPy and JSON."""
 
 from .files import SUFFIXES, check_suffix, code, save
 

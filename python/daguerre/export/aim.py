@@ -1,6 +1,6 @@
-"""Where to shoot for a point of the iris, and how bright the middle of the film becomes.
+"""Fits the aim, film slopes for points of the iris, and the exposure at the centre of the film.
 
-Both are found by drawing rays through the exported functions themselves, in numpy.
+Both come from rays through the exported functions themselves, in numpy.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from .plan import Aim, LensPlan, Vector
 
 FloatArray = NDArray[np.float64]
 Exponents = list[tuple[int, ...]]
-#: film points (mm), slopes, wavelengths (nm) and iris points (mm)
+#: Film points (mm), slopes, wavelengths (nm) and iris points (mm).
 FilmRays = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
 IRIS_OUTPUTS = RAY.index("iris_x"), RAY.index("iris_y")
-DEGREES = (4, 5)  # that are tried, in the variables of axial symmetry
-FREE_DEGREES = (5, 6)  # without it, in all coordinates
+DEGREES = (4, 5)  # tried degrees in the variables of axial symmetry
+FREE_DEGREES = (5, 6)  # tried degrees without symmetry, in all coordinates
 RAYS = 6000
-MARGIN = 1.06  # how far beyond the iris the aim is fitted
+MARGIN = 1.06  # fitted radius over the iris radius; also the largest enlargement
 EXPOSURE_NM = range(440, 680, 20)
-#: V(lambda) of CIE 1924, and D65 of ISO/CIE 11664-2: what the eye makes of daylight
+#: V(lambda), CIE 1924, and D65, ISO/CIE 11664-2; their product weights wavelengths.
 _EYE = (0.023, 0.06, 0.139, 0.323, 0.71, 0.954, 0.995, 0.87, 0.631, 0.381, 0.175, 0.061)
 _DAYLIGHT = (104.9, 117.8, 115.9, 109.4, 104.8, 104.4, 100, 95.8, 90, 87.7, 83.7, 80.2)
 EXPOSURE_WEIGHTS = np.array(_EYE) * _DAYLIGHT / np.dot(_EYE, _DAYLIGHT)
@@ -38,23 +38,23 @@ EXPOSURE_TERMS = 3
 
 
 def with_aim(plan: LensPlan) -> LensPlan:
-    """The plan, ready to draw: with an aim if one fits, and with its exposure."""
+    """Adds the aim, if one fits, and the exposure to a plan, which can then sample rays."""
     aim = fit_aim(plan)
     plan = replace(plan, aim=aim, exposure=(1.0,))
     return replace(plan, exposure=exposure(plan))
 
 
 def callables(plan: LensPlan) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """``evaluate`` and ``sample`` as numpy functions."""
+    """Returns ``evaluate`` and ``sample`` as numpy functions."""
     room: dict[str, Any] = {}
     name = languages.identifier(plan.name)
-    # Our own code of numbers: without facts the one word of the lens's file in it is this name.
+    # Safe to execute: without facts, the lens's name is the only text from its file.
     exec(compile(languages.numpy_file(plan, []), f"<{name}>", "exec"), room)
     return room[f"{name}_evaluate"], room[f"{name}_sample"]
 
 
 def fit_aim(plan: LensPlan) -> Aim | None:
-    """The film slope m(film point, iris point, l), fitted to rays of the plan; None: no good."""
+    """Fits the film slope m(film point, iris point, l) to rays; None: no fit is good enough."""
     outer = plan.blades.outer if plan.blades else 1.0
     rays = _film_rays(plan, MARGIN * outer * plan.iris_radius_mm)
     tried = (_aim(plan, rays, n) for n in (DEGREES if plan.symmetric else FREE_DEGREES))
@@ -62,7 +62,7 @@ def fit_aim(plan: LensPlan) -> Aim | None:
 
 
 def _aim(plan: LensPlan, rays: FilmRays, degree: int) -> Aim:
-    """Fits an aim of one degree, enlarged by its error on rays that it was not fitted to."""
+    """Fits an aim of one degree, enlarged by its error on fresh rays."""
     film, slope, nm, iris = rays
     radius = MARGIN * (plan.blades.outer if plan.blades else 1.0) * plan.iris_radius_mm
     exponents = _exponents(plan.symmetric, degree)
@@ -79,7 +79,7 @@ def _aim(plan: LensPlan, rays: FilmRays, degree: int) -> Aim:
 
 
 def exposure(plan: LensPlan) -> tuple[float, ...]:
-    """The mean weight on the axis in daylight, as `LensPlan.exposure` has it."""
+    """Fits the mean weight on the axis in daylight, in the form of `LensPlan.exposure`."""
     _, sample = callables(plan)
     u1, u2 = quasi_random(2, 1024).T
     values = [
@@ -97,7 +97,7 @@ def exposure(plan: LensPlan) -> tuple[float, ...]:
 
 
 def focal_length(plan: LensPlan) -> float:
-    """Film height over the slope of the view there, near the axis, mm."""
+    """Film height over the slope of its scene ray, near the axis, mm."""
     height = 0.01 * plan.film_half_mm[0]
     u1, u2 = quasi_random(2, 512).T
     slopes = []
@@ -108,7 +108,7 @@ def focal_length(plan: LensPlan) -> float:
 
 
 def _film_rays(plan: LensPlan, iris_mm: float) -> FilmRays:
-    """Rays all over the film that cross the iris so far from the axis at most."""
+    """Rays from the whole film that cross the iris within ``iris_mm`` of the axis."""
     x = quasi_random(5, RAYS)
     f = _disc(x[:, 0], x[:, 1]) if plan.symmetric else 2.0 * x[:, :2] - 1.0
     film = np.array(plan.film_center_mm) + f * plan.film_half_mm
@@ -130,7 +130,7 @@ def _iris_points(plan: LensPlan, film: FloatArray, slope: FloatArray, nm: FloatA
 def _basis(
     plan: LensPlan, f: FloatArray, a: FloatArray, nm: FloatArray, exponents: Exponents
 ) -> list[FloatArray]:
-    """Columns (N, terms) of the two polynomials for x, and for y."""
+    """Basis columns, (N, terms), for x and for y; without symmetry one array for both."""
     wave = plan.wavelength[0] + plan.wavelength[1] * 1e6 / nm**2
     if not plan.symmetric:
         return [_monomials([*a.T, *f.T, wave], exponents)]
@@ -146,7 +146,7 @@ def _least_squares(
     train: int,
     exponents: Exponents,
 ) -> tuple[Vector, FloatArray]:
-    """Coefficients from the first rays, and what they say for all."""
+    """Fits coefficients to the first ``train`` rays; returns them and values for all rays."""
     if symmetric:  # one set of coefficients for both components
         rows = np.concatenate([b[:train] for b in basis])
         c = np.linalg.lstsq(rows, slope[:train].T.ravel(), rcond=None)[0]
@@ -160,7 +160,7 @@ def _least_squares(
 
 
 def _exponents(symmetric: bool, degree: int) -> Exponents:
-    """Exponents of a complete basis whose last variable, the wavelength, costs two."""
+    """Exponents of a complete basis; those of the last variable, the wavelength, count double."""
     choices = product(range(degree + 1), repeat=4 if symmetric else 5)
     return [e for e in choices if sum(e) + e[-1] <= degree]
 
@@ -178,7 +178,7 @@ def _disc(u1: FloatArray, u2: FloatArray) -> FloatArray:
 
 
 def quasi_random(dimensions: int, count: int) -> FloatArray:
-    """Points in [0, 1) by the generalised golden ratio (Roberts 2018): an additive recurrence."""
+    """Points in [0, 1) by an additive recurrence, the generalised golden ratio (Roberts 2018)."""
     g = 2.0
     for _ in range(50):
         g = (1.0 + g) ** (1.0 / (dimensions + 1))

@@ -1,7 +1,7 @@
-"""Arithmetic as a value: what every target language writes in its own words.
+"""Arithmetic expressions, which `printers` write in each target language.
 
-A `Function` is a list of statements on scalars without loops. Numbers, names and operators look the
-same in C, GLSL, OSL and Python; the rest is for `printers`.
+A `Function` is a list of statements on scalars without loops. Numbers, names and operators are
+similar in C, GLSL, OSL and Python; `printers` handle the differences.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ Operand: TypeAlias = "Expression | float"
 
 
 class Expression:
-    """Something with a value; operators make larger ones."""
+    """Expression; operators combine expressions."""
 
     def __add__(self, other: Operand) -> Expression:
         return _sum(self, lift(other))
@@ -58,14 +58,14 @@ class Number(Expression):
 
 @dataclass(frozen=True)
 class Name(Expression):
-    """An input, or what a statement has named."""
+    """Name of an input, or of a statement's result."""
 
     name: str
 
 
 @dataclass(frozen=True)
 class Binary(Expression):
-    """Two operands and one of + - * /."""
+    """Binary operation: + - * /."""
 
     operator: str
     left: Expression
@@ -74,7 +74,7 @@ class Binary(Expression):
 
 @dataclass(frozen=True)
 class Call(Expression):
-    """A function that all languages have: sqrt, sin, cos, abs, min, max, floor."""
+    """Call of a function of all languages: sqrt, sin, cos, abs, min, max, floor."""
 
     function: str
     arguments: tuple[Expression, ...]
@@ -82,7 +82,7 @@ class Call(Expression):
 
 @dataclass(frozen=True)
 class Condition:
-    """Left < right."""
+    """Condition: left < right."""
 
     left: Expression
     right: Expression
@@ -90,7 +90,7 @@ class Condition:
 
 @dataclass(frozen=True)
 class Select(Expression):
-    """One of two values; both are computed."""
+    """One of two values; both may be computed."""
 
     condition: Condition
     yes: Expression
@@ -98,17 +98,17 @@ class Select(Expression):
 
 
 def lift(value: Operand) -> Expression:
-    """A number as an expression."""
+    """Converts a number to an expression."""
     return value if isinstance(value, Expression) else Number(float(value))
 
 
 def call(function: str, *arguments: Operand) -> Expression:
-    """A function's value, such as that of max."""
+    """Calls a function, such as max."""
     return Call(function, tuple(lift(a) for a in arguments))
 
 
 def select(condition: Condition, yes: Operand, no: Operand) -> Expression:
-    """``condition ? yes : no``."""
+    """Selects a value: ``condition ? yes : no``."""
     return Select(condition, lift(yes), lift(no))
 
 
@@ -128,7 +128,7 @@ def _product(left: Expression, right: Expression) -> Expression:
 
 @dataclass(frozen=True)
 class Let:
-    """A new name for a value."""
+    """Statement that names a value."""
 
     name: str
     value: Expression
@@ -136,7 +136,7 @@ class Let:
 
 @dataclass(frozen=True)
 class LetCall:
-    """New names for the outputs of a function."""
+    """Statement that names the outputs of a function."""
 
     names: tuple[str, ...]
     function: Function
@@ -145,7 +145,7 @@ class LetCall:
 
 @dataclass(frozen=True)
 class LetOneOf:
-    """New names for the outputs of the first function whose condition holds, else of the last."""
+    """Statement that names outputs of the first function whose condition holds, else the last."""
 
     names: tuple[str, ...]
     conditions: tuple[Condition, ...]
@@ -155,7 +155,7 @@ class LetOneOf:
 
 @dataclass
 class Function:
-    """Scalars in, scalars out; statements in order. Outputs are names that statements give."""
+    """Function of scalars, with statements in order; statements must name all outputs."""
 
     name: str
     inputs: tuple[str, ...]
@@ -170,7 +170,7 @@ class Function:
         return Name(name)
 
     def temporary(self, value: Operand) -> Expression:
-        """A value that is used more than once, under a name of its own."""
+        """Gives a value that is used more than once a name of its own."""
         expression = lift(value)
         if isinstance(expression, Number | Name):
             return expression
@@ -178,7 +178,7 @@ class Function:
         return self.let(f"t{self._count}", expression)
 
     def results(self, function: Function, *arguments: Operand) -> tuple[Name, ...]:
-        """Calls a function."""
+        """Calls a function; returns the names of its outputs."""
         return self.one_of((), (function,), *arguments)
 
     def one_of(
@@ -187,7 +187,7 @@ class Function:
         functions: tuple[Function, ...],
         *arguments: Operand,
     ) -> tuple[Name, ...]:
-        """Calls the first function whose condition holds, the last if none does."""
+        """Calls the first function whose condition holds, or the last if none does."""
         names = []
         for _ in functions[0].outputs:
             self._count += 1

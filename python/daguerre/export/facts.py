@@ -1,4 +1,4 @@
-"""Facts about the lens for the head of an exported file."""
+"""Describes the lens in the header of an exported file."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from daguerre.files.json_item import clean
 
 
 def facts(data: dict[str, Any]) -> list[str]:
-    """Lines of text, from ``LensFit.to_dict()``; no word of a lens's file ends a line."""
+    """Makes lines of text from ``LensFit.to_dict()``; names cannot contain line breaks."""
     name, setting, error = clean(data["lens"]), data["setting"], data["error"]["all"]
     angle, film, light = error["direction_rad"], error["film_um"], error["transmittance"]
     zoom = f" at {setting['zoom_mm']:.4g} mm" if setting["zoom_mm"] else ""
@@ -30,5 +30,5 @@ def facts(data: dict[str, Any]) -> list[str]:
         f"{angle[1]:.2g} rad;",
         f"on the film {film[0]:.2g} and {film[1]:.2g} um; transmittance {light[0]:.2g} and "
         f"{light[1]:.2g}.",
-        f"Made by Daguerre {__version__}. Licence: Apache-2.0, as Daguerre itself.",
+        f"Made by Daguerre {__version__}. Licence: Apache-2.0, like Daguerre.",
     ]

@@ -1,4 +1,4 @@
-"""Writes a fitted lens as a file whose suffix says the language."""
+"""Writes a fitted lens as a file; the suffix sets the language."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ _WRITERS: dict[str, Callable[[LensPlan, Sequence[str]], str]] = {
     ".py": numpy_file,
 }
 SUFFIXES = (*_WRITERS, ".json")
-#: Unrolled code beyond this takes compilers seconds.
+#: Limit of unrolled code; beyond it, compilers take seconds.
 MOST_COEFFICIENTS = 20000
 
 
 @guarded
 def check_suffix(path: str | Path, where: str = "export") -> str:
-    """The suffix of a file that a lens can be written to.
+    """Returns the suffix of an output file for a lens.
 
     Raises:
-        UsageError: No known one.
+        UsageError: The suffix is unknown.
     """
     suffix = Path(path).suffix.lower()
     if suffix not in SUFFIXES:
@@ -48,20 +48,21 @@ def check_suffix(path: str | Path, where: str = "export") -> str:
     return suffix
 
 
-#: Segments of a fit, at most; data with more are refused by their size.
+#: Largest number of segments of a fit; data with more fail the check of their size.
 MOST_SEGMENTS = 16
 
 
 @guarded
 def code(data: dict[str, Any], suffix: str) -> str:
-    """The text of an exported lens.
+    """Makes the text of an exported lens.
 
     Args:
         data: ``LensFit.to_dict()``.
         suffix: ``.c``, ``.glsl``, ``.osl``, ``.py`` or ``.json``.
 
     Raises:
-        InputError: The language cannot express it; the message says what.
+        InputError: The data are not a fit, or code cannot express it.
+        UsageError: The suffix is unknown, or the fit is too large for unrolled code.
     """
     if suffix == ".json":
         return json.dumps(data, indent=1) + "\n"
@@ -69,24 +70,24 @@ def code(data: dict[str, Any], suffix: str) -> str:
     if suffix not in _WRITERS:
         raise UsageError(f"{where}: wanted {', '.join(SUFFIXES)}, got {short(suffix)}")
     if not isinstance(data.get("segments"), list) or len(data["segments"]) <= MOST_SEGMENTS:
-        LensFit.from_dict(data)  # refuses data that are no fit, by name
+        LensFit.from_dict(data)  # raises an error if the data are not a fit
     plan = plan_of(data)
     count = sum(_coefficients(s) for s in data["segments"])
     if count > MOST_COEFFICIENTS:
         raise UsageError(
             f"export of {data['lens']}: wanted at most {MOST_COEFFICIENTS} coefficients, got "
-            f"{count}: take a lower degree or fewer segments, or .json"
+            f"{count}; use a lower degree, fewer segments, or .json"
         )
     return _WRITERS[suffix](with_aim(plan), facts(data))
 
 
 @guarded
 def save(data: dict[str, Any], path: str | Path) -> None:
-    """Writes a fitted lens; the suffix chooses the language.
+    """Writes a fitted lens; the suffix sets the language.
 
     Raises:
-        UsageError: An unknown suffix, or a fit too large for unrolled code.
-        InputError: The language cannot express it.
+        UsageError: The suffix is unknown, or the fit is too large for unrolled code.
+        InputError: The data are not a fit, or code cannot express it.
         OutputError: The file cannot be written.
     """
     suffix = check_suffix(path)
@@ -94,7 +95,7 @@ def save(data: dict[str, Any], path: str | Path) -> None:
 
 
 def _coefficients(part: Any) -> int:
-    """How many there are in a segment."""
+    """Number of coefficients in a part of a fit."""
     if isinstance(part, dict):
         if "coefficients" in part:
             return sum(len(row) for row in part["coefficients"])

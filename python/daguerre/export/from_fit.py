@@ -1,4 +1,4 @@
-"""The plan of a fitted lens, from its data of the form ``daguerre-lens-fit/0.1``."""
+"""Makes the plan of a fitted lens from its data, format ``daguerre-lens-fit/0.1``."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from .plan import Blades, LensPlan, Mount, Pair, Segment, Vector
 
 
 def plan_of(data: dict[str, Any]) -> LensPlan:
-    """Makes the plan of the code from a fit; an aim is still to be found.
+    """Makes the plan of the code from a fit, without an aim.
 
     Args:
         data: ``LensFit.to_dict()``.
 
     Raises:
-        InputError: Code cannot express it: a tilted film, an iris that is a picture.
+        InputError: Code cannot express the fit: no setting, a tilted film, or a picture as iris.
     """
     _check(data)
     symmetric = bool(data["symmetry"]["axial"])
@@ -43,16 +43,18 @@ def plan_of(data: dict[str, Any]) -> LensPlan:
 
 
 def _check(data: dict[str, Any]) -> None:
-    """Refuses what no generated code can do, by name."""
+    """Checks that generated code can express the fit."""
     where = f"export of {data['lens']}"
     setting = data.get("setting")
     if setting is None:
-        raise InputError(f"{where}: setting: wanted the f-stop that the fit was made for, got none")
+        raise InputError(f"{where}: setting: wanted the f-stop of the fit, got none")
     if setting["iris"] == "picture":
         raise InputError(f"{where}: iris: wanted a round one or blades, got a picture")
     plane = data["film"]["plane"]
     if plane["x"] != [1, 0, 0] or plane["y"] != [0, 1, 0] or any(plane["center"][:2]):
-        raise InputError(f"{where}: film: wanted it across the lens's axis, got it tilted")
+        raise InputError(
+            f"{where}: film: wanted it across the lens's axis, got it tilted or shifted"
+        )
 
 
 def _blades(iris: dict[str, Any] | None) -> Blades | None:

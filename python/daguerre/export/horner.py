@@ -1,4 +1,4 @@
-"""Polynomials as nested Horner schemes: no powers, and each power of a variable is met once."""
+"""Polynomials as nested Horner schemes, which need no powers."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from collections.abc import Mapping, Sequence
 
 from .expression import Expression, Function, Number
 
-#: exponents (one for each variable) to coefficient
+#: Coefficients by exponents, one exponent for each variable.
 Terms = Mapping[tuple[int, ...], float]
 
-#: a polynomial in this many last variables stays one expression; longer ones get names on the way
+#: Polynomials in this many last variables stay one expression; others get named parts.
 INLINE_VARIABLES = 2
 
 
 def horner(function: Function, terms: Terms, variables: Sequence[Expression]) -> Expression:
-    """The value of a polynomial, its first variable outermost; statements go into the function.
+    """Makes the value of a polynomial, with the first variable outermost.
 
     Args:
-        function: Receives intermediate results.
+        function: Function that receives statements for intermediate results.
         terms: Coefficients by exponents.
         variables: One expression for each exponent.
     """
@@ -39,7 +39,7 @@ def horner(function: Function, terms: Terms, variables: Sequence[Expression]) ->
 
 
 def derivative(terms: Terms, variable: int) -> dict[tuple[int, ...], float]:
-    """Terms of the derivative by one variable, given by its place."""
+    """Terms of the derivative with respect to a variable, by its index."""
     return {
         (*e[:variable], e[variable] - 1, *e[variable + 1 :]): c * e[variable]
         for e, c in terms.items()

@@ -1,4 +1,4 @@
-"""Whether the iris stops a ray: a circle, or each edge in turn (core/optics/lens/stop.h)."""
+"""Code that tests if the iris stops a ray: a circle, or edges (core/optics/lens/stop.h)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .plan import Blades
 def outside_iris(
     f: Function, blades: Blades | None, x: Expression, y: Expression, otherwise: Expression
 ) -> Expression:
-    """1 outside of the opening, and what was said before inside; x, y in units of its radius."""
+    """1 outside of the opening, ``otherwise`` inside; x, y are in units of its radius."""
     stopped = otherwise
     if blades is None:
         return f.temporary(select(x * x + y * y > 1.0, 1.0, stopped))

@@ -1,4 +1,4 @@
-"""Functions that a lens is exported as: ``evaluate`` follows a film ray, ``sample`` draws one."""
+"""Makes the exported functions: ``evaluate`` traces a film ray, ``sample`` samples one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ RAY = ("x", "y", "z", "dx", "dy", "dz", "iris_x", "iris_y", "transmittance", "st
 
 @dataclass(frozen=True)
 class Coordinates:
-    """Two vectors, the wavelength, and the variables of polynomials in them."""
+    """Two vectors, and the variables of polynomials in them and the wavelength."""
 
     first: tuple[Expression, Expression]
     second: tuple[Expression, Expression]
@@ -36,7 +36,7 @@ def coordinates(
     wave: Expression,
     u_range: Pair = (0.0, 1.0),
 ) -> Coordinates:
-    """Coordinates of a film point and another one, both at most 1."""
+    """Makes coordinates of a film point and a second point, both of at most 1."""
     if not symmetric:
         return Coordinates(first, second, (*second, *first, wave))
     (fx, fy), (qx, qy) = first, second
@@ -49,7 +49,7 @@ def coordinates(
 
 
 def vector(function: Function, v: Vector, at: Coordinates) -> tuple[Expression, Expression]:
-    """The value of a vector, under names of its own."""
+    """Evaluates a vector; its components get names."""
     a = function.temporary(horner(function, v.first, at.variables))
     b = function.temporary(horner(function, v.second, at.variables))
     if not at.symmetric:
@@ -59,7 +59,7 @@ def vector(function: Function, v: Vector, at: Coordinates) -> tuple[Expression, 
 
 
 def segment_function(plan: LensPlan, segment: Segment, name: str) -> Function:
-    """Polynomials of one range of film radii; 1 in ``cut`` if a rim is in the way."""
+    """Makes the polynomials of one range of film radii; ``cut`` is 1 if a rim stops the ray."""
     names = ("tx", "ty", "ox", "oy", "ix", "iy", "pass", "cut")
     outputs = tuple(f"out_{name}" for name in names)
     f = Function(name, ("fx", "fy", "qx", "qy", "l"), outputs)
@@ -90,7 +90,7 @@ def segment_function(plan: LensPlan, segment: Segment, name: str) -> Function:
 
 
 def evaluate_function(plan: LensPlan, name: str) -> list[Function]:
-    """Film ray to scene ray, with what it calls first."""
+    """Makes ``evaluate``, from film ray to scene ray, after the functions that it calls."""
     segments = [
         segment_function(plan, s, f"{name}_segment{i}") for i, s in enumerate(plan.segments)
     ]
@@ -122,25 +122,25 @@ def evaluate_function(plan: LensPlan, name: str) -> list[Function]:
 
 
 def opening(f: Function, plan: LensPlan, f_stop: Expression) -> Expression:
-    """The share of the fit's iris radius that is open: the entrance pupil's diameter is f / N."""
+    """Open share of the fit's iris radius; the entrance pupil's diameter is f / N."""
     return f.let("open_share", call("min", plan.f_stop / f_stop, 1.0))
 
 
 def enumerate_terms(coefficients: tuple[float, ...]) -> dict[tuple[int, ...], float]:
-    """Terms of a polynomial in one variable, from its constant on."""
+    """Terms of a polynomial in one variable; the constant comes first."""
     return {(power,): c for power, c in enumerate(coefficients)}
 
 
 def normalized(
     f: Function, plan: LensPlan, film: tuple[Expression, Expression]
 ) -> tuple[Name, Name]:
-    """The film point, at most 1."""
+    """Normalises a film point to at most 1."""
     (cx, cy), (hx, hy) = plan.film_center_mm, plan.film_half_mm
     return f.let("fx", (film[0] - cx) * (1 / hx)), f.let("fy", (film[1] - cy) * (1 / hy))
 
 
 def wavelength(f: Function, plan: LensPlan, nm: Expression) -> Name:
-    """The variable that stands for the wavelength."""
+    """Polynomial variable of the wavelength."""
     return f.let("l", plan.wavelength[1] * 1e6 / (nm * nm) + plan.wavelength[0])
 
 
@@ -152,9 +152,9 @@ def scene_ray(
 ) -> list[Expression]:
     """Origin and unit direction from the equidistant direction t and the offset o across the ray.
 
-    The minimal rotation that takes the axis to the direction carries o along; nothing here is
-    special at 90 degrees or beyond. With k = sin(theta/2) / (theta/2), sin(theta) / theta is
-    k cos(theta/2) and (1 - cos(theta)) / theta^2 is k^2 / 2.
+    The minimal rotation from the axis to the direction also rotates o; it is regular at 90 degrees
+    and beyond. With k = sin(theta/2) / (theta/2), sin(theta) / theta is k cos(theta/2) and
+    (1 - cos(theta)) / theta^2 is k^2 / 2.
     """
     (tx, ty), (ox, oy) = t, o
     theta2 = f.let("theta2", tx * tx + ty * ty)
@@ -176,7 +176,7 @@ def scene_ray(
 def to_front_sphere(
     f: Function, c: float, foot: Sequence[Expression], d: Sequence[Expression]
 ) -> Expression:
-    """How far from the foot: c |p + t d|^2 = 2 (p + t d).z, the root that is stable for planes."""
+    """Distance t from the foot p: the root of c |p + t d|^2 = 2 (p + t d).z, stable for planes."""
     across = foot[0] * d[0] + foot[1] * d[1] + foot[2] * d[2]
     square = foot[0] * foot[0] + foot[1] * foot[1] + foot[2] * foot[2]
     b = f.let("front_b", c * across - d[2])
@@ -187,17 +187,17 @@ def to_front_sphere(
 
 
 def sample_function(plan: LensPlan, evaluate: Function, name: str) -> Function:
-    """A film point and two random numbers to a ray and its weight."""
+    """Makes ``sample``: from a film point and two random numbers to a ray and its weight."""
     inputs = ("film_x", "film_y", "u1", "u2", "nm", "f_stop")
     outputs = ("out_x", "out_y", "out_z", "out_dx", "out_dy", "out_dz", "out_weight")
     f = Function(f"{name}_sample", inputs, outputs)
     film_x, film_y, u1, u2, nm, f_stop = (Name(i) for i in inputs)
-    # The picture is upside down on the film.
+    # The image is upside down on the film.
     film = f.let("behind_x", -film_x), f.let("behind_y", -film_y)
     open_share = opening(f, plan, f_stop)
     r, angle = f.let("r", call("sqrt", u1)), f.let("angle", 2 * math.pi * u2)
     disc = f.let("disc_x", r * call("cos", angle)), f.let("disc_y", r * call("sin", angle))
-    # Slopes per disc: both the area and the exposure have a factor of the open share squared.
+    # Area of slopes over that of the disc; its factor open share squared cancels in the exposure.
     draw = draw_by_pupil if plan.aim is None else draw_by_aim
     (mx, my), density = draw(f, plan, film, disc, nm, open_share)
     ray = f.results(evaluate, *film, mx, my, nm, f_stop)
@@ -222,7 +222,7 @@ def draw_by_aim(
     nm: Expression,
     open_share: Expression,
 ) -> tuple[tuple[Expression, Expression], Expression]:
-    """A point of the enlarged iris: its slope, and the slopes' area / open share squared."""
+    """Samples the enlarged iris: slope, and area of slopes / open share squared."""
     aim = plan.aim
     assert aim is not None
     reach = aim.enlargement * (plan.blades.outer if plan.blades else 1.0) * plan.iris_radius_mm
@@ -230,7 +230,7 @@ def draw_by_aim(
     a = f.let("ax", disc[0] * grow), f.let("ay", disc[1] * grow)
     at = coordinates(f, plan.symmetric, normalized(f, plan, film), a, wavelength(f, plan, nm))
     slope = vector(f, aim.slope, at)
-    # Where the map folds back its sign changes; nothing is drawn there.
+    # Where the map folds back, its sign changes; such points get a density of 0.
     jacobian = f.let("jacobian", slope_jacobian(f, aim.slope, at))
     area = aim.orientation * math.pi * (reach / aim.radius_mm) ** 2
     return slope, f.let("density", call("max", area * jacobian, 0.0))
@@ -244,7 +244,7 @@ def draw_by_pupil(
     nm: Expression,
     open_share: Expression,
 ) -> tuple[tuple[Expression, Expression], Expression]:
-    """A point of the whole exit pupil, where no aim fits."""
+    """Samples the whole exit pupil, if no aim fits."""
     del nm
     at = normalized(f, plan, film)
     a, b, c = plan.q_by_film, plan.q_by_slope, plan.q_shift
@@ -254,7 +254,7 @@ def draw_by_pupil(
 
 
 def slope_jacobian(f: Function, v: Vector, at: Coordinates) -> Expression:
-    """The determinant of the derivative of a vector by the second point."""
+    """Determinant of the derivative of a vector with respect to the second point."""
     columns = []
     if not at.symmetric:
         for k in (0, 1):

@@ -1,7 +1,7 @@
-"""The camera shader of Cycles (Blender 5 manual, "Custom Camera"): raster position in, ray out.
+"""Writes the camera shader of Cycles (Blender 5 manual, "Custom Camera").
 
-Blender's camera frame has +z along the view. The shader gives its own derivatives, those of a
-pinhole, so that Cycles does not carry derivatives through all polynomials.
+Blender's camera frame has +z along the view. The shader returns the derivatives of a pinhole, so
+that Cycles does not differentiate all polynomials.
 """
 
 from __future__ import annotations
@@ -14,25 +14,25 @@ from .languages import definitions, identifier
 from .plan import LensPlan
 from .printers import Printer
 
-#: one wavelength for each of R, G, B: near the middle of what sRGB's primaries see of daylight
+#: Wavelengths of R, G, B: near the middle of the daylight that sRGB's primaries see.
 RGB_NM = (611.0, 549.0, 464.0)
 
 USE = """\
 Blender: set the camera's lens type to Custom, choose this file, and press the button that compiles
-it. The film is the camera's sensor (mm); what the lens does not cover is black. The camera's own
-focal length, focus and depth of field have no effect: the lens is focused as said above.
-Two random numbers choose the point of the iris and one of three wavelengths; three times its weight
-goes to its channel, so that the mean is right."""
+it. The film is the camera's sensor (mm); parts that the lens does not cover are black. The camera's
+focal length, focus and depth of field have no effect; the lens has the focus stated above.
+Two random numbers choose a point of the iris and one of three wavelengths. Its channel gets three
+times the weight, so that the mean is right."""
 
 SHADER = """\
 shader {name}(
     float f_stop = {f_stop:.6g} [[ string label = "F-Stop", float min = {f_stop:.6g}, 
         float max = 64.0,
-        string help = "No wider than the lens was fitted" ]],
+        string help = "Not below the f-stop of the fit" ]],
     int chromatic = 1 [[ string label = "Chromatic Aberration", string widget = "checkBox",
         string help = "One wavelength for each channel; off: green light for all" ]],
     float metres = 1.0 [[ string label = "Metres per Unit", float min = 0.000001,
-        string help = "Of the scene" ]],
+        string help = "Length of a scene unit, m" ]],
     output point position = 0,
     output vector direction = 0,
     output color throughput = 0,
@@ -78,17 +78,17 @@ shader {name}(
 
 
 class Osl(Printer):
-    """Functions and branches, no loops."""
+    """OSL functions."""
 
     functions: ClassVar[dict[str, str]] = {**Printer.functions, "abs": "fabs"}
 
     def output(self, name: str) -> str:
-        """OSL's own word."""
+        """Declares an output in OSL."""
         return f"output float {name}"
 
 
 def osl_file(plan: LensPlan, facts: Sequence[str]) -> str:
-    """A camera shader, ready for Blender."""
+    """Makes a camera shader for Blender."""
     head = "\n".join(f"// {line}".rstrip() for line in [*facts, "", *USE.splitlines()])
     red, green, blue = RGB_NM
     shader = SHADER.format(

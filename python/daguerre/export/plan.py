@@ -1,4 +1,4 @@
-"""A fitted lens as plain numbers: what code is made from, whatever the language."""
+"""Plan of a fitted lens: the numbers that code in any language is made from."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Vector:
 
 @dataclass(frozen=True)
 class Mount:
-    """A surface whose rim cuts rays: where they meet it, and where it is clear, mm."""
+    """A surface whose rim cuts rays: where rays meet it, and its clear radii, mm."""
 
     surface: int
     point: Vector
@@ -37,12 +37,12 @@ class Segment:
     """A lens's polynomials for film points with u_low <= |f|^2 < u_high.
 
     Attributes:
-        bend: Added to q before the direction reads it; None: nothing.
-        direction: theta (dx, dy) / sin(theta), rad, of the ray toward the scene.
-        offset_mm: From the middle of the entrance pupil to the ray, across it.
-        iris_mm: Where the ray crosses the iris.
+        bend: Vector added to q for the direction; None: nothing.
+        direction: theta (dx, dy) / sin(theta) of the ray toward the scene, rad.
+        offset_mm: Vector from the centre of the entrance pupil to the ray, perpendicular to it.
+        iris_mm: Point where the ray crosses the iris.
         transmittance: Transmittance of the glass in the same variables (symmetric: the form A).
-        mounts: The rims that can cut.
+        mounts: Rims that can cut rays.
     """
 
     u_low: float
@@ -60,12 +60,12 @@ class Blades:
     """An iris with edges, straight or arcs, in units of the iris radius (core/optics/lens/stop.h).
 
     Attributes:
-        edges: Unit vectors to their middles.
+        edges: Unit vectors to the middles of the edges.
         apothem: Distance of straight edges.
         bend: 1: arcs bent outward; -1: inward; 0: straight.
         center: Distance of the arcs' centres, along the vectors.
         arc_radius: Radius of the arcs.
-        outer: Radius of the circle about all.
+        outer: Radius of the circle around the opening.
     """
 
     edges: tuple[Pair, ...]
@@ -78,9 +78,9 @@ class Blades:
 
 @dataclass(frozen=True)
 class Aim:
-    """Where to shoot for a point of the iris: the film slope m(f, a), a in units of ``radius_mm``.
+    """Film slope m(f, a) that reaches iris point a, in units of ``radius_mm``.
 
-    It only draws: the polynomials of `Segment` say what becomes of the ray.
+    It only chooses slopes; the polynomials of `Segment` trace the rays.
     """
 
     slope: Vector
@@ -91,23 +91,23 @@ class Aim:
 
 @dataclass(frozen=True)
 class LensPlan:
-    """A lens at one focus; it can be stopped down.
+    """A lens at one focus distance; it can be stopped down.
 
     Lens frame: mm, +z from the scene to the film, z = 0 at the first vertex.
 
     Attributes:
-        symmetric: Which of the two forms vectors have.
+        symmetric: Whether vectors have the form for axial symmetry.
         film_center_mm: f = (film point - center) / half.
-        film_half_mm: Half of the film that is covered; with axial symmetry twice its radius.
+        film_half_mm: Half size of the covered film; with axial symmetry its radius, in both.
         q_by_film: q = by_film f + by_slope m + shift, m the ray's slope dx/dz, dy/dz, each by x
             and y; the clear pupil fills |q| <= 1.
         wavelength: l = wavelength[0] + wavelength[1] / (wavelength in um)^2.
-        front_z_mm: Vertex of the sphere on which rays start; a ray that misses it starts where it
-            comes nearest to the middle of the entrance pupil.
+        front_z_mm: Vertex of the sphere on which rays start; a ray that misses it starts at its
+            point nearest to the centre of the entrance pupil.
         front_curvature: Curvature of that sphere, 1/mm.
         f_stop: F-stop wide open.
-        iris_radius_mm: Radius of the circle of the iris's area at that f-stop.
-        blades: None: round.
+        iris_radius_mm: Radius of a circle with the area of the iris at that f-stop.
+        blades: Edges of the iris; None: round.
         exposure: Divisor of weights, so that a white world of luminance 1 is 1 on the axis:
             coefficients of o^2, o^4, ..., with o the share of the iris radius that is open.
     """

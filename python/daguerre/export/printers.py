@@ -1,4 +1,4 @@
-"""One thin printer for each language; `expression` is what they print."""
+"""Print `expression` in each language."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .expression import (
     Select,
 )
 
-#: how tightly operators bind
+#: Precedence of operators.
 BINDING = {"+": 1, "-": 1, "*": 2, "/": 2}
 
 Words = dict[str, str]
@@ -29,18 +29,18 @@ class Printer:
     """Shared syntax of the languages of C's family."""
 
     number_type = "float"
-    digits = 9  # of a number: enough for its type
+    digits = 9  # digits of a number, enough for its type
     functions: ClassVar[Words] = {n: n for n in FUNCTIONS}
-    prefix = ""  # of a function's definition
+    prefix = ""  # prefix of a function's definition
     comment = "//"
 
     def number(self, value: float) -> str:
-        """A literal that no language takes for an integer."""
+        """Prints a number so that no language reads an integer."""
         text = f"{value:.{self.digits}g}"
         return text if any(c in text for c in ".en") else text + ".0"
 
     def show(self, e: Expression, within: int = 0) -> str:
-        """An expression, in parentheses if what it stands within binds more tightly."""
+        """Prints an expression, in parentheses if its context has a higher precedence."""
         match e:
             case Number(value):
                 text = self.number(value)
@@ -48,7 +48,7 @@ class Printer:
             case Name(name):
                 return name
             case Binary(operator, left, right):
-                # The right operand is closed even against its equal: a - (b - c).
+                # The right operand gets parentheses at equal precedence, too: a - (b - c).
                 tight = BINDING[operator]
                 text = f"{self.show(left, tight)} {operator} {self.show(right, tight + 1)}"
                 return f"({text})" if tight < within else text
@@ -60,33 +60,33 @@ class Printer:
         raise TypeError(e)
 
     def selection(self, e: Select) -> str:
-        """One of two values."""
+        """Prints a choice of two values."""
         return f"{self.condition(e.condition)} ? {self.show(e.yes, 1)} : {self.show(e.no, 1)}"
 
     def condition(self, c: Condition) -> str:
-        """``a < b``."""
+        """Prints ``a < b``."""
         return f"{self.show(c.left, 1)} < {self.show(c.right, 1)}"
 
     def signature(self, f: Function) -> str:
-        """The first line of a definition."""
+        """Prints the first line of a definition."""
         inputs = [f"{self.number_type} {name}" for name in f.inputs]
         outputs = [self.output(name) for name in f.outputs]
         return f"{self.prefix}void {f.name}({', '.join(inputs + outputs)})"
 
     def output(self, name: str) -> str:
-        """An output in a signature."""
+        """Prints an output in a signature."""
         return f"out {self.number_type} {name}"
 
     def passed(self, name: str) -> str:
-        """A variable that a call fills."""
+        """Prints a variable that receives an output of a call."""
         return name
 
     def assigned(self, name: str) -> str:
-        """An output on the left of an assignment."""
+        """Prints an output on the left of an assignment."""
         return name
 
     def define(self, f: Function) -> str:
-        """The whole function."""
+        """Prints a whole function."""
         lines = [f"{self.comment} {line}" for line in f.comment.splitlines()]
         lines += [self.signature(f), "{"]
         for s in f.statements:
@@ -119,7 +119,7 @@ class Printer:
         return f"{f.name}({', '.join(passed)});"
 
 
-#: Endings of what users call, and the macro that says who else sees it.
+#: Suffixes of functions for users, and the macro that sets their visibility.
 CALLED = ("_sample", "_evaluate")
 VISIBLE = "DAGUERRE_API"
 
@@ -138,16 +138,16 @@ class C(Printer):
     prefix = "static "
 
     def signature(self, f: Function) -> str:
-        """Signature: users choose the visibility of what they call; the rest stays in the file."""
+        """Prints a signature; functions for users get ``VISIBLE``, others stay static."""
         line = super().signature(f)
         return line.replace(self.prefix, f"{VISIBLE} ", 1) if f.name.endswith(CALLED) else line
 
     def output(self, name: str) -> str:
-        """A pointer."""
+        """Prints a pointer."""
         return f"double *{name}"
 
     def passed(self, name: str) -> str:
-        """Its address."""
+        """Prints the address of a variable."""
         return "&" + name
 
     def assigned(self, name: str) -> str:
@@ -160,7 +160,7 @@ class Glsl(Printer):
 
 
 class NumPy(Printer):
-    """Python on whole arrays: all branches are computed, and the right one is taken."""
+    """Python on whole arrays; all branches are computed before the choice."""
 
     digits = 17
     functions: ClassVar[Words] = {n: f"np.{n}" for n in FUNCTIONS} | {
@@ -170,12 +170,12 @@ class NumPy(Printer):
     comment = "#"
 
     def selection(self, e: Select) -> str:
-        """One of two values."""
+        """Prints a choice of two values."""
         parts = self.condition(e.condition), self.show(e.yes), self.show(e.no)
         return f"np.where({', '.join(parts)})"
 
     def define(self, f: Function) -> str:
-        """The whole function."""
+        """Prints a whole function."""
         lines = [f"def {f.name}({', '.join(f.inputs)}):"]
         if f.comment:
             lines.append(f'    """{f.comment}"""')
