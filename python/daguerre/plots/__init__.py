@@ -1,1 +1,1 @@
-"""Drawings of lenses, sensors and measurements, as SVG or with matplotlib."""
+"""Draws lenses, sensors and measurements, as SVG or with matplotlib."""

@@ -1,4 +1,4 @@
-"""All ghosts of a lens on the film, as a picture (extra ``plot``)."""
+"""Plots all ghosts of a lens on the film (extra ``plot``)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ DECADES = 4
 
 
 def plot_ghosts(ghosts: Ghosts, kind: str) -> bytes:
-    """The film, upright, in a logarithmic scale: the bytes of a file of that kind."""
+    """Plots the upright film on a logarithmic scale; returns the bytes of a file of ``kind``."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

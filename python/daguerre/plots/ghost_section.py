@@ -1,4 +1,4 @@
-"""Section of a lens with the rays of one ghost."""
+"""Draws the section of a lens with the rays of one ghost."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _COLOR = "#c0392b"
 
 
 def ghost_section(ghosts: Ghosts, ghost: Ghost) -> Drawing:
-    """Draws the lens with rays of one ghost in place of those of a picture."""
+    """Draws the lens with the rays of one ghost instead of those of the image."""
     bench = ghosts.bench
     plain = section(bench.lens, bench.film_z, bench.field_mm)
     shapes = [s for s in plain.shapes if not (isinstance(s, Line) and s.width == RAY_WIDTH)]

@@ -1,4 +1,4 @@
-"""The drawing of a lens as a file: SVG by itself, PNG and PDF by matplotlib (extra ``plot``)."""
+"""Encodes the drawing of a lens as SVG, or as PNG or PDF by matplotlib (extra ``plot``)."""
 
 from __future__ import annotations
 
@@ -19,11 +19,14 @@ WIDTH_INCHES = 8.0
 
 
 def check_available(suffix: str, *, needed: bool) -> None:
-    """Refuses a format whose package is missing, before anything is computed.
+    """Checks, before any computation, that the package for a format is installed.
 
     Args:
         suffix: Suffix of the file.
-        needed: Whether an SVG needs the package, too, as that of a data sheet does.
+        needed: Whether SVG needs the package, too, as for a data sheet.
+
+    Raises:
+        UsageError: The package is missing.
     """
     if (needed or suffix != ".svg") and extras.missing("matplotlib"):
         other = "--drawing FILE.svg" if needed else ".svg"
@@ -34,21 +37,21 @@ def check_available(suffix: str, *, needed: bool) -> None:
 
 
 def picture(bench: Bench, suffix: str) -> bytes:
-    """The meridional section of a lens with rays, as the bytes of a file."""
+    """Draws the meridional section of a lens with rays; returns the bytes of a file."""
     from daguerre.analysis.illumination import within_light
 
     return drawn(section(bench.lens, bench.film_z, within_light(bench).field_mm), suffix)
 
 
 def drawn(drawing: Drawing, suffix: str) -> bytes:
-    """A drawing as the bytes of a file of that ending."""
+    """Encodes a drawing as the bytes of a file with this suffix."""
     if suffix == ".svg":
         return to_svg(drawing).encode()
     return _by_matplotlib(drawing, suffix[1:])
 
 
 def _by_matplotlib(drawing: Drawing, kind: str) -> bytes:
-    # The object-oriented face: no window system, and no state shared with the user's own plots.
+    # The object-oriented interface needs no window system, and shares no state with user plots.
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -71,7 +74,7 @@ def _by_matplotlib(drawing: Drawing, kind: str) -> bytes:
 
 
 def add_shape(axes: Axes, shape: Line | Polygon, scale: float = 0.8) -> None:
-    """One shape of a drawing on a matplotlib plot; scale: points per px of its lines."""
+    """Adds a shape to a matplotlib plot; ``scale``: points per px of its lines."""
     z, y = zip(*shape.points, strict=True)
     if isinstance(shape, Polygon):
         axes.fill(z, y, facecolor=(*_rgb(shape.fill), 0.45), edgecolor=shape.stroke, lw=scale)

@@ -1,4 +1,4 @@
-"""Outlines of a lens in its meridional section: true sags, clear diameters, flat edges.
+"""Outlines of a lens in a section: exact sags, clear diameters, flat edges.
 
 Points are (z, y) or (z, x), mm.
 """
@@ -18,18 +18,18 @@ FloatArray = NDArray[np.float64]
 Points = list[tuple[float, float]]
 Section = Literal["x", "y"]
 
-FLAT_KINDS = {"cyl-y": "y", "cyl-x": "x"}  # the section in which a cylinder is straight
+FLAT_KINDS = {"cyl-y": "y", "cyl-x": "x"}  # section in which a cylinder is straight
 
 
 def sag(surface: LensSurface, height: ArrayLike, section: Section = "y") -> FloatArray:
-    """Depth of a surface behind its vertex in a section, mm; NaN beyond its rim.
+    """Sag of a surface behind its vertex in a section, mm; NaN where the surface ends.
 
     z = c h^2 / (1 + sqrt(1 - (1 + k) c^2 h^2)) + sum a_p |h|^p
 
     Args:
         surface: The surface.
-        height: From the vertex, mm, any shape.
-        section: y-z or x-z.
+        height: Distance from the axis, mm, any shape.
+        section: ``"y"``: the y-z section; ``"x"``: the x-z section.
     """
     h = np.asarray(height, np.float64)
     radius, conic, asphere = surface.radius, surface.conic, surface.asphere
@@ -47,9 +47,9 @@ def sag(surface: LensSurface, height: ArrayLike, section: Section = "y") -> Floa
 
 
 def clear_heights(lens: Lens) -> list[tuple[float, float]]:
-    """Clear semi-diameters of each surface, of the media before and behind it, mm.
+    """Clear semi-diameters of each surface on the side before and behind it, mm.
 
-    Where a file has none: that of the largest, or of the entrance pupil.
+    Default for surfaces without one: the largest known, else that of the entrance pupil, else 10.
     """
     known = [s.semi_diameter for s in lens.surfaces if s.semi_diameter is not None]
     pupil = 0.5 * lens.first_order().entrance_pupil.diameter
@@ -62,7 +62,7 @@ def clear_heights(lens: Lens) -> list[tuple[float, float]]:
 
 
 def element_outlines(lens: Lens, section: Section = "y") -> list[tuple[Points, float]]:
-    """Each piece of glass: its closed outline, and its index at 587.56 nm."""
+    """Closed outline of each element, and its refractive index at 587.56 nm."""
     z, heights = lens.vertices, clear_heights(lens)
     out = []
     for i, surface in enumerate(lens.surfaces[:-1]):
@@ -81,7 +81,7 @@ def element_outlines(lens: Lens, section: Section = "y") -> list[tuple[Points, f
 
 
 def _inside_glass(lens: Lens, i: int) -> bool:
-    """A plane stop inside one glass: it divides nothing."""
+    """Whether a surface is a plane stop inside one glass, which does not divide it."""
     before, here = lens.surfaces[i - 1].core_glass, lens.surfaces[i]
     if not here.stop or here.radius is not None or i + 1 == len(lens.surfaces):
         return False
@@ -93,11 +93,11 @@ def _element(
     back: tuple[LensSurface, float, float],
     section: Section,
 ) -> Points:
-    """Both surfaces, the smaller one continued by a flat ring where the glass leaves room."""
+    """Outline of both surfaces; a flat ring widens the smaller one if the edge has thickness."""
     first, last = _profile(*front, section), _profile(*back, section)
     outer = max(front[2], back[2])
     (zf, _), (zb, _) = first[-1], last[-1]
-    if zb > zf:  # an edge thickness is left: rings up to the larger diameter
+    if zb > zf:  # positive edge thickness: flat rings up to the larger diameter
         first, last = _widened(first, outer), _widened(last, outer)
     return [*first, *reversed(last)]
 
@@ -108,13 +108,13 @@ def _widened(profile: Points, outer: float) -> Points:
 
 
 def _profile(surface: LensSurface, z: float, height: float, section: Section) -> Points:
-    """Points (z, y) from bottom to top."""
+    """Points (z, y) of a surface from bottom to top."""
     y = np.linspace(-height, height, 49)
     return list(zip((z + sag(surface, y, section)).tolist(), y.tolist(), strict=True))
 
 
 def _within(surface: LensSurface, height: float) -> float:
-    """The height, or what the surface has of it."""
+    """Limits a height to the extent of the surface."""
     heights = np.linspace(0, height, 200)
     real = np.isfinite(sag(surface, heights)) & np.isfinite(sag(surface, heights, "x"))
     return float(heights[real].max())

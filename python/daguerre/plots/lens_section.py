@@ -1,4 +1,4 @@
-"""A lens in section: elements, stop, film and rays of three fields, as plain SVG."""
+"""Draws the section of a lens as plain SVG: elements, stop, film and rays of three fields."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from daguerre.analysis.pencils import Pencil
 
 WIDTH = 760.0  # px
-RAYS = 5  # of each fan
-#: on the axis, at 0.7 of the field, at its edge
+RAYS = 5  # rays in each fan
+#: Colours on the axis, at 0.7 of the field, and at its edge.
 COLORS = ("#c0392b", "#1e8449", "#2471a3")
 FIELDS = (0.0, 0.7, 1.0)
-#: Width of a ray's line.
+#: Line width of rays, px.
 RAY_WIDTH = 0.7
 
 
@@ -57,19 +57,19 @@ class Drawing:
 
 
 def draw(lens: Lens) -> str:
-    """The meridional section as SVG, object on the left."""
+    """Draws the meridional section as SVG, with the object on the left."""
     return to_svg(section(lens))
 
 
 def section(lens: Lens, film_z: float | None = None, half_image: float | None = None) -> Drawing:
-    """The meridional section: elements, stop, film and rays of three fields.
+    """Draws the meridional section: elements, stop, film and rays of three fields.
 
     Args:
-        lens: With the gaps of its zoom and focus.
-        film_z: Place of the film, mm; that of the table if None.
-        half_image: Half of the image circle, mm; as the lens says, or 36 x 24's, if None.
+        lens: The lens, with the gaps of its zoom and focus.
+        film_z: Position of the film, mm; default: that of the prescription.
+        half_image: Radius of the image circle, mm; default: the lens's, else that of 36 x 24 mm.
     """
-    # The rays are aimed on the bench, a floor above.
+    # The bench, a layer above, aims the rays.
     from daguerre.analysis.bench import at_film
     from daguerre.analysis.bench import half_image as stated
 
@@ -93,7 +93,7 @@ def section(lens: Lens, film_z: float | None = None, half_image: float | None = 
 
 
 def to_svg(drawing: Drawing) -> str:
-    """The drawing as an SVG document."""
+    """Encodes a drawing as an SVG document."""
     left, top, span = drawing.left, drawing.top, drawing.right - drawing.left
     body = "\n".join(_svg_shape(shape) for shape in drawing.shapes)
     return (
@@ -120,7 +120,7 @@ def _svg_shape(shape: Line | Polygon) -> str:
 
 
 def _fill(n: float) -> str:
-    """Blue, deeper for a higher index."""
+    """Fill colour of glass: blue, darker for a higher index."""
     share = min(max((n - 1.43) / 0.6, 0.0), 1.0)
     light, deep = (205, 228, 243), (86, 145, 189)
     return "#" + "".join(
@@ -136,7 +136,7 @@ def _stop(lens: Lens, heights: list[float]) -> list[Line]:
 
 
 def _rays(bench: Bench, left: float, top: float) -> list[Line]:
-    """Fans of three fields, from the rim to the rim of the light that passes."""
+    """Fans of rays of three fields, from edge to edge of the light that passes."""
     from daguerre.analysis.pencils import pencil
 
     out = []
@@ -160,7 +160,7 @@ def _ray(light: Pencil, y: float, left: float, top: float, color: str) -> list[L
     path = lens.prescription.path(start[None], direction[None], DESIGN_WAVELENGTH_NM, False)
     if len(path) == 0:
         return []
-    # Back to the edge of the picture, whichever is reached first.
+    # Extend the ray back to the edge of the drawing.
     first = path[0]
     to_left = (first[2] - left) / direction[2] if direction[2] > 1e-6 else math.inf
     side = math.copysign(top, -direction[1])

@@ -1,4 +1,4 @@
-"""The upper half of the data sheet: name, section, numbers, spots, PSFs, MTF."""
+"""Draws the upper half of the data sheet: name, section, numbers, spots, PSFs, MTF."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.gridspec import SubplotSpec
 
-#: F, d, C
+#: Colours of the lines F, d, C.
 LINE_COLORS = ("#2b6cb0", "#2f855a", "#c53030")
 LINE_NAMES = ("F 486", "d 588", "C 656")
 INK = "#222222"
 
 
 def header(page: Figure, made: Figures) -> None:
-    """Name, source, and the setting that all figures belong to."""
+    """Draws name and source of the lens, and the setting of all figures."""
     bench, lens = made.bench, made.bench.lens
     page.text(0.075, 0.968, lens.name, size=14, weight="bold", color=INK)
     page.text(
@@ -55,13 +55,13 @@ def _rule(y: float) -> Any:
 
 
 def shortened(text: str, limit: int) -> str:
-    """At most so many characters, on one line."""
+    """Shortens a text to one line of at most ``limit`` characters."""
     flat = " ".join(text.split())
     return flat if len(flat) <= limit else flat[: limit - 1].rstrip() + "…"
 
 
 def layout(axes: Axes, made: Figures) -> None:
-    """The section with rays from three fields."""
+    """Draws the section with rays from three fields."""
     bench = made.bench
     drawing = section(bench.lens, bench.film_z, bench.field_mm)
     for shape in drawing.shapes:
@@ -75,20 +75,20 @@ def layout(axes: Axes, made: Figures) -> None:
 
 
 def scale_bar(axes: Axes, x: float, y: float, span: float) -> None:
-    """A bar of 1, 2 or 5 times a power of ten, mm, below the drawing."""
+    """Draws a scale bar of 1, 2 or 5 times a power of ten, mm, below the drawing."""
     length = round_length(0.2 * span)
     axes.plot([x, x + length], [y, y], color=INK, lw=1)
     axes.text(x + 0.5 * length, y, f"{length:g} mm", size=5.5, ha="center", va="bottom")
 
 
 def round_length(about: float) -> float:
-    """1, 2 or 5 times a power of ten, at most about."""
+    """Largest 1, 2 or 5 times a power of ten, up to ``about``."""
     power = 10.0 ** math.floor(math.log10(about))
     return max(k * power for k in (1, 2, 5) if k * power <= about)
 
 
 def facts(axes: Axes, made: Figures) -> None:
-    """First-order data beside what the source claims, and figures of merit."""
+    """Draws first-order data beside those of the source, and figures of merit."""
     axes.set_axis_off()
     rows = fact_rows(made)
     step = 1 / max(len(rows), 17)
@@ -102,7 +102,7 @@ def facts(axes: Axes, made: Figures) -> None:
 
 
 def fact_rows(made: Figures) -> list[tuple[str, str, str]]:
-    """Name, computed, stated."""
+    """Rows of name, computed value and stated value."""
     bench, order, nominal = made.bench, made.bench.order, made.bench.lens.nominal
     working = bench.f_stop * (1 - bench.magnification / order.pupil_magnification)
     angle = made.points[-1].angle_deg
@@ -152,7 +152,7 @@ def fact_rows(made: Figures) -> list[tuple[str, str, str]]:
 
 
 def paraxial_film(made: Figures) -> float:
-    """Where the film stands in paraxial focus, mm."""
+    """Position of the film in paraxial focus, mm."""
     order, focus = made.bench.order, made.bench.focus_mm
     front = order.front_principal_point - order.front_focal_point
     x = focus - order.entrance_pupil.z + order.front_focal_point
@@ -172,7 +172,7 @@ def _stated(value: float | None, unit: str = "") -> str:
 
 
 def spots(page: Figure, cell: SubplotSpec, made: Figures) -> None:
-    """Spot diagrams of F, d and C, all to one scale."""
+    """Draws spot diagrams of F, d and C, all to the same scale."""
     cells = cell.subgridspec(1, len(FIELDS), wspace=0.12)
     sizes = [np.abs(p.spot.points - p.spot.centroid).max() for p in made.points if p.spot]
     rms = [p.spot.rms for p in made.points if p.spot]
@@ -194,7 +194,7 @@ def spots(page: Figure, cell: SubplotSpec, made: Figures) -> None:
 
 
 def psfs(page: Figure, cell: SubplotSpec, made: Figures) -> None:
-    """Point spread functions in white light, each to its own scale."""
+    """Draws point spread functions in white light, each to its own scale."""
     cells = cell.subgridspec(1, len(FIELDS), wspace=0.12)
     for k, point in enumerate(made.points):
         axes = page.add_subplot(cells[k])
@@ -212,7 +212,7 @@ def psfs(page: Figure, cell: SubplotSpec, made: Figures) -> None:
 
 
 def box(axes: Axes, half: float) -> None:
-    """A square window without ticks."""
+    """Makes axes a square window without ticks."""
     axes.set_aspect("equal")
     axes.set_xlim(-half, half)
     axes.set_ylim(-half, half)
@@ -223,20 +223,20 @@ def box(axes: Axes, half: float) -> None:
 
 
 def caption(axes: Axes, height: float, angle: float, text: str) -> None:
-    """Height and angle below a window."""
+    """Writes height, angle and a text below a window."""
     where = f"{height:.1f} mm, {_known(angle, '.1f', '°')}"
     axes.set_xlabel(f"{where}\n{text}" if text else where, labelpad=2)
 
 
 def legend_above(axes: Axes) -> None:
-    """Two lines beside the title, clear of the curves."""
+    """Draws the legend beside the title, clear of the curves."""
     axes.legend(
         ncols=3, loc="lower right", bbox_to_anchor=(1.0, 0.99), borderaxespad=0, columnspacing=1
     )
 
 
 def mtf_over_field(axes: Axes, made: Figures) -> None:
-    """MTF of waves over the image height."""
+    """Plots the diffraction MTF over the image height."""
     heights = made.bench.field_mm * np.asarray(MTF_FIELDS)
     for f, color in zip(FREQUENCIES, ("#1a202c", "#2b6cb0", "#c53030"), strict=True):
         values = made.mtf_over_field(f)
@@ -250,7 +250,7 @@ def mtf_over_field(axes: Axes, made: Figures) -> None:
 
 
 def mtf_over_frequency(axes: Axes, made: Figures) -> None:
-    """MTF of waves, and of rays, over frequency at three fields."""
+    """Plots diffraction and geometric MTF over frequency at three fields."""
     for share, color in zip((0.0, 0.7, 1.0), FIELD_COLORS, strict=True):
         k = MTF_FIELDS.index(share)
         for j, style in enumerate(("-", "--")):

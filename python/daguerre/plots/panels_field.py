@@ -1,4 +1,4 @@
-"""The lower half of the data sheet: aberrations over the field, light, colour, Seidel sums."""
+"""Draws the lower half of the data sheet: field aberrations, light, colour, Seidel sums."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SURFACE_COLORS = "tab20"
 
 
 def spherical(axes: Axes, made: Figures) -> None:
-    """Longitudinal spherical aberration of three colours."""
+    """Plots longitudinal spherical aberration of three colours."""
     for values, color, name in zip(made.spherical, LINE_COLORS, LINE_NAMES, strict=True):
         axes.plot(values, PUPIL_SHARES, color=color, label=name)
     axes.set_title("Spherical aberration")
@@ -30,7 +30,7 @@ def spherical(axes: Axes, made: Figures) -> None:
 
 
 def curvature(axes: Axes, made: Figures) -> None:
-    """Sagittal and tangential focus over the field."""
+    """Plots sagittal and tangential focus over the field."""
     for curve, color in zip(made.curves, LINE_COLORS, strict=True):
         axes.plot(curve.sagittal, curve.height_mm, color=color)
         axes.plot(curve.tangential, curve.height_mm, color=color, ls="--")
@@ -42,7 +42,7 @@ def curvature(axes: Axes, made: Figures) -> None:
 
 
 def distorted(axes: Axes, made: Figures) -> None:
-    """Distortion in percent."""
+    """Plots distortion over the field, percent."""
     axes.plot(made.distortion.percent, made.distortion.height_mm, color="#1a202c")
     law = {"rectilinear": "f tan θ"}.get(
         made.distortion.law, made.distortion.law.replace("fisheye-", "")
@@ -54,7 +54,7 @@ def distorted(axes: Axes, made: Figures) -> None:
 
 
 def lateral(axes: Axes, made: Figures) -> None:
-    """Lateral colour against d."""
+    """Plots lateral colour of F and C relative to d over the field."""
     um = 1e3 * made.lateral
     for k in (0, 2):
         axes.plot(um[:, k], made.bench.field_mm * CURVE, color=LINE_COLORS[k], label=LINE_NAMES[k])
@@ -66,7 +66,7 @@ def lateral(axes: Axes, made: Figures) -> None:
 
 
 def illumination(axes: Axes, made: Figures) -> None:
-    """Light over the field against cos^4 (Kolb, Mitchell and Hanrahan 1995)."""
+    """Plots relative illumination over the field, with cos^4 (Kolb, Mitchell, Hanrahan 1995)."""
     light = made.illumination
     axes.plot(light.height_mm, 100 * light.relative, color="#1a202c", label="exact")
     axes.plot(
@@ -81,7 +81,7 @@ def illumination(axes: Axes, made: Figures) -> None:
 
 
 def pupils(axes: Axes, made: Figures) -> None:
-    """The pupil as points of the film see it."""
+    """Draws the pupil seen from points of the film."""
     axes.set_title("Pupil seen from the film")
     axes.set_aspect("equal")
     sizes = [np.ptp(p.outline, axis=0).max() for p in made.points if len(p.outline)]
@@ -103,7 +103,7 @@ def pupils(axes: Axes, made: Figures) -> None:
 
 
 def axial(axes: Axes, made: Figures) -> None:
-    """Paraxial focus over the wavelength."""
+    """Plots paraxial focus over the wavelength."""
     axes.plot(COLORS_NM, made.axial, color="#1a202c")
     axes.axhline(0, color="#999999", lw=0.5)
     axes.set_title("Axial colour, mm")
@@ -112,7 +112,7 @@ def axial(axes: Axes, made: Figures) -> None:
 
 
 def seidel(axes: Axes, made: Figures) -> None:
-    """Seidel sums by surface, stacked away from zero, with their totals."""
+    """Plots Seidel sums by surface as stacked bars, with their totals."""
     axes.set_title("Seidel sums, mm")
     if made.seidel is None:
         axes.set_axis_off()
@@ -143,7 +143,7 @@ def _color(i: int) -> tuple[float, float, float, float]:
 
 
 def around_zero(axes: Axes, values: object, least: float = 0.02) -> None:
-    """A symmetric range that holds the values, and a line at zero."""
+    """Sets a range symmetric about zero that contains the values, and draws a line at zero."""
     parts = [np.ravel(np.asarray(v, np.float64)) for v in values]  # type: ignore[attr-defined]
     flat = np.concatenate(parts) if parts else np.zeros(1)
     finite = np.abs(flat[np.isfinite(flat)])

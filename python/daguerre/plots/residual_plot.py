@@ -1,4 +1,4 @@
-"""Residuals of a fitted projection over the picture (extra ``plot``)."""
+"""Plots residuals of a fitted projection over the picture (extra ``plot``)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def plot_residuals(fit: ProjectionFit, kind: str) -> bytes:
-    """Arrows from where the lens puts things to where the model does; a file's bytes."""
+    """Plots arrows from the lens's points to the model's; returns the bytes of a file."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -35,7 +35,7 @@ def plot_residuals(fit: ProjectionFit, kind: str) -> bytes:
         f"{fit.bench.lens.name} by {fit.projection.model}: {fit.rms:.3g} px RMS, "
         f"{fit.largest:.3g} px at most",
         fontsize=10,
-        parse_math=False,  # a lens's name is text, whatever signs are in it
+        parse_math=False,  # a lens's name is plain text
     )
     out = io.BytesIO()
     figure.savefig(out, format=kind, dpi=110, metadata={"Title": "residuals"})

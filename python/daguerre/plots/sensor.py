@@ -1,4 +1,4 @@
-"""The page of a sensor: efficiency by wavelength, dynamic range and noise by ISO."""
+"""Plots a sensor: efficiency by wavelength, dynamic range and noise by ISO."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ COLORS = {"R": "#c0392b", "G": "#27ae60", "B": "#2e5fa3", "Y": "#444444"}
 
 
 def page(sensor: Sensor, kind: str) -> bytes:
-    """Draws it.
+    """Draws the page of a sensor; returns the bytes of a file.
 
     Args:
-        sensor: Any.
+        sensor: The sensor.
         kind: "svg", "png" or "pdf".
     """
     from matplotlib import rc_context
@@ -73,7 +73,7 @@ def _signal_to_noise(axes: Any, sensor: Sensor) -> None:
         lux_s = np.geomspace(1e-6, 1, 400) * SATURATION_LX_S / iso
         ratio = np.array([snr_db(sensor, iso, h) for h in lux_s])
         lowest = min(lowest, float(lux_s[ratio > 0].min()))
-        # Where they agree, the thin lines of high ISOs lie on the thick ones of low ISOs.
+        # Thin lines of high ISOs stay visible on thick ones of low ISOs where they agree.
         axes.plot(lux_s, ratio, linewidth=4.5 - i, label=f"ISO {iso:.0f}")
         grey = GREY_LX_S / iso
         axes.plot(grey, snr_db(sensor, iso, grey), "k.", markersize=5, zorder=9)

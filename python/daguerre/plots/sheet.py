@@ -1,4 +1,4 @@
-"""The data sheet: one page with what a lens does, drawn by matplotlib (extra ``plot``)."""
+"""Draws the data sheet, one page on a lens, by matplotlib (extra ``plot``)."""
 
 from __future__ import annotations
 
@@ -37,17 +37,17 @@ STYLE: Any = {  # matplotlib's keys
     "legend.fontsize": 5.2,
     "legend.frameon": False,
     "legend.handlelength": 1.6,
-    "text.parse_math": False,  # names of files are text, whatever signs are in them
+    "text.parse_math": False,  # names are plain text
     "svg.hashsalt": "daguerre",
     "svg.fonttype": "path",
 }
 
 
 def sheet(bench: Bench, kind: str = "svg") -> bytes:
-    """The data sheet of a lens at one setting.
+    """Draws the data sheet of a lens at one setting.
 
     Args:
-        bench: The lens, focused, its iris set.
+        bench: The lens with its focus and f-stop.
         kind: ``svg``, ``png`` or ``pdf``.
 
     Returns:
@@ -57,7 +57,7 @@ def sheet(bench: Bench, kind: str = "svg") -> bytes:
 
 
 def page(made: Figures, kind: str = "svg") -> bytes:
-    """The data sheet of figures already made."""
+    """Draws the data sheet of given figures; returns the bytes of a file."""
     from matplotlib import rc_context
 
     with rc_context(STYLE):
@@ -65,7 +65,7 @@ def page(made: Figures, kind: str = "svg") -> bytes:
 
 
 def draw_sheet(made: Figures) -> Figure:
-    """The page as a matplotlib figure, of figures already made."""
+    """Draws the page of given figures as a matplotlib figure."""
     from matplotlib.figure import Figure
 
     from . import panels, panels_field
@@ -92,15 +92,15 @@ def draw_sheet(made: Figures) -> Figure:
 
 
 def _row(page: Figure, bottom: float, top: float) -> SubplotSpec:
-    """A strip across the page, between heights in shares of it."""
+    """Strip across the page, between heights given as shares of the page."""
     return page.add_gridspec(1, 1, left=0.075, right=0.965, bottom=bottom, top=top)[0]
 
 
 def saved(page: Figure, kind: str, title: str) -> bytes:
-    """The bytes of a figure; the same ones each time."""
+    """Encodes a figure; equal figures give equal bytes."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    FigureCanvasAgg(page)  # no window system, and no state shared with the user's own plots
+    FigureCanvasAgg(page)  # no window system, and no state shared with user plots
     out = io.BytesIO()
     facts: dict[str, Any] = {"Title": title}
     if kind == "svg":

@@ -1,4 +1,4 @@
-"""Point spread functions through focus, side by side."""
+"""Draws point spread functions through focus, side by side."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from daguerre.analysis.through_focus import Step
 
 
 def pictures(light: Pencil, steps: list[Step], kind: str) -> bytes:
-    """The PSFs side by side as a file's bytes: ``svg``, ``png`` or ``pdf`` (extra ``plot``)."""
+    """Draws PSFs side by side; returns the bytes of an ``svg``, ``png`` or ``pdf`` file."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
