@@ -1,7 +1,7 @@
 """``cached_property`` without a lock: two threads that read it at once both compute the value.
 
-Python 3.11's holds one lock per class while it computes: threads wait for other objects of the
-class, and a process that was forked meanwhile waits for ever. Python 3.12 removed the lock.
+Python 3.11's version holds one lock per class while it computes: threads wait for other objects of
+the class, and a process forked meanwhile waits for ever. Python 3.12 removed the lock.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING or sys.version_info >= (3, 12):
 else:
 
     class cached_property(functools.cached_property):
-        """Property that is computed once and kept in the object."""
+        """Property that is computed at the first read and kept in the object."""
 
         def __get__(self, instance: Any, owner: type[Any] | None = None) -> Any:
             if instance is None:

@@ -1,4 +1,4 @@
-"""Loads the compiled core, or says in one sentence why it cannot run here."""
+"""Loads the compiled core, or gives the reason why it cannot run here."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import platform
 import sys
 from pathlib import Path
 
-#: Instructions of x86-64-v2, the baseline of the build, that processors before 2009 lack.
+#: Instructions of x86-64-v2, the baseline of the build, missing in processors before 2009.
 NEEDED = frozenset({"sse4_1", "sse4_2", "popcnt", "ssse3"})
 CPU_INFO = Path("/proc/cpuinfo")
 
 
 def missing_instructions(cpu_info: Path = CPU_INFO) -> list[str]:
-    """Lists what the processor lacks; nothing where the system does not tell."""
+    """Lists missing instructions of the processor; empty if the system does not report them."""
     try:
         with cpu_info.open() as file:
-            first = file.read(8192)  # the first processor; the list of all is long
+            first = file.read(8192)  # the first processor is enough
     except (OSError, UnicodeDecodeError):
         return []
     for line in first.splitlines():
@@ -26,10 +26,10 @@ def missing_instructions(cpu_info: Path = CPU_INFO) -> list[str]:
 
 
 def check() -> None:
-    """Holds the processor against the build, before the core is loaded.
+    """Checks that the processor has all instructions of the build, before the core is loaded.
 
     Raises:
-        ImportError: An instruction is missing, which would end the process.
+        ImportError: An instruction is missing; using it would end the process.
     """
     if absent := missing_instructions():
         raise _refused(
@@ -39,7 +39,7 @@ def check() -> None:
 
 
 def unloadable(error: ImportError) -> ImportError:
-    """Turns the loader's words about the core into what to do."""
+    """Turns the loader's error into one that says how to solve the problem."""
     library, version = platform.libc_ver()
     text = str(error)
     if "GLIBC" in text and "not found" in text:
@@ -53,7 +53,7 @@ def unloadable(error: ImportError) -> ImportError:
 
 
 def _refused(reason: str) -> ImportError:
-    """The error to raise; the command line, which cannot catch it, ends here in one line."""
+    """Makes the error to raise; on the command line, prints one line and exits with 70."""
     if Path(sys.argv[0] if sys.argv else "").stem == "daguerre":
         sys.stderr.write(f"daguerre: error: {reason}\n")
         sys.exit(70)

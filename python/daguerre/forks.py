@@ -1,7 +1,7 @@
-"""Ends the threads of OpenImageIO before a fork, which would lose them, and restarts them after.
+"""Ends the threads of OpenImageIO before a fork and restarts them after it.
 
-Otherwise the end of a forked process would wait for them. ``daguerre.io.exr.threads`` does the same
-for OpenEXR, ``core/bind/unlocked.cpp`` for oneTBB.
+A fork loses them, and the forked process would wait for them at its end.
+``daguerre.io.exr.threads`` does the same for OpenEXR, ``core/bind/unlocked.cpp`` for oneTBB.
 """
 
 from __future__ import annotations

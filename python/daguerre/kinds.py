@@ -61,7 +61,7 @@ def of(hint: Any, *, none: bool = False) -> Kind | None:
     if None in found:
         return None
     known = [kind for kind in found if kind is not None]
-    if PATH in known:  # texts are paths, then, and a path takes no zero byte
+    if PATH in known:  # then texts are paths, which accept no zero byte
         known = [kind for kind in known if kind is not TEXT]
     if len(known) == 1 and not none:
         return known[0]
@@ -256,7 +256,7 @@ _PLAIN: dict[Any, Kind] = {
     ),
     collections.abc.Callable: Kind("a function", lambda v: v if callable(v) else REFUSED),
 }
-#: Names of annotations: other names of arrays, and kinds that are checked where they are used.
+#: Names of annotations: aliases of arrays, and kinds that are checked where they are used.
 _ARRAYS = frozenset({"_Numbers", "FloatArray", "Floats", "Image", "Real"})
 _OPEN = frozenset({"Progress", "Source", "Samples", "OverscanLike", "Self", "Light"})
 #: Protocols that a module may import for type checkers only, and their members.

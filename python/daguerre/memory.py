@@ -1,4 +1,4 @@
-"""Memory that the process may still use, so that too large tasks are refused instead of killed.
+"""Memory that the process may still use, so that too large tasks get an error and are not killed.
 
 It is the free memory of the machine and its control groups, as long as the process stays below its
 limit: 80 % of their total memory, or the limit of ``set_limit``.
