@@ -82,7 +82,7 @@ BAD: dict[str, tuple[bytes | Callable[[Path], bytes], str]] = {
     "png 2^32": (bomb(2**32 - 1, 2**32 - 1), "image size: wanted at most"),
     "png chunk 2^32": (
         GOOD[:33] + struct.pack(">I4s", 2**32 - 1, b"IDAT") + bytes(99),
-        "truncated PNG: wanted 4294967340 bytes",
+        "truncated PNG: wanted at least 4294967340 bytes",
     ),
     "cut jpeg": (lambda d: jpeg(PIXELS, d)[:-10], "truncated JPEG: wanted an end marker"),
     "jpeg of 20 bytes": (lambda d: jpeg(PIXELS, d)[:20], "cannot be decoded: .*Premature end"),

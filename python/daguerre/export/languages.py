@@ -12,8 +12,8 @@ from .printers import VISIBLE, C, Glsl, NumPy, Printer
 
 USE_SAMPLE = """\
 {name}_sample(film_x, film_y, u1, u2, nm, f_stop) -> x, y, z, dx, dy, dz, weight
-    samples a ray of a film point. film_x, film_y: mm, (0, 0) on the axis, in the upright picture, x
-    to the right and y up. u1, u2: random numbers in [0, 1). nm: wavelength. f_stop: {f_stop:.4g}
+    samples a ray from a film point. film_x, film_y: mm, (0, 0) on the axis, in the upright picture,
+    x to the right, y up. u1, u2: random numbers in [0, 1). nm: wavelength. f_stop: {f_stop:.4g}
     or more. The ray is in the camera's frame: metres, origin at the centre of the entrance pupil,
     -z along the view, x to the right, y up. A white world of luminance 1 has a mean weight of 1 on
     the axis, at every f-stop. Weight 0: the ray is stopped."""

@@ -386,7 +386,7 @@ def test_trailing_bytes_and_unknown_chunks_are_forgiven(tmp_path):
     path.write_bytes(data + b"junk")
     scene = gltf.read(path)
     assert len(scene.meshes) == 1
-    assert scene.warnings == ["a byte behind the stated end of the file (4 uses)"]
+    assert scene.warnings == ["a byte after the stated end of the file (4 uses)"]
 
 
 def chain(depth: int) -> Builder:
@@ -409,7 +409,7 @@ def test_deep_and_wide_trees_are_quick(tmp_path):
     scene = gltf.read(b.glb(tmp_path / "a.glb"))
     assert len(scene.instances) == 5002
     assert scene.nodes["end"] == [5001]
-    assert "stands for its own meshes only" in scene.warnings[-1]
+    assert "selects its own meshes only" in scene.warnings[-1]
     assert time.perf_counter() - start < 60
 
 

@@ -101,8 +101,8 @@ def test_doubtful_units_are_told(tmp_path):
         extensions={"EXT_camera_physical": {"focalLength": 0.05, "sensorSize": [0.036, 0.024]}}
     )
     text = " ".join(read(b, tmp_path).warnings)
-    assert "0.05 mm lens" in text
-    assert "0.036 mm wide sensor" in text
+    assert "a focal length of 0.05 mm" in text
+    assert "a sensor 0.036 mm wide" in text
 
 
 def test_orthographic_is_reported_and_kept_out(tmp_path):

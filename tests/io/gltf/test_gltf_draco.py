@@ -97,7 +97,7 @@ def test_without_the_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     b.json["accessors"][3]["bufferView"] = b.view(TRIANGLES.astype("<u2").tobytes())
     read = gltf.read(b.glb(path))
     np.testing.assert_array_equal(read.meshes[0].indices, TRIANGLES)
-    assert any("uncompressed data stand in (1 use)" in w for w in read.warnings)
+    assert any("uncompressed data are used (1 use)" in w for w in read.warnings)
 
 
 P = r"meshes\[0\]\.primitives\[0\]\."
@@ -111,7 +111,7 @@ P = r"meshes\[0\]\.primitives\[0\]\."
         (2, {"type": "VEC3"}, P + r"attributes\.COLOR_0: wrong shape .* \(63, 3\), got \(63, 4\)"),
         (0, {"count": 1 << 40}, P + r"attributes\.\w+: too large: wanted at most 8 GiB"),
         (3, {"count": 1 << 40}, P + r"indices: too large: wanted at most 8 GiB"),
-        (0, {"componentType": 5123}, P + r"attributes\.POSITION: what was compressed does not fit"),
+        (0, {"componentType": 5123}, P + r"attributes\.POSITION: the unpacked data do not fit"),
     ],
 )
 def test_what_does_not_fit_is_named(

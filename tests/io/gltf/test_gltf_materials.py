@@ -297,8 +297,8 @@ def test_what_is_left_out_is_told(tmp_path):
     assert scene.materials[0].kind.emissive_texture is None
     assert scene.warnings == [
         "extension 'EXT_texture_avif' is not understood (1 use)",
-        "a texture that asks for texture coordinates beyond set 1 is left out (1 use)",
-        "a texture without an image that is understood is left out (1 use)",
+        "a texture that needs texture coordinates beyond set 1 is left out (1 use)",
+        "a texture without an image of a supported format is left out (1 use)",
         "'thicknessTexture' is not needed: the path through the volume is traced (1 use)",
     ]
 

@@ -220,7 +220,7 @@ def test_joints_outside_of_the_scene_are_told(tmp_path):
     b.json["nodes"][1]["translation"] = [0, 0, 3]
     scene = load(b, tmp_path)
     assert scene.meshes[0].positions[0].tolist() == [0, 2, 3]
-    assert scene.warnings == ["a joint of a skin stands outside of the scene (2 uses)"]
+    assert scene.warnings == ["a joint of a skin is outside of the scene (2 uses)"]
 
 
 @settings(max_examples=30, deadline=None)

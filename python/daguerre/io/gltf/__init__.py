@@ -1,1 +1,1 @@
-"""glTF 2.0 scenes: ``reader`` is the page where nodes, meshes, materials and cameras meet."""
+"""Reads and writes glTF 2.0 scenes; ``reader`` joins nodes, meshes, materials and cameras."""

@@ -1,6 +1,6 @@
-"""Accessors of glTF as numpy arrays: strided, normalised, quantised, sparse, or all zeros.
+"""Reads accessors of glTF as numpy arrays: strided, normalised, quantised, sparse, or zeros.
 
-Every count is held against the bytes behind it before anything is allocated.
+Every count is checked against the bytes of the file before memory is allocated.
 Source: glTF 2.0 specification, chapter 3.6.2; KHR_mesh_quantization.
 """
 
@@ -18,19 +18,19 @@ from . import meshopt as gltf_meshopt
 
 _COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
-# An accessor without bytes is zeros: no file size bounds it, so this does (elements x components).
+# Limit of an accessor without bytes, which is zeros, in elements x components.
 _MAX_ZEROS = 1 << 26
-#: All compressed bufferViews of a file together, unpacked.
+#: Limit of all compressed bufferViews of a file together, unpacked.
 _MAX_UNPACKED_BYTES = 8 << 30
 
 
 class _View:
-    """A bufferView; a compressed one is unpacked when it is first read.
+    """A bufferView; a compressed one is unpacked at the first read.
 
     Args:
         item: The bufferView.
         buffers: Bytes of all buffers.
-        budget: For what is unpacked.
+        budget: Budget of unpacked bytes.
     """
 
     def __init__(self, item: Item, buffers: list[memoryview], budget: Budget) -> None:
@@ -45,7 +45,7 @@ class _View:
 
     @property
     def data(self) -> memoryview:
-        """The bytes, unpacked."""
+        """Unpacked bytes."""
         if self.packed is not None:
             self._budget.spend(self.item.need("byteLength").integer(), self.item)
             self._data = gltf_meshopt.unpack(self._data, self.item, self.packed)
@@ -58,7 +58,7 @@ class Accessors:
 
     Args:
         root: The JSON object of the file.
-        buffers: Bytes of its buffers.
+        buffers: Bytes of the file's buffers.
     """
 
     def __init__(self, root: Item, buffers: list[memoryview]) -> None:
@@ -69,15 +69,15 @@ class Accessors:
         self._sources: dict[int, object] = {}
 
     def index(self, use: Item) -> int:
-        """The accessor that ``use`` names; checked."""
+        """Checked index of the accessor that ``use`` names."""
         return use.index(len(self._items), "accessors")
 
     def view_bytes(self, use: Item) -> memoryview:
-        """The bytes of the bufferView that ``use`` names."""
+        """Bytes of the bufferView that ``use`` names."""
         return self._views[use.index(len(self._views), "bufferViews")].data
 
     def kind(self, use: Item) -> tuple[str, int, bool]:
-        """Type, component type and whether normalised, of the accessor that ``use`` names."""
+        """Type, component type and normalisation of the accessor that ``use`` names."""
         item = self._items[self.index(use)]
         normalized = item.get("normalized")
         return (
@@ -87,12 +87,12 @@ class Accessors:
         )
 
     def floats(self, use: Item, types: tuple[str, ...], what: str = "element") -> NDArray[Any]:
-        """Finite numbers, normalised integers mapped to [0, 1] or [-1, 1].
+        """Reads finite numbers; normalised integers are mapped to [0, 1] or [-1, 1].
 
         Args:
             use: The JSON value that names the accessor.
-            types: Types that are allowed here, such as ``("VEC3",)``.
-            what: Name of an element in a complaint.
+            types: Allowed types, such as ``("VEC3",)``.
+            what: Name of an element in messages.
 
         Returns:
             float32, shape (count, components).
@@ -105,7 +105,7 @@ class Accessors:
     def changes(
         self, use: Item, types: tuple[str, ...], what: str
     ) -> tuple[NDArray[np.int64] | slice, NDArray[np.float32]]:
-        """Reads like ``floats``, but only those elements that may differ from 0, and their indices.
+        """Reads like ``floats``, but only elements that may differ from 0, with their indices.
 
         Returns:
             Indices of the elements, and their numbers (indices, components).
@@ -129,7 +129,7 @@ class Accessors:
         return self._items[self.index(use)].need("count").integer(1)
 
     def joints(self, use: Item) -> NDArray[Any]:
-        """Four small unsigned integers per element, shape (count, 4), as they lie in the file."""
+        """Reads four unsigned integers per element, shape (count, 4), in the type of the file."""
         kind, component, normalized = self.kind(use)
         if kind != "VEC4" or component not in (5121, 5123) or normalized:
             use.fail(
@@ -139,7 +139,7 @@ class Accessors:
         return self._raw(self.index(use))
 
     def integers(self, use: Item) -> NDArray[np.uint32]:
-        """Unsigned integers, shape (count,)."""
+        """Reads unsigned integers, shape (count,)."""
         kind, component, _ = self.kind(use)
         if kind != "SCALAR" or component not in (5121, 5123, 5125):
             use.fail(
@@ -149,16 +149,16 @@ class Accessors:
         return np.array(self._raw(self.index(use))[:, 0], np.uint32)
 
     def has_bytes(self, use: Item) -> bool:
-        """Whether a bufferView or changes of single elements lie behind an accessor."""
+        """Whether an accessor has a bufferView or sparse elements."""
         item = self._items[self.index(use)]
         return item.get("bufferView") is not None or item.get("sparse") is not None
 
     def supplied(self, use: Item, source: object) -> bool:
-        """Whether the accessor was given its array by ``source``."""
+        """Whether ``source`` supplied the array of the accessor."""
         return self._sources.get(self.index(use)) == source
 
     def check_size(self, uses: list[Item], limit: int) -> None:
-        """Refuses accessors that claim more than ``limit`` bytes together."""
+        """Checks that accessors need at most ``limit`` bytes together."""
         total = 0
         for use in uses:
             kind, component, _ = self.kind(use)
@@ -169,10 +169,10 @@ class Accessors:
     def supply(
         self, use: Item, array: NDArray[Any], source: object, *, any_count: bool = False
     ) -> None:
-        """Gives an accessor its array, (count, components), which comes out of ``source``.
+        """Sets the array of an accessor, (count, components), unpacked from ``source``.
 
         Raises:
-            InputError: It does not fit the accessor, or another source gave it one.
+            InputError: It does not fit the accessor, or another source supplied one.
         """
         index = self.index(use)
         if self._sources.setdefault(index, source) != source:
@@ -181,10 +181,10 @@ class Accessors:
         dtype, count = np.dtype(_COMPONENTS[component]), self.count(use)
         wanted = (len(array) if any_count else count, _WIDTHS[kind])
         if array.shape != wanted:
-            use.fail(f"wrong shape of what was compressed: wanted {wanted}, got {array.shape}")
+            use.fail(f"wrong shape of the unpacked data: wanted {wanted}, got {array.shape}")
         cast = array.astype(dtype)
         if array.dtype != dtype and (cast != array).any():
-            use.fail(f"what was compressed does not fit component type {component}")
+            use.fail(f"the unpacked data do not fit component type {component}")
         self._arrays[index] = cast
 
     def _raw(self, index: int) -> NDArray[Any]:
@@ -239,7 +239,7 @@ class Accessors:
     def _sparse(
         self, sparse: Item, dtype: np.dtype[Any], width: int, length: int
     ) -> tuple[NDArray[np.int64], NDArray[Any]]:
-        """Single elements and their indices; the list of these must rise (chapter 3.6.2.3)."""
+        """Reads sparse elements and their indices, which must increase (chapter 3.6.2.3)."""
         count = sparse.need("count").integer(1, length)
         places_item, values_item = sparse.need("indices"), sparse.need("values")
         component = places_item.need("componentType").choice((5121, 5123, 5125))
@@ -255,7 +255,7 @@ class Accessors:
 
 
 def _decoded(array: NDArray[Any], normalized: bool, use: Item, what: str) -> NDArray[np.float32]:
-    """Finite float32 numbers; normalised integers mapped to [0, 1] or [-1, 1]."""
+    """Converts to finite float32; normalised integers are mapped to [0, 1] or [-1, 1]."""
     if array.dtype.kind == "f":
         bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
         if bad.size:
@@ -271,7 +271,7 @@ def _decoded(array: NDArray[Any], normalized: bool, use: Item, what: str) -> NDA
 
 
 def _slice(item: Item, buffers: list[memoryview]) -> memoryview:
-    """The part of a buffer that a bufferView, or its compressed form, names."""
+    """Bytes of a buffer that a bufferView, or its compressed form, refers to."""
     buffer = buffers[item.need("buffer").index(len(buffers), "buffers")]
     offset_item = item.get("byteOffset")
     offset = 0 if offset_item is None else offset_item.integer(0)

@@ -1,8 +1,8 @@
-"""Animation of glTF at one moment, written into the JSON before anything is read from it.
+"""Applies animations of glTF at one time to the JSON before other parts read it.
 
-Whoever reads a node, a material or a light then meets the value of that moment and need not know
-that it moves. What does know asks for another moment: of a copy of one part of the file, so that
-the file as read never changes.
+Readers of nodes, materials and lights then get the values of that time, and need no code for
+animation. Values at other times come from a copy of one part of the file, so that the file as read
+never changes.
 Sources: glTF 2.0 specification, chapter 3.11 and appendix C; KHR_animation_pointer.
 """
 
@@ -23,18 +23,18 @@ from .pointers import Pointers, Target, parse
 from .samplers import FloatArray, Samplers, Track
 
 _PATHS = ("translation", "rotation", "scale", "weights")
-#: Where something stands in a file, such as ("nodes", "3").
+#: Place of an object in a file, such as ("nodes", "3").
 Part = tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class Channel(Value):
-    """A value of the file and what it is over time.
+    """An animated value of the file.
 
     Attributes:
-        tokens: The way to it.
-        track: Its values over time.
-        is_flag: Whether it is true or false.
+        tokens: Path to the value.
+        track: Values over time.
+        is_flag: Whether the value is true or false.
     """
 
     tokens: tuple[str, ...]
@@ -43,26 +43,26 @@ class Channel(Value):
 
     @property
     def part(self) -> Part:
-        """The part of the file that the tokens lead into: up to the first index."""
+        """Part of the file that contains the value: the tokens up to the first index."""
         return self.tokens[: 4 if self.tokens[0] == "extensions" else 2]
 
     @property
     def inside(self) -> tuple[str, ...]:
-        """The way to the value from that part."""
+        """Path from that part to the value."""
         return self.tokens[len(self.part) :]
 
 
 class Animations:
-    """All animations of a file, which play at once, each held at its ends.
+    """All animations of a file; they play at once, and hold their first and last values.
 
     Args:
-        root: The JSON object of the file; changed in place to the moment ``time``.
-        accessors: Its accessors.
-        time: s.
-        notes: Gets what was not understood.
+        root: The JSON object of the file; changed in place to its state at ``time``.
+        accessors: Accessors of the file.
+        time: Time, s.
+        notes: Receives notes on unsupported content.
 
     Attributes:
-        duration: Time of the last key, s; None: there is no animation.
+        duration: Time of the last key, s; None: there are no animations.
     """
 
     def __init__(self, root: Item, accessors: Accessors, time: float, notes: Notes) -> None:
@@ -95,14 +95,14 @@ class Animations:
         return self._parts.get(part, [])
 
     def parts(self, kind: str) -> list[int]:
-        """Indices of the nodes, materials, ... in which something changes."""
+        """Indices of nodes, materials, ... that change."""
         return sorted(int(part[-1]) for part in self._parts if part[0] == kind)
 
 
 def played(part: Any, channels: Sequence[Channel], time: float) -> Any:
-    """A part of the file with what its channels say at a time, s; the part itself stays.
+    """Returns a part of the file with its values at a time, s; the part itself is unchanged.
 
-    Only what lies on the way to the values is copied.
+    Only objects and lists on the paths to the values are copied.
     """
     for channel in channels:
         part = _with(part, channel.inside, channel.track.at(time))
@@ -110,7 +110,7 @@ def played(part: Any, channels: Sequence[Channel], time: float) -> Any:
 
 
 def _with(holder: Any, way: tuple[str, ...], value: Any) -> Any:
-    """A copy of an object or list with another value at the end of the way."""
+    """Copies an object or list, with another value at the end of the path."""
     copy = holder.copy()
     key: Any = int(way[0]) if isinstance(holder, list) else way[0]
     copy[key] = value if len(way) == 1 else _with(holder[key], way[1:], value)
@@ -118,8 +118,8 @@ def _with(holder: Any, way: tuple[str, ...], value: Any) -> Any:
 
 
 def breaks_of(channels: Sequence[Channel], begin: float, end: float) -> FloatArray:
-    """Rising times of the keys inside of (begin, end), s."""
-    tracks = {id(c.track): c.track for c in channels}  # many nodes may follow one
+    """Increasing times of the keys inside of (begin, end), s."""
+    tracks = {id(c.track): c.track for c in channels}  # many nodes may share one
     times = [track.breaks(begin, end) for track in tracks.values()]
     return times[0] if len(times) == 1 else np.unique(np.concatenate([np.zeros(0), *times]))
 
@@ -136,21 +136,21 @@ def _write(target: Target, value: Any) -> None:
 
 
 def _target(item: Item, pointers: Pointers, notes: Notes) -> tuple[list[str], Target | None]:
-    """Target of a channel; None, with a note where that is odd, if it is nothing."""
+    """Finds the target of a channel; None, mostly with a note, if it cannot be animated."""
     path, node = item.need("path").text(), item.get("node")
     if path in _PATHS:
-        if node is None:  # left to extensions that are not in the file (3.11)
+        if node is None:  # reserved for extensions, which the file lacks (3.11)
             return [], None
         tokens = ["nodes", str(node.index(pointers.node_count, "nodes")), path]
         return tokens, pointers.target(tokens, node)
     extension = item.extension("KHR_animation_pointer") if path == "pointer" else None
     if extension is None:
-        notes.add("an animation of something other than a node's place is left out")
+        notes.add("an animation of an unsupported path is left out")
         return [], None
     use = extension.need("pointer")
     tokens = parse(use)
     target = pointers.target(tokens, use)
     if target is None:
         where = "/".join("{}" if token.isdigit() else clean(token) for token in tokens)
-        notes.add(f"an animation of {short('/' + where)} is left out: nothing there can move")
+        notes.add(f"an animation of {short('/' + where)} is left out: it cannot be animated")
     return tokens, target

@@ -1,9 +1,9 @@
-"""Cameras of glTF in a photographer's units, with what EXT_camera_physical and extras add.
+"""Reads cameras of glTF in a photographer's units, with EXT_camera_physical and extras.
 
-glTF knows a field of view only; the rest of a camera comes from ``EXT_camera_physical``
+glTF itself has only a field of view; other parameters come from ``EXT_camera_physical``
 ({focalLength mm, sensorSize mm, focusDistance m, fStop}) and ``extras.daguerre`` (parameters of
-``Camera`` in camelCase, which win). ``znear`` and ``zfar`` serve rasterizers and are not read: a
-lens sees what stands close to it.
+``Camera`` in camelCase, which take precedence). ``znear`` and ``zfar`` serve rasterizers and are
+not read, as a lens also sees close objects.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def _f_stop(item: Item) -> float:
 
 
 def _lens(item: Item) -> str:
-    # A file from strangers may name a lens of the library, but no file, not even a near one.
+    # For safety a scene file may name a lens of the library, but no lens file.
     name = item.text()
     if name not in (*IDEAL, *library.names()):
         item.fail(f"refused: wanted the name of a lens in the library, got {short(name)}")
@@ -101,7 +101,7 @@ def _snake(name: str) -> str:
 
 
 def fields_of(tokens: Sequence[str]) -> tuple[str, ...]:
-    """Parameters of ``Camera`` that a value of the file, such as yfov, has a say in."""
+    """Parameters of ``Camera`` that depend on a value of the file, such as yfov."""
     key = tokens[-1]
     fields = {
         "yfov": ("focal_length",),
@@ -112,7 +112,7 @@ def fields_of(tokens: Sequence[str]) -> tuple[str, ...]:
 
 
 def read_camera(item: Item, transform: NDArray[np.float64], notes: Notes) -> Camera | None:
-    """A camera at ``transform`` (4, 4; rigid), or None with a note if it is orthographic."""
+    """Reads a camera at ``transform`` (4, 4; rigid); None, with a note, if it is orthographic."""
     if item.need("type").choice(("perspective", "orthographic")) == "orthographic":
         notes.add("an orthographic camera is left out: no lens makes parallel rays")
         return None
@@ -122,7 +122,7 @@ def read_camera(item: Item, transform: NDArray[np.float64], notes: Notes) -> Cam
     if yfov >= math.pi:
         yfov_item.fail(f"out of range: wanted less than pi (radians), got {yfov:g}")
     aspect = perspective.number_of("aspectRatio", 0.0, 1e-3, 1e3, above=0)
-    # The stated shape of the picture becomes the shape of the sensor, so that yfov holds for it.
+    # The sensor gets the aspect ratio of the picture, so that yfov fits.
     width = _SENSOR_HEIGHT_MM * aspect if aspect else _SENSOR_WIDTH_MM
     values: dict[str, Any] = {"sensor_size": (round(width, 6), _SENSOR_HEIGHT_MM)}
     physical = item.extension("EXT_camera_physical")
@@ -133,7 +133,7 @@ def read_camera(item: Item, transform: NDArray[np.float64], notes: Notes) -> Cam
         ours = extras.get("daguerre")
         if ours is not None:
             values |= _known(ours, _EXTRAS, notes, "extras.daguerre")
-    if values.get("lens") in (None, *IDEAL):  # a prescription has its own
+    if values.get("lens") in (None, *IDEAL):  # a prescription has its own focal length
         values.setdefault("focal_length", 0.5 * values["sensor_size"][1] / math.tan(0.5 * yfov))
         low, high = LIMITS["focal_length"]
         if not low <= values["focal_length"] <= high:
@@ -157,9 +157,9 @@ def _known(item: Item, readers: dict[str, _Reader], notes: Notes, of: str) -> di
 
 
 def _doubt(values: dict[str, Any], notes: Notes) -> None:
-    """Figures that no camera has are probably in another unit."""
+    """Notes implausible values, which are probably in another unit."""
     focal, width = values.get("focal_length"), values["sensor_size"][0]
     if focal is not None and not 1 <= focal <= 2000:
-        notes.add(f"a camera says a {focal:.4g} mm lens; its unit is probably not mm")
+        notes.add(f"a camera has a focal length of {focal:.4g} mm; its unit is probably not mm")
     if not 0.5 <= width <= 200:
-        notes.add(f"a camera says a {width:.4g} mm wide sensor; its unit is probably not mm")
+        notes.add(f"a camera has a sensor {width:.4g} mm wide; its unit is probably not mm")

@@ -1,6 +1,6 @@
-"""Catchers in ``extras`` of a glTF node, where Blender and others keep custom properties.
+"""Reads catchers in ``extras`` of a glTF node, where Blender keeps custom properties.
 
-``"catcher": true`` stands for all effects; a text names them: ``"shadow,gi"`` or ``"holdout"``.
+``"catcher": true`` enables all effects; a text names some: ``"shadow,gi"`` or ``"holdout"``.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from daguerre.scene.scene import Scene
 
 
 def mark_catcher(scene: Scene, name: str, node: Item) -> None:
-    """Makes a node a catcher if its extras say so.
+    """Makes a node a catcher if its extras have ``catcher``.
 
     Raises:
-        InputError: They say what is no effect, or the node has no mesh.
+        InputError: An effect is unknown, or the node has no mesh.
     """
     extras = node.value.get("extras")
     value = extras.get("catcher") if isinstance(extras, dict) else None

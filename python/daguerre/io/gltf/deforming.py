@@ -1,4 +1,4 @@
-"""Vertices of a primitive as morphs and skins leave them, at one moment or over time.
+"""Vertices of a primitive after morphs and skins, at one time or over time.
 
 Source: glTF 2.0 specification, chapters 3.7.2.2 and 3.7.3.
 """
@@ -28,11 +28,11 @@ class MeshOverTime(Value):
     """The vertices of a primitive over time.
 
     Attributes:
-        arrays: Attributes by their names in glTF, as they are in the file.
-        triangles: Shape (M, 3), wound as the vertices lay when the file was read.
-        displacements: Displacements that morph it.
-        shapes: Knows the displacements.
-        skin: Skin that moves it; None: it has none.
+        arrays: Attributes by their names in glTF, with the values of the file.
+        triangles: Shape (M, 3), wound for the vertices at the time of reading.
+        displacements: Weighted displacements over time.
+        shapes: Values of the displacements.
+        skin: Skin that moves the vertices; None: there is none.
     """
 
     arrays: Arrays
@@ -42,7 +42,7 @@ class MeshOverTime(Value):
     skin: SkinOverTime | None
 
     def at(self, time_s: float) -> Vertices:
-        """The vertices at a time, s."""
+        """Vertices at a time, s."""
         arrays = dict(self.arrays)
         with np.errstate(all="ignore"):
             morph(arrays, self.displacements.at(time_s), self.shapes)
@@ -59,7 +59,7 @@ class MeshOverTime(Value):
 
 
 def finished(arrays: Arrays, base: Arrays, triangles: NDArray[np.uint32], notes: Notes) -> Vertices:
-    """Normals and tangents made units; what is still in ``base`` is copied before."""
+    """Normalises normals and tangents; arrays that are still those of ``base`` are copied."""
 
     def own(name: str) -> FloatArray | None:
         array = arrays.get(name)

@@ -1,7 +1,7 @@
-"""KHR_draco_mesh_compression: triangles and attributes of a primitive out of one packed stream.
+"""Unpacks KHR_draco_mesh_compression: triangles and attributes of a primitive.
 
-The accessors of such a primitive say what comes out of it; they are given the arrays. DracoPy (the
-extra ``compression``) unpacks; it holds counts against the bytes behind them itself.
+The accessors of such a primitive describe the unpacked arrays, and receive them. DracoPy (the extra
+``compression``) unpacks the stream, and checks counts against its bytes.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ def supply(
 
     Args:
         primitive: The primitive.
-        mode: Its mode.
-        attributes: Its attributes by name.
-        accessors: Get the arrays.
-        notes: Told if the file's uncompressed data stand in.
+        mode: Mode of the primitive.
+        attributes: Attributes of the primitive, by name.
+        accessors: Receive the arrays.
+        notes: Receives a note if the file's uncompressed data are used.
 
     Returns:
-        Whether the triangles are now a list, whatever the mode says.
+        Whether the triangles are now a list, whatever the mode.
 
     Raises:
-        InputError: The stream is broken, does not fit the accessors, or cannot be unpacked here.
+        InputError: The stream is damaged or does not fit the accessors, or DracoPy is missing.
     """
     extension = primitive.extension(NAME)
     if extension is None:
@@ -50,7 +50,7 @@ def supply(
             extension.fail(
                 f"wanted the package {package}, got none; install it: {extras.hint(package)}"
             )
-        notes.add(f"{NAME} needs {package} ({extras.hint(package)}): uncompressed data stand in")
+        notes.add(f"{NAME} needs {package} ({extras.hint(package)}): uncompressed data are used")
         return False
     if mode < 4 or mode > 5:
         primitive.need("mode").fail(f"wanted 4 or 5 with {NAME}, got {mode}")

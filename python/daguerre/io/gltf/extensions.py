@@ -1,4 +1,4 @@
-"""Which extensions of glTF are understood, and what happens to the others."""
+"""Lists the supported extensions of glTF, and checks those of a file."""
 
 from __future__ import annotations
 
@@ -41,10 +41,10 @@ KNOWN = frozenset(
 
 
 def check_extensions(root: Item, notes: Notes) -> None:
-    """Refuses what is required and unknown; reports by name and count what is optional.
+    """Checks required extensions, and notes unknown optional ones with their counts.
 
     Raises:
-        InputError: A required extension is unknown, or needs a package that is not there.
+        InputError: A required extension is unknown, or needs a package that is not installed.
     """
     for item in root.list_of("extensionsRequired"):
         if item.text() not in KNOWN:
@@ -61,12 +61,12 @@ def check_extensions(root: Item, notes: Notes) -> None:
     counts = _count_uses(root.value)
     for name in dict.fromkeys([*listed, *counts]):
         if name not in KNOWN:
-            # Extensions listed but used nowhere still tell what the file was made for.
+            # Listed but unused extensions are noted too, with a count of 0.
             notes.add(f"extension {short(clean(name))} is not understood", counts.get(name, 0))
 
 
 def _count_uses(document: Any) -> dict[str, int]:
-    """How often each extension appears; walks without recursion, in the order of the file."""
+    """Counts uses of each extension without recursion, in the order of the file."""
     counts: dict[str, int] = {}
     stack: list[Any] = [document]
     while stack:

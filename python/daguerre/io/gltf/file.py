@@ -1,8 +1,7 @@
-"""The container of a glTF scene: .glb chunks or .gltf text, and the bytes of buffers.
+"""Reads the container of a glTF scene: .glb chunks or .gltf text, and the bytes of buffers.
 
-Plain ``json`` and not pygltflib: its dataclasses take a string for a number without a word,
-forget where a value stood and drop members that they do not know, so no complaint could name the
-JSON path.
+It uses plain ``json``, as dataclasses of pygltflib silently accept a string for a number, lose the
+place of a value and drop unknown members, so that no error could name the JSON path.
 Source: glTF 2.0 specification, chapters 3.6 (buffers) and 4 (GLB).
 """
 
@@ -34,9 +33,9 @@ class Document:
 
     Attributes:
         root: The JSON object.
-        binary: The BIN chunk of a .glb, else None.
-        folder: Where its URIs may point.
-        trailing: Bytes behind the stated end of a .glb.
+        binary: The BIN chunk of a .glb; None: there is none.
+        folder: Folders that URIs may point to.
+        trailing: Number of bytes after the stated end of a .glb.
     """
 
     root: Item
@@ -46,14 +45,14 @@ class Document:
 
 
 def open_document(path: Path, folder: Folder) -> Document:
-    """Reads a .glb or .gltf file, told apart by its first bytes.
+    """Reads a .glb or .gltf file; its first bytes tell which.
 
     Raises:
-        InputError: It cannot be read, is truncated or is not glTF 2.0.
+        InputError: The file cannot be read, is truncated or is not glTF 2.0.
     """
     try:
         if path.exists() and not path.is_file():
-            raise InputError(f"{path}: wanted a glTF file, got something that is no ordinary file")
+            raise InputError(f"{path}: wanted a glTF file, got something that is not a file")
         data, trailing = _read(path)
     except (OSError, ValueError) as error:
         if isinstance(error, InputError):
@@ -74,7 +73,7 @@ def open_document(path: Path, folder: Folder) -> Document:
 
 
 def _read(path: Path) -> tuple[bytes, int]:
-    """The bytes of a file, of a .glb as many as its header says, and how many are left."""
+    """Reads a file, a .glb up to the length in its header; also counts the bytes after it."""
     with path.open("rb") as stream:
         size = path.stat().st_size
         start = stream.read(12)
@@ -131,7 +130,7 @@ def _check_asset(root: Item) -> None:
 
 
 def load_buffers(document: Document) -> list[memoryview]:
-    """The bytes of every buffer, exactly ``byteLength`` of them; none of those that nobody reads.
+    """Loads ``byteLength`` bytes of each buffer; buffers that are never read stay empty.
 
     Raises:
         InputError: A file is missing, outside of the folder, or shorter than ``byteLength``.
@@ -159,7 +158,7 @@ def _load_buffer(document: Document, item: Item, budget: Budget) -> memoryview:
         file = document.folder.resolve(uri)
         source = repr(file.name)
         try:
-            with file.open("rb") as stream:  # the size is asked first: byteLength may be a lie
+            with file.open("rb") as stream:  # limited by the size, as byteLength may be wrong
                 size = file.stat().st_size
                 data = memoryview(stream.read(min(length, size)))
         except OSError as error:

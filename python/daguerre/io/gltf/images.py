@@ -1,4 +1,4 @@
-"""Images of glTF, decoded side by side; each once, whoever uses it.
+"""Decodes images of glTF in parallel, each once, however many materials use it.
 
 Source: glTF 2.0 specification, chapter 3.8.
 """
@@ -27,8 +27,8 @@ from .accessors import Accessors
 from .file import Document
 from .textures import Plan
 
-#: All images of a file together, decoded; a few kB of JSON could ask for any number of them. Where
-#: memory is short, that share of it: coarser levels take a third more, and the picture some.
+#: Limit of all decoded images of a file, as a few kB of JSON could name any number of them; at most
+#: that share of free memory, as mipmaps take a third more, and the picture needs some.
 _MAX_TOTAL_BYTES = 8 << 30
 _SHARE = 0.6
 
@@ -38,10 +38,10 @@ class Images:
 
     Args:
         document: The file.
-        accessors: For images inside of bufferViews.
+        accessors: Accessors, for images inside of bufferViews.
 
     Attributes:
-        same: For each image the first one that is the same file or bufferView.
+        same: Index of the first image with the same file or bufferView, for each image.
     """
 
     def __init__(self, document: Document, accessors: Accessors) -> None:
@@ -53,7 +53,7 @@ class Images:
         self.same = [first.setdefault(self._source(i), i) for i in range(len(self._images))]
 
     def decode(self, plans: Iterable[Plan], scene: Scene) -> None:
-        """Decodes what is planned and adds it to the scene, which has no textures yet."""
+        """Decodes planned images and adds them to the scene, which must have no textures yet."""
         wanted = sorted({plan.image for plan in plans})
         budget = _budget()
 
@@ -84,7 +84,7 @@ class Images:
             )
 
     def _path(self, item: Item) -> Path | None:
-        """Where an image lies if it is a file; checks also those that no material uses."""
+        """Path of an image that is a file; unused images are checked, too."""
         uri, view = item.get("uri"), item.get("bufferView")
         if (uri is None) == (view is None):
             item.fail("wanted either a uri or a bufferView, got " + ("both" if uri else "neither"))
@@ -123,14 +123,14 @@ class Images:
 
 
 def _linear(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Colour channels undone from sRGB; the alpha of 2 or 4 channels stays."""
+    """Decodes colour channels from sRGB; alpha, if there are 2 or 4 channels, is unchanged."""
     colors = pixels.shape[2] - (pixels.shape[2] in (2, 4))
     linear = srgb_curve.to_linear(pixels[:, :, :colors])
     return np.concatenate([linear, pixels[:, :, colors:]], axis=2)
 
 
 def _budget() -> Budget:
-    """Bytes that images may take, decoded."""
+    """Budget of bytes of decoded images."""
     free = memory.left_bytes()
     if free is None or _SHARE * free >= _MAX_TOTAL_BYTES:
         return Budget(_MAX_TOTAL_BYTES, "bytes of decoded images")

@@ -1,4 +1,4 @@
-"""EXT_mesh_gpu_instancing: one mesh at many places, given by columns of numbers."""
+"""Reads EXT_mesh_gpu_instancing: one mesh at many places, in columns of numbers."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from daguerre.scene.transforms import compose
 from .accessors import Accessors
 
 _COLUMNS = ("TRANSLATION", "ROTATION", "SCALE")
-#: Instances of a scene; an accessor without bytes could ask for any number of them.
+#: Limit of instances of a scene, as an accessor without bytes could name any number.
 MAX_INSTANCES = 1 << 20
 
 
 def instance_transforms(
     node: Item, accessors: Accessors, notes: Notes
 ) -> NDArray[np.float64] | None:
-    """Node from instance, shape (instances, 4, 4), or None for a node that is not instanced.
+    """Reads node from instance, shape (instances, 4, 4); None: the node is not instanced.
 
     Raises:
-        InputError: The columns differ in length, or hold something else than transforms.
+        InputError: The columns differ in length, or are not transforms.
     """
     extension = node.extension("EXT_mesh_gpu_instancing")
     listed = None if extension is None else extension.get("attributes")
@@ -50,7 +50,7 @@ def instance_transforms(
 
 
 def _common_count(uses: dict[str, Item], accessors: Accessors) -> int:
-    """How many instances there are; one if nothing but names of applications says so."""
+    """Number of instances; one if there are only attributes of applications."""
     counts = {name: accessors.count(use) for name, use in uses.items()}
     count = next((counts[name] for name in _COLUMNS if name in counts), 1)
     if count > MAX_INSTANCES:

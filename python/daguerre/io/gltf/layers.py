@@ -1,6 +1,6 @@
-"""KHR_materials_{clearcoat, sheen, anisotropy, iridescence}: what lies on a glTF material.
+"""Reads layers of a glTF material: KHR_materials_{clearcoat, sheen, anisotropy, iridescence}.
 
-Source: the extensions' own texts.
+Source: the specifications of these extensions.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .textures import Textures
 
 
 def read_layers(item: Item, textures: Textures, values: dict[str, Any]) -> None:
-    """Adds the fields of ``Gltf`` that these extensions set."""
+    """Adds the fields of ``Gltf`` that these extensions set to ``values``."""
     _clearcoat(item.extension("KHR_materials_clearcoat"), textures, values)
     _sheen(item.extension("KHR_materials_sheen"), textures, values)
     _anisotropy(item.extension("KHR_materials_anisotropy"), textures, values)
@@ -42,7 +42,7 @@ def _sheen(sheen: Item | None, textures: Textures, values: dict[str, Any]) -> No
     values["sheen_color"] = unit_color(sheen, "sheenColorFactor", 0.0)
     values["sheen_color_texture"] = textures.slot(sheen, "sheenColorTexture", srgb=True)
     values["sheen_roughness"] = fraction(sheen, "sheenRoughnessFactor", 0.0)
-    # Alpha alone is read, which is linear in an sRGB texture too: one picture for both is usual.
+    # Only alpha is read, which is linear in sRGB textures too; files often share one picture.
     values["sheen_roughness_texture"] = textures.slot(sheen, "sheenRoughnessTexture", srgb=True)
 
 

@@ -1,4 +1,4 @@
-"""KHR_lights_punctual: point and spot lights in cd, directional lights in lux."""
+"""Reads KHR_lights_punctual: point and spot lights in cd, directional lights in lux."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def light_items(root: Item) -> list[Item]:
 
 
 def read_light(item: Item, name: str) -> PointLight | SpotLight | DirectionalLight:
-    """One light; the place and direction are its node's."""
+    """Reads a light; its node sets position and direction."""
     kind = item.need("type").choice(("point", "spot", "directional"))
     r, g, b = item.numbers_of("color", (1.0, 1.0, 1.0), 0)
     power = item.number_of("intensity", 1.0, 0)
@@ -29,7 +29,7 @@ def read_light(item: Item, name: str) -> PointLight | SpotLight | DirectionalLig
         return PointLight(color, range=reach, name=name)
     cone = item.need("spot")
     outer_item = cone.get("outerConeAngle")
-    # 1e-6: pi / 2 rounded to float lies above it.
+    # 1e-6, as pi / 2 rounded to float is above pi / 2.
     half_pi = 0.5 * math.pi + 1e-6
     outer = math.pi / 4 if outer_item is None else outer_item.number(0, half_pi, above=0)
     inner = cone.number_of("innerConeAngle", 0.0, 0)

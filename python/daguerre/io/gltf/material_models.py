@@ -1,4 +1,4 @@
-"""Unlit, specular-glossiness and diffuse transmission: what glTF has beside metallic-roughness.
+"""Reads material models other than metallic-roughness: unlit, specular-glossiness, diffuse.
 
 Source: KHR_materials_{unlit, diffuse_transmission, pbrSpecularGlossiness}.
 """
@@ -22,17 +22,17 @@ _EXCLUDED = (
 
 
 def is_unlit(item: Item) -> bool:
-    """Whether a material shines with its base colour, whatever the lights."""
+    """Whether a material emits its base colour, independent of lights."""
     extension = item.extension("KHR_materials_unlit")
     if extension is not None:
-        extension.members()  # an object, whatever is in it
+        extension.members()  # checks that it is an object
     return extension is not None
 
 
 def read_base_color(
     owner: Item | None, factor: str, texture: str, textures: Textures, values: dict[str, Any]
 ) -> None:
-    """Colour and opacity: a factor of four numbers and a texture in sRGB."""
+    """Reads colour and opacity: a factor of four numbers and a texture in sRGB."""
     if owner is not None:
         numbers = owner.numbers_of(factor, (1.0,) * 4, 0, 1 + SLACK)
         r, g, b, values["base_alpha"] = (min(f, 1.0) for f in numbers)
@@ -43,7 +43,7 @@ def read_base_color(
 def read_specular_glossiness(
     item: Item, textures: Textures, notes: Notes, values: dict[str, Any]
 ) -> bool:
-    """Reads the archived extension; False if the material is not of that model."""
+    """Reads the archived extension; returns False if the material has another model."""
     model = item.extension(_SPECULAR_GLOSSINESS)
     if model is None:
         return False
@@ -61,7 +61,7 @@ def read_specular_glossiness(
 
 
 def read_diffuse_transmission(item: Item, textures: Textures, values: dict[str, Any]) -> None:
-    """The share of the diffuse light that goes through, and its colour."""
+    """Reads the share of diffuse light that is transmitted, and its colour."""
     through = item.extension("KHR_materials_diffuse_transmission")
     name = "diffuse_transmission"
     values[name] = fraction(through, "diffuseTransmissionFactor", 0.0)

@@ -1,4 +1,4 @@
-"""Materials of glTF: metallic-roughness and the KHR extensions that Daguerre knows.
+"""Reads materials of glTF: metallic-roughness and supported KHR extensions.
 
 Source: glTF 2.0 specification, chapters 3.9 and 5.19; KHR_materials_{emissive_strength, ior,
 transmission, volume, specular, dispersion}; those of io/gltf/layers.py and
@@ -24,20 +24,20 @@ from .material_models import (
 )
 from .textures import Textures
 
-# KHR_materials_ior: 0 asks for a Fresnel term of 1 at every angle, the limit of a large index.
+# KHR_materials_ior: 0 means a Fresnel term of 1 at every angle, the limit of a large index.
 _IOR_OF_ZERO = 1e4
 
 
 def read_materials(root: Item, textures: Textures, notes: Notes) -> list[Material]:
-    """All materials of a file, in its order."""
+    """Reads all materials of a file, in its order."""
     return [read_material(item, textures, notes) for item in root.list_of("materials")]
 
 
 def read_material(item: Item, textures: Textures, notes: Notes) -> Material:
-    """One material."""
+    """Reads a material."""
     values: dict[str, Any] = {}
     _coverage(item, values)
-    if is_unlit(item):  # what else there is are fallbacks for readers that know no unlit
+    if is_unlit(item):  # other members are fallbacks for readers without unlit
         values["unlit"] = True
         _base_color(item, textures, values)
     else:
@@ -61,7 +61,7 @@ def _metallic_roughness(item: Item, textures: Textures, values: dict[str, Any]) 
 
 
 def _extensions(item: Item, textures: Textures, notes: Notes, values: dict[str, Any]) -> None:
-    """Reads extensions of metallic-roughness alone."""
+    """Reads extensions that apply only to metallic-roughness."""
     _specular(item, textures, values)
     _transmission(item, textures, notes, values)
     read_diffuse_transmission(item, textures, values)
@@ -117,8 +117,8 @@ def _transmission(item: Item, textures: Textures, notes: Notes, values: dict[str
     volume = item.extension("KHR_materials_volume")
     if volume is None:
         return
-    # A path tracer needs of the thickness only whether there is an inside; light's way through it
-    # is found by rays, in the units of the world.
+    # A path tracer only needs to know if the thickness is above 0; rays find the path through the
+    # volume, in units of the world.
     values["thickness"] = volume.number_of("thicknessFactor", 0.0, 0)
     if volume.get("thicknessTexture") is not None:
         notes.add("'thicknessTexture' is not needed: the path through the volume is traced")

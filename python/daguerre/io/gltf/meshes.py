@@ -1,4 +1,4 @@
-"""Mesh primitives of glTF as meshes of the scene, in the shape that each node gives them.
+"""Reads mesh primitives of glTF as meshes of the scene, morphed and skinned for each node.
 
 Source: glTF 2.0 specification, chapters 3.7.2 and 5.24; KHR_mesh_quantization.
 """
@@ -43,18 +43,18 @@ _MODES = ("points", "lines", "a line loop", "a line strip", "list", "strip", "fa
 _COLORS = ("VEC3", "VEC4")
 _KNOWN = ("POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0")
 _SKINNED = ("JOINTS_", "WEIGHTS_")
-# Vertices times accessors of displacements.
+# Limit of vertices times accessors of displacements.
 _MAX_WORK = 1 << 30
 
 
 @dataclass(frozen=True)
 class Part:
-    """A primitive of a mesh, as a node shows it.
+    """A primitive of a mesh at a node.
 
     Attributes:
-        mesh: Index of the scene's mesh.
+        mesh: Index of the mesh in the scene.
         material: Index of its material; None: the default.
-        in_world: A skin has put it into the world: the node's transform does not count.
+        in_world: Whether a skin gave it world coordinates, so that the node's transform is ignored.
     """
 
     mesh: int
@@ -72,14 +72,14 @@ class _Source:
     attributes: dict[str, Item]
     displacements: tuple[Displacement, ...]
     skin: int | None
-    #: the node or mesh whose weights count, and what changes there
+    #: Node or mesh with the weights in effect, and the channels that change them.
     owner: Item
     moved: Sequence[Channel]
-    #: equal for weights that change alike
+    #: Equal for weights with the same changes.
     changes: tuple[Hashable, ...]
 
     def key(self, accessors: Accessors) -> Hashable:
-        """Equal for primitives with equal vertices and triangles."""
+        """Key that is equal for primitives with equal vertices and triangles."""
         uses = (
             (name, accessors.index(use))
             for name, use in self.attributes.items()
@@ -95,13 +95,13 @@ class Meshes:
 
     Args:
         root: The JSON object of the file.
-        accessors: Its accessors.
+        accessors: Accessors of the file.
         animations: Animations of the file.
-        skins: Its skins.
-        variants: Chosen variants of the materials.
-        scene: Gets the meshes.
+        skins: Skins of the file.
+        variants: Chosen variant of the materials.
+        scene: Receives the meshes.
         copies: Budget of vertices that cannot be shared.
-        notes: Gets what was not understood.
+        notes: Receives notes on unsupported content.
     """
 
     def __init__(
@@ -128,7 +128,7 @@ class Meshes:
         self._shared: dict[Hashable, int | None] = {}
 
     def parts(self, node: Item) -> list[Part]:
-        """Parts that a node with a mesh shows."""
+        """Parts of the mesh of a node."""
         index = node.need("mesh").index(len(self.items), "meshes")
         item, skin_use = self.items[index], node.get("skin")
         chosen = None if skin_use is None else self._skins.index(skin_use)
@@ -181,7 +181,7 @@ class Meshes:
             self._notes.add("a mesh without JOINTS_0 is not moved by its skin")
             chosen = None
         if chosen is not None and self._is_nothing(chosen):
-            # Like nodes (3.5.3): scale 0 is how files hide things.
+            # Scale 0 hides an object, like that of a node (3.5.3).
             self._notes.add("a mesh that its skin scales to nothing is left out")
             return None
         if gltf_draco.supply(primitive, mode, attributes, self._accessors, self._notes):
@@ -211,7 +211,7 @@ class Meshes:
         base = dict(arrays)
         triangles, influences = self._deform(source, arrays, triangles)
         positions = arrays["POSITION"]
-        # NaN is not smaller than anything.
+        # This also catches NaN.
         if not max(positions.max(), -positions.min()) < MAX_SIZE:
             far = np.flatnonzero(~(np.abs(positions) < MAX_SIZE).all(axis=1))
             attributes["POSITION"].fail(
@@ -253,7 +253,7 @@ class Meshes:
     def _deform(
         self, source: _Source, arrays: dict[str, FloatArray], triangles: NDArray[np.uint32]
     ) -> tuple[NDArray[np.uint32], Influences | None]:
-        """Morphs, then skins (3.7.2.2); returns triangles that wind as their vertices lie now."""
+        """Morphs, then skins (3.7.2.2); returns triangles wound for the new vertices."""
         count = len(arrays["POSITION"])
         if source.displacements:
             self._copies.spend(count, source.primitive)

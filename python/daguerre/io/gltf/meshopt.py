@@ -1,8 +1,8 @@
-"""EXT_meshopt_compression and KHR_meshopt_compression: bufferViews that unpack into others.
+"""Unpacks bufferViews of EXT_meshopt_compression and KHR_meshopt_compression.
 
-The bitstreams are unpacked in C++ (``core/codec``), as no package on the index has wheels with all
-three; the filters, which are arithmetic on whole arrays, here. Either extension may bring either
-version of the streams, which say it themselves.
+C++ unpacks the bitstreams (``core/codec``), as no package has wheels for all three modes; the
+filters here are arithmetic on whole arrays. Both extensions accept both versions of the streams,
+which have the version in their header.
 Source: the README of KHR_meshopt_compression, schema and appendix B.
 """
 
@@ -22,12 +22,12 @@ NAMES = ("KHR_meshopt_compression", "EXT_meshopt_compression")
 
 
 def packed(item: Item) -> Item | None:
-    """The extension object of a bufferView or buffer, or None."""
+    """Extension object of a bufferView or buffer; None: it is not compressed."""
     return next((found for name in NAMES if (found := item.extension(name)) is not None), None)
 
 
 def placeholders(root: Item) -> set[int]:
-    """Buffers whose bytes nobody reads: only compressed bufferViews stand on them."""
+    """Buffers that are never read, as all their bufferViews are compressed."""
     buffers = root.list_of("buffers")
     stood_on: set[int] = set()
     read: set[int] = set()
@@ -41,7 +41,7 @@ def placeholders(root: Item) -> set[int]:
 
 
 def check(view: Item, extension: Item) -> tuple[str, str, int, int]:
-    """Mode, filter, count and stride, as the schema wants them to fit each other."""
+    """Checks mode, filter, count and stride against the schema, and returns them."""
     mode = extension.need("mode").choice(("ATTRIBUTES", "TRIANGLES", "INDICES"))
     filter_item = extension.get("filter")
     filter_name = "NONE" if filter_item is None else filter_item.choice(("NONE", *_FILTERS))
@@ -52,7 +52,7 @@ def check(view: Item, extension: Item) -> tuple[str, str, int, int]:
         wanted = ", ".join(map(str, strides)) if len(strides) < 3 else "a multiple of 4"
         stride_item.fail(f"does not fit mode and filter: wanted {wanted}, got {stride}")
     if mode != "ATTRIBUTES" and filter_name != "NONE" and filter_item is not None:
-        filter_item.fail(f"wanted no filter of mode {mode}, got {filter_name}")
+        filter_item.fail(f"wanted no filter with mode {mode}, got {filter_name}")
     if mode == "TRIANGLES" and count % 3:
         count_item.fail(f"wanted a multiple of 3, got {short(count)}")
     length = view.need("byteLength")
@@ -62,21 +62,21 @@ def check(view: Item, extension: Item) -> tuple[str, str, int, int]:
 
 
 def unpack(data: memoryview, view: Item, extension: Item) -> memoryview:
-    """The bytes that a bufferView stands for.
+    """Unpacks the bytes of a bufferView.
 
     Args:
-        data: Its packed bytes.
+        data: Packed bytes.
         view: The bufferView.
-        extension: Its extension object.
+        extension: Extension object of the bufferView.
 
     Raises:
-        InputError: The stream is broken, or does not fit what the file says of it.
+        InputError: The stream is damaged, or does not fit its count and stride.
     """
     mode, filter_name, count, stride = check(view, extension)
     with core_errors(InputError, f"{view.file}: {extension.path}"):
         raw = _core.unpack_meshopt(np.frombuffer(data, np.uint8), mode, count, stride)
     if filter_name != "NONE":
-        with np.errstate(all="ignore"):  # what the filters leave unspecified is any number
+        with np.errstate(all="ignore"):  # unspecified results may be any number
             raw = _FILTERS[filter_name](raw, stride)
     return np.ascontiguousarray(raw).data.cast("B")
 
@@ -85,7 +85,7 @@ def unpack(data: memoryview, view: Item, extension: Item) -> memoryview:
 
 
 def _round(values: NDArray[np.float32], dtype: type) -> NDArray[Any]:
-    """To the nearest integer, halves away from zero."""
+    """Rounds to the nearest integer, halves away from zero."""
     rounded: NDArray[Any] = np.trunc(values + np.copysign(np.float32(0.5), values)).astype(dtype)
     return rounded
 
@@ -126,7 +126,7 @@ def _color(raw: NDArray[np.uint8], stride: int) -> NDArray[Any]:
     unsigned, signed = (np.uint8, np.int8) if stride == 4 else (np.uint16, np.int16)
     y, alpha = (raw.view(unsigned).reshape(-1, 4)[:, k].astype(np.int32) for k in (0, 3))
     co, cg = (raw.view(signed).reshape(-1, 4)[:, k].astype(np.int32) for k in (1, 2))
-    # The highest bit of alpha tells the precision: all ones up to and including it.
+    # The highest bit of alpha sets the precision: ones up to and including it.
     ones = np.left_shift(1, np.frexp(alpha.astype(np.float32))[1]) - 1
     alpha &= ones >> 1
     alpha = (alpha << 1) | (alpha & 1)

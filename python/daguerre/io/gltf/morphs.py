@@ -1,4 +1,4 @@
-"""Morph targets: vertices that are shifted by weighted sums of displacements.
+"""Applies morph targets: weighted sums of displacements shift vertices.
 
 Source: glTF 2.0 specification, chapters 3.7.2.2 and 3.7.4; KHR_mesh_quantization.
 """
@@ -22,7 +22,7 @@ FloatArray = NDArray[np.float32]
 _TYPES = {
     "POSITION": ("VEC3",),
     "NORMAL": ("VEC3",),
-    "TANGENT": ("VEC3",),  # the sign of a tangent stays
+    "TANGENT": ("VEC3",),  # the sign of a tangent does not change
     "TEXCOORD_0": ("VEC2",),
     "TEXCOORD_1": ("VEC2",),
     "COLOR_0": ("VEC3", "VEC4"),
@@ -31,7 +31,7 @@ _TYPES = {
 
 @dataclass(frozen=True)
 class Displacement:
-    """An accessor of displacements and how much of it there is; equal ones change a mesh alike."""
+    """An accessor of displacements with its weight; equal ones change a mesh equally."""
 
     attribute: str
     accessor: int
@@ -40,7 +40,7 @@ class Displacement:
 
 
 class Shapes(Protocol):
-    """Looks displacements up: the accessors of a file, or arrays that were kept of them."""
+    """Source of displacements: the accessors of a file, or arrays kept from them."""
 
     def index(self, use: Item) -> int:
         """The accessor that ``use`` names."""
@@ -55,11 +55,11 @@ class Shapes(Protocol):
 
 
 class KeptShapes(Value):
-    """The displacements of one primitive that its weights may ask for.
+    """Displacements of a primitive, kept for any weights.
 
     Args:
-        uses: Members of its targets that name them.
-        accessors: Those of the file.
+        uses: Members of its targets that name the displacements.
+        accessors: Accessors of the file.
     """
 
     def __init__(self, uses: Iterable[Item], accessors: Accessors) -> None:
@@ -85,7 +85,7 @@ class KeptShapes(Value):
 
 
 def all_uses(primitive: Item) -> Iterator[Item]:
-    """Members of targets that name displacements of attributes that the primitive has."""
+    """Yields members of targets that name displacements of the primitive's attributes."""
     attributes = primitive.need("attributes")
     for target in primitive.list_of("targets"):
         for use in target.members():
@@ -94,7 +94,7 @@ def all_uses(primitive: Item) -> Iterator[Item]:
 
 
 def weights_of(node: Item, mesh: Item) -> Item | None:
-    """The list of weights of a mesh at a node, or None if it has its own shape there."""
+    """List of weights of a mesh at a node; None: the mesh is not morphed."""
     weights = node.get("weights")
     return mesh.get("weights") if weights is None else weights
 
@@ -102,10 +102,10 @@ def weights_of(node: Item, mesh: Item) -> Item | None:
 def displacements(
     primitive: Item, weights: Item | None, shapes: Shapes, notes: Notes
 ) -> tuple[Displacement, ...]:
-    """Displacements of a primitive; targets without weight are not looked at.
+    """Finds displacements of a primitive; targets of weight 0 are skipped.
 
     Raises:
-        InputError: There are not as many weights as targets.
+        InputError: The number of weights is not that of targets.
     """
     targets = primitive.list_of("targets")
     if weights is None or not targets:
@@ -116,7 +116,7 @@ def displacements(
         for use in target.members() if weight else ():
             name = str(use.key)
             if name in _TYPES and attributes.get(name) is not None:
-                # Files may name one accessor a thousand times: it is read once.
+                # Files may name one accessor many times; it is read once.
                 key = name, shapes.index(use)
                 parts[key] = parts.get(key, (0.0, use))[0] + weight, use
             elif not name.startswith("_"):
@@ -130,17 +130,17 @@ def displacements(
 def displacements_again(
     owner: Item, primitive: Item, shapes: KeptShapes
 ) -> tuple[Displacement, ...]:
-    """Does as :func:`displacements`, with the weights of a node or mesh at some time."""
+    """Does the same as :func:`displacements`, with weights of a node or mesh at another time."""
     return displacements(primitive, owner.get("weights"), shapes, Silence())
 
 
 def morph(arrays: dict[str, FloatArray], parts: tuple[Displacement, ...], shapes: Shapes) -> None:
-    """Replaces arrays of vertices by displaced ones; normals and tangents are no units then.
+    """Replaces arrays of vertices by displaced ones; normals and tangents are not normalised.
 
     Args:
         arrays: Attributes of the mesh, by their names in glTF, shape (N, components).
-        parts: The displacements.
-        shapes: Knows them.
+        parts: Weighted displacements.
+        shapes: Values of the displacements.
     """
     for name in dict.fromkeys(part.attribute for part in parts):
         arrays[name] = arrays[name].copy()

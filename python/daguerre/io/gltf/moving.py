@@ -1,4 +1,4 @@
-"""Tells what of a glTF file moves, and how."""
+"""Finds the motion of parts of a glTF file."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ from .placing import Motion
 from .poses import Poses
 
 Matrices = NDArray[np.float64]
-# Keys at which it is looked whether a scale presses something flat.
+# Number of keys at which flat scales are searched.
 _MAX_LOOKS = 64
 
 
 class MotionReader:
-    """Knows what moves.
+    """Finds motion of materials, nodes, instances, cameras and lights.
 
     Args:
         root: The JSON object of the file.
-        animations: Those of the file.
-        poses: Its nodes over time.
-        time: When the file is read, s.
+        animations: Animations of the file.
+        poses: Nodes over time.
+        time: Time of reading, s.
     """
 
     def __init__(self, root: Item, animations: Animations, poses: Poses, time: float) -> None:
@@ -52,25 +52,25 @@ class MotionReader:
         self._animations, self._poses, self._time = animations, poses, time
 
     def material(self, index: int, read: Callable[[Item], Material]) -> PartOverTime | None:
-        """A material over time, which ``read`` makes of its part of the file; None: it stays."""
+        """Material over time, read by ``read``; None: it does not change."""
         channels = self._animations.of("materials", str(index))
         return PartOverTime(self._materials[index], channels, read) if channels else None
 
     def position(self, node: int) -> PositionOverTime | None:
-        """Where a node is over time; None: it stays."""
+        """Position of a node over time; None: it does not move."""
         moves = self._poses.moves(node)
         return PositionOverTime(NodeOverTime(self._poses, node)) if moves else None
 
     def instances(
         self, node: int, copies: Matrices | None, worlds: Matrices, *, rigid: bool
     ) -> list[Motion] | None:
-        """Motions of the instances of a mesh at a node; None: they stand still.
+        """Motions of the instances of a mesh at a node; None: they do not change.
 
         Args:
             node: Index of the node.
-            copies: Node from instance, (instances, 4, 4); None: one, the node itself.
-            worlds: World from instance at the time of the scene.
-            rigid: They do not follow the node, as a skin moves them.
+            copies: Node from instance, (instances, 4, 4); None: one instance, the node itself.
+            worlds: World from instance at the time of reading, (instances, 4, 4).
+            rigid: Whether they ignore the node's transform, as a skin moves them.
         """
         moves = self._poses.moves(node) and not rigid
         blinks = self._poses.blinks(node)
@@ -88,13 +88,13 @@ class MotionReader:
         return found
 
     def _is_flat(self, place: NodeOverTime) -> bool:
-        """Whether it is a plane at some key, and not only on its way from one to another."""
+        """Whether an instance is flat at a key, and not only between keys."""
         times = place.breaks(-np.inf, np.inf)
         some = np.array([self._time, *times[:: 1 + len(times) // _MAX_LOOKS]])
         return bool((ranks(place.many(some)[:, :3, :3]) == 2).any())
 
     def camera(self, camera: Camera, item: Item, node: Item) -> Camera:
-        """The camera at a node, with what changes of it."""
+        """Returns the camera of a node with its motion."""
         motion: dict[str, Dynamic] = {}
         if self._poses.moves(int(node.key)):
             motion["transform"] = RigidOverTime(NodeOverTime(self._poses, int(node.key)), node)
@@ -112,7 +112,7 @@ class MotionReader:
         item: Item,
         node: int,
     ) -> LightOverTime | None:
-        """A light and its transform over time; None if nothing of it changes."""
+        """Light and its transform over time; None: nothing changes."""
         channels = self._animations.of("extensions", "KHR_lights_punctual", "lights", str(item.key))
         poses = self._poses
         if not (channels or poses.moves(node) or poses.blinks(node)):

@@ -1,6 +1,6 @@
-"""The node tree of glTF: checked, named and flattened without recursion, however deep it is.
+"""Checks, names and flattens the node tree of glTF without recursion, at any depth.
 
-Source: glTF 2.0 specification, chapters 3.5 and 3.11 (a node that is animated has no matrix).
+Source: glTF 2.0 specification, chapters 3.5 and 3.11 (animated nodes have no matrix).
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ import numpy as np
 from daguerre.files.json_item import Item
 from daguerre.scene.transforms import Matrix, affine, compose
 
-#: Lengths beyond this (m) overflow when a renderer squares them in float.
+#: Limit of lengths, m; squares of longer ones overflow a float.
 MAX_SIZE = 1e18
-#: Parts of a node's place, with their defaults.
+#: Parts of a node's transform, with their defaults.
 _DEFAULTS = {
     "translation": (0.0, 0.0, 0.0),
     "rotation": (0.0, 0.0, 0.0, 1.0),
@@ -27,10 +27,10 @@ class Placed:
     """A node of the scene.
 
     Attributes:
-        index: Its index in the file.
+        index: Index of the node in the file.
         world: World from node, shape (4, 4).
-        visible: Whether meshes and lights are shown there.
-        end: The node's descendants are the placed nodes from the next one up to this position.
+        visible: Whether its meshes and lights are shown.
+        end: Position after its descendants, which follow the node in the list of placed nodes.
     """
 
     index: int
@@ -70,7 +70,7 @@ class Tree:
         self._refuse_cycles()
 
     def _refuse_cycles(self) -> None:
-        # With one parent each, what no root reaches hangs in a ring.
+        # Each node has one parent, so nodes that no root reaches form a cycle.
         stack = [node for node, parent in enumerate(self.parents) if parent < 0]
         reached = [False] * len(self.items)
         while stack:
@@ -98,7 +98,7 @@ class Tree:
         return list(roots)
 
     def place(self, roots: list[int]) -> list[Placed]:
-        """The nodes below some roots, parents before their children, a subtree in one piece."""
+        """Places roots and descendants: parents before children, each subtree in one piece."""
         order: list[tuple[int, bool]] = []
         ends: list[int] = []
         stack: list[tuple[int, bool, int]] = [(root, True, -1) for root in reversed(roots)]
@@ -117,11 +117,11 @@ class Tree:
         return [Placed(n, self.world(n), v, end) for (n, v), end in zip(order, ends, strict=True)]
 
     def is_placed(self, node: int) -> bool:
-        """Whether the node stands in the scene."""
+        """Whether the node is in the scene."""
         return node in self._placed
 
     def world(self, node: int) -> Matrix:
-        """World from node, also of nodes outside of the scene."""
+        """World from node, also for nodes outside of the scene."""
         chain = []
         while node >= 0 and node not in self._worlds:
             chain.append(node)
@@ -135,9 +135,9 @@ class Tree:
         return self._worlds[chain[0] if chain else node]
 
     def check_size(self, node: int, world: Matrix) -> None:
-        """Refuses transforms (..., 4, 4) that are no numbers, or beyond all bounds."""
+        """Checks transforms (..., 4, 4) for NaN and numbers of ``MAX_SIZE`` and beyond."""
         size = float(np.abs(world).max())
-        if not size < MAX_SIZE:  # NaN is not smaller than anything
+        if not size < MAX_SIZE:  # also catches NaN
             self.items[node].fail(
                 f"world transform: wanted numbers below {MAX_SIZE:g}, got {size:g}"
             )
@@ -148,7 +148,7 @@ class Tree:
         matrix = item.get("matrix")
         if matrix is None:
             return compose(*self.parts(node))
-        if any(path in item.value for path in _DEFAULTS):  # as of a node that is animated
+        if any(path in item.value for path in _DEFAULTS):  # animated nodes have these, too
             matrix.fail("wanted either a matrix or translation, rotation and scale, got both")
         return affine(np.array(matrix.numbers(16)).reshape(4, 4).T, matrix)  # stored by columns
 
@@ -163,14 +163,14 @@ class Tree:
 
 
 def is_visible(item: Item) -> bool:
-    """KHR_node_visibility; it rules the node's descendants too."""
+    """KHR_node_visibility of a node; it also applies to the node's descendants."""
     extension = item.extension("KHR_node_visibility")
     visible = None if extension is None else extension.get("visible")
     return visible is None or visible.flag()
 
 
 def unique_names(tree: Tree, meshes: list[Item], cameras: list[Item]) -> list[str]:
-    """A name for each node, none twice: its own, else that of what it carries, else its index."""
+    """Unique name of each node: its own, else that of its mesh or camera, else from its index."""
     taken: set[str] = set()
     counters: dict[str, int] = {}
     names: list[str] = []

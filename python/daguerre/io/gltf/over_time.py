@@ -1,8 +1,8 @@
-"""Animated parts of a glTF file, as values over time of the scene.
+"""Animated parts of a glTF file as values over time.
 
-Each asks a reader anew, for a copy of its part of the file as it is at a time: whatever a reader
-understands can move. Nothing is written anywhere, so many threads may ask at once; nothing leads
-back to the whole file, so that a scene can travel.
+Each evaluation calls a reader on a copy of its part of the file at that time, so that everything
+that a reader supports can be animated. Evaluations write nothing, so threads may share them; none
+refers to the whole file, so that a scene can be pickled.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ _NONE = np.zeros(0)
 
 @dataclass(frozen=True, eq=False)
 class PartOverTime(Value):
-    """Result of a reader for a part of the file over time: a material, a camera's parameter.
+    """Result of a reader over time, such as a material or a parameter of a camera.
 
     Attributes:
-        item: The part, as it was when the file was read.
+        item: Part of the file, in its state at the time of reading.
         channels: Channels that change it.
-        read: Makes something of the part; it can be pickled.
+        read: Reader of the part; it can be pickled.
     """
 
     item: Item
@@ -43,7 +43,7 @@ class PartOverTime(Value):
     read: Callable[[Item], Any]
 
     def at(self, time_s: float) -> Any:
-        """Reads the part as it is at a time, s."""
+        """Reads the part in its state at a time, s."""
         value = played(self.item.value, self.channels, time_s)
         with np.errstate(all="ignore"):
             return self.read(self.item.holding(value))
@@ -55,12 +55,12 @@ class PartOverTime(Value):
 
 @dataclass(frozen=True, eq=False)
 class NodeOverTime(Value):
-    """World from node, or world from something that stands in the node.
+    """World from node, or world from an object in the node, over time.
 
     Attributes:
         poses: The nodes of the file.
         node: Index of the node.
-        local: Node from what stands in it, (4, 4); None: the identity.
+        local: Node from object, (4, 4); None: the identity.
     """
 
     poses: Poses
@@ -73,7 +73,7 @@ class NodeOverTime(Value):
 
     @property
     def weight(self) -> int:
-        """How many nodes have to be looked at for it."""
+        """Cost of an evaluation: number of nodes up to the root."""
         return self.poses.depth(self.node)
 
     def many(self, times: FloatArray) -> Matrix:
@@ -88,11 +88,11 @@ class NodeOverTime(Value):
 
 @dataclass(frozen=True, eq=False)
 class RigidOverTime(Value):
-    """The place and directions of a camera, which ignores the scale of its node.
+    """Rigid transform of a camera over time, without the scale of its node.
 
     Attributes:
-        node: Where it stands.
-        item: The node, for complaints.
+        node: Transform of its node.
+        item: The node, for messages.
     """
 
     node: NodeOverTime
@@ -115,7 +115,7 @@ class RigidOverTime(Value):
 
 @dataclass(frozen=True, eq=False)
 class PositionOverTime(Value):
-    """Where a node is."""
+    """Position of a node over time."""
 
     node: NodeOverTime
 
@@ -130,11 +130,11 @@ class PositionOverTime(Value):
 
 @dataclass(frozen=True, eq=False)
 class ShownOverTime(Value):
-    """Whether a mesh is there: its node is shown (KHR_node_visibility), and not scaled to nothing.
+    """Whether a mesh is shown: its node is visible (KHR_node_visibility) and not scaled to nothing.
 
     Attributes:
-        node: Where it stands.
-        blinks: Whether the node is shown at some times only.
+        node: Transform of its node.
+        blinks: Whether the node's visibility changes.
         vanishes: Whether its scale may be 0.
     """
 
@@ -143,13 +143,13 @@ class ShownOverTime(Value):
     vanishes: bool
 
     def at(self, time_s: float) -> bool:
-        """Whether it is there at a time, s."""
+        """Whether the mesh is shown at a time, s."""
         if self.blinks and not self.node.poses.shown(self.node.node, time_s):
             return False
         return not self.vanishes or bool(ranks(self.node.at(time_s)[None, :3, :3])[0] >= 2)
 
     def breaks(self, begin: float, end: float) -> FloatArray:
-        """Times of the keys of both."""
+        """Times of the keys of visibility and scale."""
         poses, node = self.node.poses, self.node.node
         shown = poses.shown_breaks(node, begin, end) if self.blinks else _NONE
         moved = self.node.breaks(begin, end) if self.vanishes else _NONE
@@ -158,7 +158,7 @@ class ShownOverTime(Value):
 
 @dataclass(frozen=True, eq=False)
 class FlatOverTime(Value):
-    """A mesh that its node presses flat: there is no inverse, so its vertices are in the world."""
+    """A mesh that its node flattens; its vertices are in the world, as there is no inverse."""
 
     node: NodeOverTime
     mesh: Vertices
@@ -176,10 +176,10 @@ class FlatOverTime(Value):
 
 @dataclass(frozen=True, eq=False)
 class LightOverTime(Value):
-    """A light and its transform; it is dark where its node is hidden or scaled to nothing.
+    """A light and its transform over time; it is off if its node is hidden or scaled to nothing.
 
     Attributes:
-        node: Where it stands.
+        node: Transform of its node.
         part: The light itself.
     """
 
@@ -204,7 +204,7 @@ class LightOverTime(Value):
 
 
 def dark(light: PointLight | SpotLight | DirectionalLight) -> Light:
-    """The same light, switched off."""
+    """Returns the light, switched off."""
     if isinstance(light, DirectionalLight):
         return replace(light, illuminance=_BLACK)
     return replace(light, intensity=_BLACK)

@@ -1,4 +1,4 @@
-"""Meshes into the world: one instance of the scene for each part of a mesh and each transform.
+"""Places meshes in the world: an instance for each part of a mesh and each transform.
 
 Source: glTF 2.0 specification, chapters 3.5.3 (scale 0) and 3.7.4.
 """
@@ -29,12 +29,12 @@ Matrices = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Motion:
-    """Motion of an instance over time; None: it stands still.
+    """Motion of an instance; None: it does not change.
 
     Attributes:
         transform: World from mesh.
-        shown: Whether it is there.
-        flat: Transform that may have no inverse, instead of ``transform``.
+        shown: Whether it is visible.
+        flat: Transform that may be singular, instead of ``transform``.
     """
 
     transform: NodeOverTime | None = None
@@ -46,9 +46,9 @@ class Placing:
     """Adds instances to a scene.
 
     Args:
-        scene: Has the meshes and the materials.
+        scene: Scene with meshes and materials.
         copies: Budget of vertices that cannot be shared.
-        notes: Gets what was not understood.
+        notes: Receives notes on unsupported content.
     """
 
     def __init__(self, scene: Scene, copies: Budget, notes: Notes) -> None:
@@ -67,15 +67,15 @@ class Placing:
         name: str,
         moves: Sequence[Motion] | None = None,
     ) -> None:
-        """Places a mesh.
+        """Adds instances of a mesh.
 
         Args:
-            node: Node of the file, for complaints.
+            node: Node of the file, for messages.
             mesh: Index of the scene's mesh.
-            material: Index of its material; None: glTF's default.
+            material: Index of the material; None: glTF's default.
             worlds: World from mesh, shape (instances, 4, 4).
             name: Name of the instances.
-            moves: Motion of each of them over time; None: they stand still.
+            moves: Motion of each instance; None: they do not move.
         """
         scene = self._scene
         self._instances.spend(len(worlds), node)
@@ -121,7 +121,7 @@ class Placing:
     def _flattened(
         self, mesh: int, world: Matrices, name: str, motion: FlatOverTime | None = None
     ) -> int:
-        """Squashed flat, there is no inverse: the world's vertices are written down."""
+        """Adds a mesh with vertices in the world, as a flat transform has no inverse."""
         flat = self._scene.meshes[mesh]
         points = flat.positions @ world[:3, :3].T + world[:3, 3]
         return self._scene.add_mesh(

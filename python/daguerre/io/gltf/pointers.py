@@ -1,7 +1,7 @@
-"""JSON pointers into a glTF file, and which of its values an animation may change.
+"""Resolves JSON pointers into a glTF file, and decides which values an animation may change.
 
-That is told by place and by the type of what stands there, not by a list of names: so the factors
-of every extension can move, those too that nobody has thought of yet.
+The decision uses a value's place and type, not a list of names, so that animations can change
+the factors of any extension, including future ones.
 Sources: RFC 6901; glTF 2.0 Asset Object Model; KHR_animation_pointer.
 """
 
@@ -17,11 +17,11 @@ from daguerre.files.json_item import Item, short
 _TYPES = ("SCALAR", "VEC2", "VEC3", "VEC4")
 _WIDTHS = {"translation": 3, "rotation": 4, "scale": 3}  # of nodes
 _INDEX = re.compile(r"0|[1-9][0-9]{0,14}")
-#: Members of materials, cameras and lights that hold the file together or choose a kind.
+#: Members of materials, cameras and lights that refer to other objects or select a kind.
 _FIXED = frozenset(
     ("index", "texCoord", "light", "name", "type", "alphaMode", "doubleSided", "extensions")
 )
-# Weights that are copied from meshes to nodes.
+# Limit of weights that are copied from meshes to nodes.
 _MAX_COPIED = 1 << 22
 
 
@@ -30,12 +30,12 @@ class Target:
     """A value of the file that an animation sets.
 
     Attributes:
-        holder: The object or list that has it.
-        key: Its name or index there.
-        name: Its name in a remark.
-        width: Numbers in it; None: the number of the accessor's type, or a list of any length.
+        holder: Object or list that contains the value.
+        key: Name or index of the value in ``holder``.
+        name: Name for notes.
+        width: Numbers in the value; None: that of the accessor's type, or a list of any length.
         types: Accessor types that fit.
-        is_flag: It is true or false.
+        is_flag: Whether the value is true or false.
     """
 
     holder: Any
@@ -47,12 +47,12 @@ class Target:
 
     @property
     def is_list(self) -> bool:
-        """Whether it is a list of any length."""
+        """Whether the value is a list of any length."""
         return self.width is None and self.types == _TYPES[:1]
 
 
 def parse(use: Item) -> list[str]:
-    """The reference tokens of a JSON pointer."""
+    """Splits a JSON pointer into its reference tokens."""
     text = use.text()
     if not text.startswith("/") or re.search(r"~(?![01])", text):
         use.fail(f"wanted a JSON pointer such as '/nodes/0/rotation', got {short(text)}")
@@ -74,10 +74,10 @@ class Pointers:
         self._copied = Budget(_MAX_COPIED, "weights of single nodes")
 
     def target(self, tokens: list[str], use: Item) -> Target | None:
-        """Finds what the tokens lead to; None if nothing there can be animated.
+        """Finds the value at the tokens; None if it cannot be animated.
 
         Raises:
-            InputError: An index is none, or out of range; ``use`` is named.
+            InputError: An index is invalid or out of range; the message names ``use``.
         """
         if not _is_mutable(tokens):
             return None
@@ -89,13 +89,13 @@ class Pointers:
         return _target(holder, tokens, use)
 
     def _write_weights(self, owner: dict[str, Any], tokens: list[str], use: Item) -> None:
-        """Writes down weights that go without saying, as one of them is to change."""
+        """Writes default weights into an object, so that an animation can change one of them."""
         chosen = owner.get("mesh") if tokens[0] == "nodes" else int(tokens[1])
         if not isinstance(chosen, int) or not 0 <= chosen < len(self._meshes):
             return
         mesh = self._meshes[chosen]
-        weights = _list(mesh, "weights")  # a node has those of its mesh (3.7.4)
-        if not weights:  # and those are zeros (3.7.2.2)
+        weights = _list(mesh, "weights")  # a node inherits those of its mesh (3.7.4)
+        if not weights:  # which default to zeros (3.7.2.2)
             first = mesh.list_of("primitives")[:1]
             weights = [0.0] * sum(len(_list(primitive, "targets")) for primitive in first)
         self._copied.spend(len(weights), use)
@@ -125,7 +125,7 @@ def _is_mutable(tokens: list[str]) -> bool:
 
 def _target(holder: Any, tokens: list[str], use: Item) -> Target | None:
     key = tokens[-1]
-    if isinstance(holder, list) and tokens[-2] == "weights":  # of the others, no single number
+    if isinstance(holder, list) and tokens[-2] == "weights":  # in other lists, no single number
         return Target(holder, _index(key, holder, use), "weights", 1, _TYPES[:1])
     if not isinstance(holder, dict):
         return None
@@ -140,7 +140,7 @@ def _target(holder: Any, tokens: list[str], use: Item) -> Target | None:
 
 
 def _width(value: Any) -> int | None:
-    """How many numbers a value consists of; None if it is absent, 0 if it is something else."""
+    """Count of numbers in a value; None: there is no value; 0: not numbers."""
     if value is None:
         return None
     numbers = value if isinstance(value, list) else [value]
@@ -156,6 +156,6 @@ def _step(holder: Any, token: str, use: Item) -> Any:
 
 def _index(token: str, holder: list[Any], use: Item) -> int:
     if not _INDEX.fullmatch(token) or int(token) >= len(holder):
-        wanted = f"0 .. {len(holder) - 1}" if holder else "none, as there are none"
+        wanted = f"0 .. {len(holder) - 1}" if holder else "no index, as the list is empty"
         use.fail(f"index out of range: wanted {wanted}, got {short(token)}")
     return int(token)

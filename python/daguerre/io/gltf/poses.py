@@ -1,6 +1,6 @@
-"""Where the nodes of a file stand at any time, and whether they are shown.
+"""Computes transforms and visibility of the nodes of a file at any time.
 
-Only nodes that move are worked out, for many times at once.
+Only moving nodes are computed, for many times at once.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from .animation import Animations, Channel, breaks_of
 from .nodes import Tree, is_visible
 from .samplers import FloatArray
 
-#: Poses of nodes, at one or many times, that are kept: parents are asked for by all their children.
-#: Few, and of few matrices (8 MB): those of frames that are drawn are of no more use.
+#: Limits of the cache of poses, which serves the children of a node: entries, and matrices (8 MB).
+#: It is small, as poses of finished frames are not needed again.
 _MAX_KNOWN, _MAX_MATRICES = 512, 65536
-#: Scales below this leave no volume, or may mirror on their way.
+#: Scales below this leave no volume, or may become negative.
 _THIN = 1e-6
 _PLACE = ("translation", "rotation", "scale")
 
@@ -32,7 +32,7 @@ class Poses(Value):
     """The nodes of a file over time.
 
     Args:
-        tree: The nodes, as they are at the time of reading.
+        tree: The nodes, in their state at the time of reading.
         animations: Animations that change them.
     """
 
@@ -61,7 +61,7 @@ class Poses(Value):
 
     @cached_property
     def _thin(self) -> set[int]:
-        """Nodes that a scale may press flat on the way."""
+        """Nodes that a scale may flatten at some time."""
         return self._below(
             {
                 node
@@ -71,7 +71,7 @@ class Poses(Value):
         )
 
     def _below(self, nodes: dict[int, list[Channel]] | set[int]) -> set[int]:
-        """The nodes and all their descendants."""
+        """Set of the nodes and all their descendants."""
         found, stack = set(), list(nodes)
         while stack:
             node = stack.pop()
@@ -81,15 +81,15 @@ class Poses(Value):
         return found
 
     def moves(self, node: int) -> bool:
-        """Whether the node's place changes."""
+        """Whether the node's transform changes."""
         return node in self._moving
 
     def may_be_flat(self, node: int) -> bool:
-        """Whether a scale may press the node flat at some time."""
+        """Whether a scale may flatten the node at some time."""
         return node in self._thin
 
     def blinks(self, node: int) -> bool:
-        """Whether the node is shown at some times only; what hides it always wins."""
+        """Whether the node's visibility changes; False if something hides it at all times."""
         if node not in self._blinking:
             return False
         return all(n in self._shown or is_visible(self._tree.items[n]) for n in self._chain(node))
@@ -104,7 +104,7 @@ class Poses(Value):
             return np.asarray(np.broadcast_to(self._tree.world(node), (len(times), 4, 4)))
         moment = times.tobytes()
         chain = []
-        world: Matrix | None = None  # looked up once: another thread may forget what is known
+        world: Matrix | None = None  # one lookup, as other threads may remove entries
         while node in self._moving and (world := self._known.get((node, moment))) is None:
             chain.append(node)
             node = self._tree.parents[node]
@@ -119,7 +119,7 @@ class Poses(Value):
         return world
 
     def _locals(self, node: int, times: FloatArray) -> Matrix:
-        """Parent from node, (T, 4, 4), or (4, 4) where the node itself stays."""
+        """Parent from node, (T, 4, 4), or (4, 4) if the node itself does not move."""
         if node not in self._own:
             return self._tree.local(node)
         moved = {c.tokens[-1]: c.track for c in self._own[node]}
@@ -131,13 +131,13 @@ class Poses(Value):
 
     def _keep(self, key: tuple[int, bytes], world: Matrix) -> None:
         most = max(min(_MAX_KNOWN, _MAX_MATRICES * 16 // max(world.size, 16)), 1)
-        with suppress(KeyError):  # another thread may empty it meanwhile
+        with suppress(KeyError):  # another thread may have emptied it
             while len(self._known) >= most:
                 self._known.popitem(last=False)
         self._known[key] = world
 
     def shown(self, node: int, time: float) -> bool:
-        """Whether a node that blinks is shown at a time, s."""
+        """Whether a node with changing visibility is shown at a time, s."""
         return all(c.track.at(time) for n in self._chain(node) for c in self._shown.get(n, ()))
 
     def breaks(self, node: int, begin: float, end: float) -> FloatArray:
@@ -145,16 +145,16 @@ class Poses(Value):
         return self.breaks_of_all([node], begin, end)
 
     def breaks_of_all(self, nodes: Sequence[int], begin: float, end: float) -> FloatArray:
-        """Likewise of several nodes."""
+        """Times of all keys that move any of the nodes, inside of (begin, end), s."""
         chains = dict.fromkeys(n for node in nodes for n in self._chain(node))
         return breaks_of([c for n in chains for c in self._own.get(n, ())], begin, end)
 
     def shown_breaks(self, node: int, begin: float, end: float) -> FloatArray:
-        """Likewise of keys that show or hide it."""
+        """Times of all keys that show or hide the node, inside of (begin, end), s."""
         return breaks_of([c for n in self._chain(node) for c in self._shown.get(n, ())], begin, end)
 
     def depth(self, node: int) -> int:
-        """The node and its ancestors, counted."""
+        """Number of nodes from the root to this one, both included."""
         return len(self._chain(node))
 
     def _chain(self, node: int) -> list[int]:

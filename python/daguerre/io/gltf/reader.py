@@ -1,7 +1,7 @@
-"""glTF 2.0 into a scene: the page where container, nodes, meshes, materials and cameras meet.
+"""Reads glTF 2.0 as a scene: joins container, nodes, meshes, materials and cameras.
 
-Start here; each step has a file of its own beside this one (``gltf_*.py``). Whatever is wrong in
-a file ends as one ``InputError`` that names file, JSON path, what was wanted and what was got.
+Start reading here; other modules of this folder have the single steps. Any fault in a file gives
+one ``InputError`` with file, JSON path, what was wanted and what was got.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ from .skins import Skins
 from .textures import Textures
 from .variants import Variants
 
-# Entries in all lists of ``Scene.nodes`` together: a deep chain of meshes would need the square.
+# Limit of entries in all lists of ``Scene.nodes``, which grow with the square of a chain of meshes.
 _MAX_NODE_ENTRIES = 4_000_000
-# Vertices that morphs, skins and flat nodes have for themselves; large files may have more.
+# Limit of vertices that morphs, skins and flat nodes cannot share; it grows with the file.
 _MAX_COPIES = 1 << 24
 _BYTES_PER_COPY = 4
 
@@ -60,21 +60,21 @@ def read(
 
     Args:
         path: The file.
-        time: Moment at which animations are evaluated, s.
-        scene_index: Which scene of the file; absent: its default.
-        variant: Name of a variant of the materials (KHR_materials_variants); absent: none.
-        allow_dirs: Folders besides the file's own from which buffers and images may come.
+        time: Time at which animations are evaluated, s.
+        scene_index: Index of the scene in the file; default: the file's default scene.
+        variant: Name of a variant of the materials (KHR_materials_variants); default: none.
+        allow_dirs: Folders for buffers and images, in addition to the file's own.
 
     Returns:
-        The scene; ``warnings`` says what was not understood.
+        The scene; ``warnings`` has notes on unsupported content.
 
     Raises:
-        InputError: The file is unreadable or invalid.
+        InputError: The file cannot be read or is invalid.
     """
     if not math.isfinite(time):
         raise UsageError(f"time: wanted a finite number of seconds, got {time}")
     file = Path(path)
-    # Absurd but finite numbers may overflow on the way; results are checked where they matter.
+    # Huge finite numbers may overflow in between; results are checked.
     with np.errstate(all="ignore"):
         folder = Folder(file, allow_dirs)
         return _Reader(file, float(time), variant, folder).read(scene_index)
@@ -88,10 +88,10 @@ class _Reader:
         self.root = self.document.root
         check_extensions(self.root, self.notes)
         if self.document.trailing:
-            self.notes.add("a byte behind the stated end of the file", self.document.trailing)
+            self.notes.add("a byte after the stated end of the file", self.document.trailing)
         buffers = load_buffers(self.document)
         self.accessors = Accessors(self.root, buffers)
-        # Before anything else is read:
+        # Animations change the JSON, so they come before all other parts.
         self.animations = Animations(self.root, self.accessors, time, self.notes)
         self.scene.set_clock(self.animations.duration)
         self.tree = Tree(self.root)
@@ -199,12 +199,12 @@ class _Reader:
             self.scene.add_light(light, rigid)
 
     def _collect(self, placed: list[Placed], firsts: list[int]) -> None:
-        """Instances of each node and its descendants: one run of numbers, as parents come first."""
+        """Groups instances of each node and its descendants, which are contiguous."""
         left = _MAX_NODE_ENTRIES
         for position, node in enumerate(placed):
             first, last = firsts[position], firsts[node.end]
             left -= last - first
             if left < 0:
-                self.notes.add("a node too deep in the tree stands for its own meshes only")
+                self.notes.add("the name of a node deep in the tree selects its own meshes only")
                 last = firsts[position + 1]
             self.scene.group_instances(self.names[node.index], range(first, last))

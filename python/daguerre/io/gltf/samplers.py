@@ -1,4 +1,4 @@
-"""Animation samplers of glTF: keys, values and what lies between them.
+"""Reads and interpolates animation samplers of glTF.
 
 Source: glTF 2.0 specification, chapter 3.11 and appendix C.
 """
@@ -20,7 +20,7 @@ FloatArray = NDArray[np.float64]
 _MODES = ("LINEAR", "STEP", "CUBICSPLINE")
 
 
-#: Quaternions of keys this near to length 1 are taken to be rounded.
+#: Tolerance of the length of key quaternions, which may be rounded.
 _SLACK = 0.01
 
 
@@ -28,10 +28,10 @@ class Track:
     """Samples of a value over time.
 
     Args:
-        use: The sampler's output, for complaints.
+        use: Output of the sampler, for messages.
         keys: Times, shape (K,), s.
-        values: Shape (K, rows, width), rows being in-tangent, value and out-tangent of a spline,
-            else the value alone; of flags shape (K,).
+        values: Shape (K, rows, width); rows are in-tangent, value and out-tangent of a spline,
+            else only the value. Flags: shape (K,).
         mode: LINEAR, STEP or CUBICSPLINE.
         target: The animated value of the file.
     """
@@ -46,7 +46,7 @@ class Track:
 
     @property
     def changes(self) -> bool:
-        """Whether it is not always the same."""
+        """Whether the value changes."""
         values = self._values
         if self._rows == 3 and len(values) > 1 and values[:, ::2].any():
             return True
@@ -55,7 +55,7 @@ class Track:
 
     @property
     def lowest(self) -> float:
-        """The smallest value of all keys."""
+        """Smallest value of all keys."""
         return float(self._values[:, self._rows // 2].min())
 
     @property
@@ -64,19 +64,19 @@ class Track:
         return float(self._keys[0]), float(self._keys[-1])
 
     def breaks(self, begin: float, end: float) -> FloatArray:
-        """The times of the keys inside of (begin, end), s."""
+        """Times of the keys inside of (begin, end), s."""
         first = np.searchsorted(self._keys, begin, side="right")
         return self._keys[first : np.searchsorted(self._keys, end, side="left")]
 
     def at(self, time: float) -> Any:
-        """A number, a list of numbers, or true or false; held before and behind the keys."""
+        """Value at a time, s: a number, a list of numbers or a flag; constant beyond the keys."""
         value = self.many(np.array([time]))[0]
         if self._is_flag:
             return bool(value)
         return float(value[0]) if len(value) == 1 and not self._is_list else value.tolist()
 
     def many(self, times: FloatArray) -> NDArray[Any]:
-        """Values at many times, shape (T, width); of flags (T,)."""
+        """Values at many times, shape (T, width); flags: (T,)."""
         keys, values, middle = self._keys, self._values, self._rows // 2
         left = np.maximum(keys.searchsorted(times, side="right") - 1, 0)
         if self._is_flag:
@@ -99,11 +99,11 @@ class Track:
 
 
 class Samplers:
-    """The samplers of a file as tracks; each is read once, however many use it.
+    """Reads samplers of a file as tracks, each once, however many channels use it.
 
     Args:
-        accessors: Those of the file.
-        notes: Is told what was repaired.
+        accessors: Accessors of the file.
+        notes: Receives notes on repairs.
     """
 
     def __init__(self, accessors: Accessors, notes: Notes) -> None:
@@ -113,10 +113,10 @@ class Samplers:
         self._tracks: dict[tuple[Any, ...], Track] = {}
 
     def track(self, sampler: Item, target: Target) -> Track:
-        """The values of a sampler for what it animates.
+        """Reads the values of a sampler for a target.
 
         Raises:
-            InputError: Keys or values cannot be used.
+            InputError: Keys or values are invalid.
         """
         mode_item = sampler.get("interpolation")
         mode = "LINEAR" if mode_item is None else mode_item.choice(_MODES)
@@ -134,7 +134,7 @@ class Samplers:
 
     def _flags(self, use: Item, count: int, mode: str, target: Target) -> NDArray[Any]:
         if self._accessors.kind(use) != ("SCALAR", 5121, False) or mode != "STEP":
-            use.fail("wanted SCALAR of component type 5121 and STEP for what is true or false")
+            use.fail("wanted SCALAR of component type 5121 and STEP for true or false")
         values = self._accessors.integers(use)
         if len(values) != count:
             use.fail(f"wrong number of key values: wanted {count}, got {len(values)}")
@@ -144,7 +144,7 @@ class Samplers:
         raw = self._accessors.floats(use, target.types, "key value")
         rows = 3 if mode == "CUBICSPLINE" else 1
         per_key = count * rows
-        # The elements of a list lie one behind the other.
+        # The elements of a list are stored one after another.
         if len(raw) % per_key or (len(raw) != per_key and not target.is_list):
             wanted = f"{'a multiple of ' if target.is_list else ''}{per_key} ({mode})"
             use.fail(f"wrong number of key values: wanted {wanted}, got {len(raw)}")
@@ -190,9 +190,9 @@ def slerp(a: FloatArray, b: FloatArray, s: FloatArray) -> FloatArray:
     """Spherical interpolation of unit quaternions the shorter way round (appendix C.4).
 
     Args:
-        a: Shape (T, 4), where ``s`` is 0.
-        b: Where it is 1.
-        s: Shape (T, 1).
+        a: Quaternions at ``s`` = 0, shape (T, 4).
+        b: Quaternions at ``s`` = 1, shape (T, 4).
+        s: Position between them, 0 .. 1, shape (T, 1).
     """
     cosine = np.einsum("ti,ti->t", a, b)[:, None]
     b = np.where(cosine < 0, -b, b)

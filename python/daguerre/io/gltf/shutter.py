@@ -1,4 +1,4 @@
-"""The shutter in ``extras.daguerre`` of a glTF camera."""
+"""Reads the shutter in ``extras.daguerre`` of a glTF camera."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from daguerre.files.json_item import Item
 
 
 def _curve(item: Item) -> rolling_shutter.ShutterCurve:
-    """``"box"``, ``{"trapezoid": efficiency}`` or points [[fraction, opening], ...]."""
+    """Reads ``"box"``, ``{"trapezoid": efficiency}`` or points [[fraction, opening], ...]."""
     if isinstance(item.value, str):
         return str(item.choice(("box",)))
     if isinstance(item.value, dict):
@@ -31,7 +31,7 @@ def _curve(item: Item) -> rolling_shutter.ShutterCurve:
 
 
 def _rolling(item: Item) -> rolling_shutter.RollingShutter:
-    """``{"scanOrder": side, "lineTime" or "readoutTime": s}``."""
+    """Reads ``{"scanOrder": side, "lineTime" or "readoutTime": s}``."""
     order = item.get("scanOrder")
     times = {
         name: None if member is None else member.number(*LIMITS["shutter_time"])

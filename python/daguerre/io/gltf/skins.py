@@ -1,6 +1,6 @@
-"""Skins: vertices that follow joints, by linear blending of the joints' transforms.
+"""Applies skins: vertices follow joints by linear blending of the joints' transforms.
 
-A skinned mesh comes out in world space: the transform of its own node does not count.
+A skinned mesh is in world space; the transform of its own node is ignored.
 Source: glTF 2.0 specification, chapter 3.7.3.
 """
 
@@ -22,19 +22,19 @@ from .nodes import Tree
 from .poses import Poses
 
 FloatArray = NDArray[np.float32]
-# Vertices at a time: each needs a matrix of its own, 100 times the size of its position.
+# Vertices at a time, as their matrices need far more memory than their positions.
 _CHUNK = 1 << 15
-# Sums of weights of four or eight bytes are off by this much when each was rounded by itself.
+# Tolerance of sums of four or eight weights that were rounded to bytes.
 _SLACK = 0.01
 
 
 @dataclass(frozen=True, eq=False)
 class Influences(Value):
-    """Who moves the vertices of a mesh, and how much.
+    """Joints that move the vertices of a mesh, and their weights.
 
     Attributes:
         joints: Indices into the joints of the skin, one array (N, 4) for each set.
-        weights: Their shares, likewise; what a vertex has in all sets adds to 1.
+        weights: Weights in the same shape; those of a vertex in all sets add to 1.
     """
 
     joints: list[NDArray[Any]]
@@ -47,10 +47,10 @@ class SkinOverTime(Value):
 
     Attributes:
         poses: The nodes of the file.
-        joints: Those of them that are joints.
-        bind: Joint from mesh for each, shape (joints, 4, 4), or one for all.
-        still: World from mesh for each, where no joint moves.
-        influences: Whom they move.
+        joints: Indices of the nodes that are joints.
+        bind: Joint from mesh for each joint, shape (joints, 4, 4), or one for all.
+        still: World from mesh for each joint, if no joint moves.
+        influences: Joints and weights of the vertices.
     """
 
     poses: Poses
@@ -76,10 +76,10 @@ class Skins:
 
     Args:
         root: The JSON object of the file.
-        accessors: Its accessors.
-        tree: Its nodes.
-        poses: Its nodes over time.
-        notes: Gets what was not understood.
+        accessors: Accessors of the file.
+        tree: Nodes of the file.
+        poses: Nodes over time.
+        notes: Receives notes on unsupported content.
     """
 
     def __init__(
@@ -95,7 +95,7 @@ class Skins:
         self._bind: dict[int, NDArray[np.float64]] = {}
 
     def index(self, use: Item) -> int:
-        """The skin that ``use`` names; checked."""
+        """Checked index of the skin that ``use`` names."""
         return use.index(len(self._items), "skins")
 
     def matrices(self, index: int) -> NDArray[np.float64]:
@@ -107,7 +107,7 @@ class Skins:
         return self._matrices[index]
 
     def over_time(self, index: int, influences: Influences) -> SkinOverTime:
-        """The same over time, for a mesh."""
+        """Joints over time, for a mesh with these influences."""
         still = self.matrices(index)
         return SkinOverTime(
             *(self._poses, self._joint_nodes[index], self._bind[index]),
@@ -122,14 +122,14 @@ class Skins:
     def _read(self, index: int) -> None:
         item = self._items[index]
         tree, skeleton = self._tree, item.get("skeleton")
-        if skeleton is not None:  # a pivot for editors
+        if skeleton is not None:  # only a pivot for editors
             skeleton.index(len(tree.items), "nodes")
         joints = [use.index(len(tree.items), "nodes") for use in item.need("joints")]
         if not joints:
             item.need("joints").fail("wanted at least one joint, got none")
         outside = sum(not tree.is_placed(joint) for joint in joints)
         if outside:
-            self._notes.add("a joint of a skin stands outside of the scene", outside)
+            self._notes.add("a joint of a skin is outside of the scene", outside)
         bind = item.get("inverseBindMatrices")
         self._joint_nodes[index] = joints
         still = np.eye(4)[None]
@@ -146,7 +146,7 @@ class Skins:
         return affine(matrices, use)
 
     def influences(self, attributes: dict[str, Item], skin: int, count: int) -> Influences:
-        """Reads JOINTS_n and WEIGHTS_n of a mesh with ``count`` vertices; there is JOINTS_0."""
+        """Reads JOINTS_n and WEIGHTS_n of a mesh with JOINTS_0 and ``count`` vertices."""
         found = Influences([], [])
         while (joints := attributes.get(f"JOINTS_{len(found.joints)}")) is not None:
             weights = attributes.get(f"WEIGHTS_{len(found.joints)}")
@@ -175,7 +175,7 @@ class Skins:
         return np.asarray(np.maximum(weights, 0))
 
     def _joints(self, use: Item, weights: FloatArray, skin: int) -> NDArray[Any]:
-        # A copy: what moves a mesh shall not keep the bytes of the whole file.
+        # A copy, so that a moving mesh does not keep the bytes of the whole file.
         joints, count = self._accessors.joints(use).copy(), len(self.matrices(skin))
         beyond = joints >= count
         if not beyond.any():
@@ -187,11 +187,11 @@ class Skins:
                 f"vertex {vertex}: index out of range: wanted 0 .. {count - 1} (joints), "
                 f"got {joints[vertex, k]} ({len(bad)} such)"
             )
-        return np.where(beyond, 0, joints)  # without weight, any joint will do
+        return np.where(beyond, 0, joints)  # without weight, any joint is valid
 
 
 def _share(found: Influences, notes: Notes) -> None:
-    """Makes the weights of each vertex add to 1; a vertex without any follows its first joint."""
+    """Scales the weights of each vertex to a sum of 1; without any, the first joint gets 1."""
     total = np.sum([w.sum(axis=1, dtype=np.float64) for w in found.weights], axis=0)
     odd = int((np.abs(total - 1) > _SLACK).sum())
     if odd:
@@ -205,7 +205,7 @@ def _share(found: Influences, notes: Notes) -> None:
 def skin(
     arrays: dict[str, FloatArray], found: Influences, matrices: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
-    """Moves positions, normals and tangents into the world; what is moved is no unit then.
+    """Moves positions, normals and tangents into the world, without exact normalisation.
 
     Args:
         arrays: Attributes of the mesh, by their names in glTF; replaced.
@@ -213,7 +213,7 @@ def skin(
         matrices: World from mesh for each joint, shape (joints, 4, 4).
 
     Returns:
-        Which vertices are mirrored, shape (N,).
+        Whether each vertex is mirrored, shape (N,).
     """
     for name in {"POSITION", "NORMAL", "TANGENT"} & arrays.keys():
         arrays[name] = arrays[name].copy()
@@ -232,7 +232,7 @@ def skin(
         points = arrays["POSITION"][piece]
         points[:] = _times(linear, points) + blend[:, :, 3]
         if "NORMAL" in arrays:
-            # Cofactors are the inverse transpose times the determinant, and exist without inverse.
+            # Cofactors, the inverse transpose times the determinant, exist without an inverse.
             normals = _times(cofactors, arrays["NORMAL"][piece]) * side[:, None]
             arrays["NORMAL"][piece] = _scaled(normals)
         if "TANGENT" in arrays:
@@ -253,6 +253,6 @@ def _times(m: NDArray[np.float64], v: FloatArray) -> NDArray[np.float64]:
 
 
 def _scaled(v: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Unit vectors; 0 stays 0."""
+    """Normalises vectors; 0 stays 0."""
     lengths = np.linalg.norm(v, axis=1, keepdims=True)
     return np.asarray(v / np.where(lengths > 0, lengths, 1))

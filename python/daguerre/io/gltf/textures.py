@@ -1,4 +1,4 @@
-"""Textures of glTF: which image a material looks at, and how.
+"""Reads textures of glTF: the image of each, its sampler and its coordinates.
 
 Source: glTF 2.0 specification, chapters 3.8 and 5.26; KHR_texture_transform.
 """
@@ -17,7 +17,7 @@ from daguerre.scene.materials import TextureSlot
 
 _WRAP = {10497: "repeat", 33071: "clamp", 33648: "mirror"}
 _MAG = {9728: "nearest", 9729: "linear"}
-#: Extensions that name another image of a texture; the first that can be decoded is taken.
+#: Extensions that name another image of a texture; the first that can be decoded is used.
 _COMPRESSED = ("KHR_texture_basisu", "EXT_texture_webp")
 _MIN = {
     9728: "nearest",
@@ -31,7 +31,7 @@ _MIN = {
 
 @dataclass(frozen=True)
 class Sampler:
-    """How texels are looked at; names of ``Scene.add_texture``."""
+    """Wrapping and filters of a texture, with the names of ``Scene.add_texture``."""
 
     wrap: tuple[str, str] = ("repeat", "repeat")
     filter: str = "linear"
@@ -40,7 +40,7 @@ class Sampler:
 
 @dataclass(frozen=True)
 class Plan:
-    """One texture of the scene: an image as seen through a sampler."""
+    """A texture of the scene: an image with a sampler."""
 
     image: int
     srgb: bool
@@ -52,8 +52,8 @@ class Textures(Value):
 
     Args:
         root: The JSON object of the file.
-        same: For each image the first one that is the same file or bufferView.
-        notes: Gets what was not understood.
+        same: Index of the first image with the same file or bufferView, for each image.
+        notes: Receives notes on unsupported content.
 
     Attributes:
         plans: The scene's textures and their indices.
@@ -69,9 +69,9 @@ class Textures(Value):
         self.plans: dict[Plan, int] = {}
 
     def silenced(self) -> Textures:
-        """The same for materials that are read again: without remarks, each image as it was found.
+        """Returns a copy for materials that are read again, without notes and with the same images.
 
-        Elsewhere another package for images may be missing.
+        The images are kept as packages for images may be missing in another process.
         """
         other = copy.copy(self)
         other._settled = True
@@ -79,7 +79,7 @@ class Textures(Value):
         return other
 
     def slot(self, owner: Item | None, key: str, *, srgb: bool) -> TextureSlot | None:
-        """The use of a texture by member ``key`` of a material, or None."""
+        """Reads the texture in member ``key`` of a material; None: there is none."""
         info = None if owner is None else owner.get(key)
         if info is None:
             return None
@@ -93,17 +93,17 @@ class Textures(Value):
         if sampler is not None:
             seen_through = self._samplers[sampler.index(len(self._samplers), "samplers")]
         if image is None:
-            self._notes.add("a texture without an image that is understood is left out")
+            self._notes.add("a texture without an image of a supported format is left out")
             return None
         uv_set, transform = _coordinates(info)
         if uv_set > 1:
-            self._notes.add("a texture that asks for texture coordinates beyond set 1 is left out")
+            self._notes.add("a texture that needs texture coordinates beyond set 1 is left out")
             return None
         plan = Plan(self._same[image], srgb, seen_through)
         return TextureSlot(self.plans.setdefault(plan, len(self.plans)), uv_set, transform)
 
     def _image_of(self, texture: Item) -> int | None:
-        """The image of a texture: a compressed one where the file has it and it can be decoded."""
+        """Image of a texture: the compressed one if it exists and can be decoded."""
         plain = texture.get("source")
         for name in _COMPRESSED:
             extension = texture.extension(name)

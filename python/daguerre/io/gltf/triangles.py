@@ -1,4 +1,4 @@
-"""Triangles of a primitive: lists, strips and fans, indexed or not.
+"""Reads triangles of a primitive: lists, strips and fans, indexed or not.
 
 Source: glTF 2.0 specification, chapters 3.7.2.1 and 5.24.
 """
@@ -16,7 +16,7 @@ from .accessors import Accessors
 def triangles_of(
     primitive: Item, indices: Item | None, mode: int, count: int, accessors: Accessors
 ) -> NDArray[np.uint32]:
-    """Indices below ``count``, shape (triangles, 3), for mode 4, 5 or 6."""
+    """Vertex indices below ``count``, shape (triangles, 3), for mode 4, 5 or 6."""
     if indices is None:
         where, corners = primitive, np.arange(count, dtype=np.uint32)
     else:
@@ -34,7 +34,7 @@ def triangles_of(
     if len(corners) < 3:
         where.fail(f"wrong number of corners: wanted at least 3, got {len(corners)}")
     if mode == 5:
-        # Every second triangle of a strip is turned, so that all wind alike (3.7.2.1).
+        # Every second triangle of a strip is reversed, so that all wind alike (3.7.2.1).
         i = np.arange(len(corners) - 2)
         strip = np.stack([corners[:-2], corners[i + 1 + i % 2], corners[i + 2 - i % 2]], axis=1)
         a, b, c = strip.T

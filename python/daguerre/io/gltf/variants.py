@@ -1,6 +1,6 @@
-"""KHR_materials_variants: named choices of materials, of which one may be active.
+"""Reads KHR_materials_variants: named choices of materials, of which one may be active.
 
-Source: the extension's text and schema. All mappings are checked, chosen or not.
+All mappings are checked, chosen or not. Source: the extension's specification and schema.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ _EXTENSION = "KHR_materials_variants"
 
 
 class Variants:
-    """The variants of a file and the one that is chosen.
+    """Variants of a file, and the chosen one.
 
     Args:
         root: The JSON object of the file.
-        chosen: The name of the active one; None: the materials as they stand.
+        chosen: Name of the active variant; None: the default materials.
 
     Attributes:
-        names: All of them, in the order of the file.
+        names: Names of all variants, in the order of the file.
 
     Raises:
         InputError: There is no variant of that name.
@@ -38,7 +38,7 @@ class Variants:
         self._chosen = None if chosen is None else self.names.index(chosen)
 
     def material(self, primitive: Item) -> int | None:
-        """The material of a primitive under the chosen variant; None: the default one."""
+        """Index of a primitive's material in the chosen variant; None: glTF's default material."""
         plain, extension = primitive.get("material"), primitive.extension(_EXTENSION)
         used = None if plain is None else plain.index(self._materials, "materials")
         seen: set[int] = set()

@@ -1,6 +1,6 @@
-"""A small glTF 2.0 writer: meshes, pictures, materials, nodes and animations into one .glb file.
+"""Writes meshes, pictures, materials, nodes and animations into one .glb file (glTF 2.0).
 
-Public: charts, and the programs in ``scenes/``, write their files with it.
+It is public; charts and the programs in ``scenes/`` write their files with it.
 """
 
 from __future__ import annotations
@@ -51,13 +51,13 @@ class Track:
 
     @classmethod
     def to(cls, pointer: str, times: ArrayLike, keys: ArrayLike, kind: str = "LINEAR") -> Track:
-        """A track to any value of the file, by its JSON pointer."""
+        """Makes a track for any value of the file, by its JSON pointer."""
         extensions = {"KHR_animation_pointer": {"pointer": pointer}}
         return cls({"path": "pointer", "extensions": extensions}, times, keys, kind)
 
 
 class Glb:
-    """Collects a scene and writes it. Every add_* returns the index that others refer to."""
+    """Collects a scene and writes it; ``add_*`` methods return the index of the new item."""
 
     def __init__(self, generator: str) -> None:
         self.json: dict[str, Any] = {"asset": {"version": "2.0", "generator": generator}}
@@ -66,7 +66,7 @@ class Glb:
         self.fallbacks: list[dict[str, Any]] = []  # buffers without bytes
 
     def add(self, key: str, item: dict[str, Any]) -> int:
-        """Adds to one of the lists of the file."""
+        """Adds an item to one of the lists of the file."""
         items = self.json.setdefault(key, [])
         items.append(item)
         return len(items) - 1
@@ -93,7 +93,7 @@ class Glb:
         return self.add("accessors", item)
 
     def use(self, *extensions: str, required: bool = False) -> None:
-        """Names glTF extensions that the file uses, or cannot be read without."""
+        """Lists glTF extensions as used, or also as required."""
         for key in ("extensionsUsed", "extensionsRequired")[: 1 + required]:
             named = sorted({*self.json.get(key, []), *extensions})
             if named:
@@ -120,7 +120,7 @@ class Glb:
     def primitive(
         self, shape: Shape, material: int, more: dict[str, int] | None = None, **primitive: Any
     ) -> dict[str, Any]:
-        """A primitive of a mesh, with `more` attributes by their accessors."""
+        """Makes a primitive of a mesh, with `more` attributes by their accessors."""
         attributes = {
             "POSITION": self.add_accessor(shape.positions, "VEC3", FLOAT, target=ARRAY_BUFFER),
             "NORMAL": self.add_accessor(shape.normals, "VEC3", FLOAT, target=ARRAY_BUFFER),
@@ -147,7 +147,7 @@ class Glb:
         return self.add_primitive(name, **self.primitive(shape, material, more, **primitive))
 
     def add_parts(self, name: str, parts: Sequence[tuple[Shape, int]]) -> int:
-        """Adds one mesh of several shapes, each of its own material."""
+        """Adds one mesh of several shapes, each with its own material."""
         primitives = [self.primitive(shape, material) for shape, material in parts]
         return self.add("meshes", {"name": name, "primitives": primitives})
 
@@ -198,7 +198,7 @@ class Glb:
         return self.add("cameras", camera)
 
     def add_turns(self, name: str, turns: dict[int, int], duration_s: float) -> None:
-        """Animates nodes: each makes a whole number of turns about its y axis, evenly."""
+        """Animates nodes, which make whole turns about their y axes at constant speed."""
         tracks = []
         for node, count in turns.items():
             angles = np.linspace(0, 2 * math.pi * count, 3 * abs(count) + 1)  # 120 deg per key
@@ -210,7 +210,7 @@ class Glb:
         self.add_animation(name, tracks)
 
     def add_animation(self, name: str, tracks: list[Track]) -> None:
-        """Animates what each track names; all play at once."""
+        """Adds an animation of all tracks, which play at once."""
         samplers: list[dict[str, Any]] = []
         channels: list[dict[str, Any]] = []
         for track in tracks:
