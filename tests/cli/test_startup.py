@@ -19,7 +19,7 @@ LOADED = (
     ("command", "rooms"),
     [
         (["--version"], {"rendering", "setup", "lenses", "sensors", "development"}),
-        (["--help"], {"camera", "scene", "rendering", "setup", "lenses", "sensors", "development", "plates", "post"}),
+        (["--help"], {"camera", "scene", "rendering", "lenses", "sensors", "plates", "post"}),
         (["lenses"], {"rendering", "setup", "development", "analysis"}),
         (["render", "nowhere.glb", "-o", "x.exr"], {"analysis", "plots", "development", "post"}),
     ],
