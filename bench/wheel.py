@@ -30,7 +30,7 @@ def picture():
     scene.set_environment(color=(1, 1, 1))
     camera = dg.Camera(lens="double-gauss-50mm-f2", f_stop=2.0, focus_distance=3.0)
     begun = cpu()
-    dg.render(scene, camera, resolution=(240, 160), spp=32, threads=2)
+    dg.render(scene, camera, resolution=(480, 320), spp=32, threads=2)
     return cpu() - begun
 
 plane = np.zeros((4, 4), np.float32)
