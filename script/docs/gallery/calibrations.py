@@ -7,8 +7,8 @@ from photographs import OUT, Photograph, Sheet
 INTRODUCTION = """# Calibrated cameras
 
 See one desk ([scenes/calibrated.py](../../scenes/calibrated.py)) through calibration files of
-OpenCV, ROS and Kalibr: [projections](../projections.md),
-[calibration files](../calibration-files.md). Every ray is traced through the camera model; nothing
+OpenCV, ROS and Kalibr. [Projections](../projections.md) and [calibration
+files](../calibration-files.md) explain them. Every ray is traced through the camera model; nothing
 is warped afterwards. To make the scene:
 
 ```
@@ -16,8 +16,8 @@ python scenes/calibrated.py
 mkdir -p out
 ```
 
-The scene has the light of a bright day, so `--exposure auto` meters it. `--denoise` needs the extra
-`denoise`; `depth_map.py` and `coco_boxes.py` need the extra `plot`.
+The scene has the light of a bright day, so the commands meter it with `--exposure auto`. They need
+the extras `calibration` and `denoise`; `depth_map.py` and `coco_boxes.py` need the extra `plot`.
 """
 SCENE = "daguerre render out/calibrated/desk.glb"
 FILES = "scenes/calibrated"
@@ -33,8 +33,8 @@ def _phone() -> Sheet:
     caption = "phone: OpenCV, Brown-Conrady, 3.8 mm f/1.8"
     text = (
         "[phone.yaml](../../scenes/calibrated/phone.yaml), 4032 x 3024 photosites of 1.4 um, "
-        "rendered at a quarter. The rail and the edge of the desk bow with the barrel distortion "
-        "that a phone's software would correct later."
+        "rendered at a quarter of the size. The rail and the edge of the desk are curved by the "
+        "barrel distortion that a phone's software would correct later."
     )
     shot = Photograph(caption, (command,), "phone.png")
     return Sheet("calibrated_phone", "A phone", text, 1, (shot,))
@@ -77,8 +77,7 @@ def _shutters() -> Sheet:
         shots.append(Photograph(title, (command,), file))
     text = (
         "The fan turns 45 times a second, and keeps turning while the phone reads its rows from "
-        "the top: each row shows it at its own time, at the place where the distorted picture "
-        "has that row."
+        "the top, so each row of the distorted picture shows it at another time."
     )
     return Sheet("calibrated_shutters", "The phone's rolling shutter", text, 2, tuple(shots))
 
@@ -90,7 +89,7 @@ def _fisheye() -> Sheet:
     )
     text = (
         "[fisheye.yaml](../../scenes/calibrated/fisheye.yaml), Kannala-Brandt: it sees the "
-        "window and the bookcase at its sides, and a little of what is behind it. The picture "
+        "window and the bookcase at its sides, and a little of the room behind it. The picture "
         "ends where the polynomial stops increasing."
     )
     shot = Photograph("fisheye: ROS, equidistant, 190 degrees", (command,), "fisheye.png")
@@ -112,9 +111,9 @@ def _stereo() -> Sheet:
         command = f"{program} {OUT}/stereo.{camera}.exr {OUT}/{file} 0.4 1.3"
         shots.append(Photograph(f"depth, {side}", (command,), file))
     text = (
-        "[stereo.yaml](../../scenes/calibrated/stereo.yaml): two cameras 0.12 m apart in one "
-        "call, which builds the scene once. Depth is exact, along the axis of each camera, for "
-        "what its pixels see in the middle of their exposure."
+        "[stereo.yaml](../../scenes/calibrated/stereo.yaml): two cameras 0.12 m apart. One command "
+        "renders both and builds the scene once. Depth is exact for each pixel: along the axis of "
+        "its camera, in the middle of the exposure."
     )
     return Sheet("calibrated_stereo", "A stereo rig and its depth", text, 2, tuple(shots), (pair,))
 

@@ -9,9 +9,10 @@ from photographs import OUT, Photograph, Sheet
 
 INTRODUCTION = """# Into the plate
 
-See four pawns, of glass, of steel and painted, composited into a photograph of an empty desk, and
-compared with a photograph that has them on it ([scenes/plates.py](../../scenes/plates.py)).
-[Plates](../plates.md) explains each step. To make the scenes:
+This page composites four pawns, of glass, of steel and painted, into a photograph of an empty desk,
+and compares the result with a photograph that has them on it
+([scenes/plates.py](../../scenes/plates.py)). [Into the plate](../plates.md) explains each step. To
+make the scenes:
 
 ```
 python scenes/plates.py
@@ -47,8 +48,9 @@ def _plate() -> Sheet:
         f"daguerre match-plate {OUT}/plate.dng -o {OUT}/camera.json",
     )
     text = (
-        "The photograph, and its camera: lens, stop, time and ISO from EXIF, gain and noise of the "
-        "sensor from flat areas of the picture."
+        "The first command takes the photograph. The second finds its camera: lens, f-number, "
+        "shutter time and ISO from EXIF, gain and noise of the sensor from flat areas of the "
+        "picture."
     )
     panel = Photograph("what was filmed", shot, "plate.png")
     return Sheet("plates_plate", "The plate", text, 1, (panel,))
@@ -73,8 +75,8 @@ def _objects() -> Sheet:
 def _catchers() -> Sheet:
     command = f"{LAYERS} catcher {OUT}/object.exr {OUT}/catcher.png {LAYER_TIMES}"
     text = (
-        "The layer `catcher` of the same file around middle grey. Light that the objects block is "
-        "dark and light that they add is bright, here as shares of white, amplified "
+        "The layer `catcher` of the same file, shown around middle grey. Light that the objects "
+        "block is dark and light that they add is bright, as shares of white, amplified "
         f"{LAYER_TIMES} times. Soft shadows from window and lamp run both ways, red bleeds onto "
         "the page, glass gathers light beside its foot, and the mug and the brass of the old "
         "camera mirror the pawns."
@@ -91,8 +93,8 @@ def _composite() -> Sheet:
         f"-o {OUT}/shot.dng -o {OUT}/shot.png"
     )
     text = (
-        "All of it in the plate's electrons, before demosaicing; the raw file is then developed "
-        "like any other."
+        "The objects are added to the plate's electrons, before demosaicing. The raw file is then "
+        "developed like any other."
     )
     panel = Photograph("composite", (command,), "shot.png")
     return Sheet("plates_shot", "The composite", text, 1, (panel,))
@@ -128,9 +130,9 @@ def _modelled() -> Sheet:
         _compared("modelled", "alone", "modelled"),
     )
     text = (
-        "Without `--plate` the objects see the modelled set, which here matches the real one. Now "
-        "they have the light of the truth. What is left in glass and steel are fine reflections, "
-        "of which both renders have few samples."
+        "Without `--plate` the objects see the modelled set, which here matches the real one, so "
+        "they have the light of the true photograph. The remaining difference in glass and steel "
+        "is in fine reflections, of which both renders have few samples."
     )
     panel = Photograph(_LESS, commands, "modelled.png")
     title = "The difference without the photograph as light"
@@ -171,16 +173,17 @@ def _table(name: str) -> list[str]:
 
 _LESS = "composite less truth: pixels x 2, and means of 8 x 8 pixels x 8"
 _OF_FIGURES = """\
-The figures are for the electrons of photosites that are not clipped. *light* is that of the
-composite over that of the truth; *mean* and *rms* are of the difference, in units of the noise of
-both shots. Noise alone has an rms of 1, and also for means of 8 x 8 photosites, where an error
-stands out that is invisible in a single photosite. *the rest* compares two renders of the set
-where pawns change nothing: above 1 it is the noise of rendering that denoising has left."""
+The figures are for the electrons of photosites that are not clipped. *light* is the light of the
+composite, divided by that of the true photograph. *mean* and *rms* describe the difference, in
+units of the noise of both shots. Pure noise has an rms of 1. So do its means over 8 x 8 photosites,
+which reveal errors that are invisible in a single photosite. *the rest* compares two renders of the
+set where pawns change nothing: its excess over 1 is rendering noise that the denoiser left."""
 _OF_PLATE = """\
-The set matches the light of the truth to 0.2 %: shadows, reflections, colour bleeding. Objects lit
-by the photograph are a little dark, because it clips the lamp, and because it records only the
-light that glossy things such as the table send toward the camera. (With a set without gloss and a
-plate without clipping the red pawn has 1.000 of its light.) The next picture is without it."""
+The set matches the light of the true photograph to 0.2 %: shadows, reflections, colour bleeding.
+Objects lit by the plate are a little dark, because the plate clips the lamp, and because it records
+only the light that glossy things such as the table send toward the camera. (With a set without
+gloss and a plate without clipping the red pawn has 1.000 of its light.) The next picture does not
+use the plate as light."""
 
 #: The row in the gallery and at the head of the walk: pictures of the sheets, smaller.
 OVERVIEW = (("plate.png", "objects.png"), ("catcher.png", "shot.png"))

@@ -41,64 +41,79 @@ SCENES = (
     ["plates.py"],
 )
 
-INTRODUCTION = (
-    "# Gallery\n\nDaguerre rendered every picture by the command under it. Copy and change one.\n"
-)
+INTRODUCTION = """# Gallery
+
+Each picture has the command that rendered it: copy one and change it. Run the commands in a clone
+of the repository, after the program that writes the scene:
+
+```
+mkdir -p out
+python scenes/night_table.py out/night_table.glb
+python scenes/extensions.py
+python scenes/motion.py
+python scenes/lens_scenes.py
+```
+
+`--denoise` needs the extra `denoise`, and the garden the extra `compression`
+([install](../install.md#extras)). The pictures use `--tone soft`, which rolls off highlights.
+`DATA` stands for a folder with the chess set and the panorama, which the repository does not ship.
+"""
 
 ABOUT_MOTION = """## Motion
 
-What moves while the shutter is open is blurred; [motion.md](../motion.md) explains how. A sheet of
-several pictures has a command for each.
+Objects that move while the shutter is open are blurred; [Motion and shutters](../motion.md)
+explains how. A sheet of several pictures has a command for each.
 """
 
 ABOUT_GLASS = """## Glass
 
-Real lenses, from their prescriptions; [lens-catalogue.md](../lens-catalogue.md) has one photograph
-through each lens of the library.
+These pictures are rendered through real lenses, from their prescriptions. The [lens
+catalogue](../lens-catalogue.md) has a photograph through each lens of the library.
 """
 
 ABOUT_LIGHT = """## Light paths
 
-Light is traced from the lamps too; [light-paths.md](../light-paths.md) explains how. These pictures
-are not denoised.
+Daguerre also traces light from the lamps; [Light paths](../light-paths.md) explains how. These
+pictures are not denoised.
 """
 
 ABOUT_WORDS = """## Imperfections
 
-Spherical aberration, coma, colour, astigmatism, distortion, vignetting, flares, bloom, halos and
-stars, each traced, by polynomials, and in 2D: [on their own page](imperfections.md).
+[Imperfections](imperfections.md) shows spherical aberration, coma, colour, astigmatism, distortion,
+vignetting, flares, bloom, halos and stars: each traced, by polynomials, and in 2D.
 """
 
 ABOUT_PHOTOGRAPHS = """## Photographs
 
-What sensors and films make of the light: the exposure triangle, ISO 100 beside ISO 25600, raw files
-developed by Daguerre and by LibRaw, film: [on their own page](exposure.md).
+[From exposure to photograph](exposure.md) shows what sensors and films make of the light: the
+exposure triangle, ISO 100 beside ISO 25600, raw files developed by Daguerre and by LibRaw, film.
 """
 
 ABOUT_CALIBRATED = """## Calibrated cameras
 
 ![A desk through a phone, a fisheye, and a stereo camera with its depth.](calibrated.jpg)
 
-One desk through calibration files of OpenCV, ROS and Kalibr: a phone, a 190-degree fisheye, the
-left camera of a stereo pair and its depth. [Larger, with the commands](calibrated.md).
+The pictures show one desk through calibration files of OpenCV, ROS and Kalibr: a phone, a
+190-degree fisheye, and the left camera of a stereo pair with its depth. [Calibrated
+cameras](calibrated.md) has them larger, with the commands.
 """
 
 ABOUT_PLATES = """## Into the plate
 
 ![A desk; pawns alone; the light that they take and add; the desk with the pawns.](plates.jpg)
 
-A plate, objects with alpha, the catchers' layer, and the composite; with its difference from a
-photograph of the whole scene. [Larger, with the commands](plates.md).
+The pictures show a plate, objects with alpha, the catchers' layer, and the composite. [Into the
+plate](plates.md) has them larger, with the commands, and the difference from a true photograph.
 """
 
 ABOUT_NOISE = """## Noise in equal time
 
 ![A part of the table at night, before and now, as rendered and denoised.](night_before.jpg)
 
-The table of the first picture in 52 CPU seconds each, without the denoiser's own 4 to 9: above by
-commit `1909491`, below by this one. Paths now go both ways at glass, and each point weighs four
-lamps before it sends a shadow ray. The command, with 29 and 24 samples per pixel, and with
-`--denoise` at the right:
+Each picture shows the table of the first picture in 52 CPU seconds, plus 4 to 9 for the denoiser:
+above by commit `1909491` with 29 samples per pixel, below by this one with 24; the right ones with
+`--denoise`. Paths now both reflect and refract at glass, and each point compares four lamps before
+it sends a shadow ray. The command:
 
 ```
 daguerre render out/night_table.glb --lens double-gauss-50mm-f2 --f-stop 2 --res 900x600 --spp 24 \\
@@ -110,20 +125,15 @@ ABOUT_BLENDER = """## A lens in Blender
 
 ![Blender's default cube before a wall of lamps, through a double Gauss at f/2.](blender_lens.jpg)
 
-Blender's default scene through a double Gauss at f/2 that Daguerre exported. The commands, and the
-same scene through Blender's own camera, are in [export.md](../export.md).
+This is Blender's default scene through a double Gauss at f/2 that Daguerre exported. [A lens for
+other programs](../export.md) has the commands, and the same scene through Blender's own camera.
 """
 
 CREDITS = """
-[scenes/night_table.py](../../scenes/night_table.py) makes the night table,
-[scenes/extensions.py](../../scenes/extensions.py) the scenes in `out/extensions`,
-[scenes/motion.py](../../scenes/motion.py) those in `out/motion`, and
-[scenes/lens_scenes.py](../../scenes/lens_scenes.py) those in `out/lens_scenes`. The chess set is
-"Open Chess Set" (c) Academy Software Foundation; Moeen and Mujtaba Sayed, SideFX, CC BY 4.0.
-The panorama is "St. Peter's Square Night", Poly Haven, CC0. `DATA` stands for the folder that
-holds them. Pictures are shown with `--tone soft`, which rolls highlights off; the EXR stays linear.
-`--denoise` needs the extra of that name: `pip install ".[denoise]"`; the garden's mosaics need
-`".[compression]"`.
+## Credits
+
+The chess set is "Open Chess Set" (c) Academy Software Foundation; Moeen and Mujtaba Sayed, SideFX,
+CC BY 4.0. The panorama is "St. Peter's Square Night", Poly Haven, CC0.
 """
 
 

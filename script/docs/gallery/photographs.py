@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 INTRODUCTION = """# From exposure to photograph
 
-See what camera bodies and films make of the light in a frame: [exposure](../exposure.md),
-[sensors](../sensors.md), [developing](../developing.md), [film](../film-stocks.md). To make the
-scenes:
+See what camera bodies and films make of the light in a frame. [Exposure](../exposure.md),
+[sensors](../sensors.md), [developing](../developing.md) and [film stocks](../film-stocks.md)
+explain how. To make the scenes:
 
 ```
 python scenes/night_table.py out/night_table.glb
@@ -16,7 +16,7 @@ python scenes/exposure.py
 mkdir -p out
 ```
 
-`--denoise` (extra `denoise`) removes the noise of rendering, so that only the sensor's is left. One
+`--denoise` (extra `denoise`) removes rendering noise, so that only the sensor's noise is left. One
 pixel of these pictures is one photosite, as in a 100 % crop.
 """
 OUT = "out/gallery"
@@ -89,8 +89,8 @@ def _night() -> Sheet:
             ),
         ]
     text = (
-        "The same light at 256 times the ISO and 1/250 of the time: noise of few photons, and read "
-        "noise. Left developed by Daguerre, right by LibRaw from the same DNG."
+        "The second row has 256 times the ISO and 1/250 of the exposure time, so it shows photon "
+        "noise and read noise. Left: developed by Daguerre; right: by LibRaw from the same DNG."
     )
     return Sheet(
         "night_iso",
@@ -122,8 +122,9 @@ def _triangle() -> Sheet:
             caption = f"f/{chosen['f-stop']}, {chosen['shutter']} s, ISO {chosen['iso']}"
             photographs.append(Photograph(caption, (f"{scene} {flags} -o {OUT}/{file}",), file))
     text = (
-        "Each row changes one side by two stops either way. All three change the brightness in the "
-        "same way; the stop also changes depth of field, the time motion blur, and ISO noise."
+        "Each row changes one setting by two stops either way: f-number, shutter time, ISO. All "
+        "three change the brightness; the f-number also changes depth of field, the shutter time "
+        "motion blur, and the ISO noise."
     )
     return Sheet("exposure_triangle", "The exposure triangle", text, 3, tuple(photographs))
 

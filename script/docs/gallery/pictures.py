@@ -110,7 +110,7 @@ SMALL = "--res 600x400 --spp 48 --denoise"
 PICTURES += [
     Picture(
         "octopus",
-        "Skins, morph targets and colours 3.4 s into their cycle, through the double Gauss.",
+        "Animated skins, morph targets and colours at 3.4 s, through the double Gauss.",
         f"{EXTENSIONS}/octopus.glb",
         f"{GAUSS} --time 3.4 {SMALL}",
     ),
@@ -142,16 +142,16 @@ MOTION = [
     Picture(
         "billiards",
         'Moving objects, after "1984" by Cook, Porter and Carpenter: the 1 rests, the 9 strikes '
-        "the white while the shutter is open, the 8 moves only in the middle of the exposure, the "
-        "4 only at its end.",
+        "the white ball while the shutter is open, the 8 moves only in the middle of the exposure, "
+        "the 4 only at its end.",
         f"{SCENES}/billiards.glb",
         f"--time 0.25 --shutter 1/24 {FULL}",
     ),
     Picture(
         "panning",
-        "A car at 70 km/h and 1/60 s, with a still camera and with a fast pan that follows the "
-        "car. In the pan the body is sharp and the wheels still turn; far things are blurred as "
-        "much as near ones.",
+        "A car at 70 km/h, photographed at 1/60 s with a still camera and with a fast pan that "
+        "follows it. In the pan the body is sharp and the wheels are blurred; far things are "
+        "blurred as much as near ones.",
         f"{SCENES}/racer.glb",
         (
             f"--camera still --time 0.5 --shutter 1/60 {WIDE}",
@@ -160,7 +160,7 @@ MOTION = [
     ),
     Picture(
         "moving_camera",
-        "Moving cameras: a zoom burst from 45.5 to 52.5 mm, and driving down the street at 8 m/s, "
+        "Moving cameras: a zoom burst from 45.5 to 52.5 mm, and a drive down the street at 8 m/s, "
         "which blurs near things and leaves far ones sharp.",
         f"{SCENES}/street.glb",
         (
@@ -178,8 +178,8 @@ MOTION = [
     Picture(
         "strobing",
         "Strobing. Five frames of a wheel that turns 129 degrees from frame to frame: with an "
-        "instantaneous shutter it seems to creep backwards, sharp; at 180 degrees the spokes are "
-        "blurred, and the eye is not fooled.",
+        "instantaneous shutter the spokes are sharp and seem to creep backwards; with a shutter "
+        "angle of 180 degrees they are blurred, and the eye is not fooled.",
         f"{SCENES}/racer.glb",
         (
             "--camera wheel --time 0.3 --frames 1-5 --shutter 0 --res 120x120 --spp 64 --denoise",
@@ -190,17 +190,18 @@ MOTION = [
     ),
     Picture(
         "propellers",
-        "Two keys that are 10, 45 and 170 degrees and 3 turns apart (rows), interpolated linearly, "
-        "by twist, decomposed, and given as a spin (columns). With linear interpolation points "
-        "move along straight lines, so the blades shrink: at 170 degrees almost to the axis, and "
-        "out again. Keys that are whole turns apart are the same pose, so they need a spin.",
+        "A propeller between two keys that are 10, 45 and 170 degrees and 3 turns apart (rows), "
+        "interpolated linearly, by twist, decomposed, and as a spin (columns). With linear "
+        "interpolation points move along straight lines, so the blades shrink, at 170 degrees "
+        "almost to the axis, and grow again. Keys that are whole turns apart are the same pose, so "
+        "such a rotation needs a spin.",
         "script/docs/gallery/propellers.py",
         "--spp 64",
     ),
     Picture(
         "shutters",
-        "The same propeller, 24 turns a second, through four shutters: 1/4000 s; 1/250 s; lines "
-        "read out from the top in 25 ms; the same from the left.",
+        "One propeller, at 24 turns a second, through four shutters: 1/4000 s; 1/250 s; lines read "
+        "out from the top in 25 ms; the same from the left.",
         f"{SCENES}/plane.glb",
         tuple(
             f"--time 0.5 {shutter} --res 300x200 --spp 64 --denoise"
@@ -224,9 +225,9 @@ MOTION = [
     ),
     Picture(
         "leaf",
-        "Bokeh through a shutter that opens at once, and through a leaf shutter that is always "
-        "moving: the rim of the lens is open for a shorter time than its centre, so discs are "
-        "soft.",
+        "Bokeh through a shutter that opens at once, and through a leaf shutter that opens and "
+        "closes gradually: it uncovers the rim of the lens for a shorter time than the centre, so "
+        "discs have soft edges.",
         NIGHT,
         tuple(
             f"--lens thin --f-stop 2 --focus 0.5 --shutter 1/500 {kind} "
@@ -237,7 +238,7 @@ MOTION = [
     ),
     Picture(
         "lamp",
-        "One second of a bulb that swings and goes out five times a second: it lights its "
+        "One second of a bulb that swings and blinks five times a second: it lights its "
         "surroundings from all of its positions, and draws its path in dashes.",
         f"{SCENES}/lamp.glb",
         f"--time 0.5 --shutter 1s {FULL}",
@@ -310,8 +311,9 @@ GLASS = [
     ),
     Picture(
         "bubbles",
-        "Soap bubbles and cream: a Biotar of 1927 gives discs of light with a bright edge, a lens "
-        "for soft portraits without one. That is spherical aberration, over- and undercorrected.",
+        "Soap-bubble bokeh and creamy bokeh: a Biotar of 1927 gives discs of light with a bright "
+        "edge, a soft-focus portrait lens gives discs without one. The cause is overcorrected and "
+        "undercorrected spherical aberration.",
         LAMPS,
         (
             f"--lens zeiss-biotar-50mm-f1.4 --f-stop 1.4 --focus 0.6 --res 1125x750 "

@@ -17,8 +17,8 @@ SHEETS = (
 )
 HEAD = """# Thumbnails
 
-Click a thumbnail to open its picture. Under each picture is the command that made it, to copy and
-change, and the program that makes its scene.
+Click a thumbnail to open its picture, with the command that rendered it and the program that writes
+its scene.
 """
 _PLACE = re.compile(r'<a id="([^"]+)"></a>|^## (.+)$|^!\[([^\]]*)\]\(([\w.]+\.jpg)\)', re.MULTILINE)
 

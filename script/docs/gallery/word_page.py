@@ -20,36 +20,36 @@ FIGURES = PAGES / "agreement.json"
 
 INTRODUCTION = """# Imperfections, three ways
 
-See each imperfection of lenses traced, by polynomials, and as a 2D effect. There is one sheet for
-each topic that lectures on cameras list: spherical aberration, coma, chromatic aberration,
-astigmatism, radial distortion, vignetting, lens flares, bloom, halos and stars; and one for field
-curvature. From left to right:
+This page compares three ways to render each imperfection of lenses. There is one sheet for each
+topic that lectures on cameras list: spherical aberration, coma, chromatic aberration, astigmatism,
+radial distortion, vignetting, lens flares, bloom, halos and stars; and one for field curvature.
+Each sheet shows, from left to right:
 
 - **traced**: exact rays through every surface of a lens;
-- **polynomial**: polynomials fitted to those rays ([polynomial.md](../polynomial.md));
-- **2D**: a pinhole's picture with effects of the darkroom added
-  ([darkroom.md](../darkroom.md), [diffraction.md](../diffraction.md)).
+- **polynomial**: polynomials fitted to those rays ([Polynomial optics](../polynomial.md));
+- **2D**: the picture of a pinhole with effects of the darkroom added
+  ([The darkroom](../darkroom.md), [Diffraction](../diffraction.md)).
 
-Nothing is denoised. The scenes are emissive (`--max-depth 1`), so that only the lens differs; all
-panels of a sheet have the same exposure. To make the scenes:
+Nothing is denoised. Everything in the scenes emits light (`--max-depth 1`), so that only the lens
+differs; all panels of a sheet have the same exposure. To make the scenes:
 
 ```
 python scenes/imperfections.py
 python scenes/lens_scenes.py --only lamps
 ```
 
-The commands write OpenEXR pictures; `python script/docs/gallery/make.py --only NAME` runs them,
-composes the sheet (`--tone soft`) and compares with the traced picture of the row:
+The commands write OpenEXR pictures. `python script/docs/gallery/make.py --only NAME` runs them,
+composes the sheet (`--tone soft`), and compares each picture with the traced one of its row:
 
 | figure | |
 |---|---|
-| light | total light of the picture over that of the traced one |
+| light | total light of the picture, divided by that of the traced one |
 | moved | displacement of details from the traced picture, px: the largest of 6 x 4 blocks |
 | relMSE | mean of (difference)^2 / (traced^2 + 0.01), with the noise of both |
 | noise | the relMSE caused by the traced picture's own noise |
 
-Polynomials use the same random numbers as the lens, so most of their noise is the same. Where
-shapes differ, such as discs and ghosts, the displacement means little.
+Polynomials use the same random numbers as the lens, so most of their noise is the same. If shapes
+differ, such as those of discs and ghosts, the displacement means little.
 """
 
 

@@ -39,11 +39,11 @@ SPHERICAL = Word(
     "spherical",
     "Spherical aberration",
     """\
-Rays through the rim of the lens focus nearer than those through its centre. A lamp behind the
-focus becomes a bubble with a bright edge, a lamp before it a soft disc with a bright core, and
-the sign in focus has a veil. This is a Nokton of 1953 wide open. The 2D depth of field uses one
-flat disc for all distances; `lens-psf` adds the lens's veil around the sign, but also softens
-the rims of discs where it should not.""",
+Rays through the rim of the lens focus nearer than those through its centre. The lens here is a
+Nokton of 1953, wide open. A lamp behind the focus becomes a bubble with a bright edge, a lamp in
+front of it a soft disc with a bright core, and the sign in focus has a veil. The 2D depth of field
+uses one flat disc for all distances; `lens-psf` adds the lens's veil around the sign, but also
+softens the rims of discs, which is wrong.""",
     (
         Ways(
             "spherical",
@@ -67,11 +67,12 @@ COMA = Word(
     "coma",
     "Coma",
     """\
-Off the axis each zone of the pupil images a point as a circle of its own, one beside the other: a
-star grows the tail of a comet, toward the centre of the frame or away from it. Here is the upper
-left of a fair at night through the first Pancolar at f/2. All lights are far away, so 2D can use
-the lens's point spread at every place: it gives nearly the same picture, with less noise, because
-a pinhole has no lens to sample. It would be wrong for lamps at other distances.""",
+Off the axis each zone of the pupil images a point as a circle, and the circles are displaced: a
+star gets the tail of a comet, toward the centre of the frame or away from it. The picture is the
+upper left of a fair at night through the first Pancolar at f/2. All lights are far away, so the 2D
+effect can use the lens's point spread function at each place. It gives nearly the same picture,
+with less noise, because a pinhole has no lens to sample. It would be wrong for lamps at other
+distances.""",
     (
         Ways(
             "coma",
@@ -90,12 +91,12 @@ AXIAL = Word(
     "axial_colour",
     "Chromatic aberration along the axis",
     """\
-Blue, green and red focus at different distances. Thin dark twigs against white show it best: in
-focus they are black; out of focus they take one colour before the focus and another behind it,
-and no two edges are alike. The 2D version applies one depth of field each for red, green and
-blue, with the focus that the lens has at 650, 545 and 443 nm
-(script/docs/gallery/axial_colour.py). Real channels are broad, so its hues are too strong; twigs
-thinner than a pixel break, and the warm green of the single-layer coatings is missing.""",
+Blue, green and red focus at different distances. Thin dark twigs against white show it best: they
+are black in focus, of one colour in front of the focus and of another behind it. The 2D version
+applies one depth of field each for red, green and blue, with the focus that the lens has at 650,
+545 and 443 nm (script/docs/gallery/axial_colour.py). Real channels are broad, so its hues are too
+strong; twigs thinner than a pixel break, and the warm green of the single-layer coatings is
+missing.""",
     (
         (
             *Ways(
@@ -134,10 +135,11 @@ LATERAL = Word(
     "lateral_colour",
     "Lateral chromatic aberration",
     """\
-Here all colours are in focus, but blue is larger than red (or smaller): edges that run around the
-centre get a blue and a yellow side, more so toward the corner. This is the upper left of the
-frame through a Biotar of 1927 at f/8. The table gives the distance of red and blue from green. It
-is the one aberration that is easy to correct: `lateral-colour:...,inverse=1`.""",
+All colours are in focus, but the blue image is larger than the red one (or smaller). Edges that
+run around the centre get a blue and a yellow side, more so toward the corner. The picture is the
+upper left of the frame through a Biotar of 1927 at f/8. The table gives the distance of red and
+blue from green. It is the one aberration that is easy to correct, with
+`lateral-colour:...,inverse=1`.""",
     (
         Ways(
             "lateral",
@@ -158,13 +160,13 @@ CURVATURE = Word(
     "field_curvature",
     "Field curvature",
     """\
-A lens images a flat chart on a curved surface, and film is flat. Few lenses have this aberration
-alone; a Canon 50 mm f/0.95 stopped down to f/2 comes near. Its sagittal and tangential foci are
-within 0.04 mm of each other, and 13 mm off the axis both lie 0.31 mm before those on the axis.
-The centre of the frame is near the left edge of these pictures, and their right edge is 15 mm
-from it. Focused at the chart, 2.2 m, the centre is sharp, and stars far from it have grey hearts;
-at 2.65 m it is the other way round. No focus makes both sharp. 2D does this well, because the
-whole chart is at one distance. It lacks the slightly green tint of the glass, hence the 5 % of
+A lens images a flat chart on a curved surface, but film is flat. Few lenses have this aberration
+alone; a Canon 50 mm f/0.95 stopped down to f/2 comes close. Its sagittal and tangential foci are
+within 0.04 mm of each other, and 13 mm off the axis both lie 0.31 mm in front of those on the
+axis. The centre of the frame is near the left edge of these pictures, and their right edge is 15
+mm from it. Focused on the chart at 2.2 m, the centre is sharp, and stars far from it have grey
+centres; at 2.65 m it is the other way round. No focus makes both sharp. 2D does this well, because
+the whole chart is at one distance. It lacks the slightly green tint of the glass, hence the 5 % of
 light.
 
 | RMS radius of a point's image, um | on the axis | 4 mm | 8 mm | 11 mm | 13 mm | 15 mm |
@@ -201,11 +203,11 @@ ASTIGMATISM = Word(
     "astigmatism",
     "Astigmatism of a lens that is round, off its axis",
     """\
-A fan of rays in the plane through the axis focuses at another distance than a fan across it. A
-flat wheel 2.2 m away faces a Petzval lens at f/2.2. Focused at 2.2 m its centre is sharp; at
-2.09 m the rings are sharp up to the rim and the spokes are soft, at 2.6 m it is the other way
-round. This gives Petzval lenses their swirl. 2D does this well, because the whole wheel is at one
-distance.""",
+A fan of rays in the plane through the axis focuses at another distance than a fan perpendicular to
+it. A flat wheel 2.2 m away faces a Petzval lens at f/2.2. Focused at 2.2 m its centre is sharp; at
+2.09 m the rings are sharp up to the rim and the spokes are soft; at 2.6 m it is the other way
+round. Astigmatism gives Petzval lenses their swirl. 2D does this well, because the whole wheel is
+at one distance.""",
     tuple(
         Ways(
             f"astigmatism_{what}",
@@ -229,12 +231,12 @@ CYLINDER = Word(
     "Astigmatism of an element that is not radially symmetric",
     """\
 The same wheel through a portrait lens behind the weakest cylinder that opticians sell, of a
-quarter dioptre ([its
-file](../../scenes/imperfections/portrait-85mm-f2-and-a-cylinder.json)). Now the axis is no better
-than the rim, and the difference is not between rings and spokes but between level and upright
-lines: at 1.73 m level lines are sharp, at 3.03 m upright ones, all over the picture. Polynomials
-for such a lens have the terms of two mirror planes instead of those of rotation. A cylinder
-before the pupil also stretches the picture by 1 % across, 2 px at the rim; 2D lacks that.""",
+quarter dioptre ([its file](../../scenes/imperfections/portrait-85mm-f2-and-a-cylinder.json)). Now
+the centre is no better than the rim, and the difference is not between rings and spokes, but
+between horizontal (level) and vertical (upright) lines: at 1.73 m level lines are sharp, at 3.03 m
+upright ones, all over the picture. Polynomials for such a lens have the terms of two mirror planes
+instead of those of rotation. A cylinder in front of the pupil also stretches the picture in one
+direction by 1 %, 2 px at the rim; 2D lacks this.""",
     tuple(
         Ways(
             f"cylinder_{what}",
@@ -258,12 +260,12 @@ DISTORTION = Word(
     "distortion",
     "Radial distortion",
     """\
-Chief rays land nearer to the centre than a pinhole's (barrel), or farther away (pincushion), so
-that straight cornices bend. One zoom does both: at 14.5 mm barrel, at 29 mm pincushion. A fisheye
-does so on purpose, to cover a field that no flat picture can hold. 2D bends a pinhole's picture
-by the chief rays of the same lens. For the fisheye it lacks the corners, 90 degrees off the axis,
-where a pinhole sees nothing; and the centre is soft, because a flat picture spends its pixels on
-the edge.""",
+Chief rays land nearer to the centre than those of a pinhole (barrel), or farther away
+(pincushion), so straight cornices look bent. One zoom does both: barrel at 14.5 mm, pincushion at
+29 mm. A fisheye does so on purpose, to cover a field that no flat picture can hold. 2D distorts
+the picture of a pinhole by the chief rays of the same lens. For the fisheye it lacks the corners,
+90 degrees off the axis, where a pinhole sees nothing; and the centre is soft, because a flat
+picture uses most of its pixels for the edge.""",
     tuple(
         Ways(
             f"distortion_{what}",
@@ -293,11 +295,11 @@ VIGNETTING = Word(
     "vignetting",
     "Vignetting",
     """\
-First row: a wall through a Hologon, darker by cos^4 of the angle, which no stop cures (the lens
-was sold with a filter that is dark in its centre). Second row: the rims of a lens at f/0.95 clip
-the pupil off the axis. That takes light, and makes cat's eyes of lamps out of focus; 2D takes the
-light but keeps the discs round. Third row: paler colours. A lens alone does not do that, but
-printing and film do; Daguerre has it as an effect.""",
+First row: a wall through a Hologon gets darker by cos^4 of the angle. Stopping down does not help
+(the lens was sold with a filter that is dark in its centre). Second row: the rims of a lens at
+f/0.95 clip the pupil off the axis. This darkens the corners, and turns lamps out of focus into
+cat's eyes; 2D darkens the corners but keeps the discs round. Third row: paler colours toward the
+corners. A lens does not cause these, but printing and film do; Daguerre has an effect for them.""",
     (
         Ways(
             "vignetting_natural",
@@ -388,21 +390,21 @@ FLARES = Word(
     "flares",
     "Lens flares",
     """\
-A sun in the frame, 11 degrees off the axis, through a Biotar of 1927. Its glass is uncoated, each
-surface reflects 4 %, and 45 pairs of surfaces make as many ghosts, strung along the line through
-the sun and the centre of the picture. Some are patches of the round iris, some have caustics, and
-their edges have colours. The second row is the ghosts alone. In the third the camera is turned
-away until the sun is at the very edge, just outside a pinhole's frame, and ghosts are still in
-the picture.
+The pictures show a sun in the frame, 11 degrees off the axis, through a Biotar of 1927. Its glass
+is uncoated, so each surface reflects 4 %, and 45 pairs of surfaces make as many ghosts along the
+line through the sun and the centre of the picture. Some are images of the round iris, some have
+caustics, and their edges are coloured. The second row shows only the ghosts. In the third row the
+camera is turned until the sun is at the very edge, just outside a pinhole's frame; ghosts are
+still in the picture.
 
 The polynomial ghosts follow the construction kit of Hullin, Hanika and Heidrich
 (script/docs/gallery/polynomial_ghosts.py): a Taylor series for each pair and colour, about the
-centre of its light. They include front and iris but no other mounts, take the light of each ghost
-from `daguerre lens NAME --flare`, and leave out ghosts that have no series there, such as the
-crescent at the right edge of the third row; the thin streaks are series beyond their range of
-validity. The 2D effect uses neither lens nor sun: its ghosts are made up, and vanish with the
-sun. Light that barrel, blades and glass scatter is another part of flare:
-[scatter.md](../scatter.md).""",
+centre of its light. They include the front rim and the iris but no other mounts, and take the
+light of each ghost from `daguerre lens NAME --flare`. They leave out ghosts that have no series
+there, such as the crescent at the right edge of the third row; the thin streaks are series beyond
+their range of validity. The 2D effect uses neither lens nor sun: its ghosts are invented, and
+vanish with the sun. [Scatter](../scatter.md) covers another part of flare: light that barrel,
+blades and glass scatter.""",
     (
         _flare_row("flare", "", "-11,4.2", ""),
         (
@@ -421,9 +423,9 @@ STARS = Word(
     "Stars",
     """\
 At f/16 light diffracts at the six straight blades, and each lamp becomes a star with six spikes.
-With a lens, Daguerre computes them by waves through its pupil, on top of its rays; polynomials use
-the same step. The 2D effect is the same convolution on a pinhole's picture. This sheet is exposed
-eight times brighter than the others, so that the spikes show.""",
+Daguerre computes the spikes with wave optics from the pupil of the lens, and adds them to the
+traced picture; polynomials use the same step. The 2D effect is the same convolution on a pinhole's
+picture. This sheet is exposed eight times brighter than the others, so that the spikes show.""",
     (
         Ways(
             "stars",
@@ -446,9 +448,9 @@ BLOOM = Word(
     "bloom",
     "Bloom",
     """\
-A lens for soft portraits spreads much of the light into a wide disc on purpose: lights bloom, and
-the sky between them glows. The 2D bloom is a round glow that falls as 1 / r^3, of any strength and
-width; it is not a disc, and it is the same everywhere.""",
+A soft-focus portrait lens spreads much of the light into a wide disc on purpose: lights bloom, and
+the sky between them glows. The 2D bloom is a round glow that falls off as 1 / r^3, of any strength
+and width; it is not a disc, and it is the same everywhere in the frame.""",
     (
         Ways(
             "bloom",
@@ -471,8 +473,8 @@ HALOS = Word(
     "Halos",
     """\
 Film has halos: light passes through the emulsion, is reflected at the back of the base, and comes
-back as a ring, red because the layer next to the base is the red one. That happens behind the
-lens, so only the darkroom has it, as an effect.""",
+back as a ring. The ring is red because the red-sensitive layer is next to the base. This happens
+behind the lens, so only the darkroom has an effect for it.""",
     (
         (
             Panel(
