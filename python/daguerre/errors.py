@@ -62,12 +62,13 @@ def core_errors(raised: type[DaguerreError], where: str = "") -> Iterator[None]:
         raise raised(f"{where}: {error}" if where else str(error)) from None
 
 
-def suggest(name: object, known: Iterable[str]) -> str:
-    """Makes " (did you mean 'a' or 'b'?)" from the nearest known names, or all of a short list."""
+def suggest(name: object, known: Iterable[str], *, few: bool = False) -> str:
+    """Makes " (did you mean 'a', 'b' or 'c'?)" from the nearest known names.
+
+    With ``few``, for messages that do not list the names, a short list is shown if none is near.
+    """
     names = sorted(known)
-    near = difflib.get_close_matches(str(name), names, n=3, cutoff=0.5) or (
-        names if len(names) <= 8 else []
-    )
-    if not near:
-        return ""
-    return " (did you mean " + " or ".join(repr(n) for n in near) + "?)"
+    near = [repr(n) for n in difflib.get_close_matches(str(name), names, n=3, cutoff=0.5)]
+    if near:
+        return f" (did you mean {' or '.join(filter(None, (', '.join(near[:-1]), near[-1])))}?)"
+    return f" (known: {', '.join(map(repr, names))})" if few and 0 < len(names) <= 8 else ""

@@ -29,9 +29,15 @@ def header(
 
 
 FILES = {
-    "empty": (b"", r"header\.magic: wanted b'glTF', got b''"),
-    "magic": (header(magic=b"glTf"), r"header\.magic: wanted b'glTF', got b'glTf'"),
-    "json in a glb": (GOOD, r"header\.magic: wanted b'glTF', got b'{\"as'"),
+    "empty": (b"", r"header\.magic: wanted .* begins with b'glTF', got b''"),
+    "magic": (
+        header(magic=b"glTf"),
+        r"header\.magic: wanted .* begins with b'glTF', got b'glTf'",
+    ),
+    "json in a glb": (
+        GOOD,
+        r"header\.magic: wanted .* begins with b'glTF', got b'{\"as'",
+    ),
     "five bytes": (b"glTF\2", r"header: truncated: wanted at least 20 bytes, got 5"),
     "version": (header(version=1), r"header\.version: wanted 2, got 1"),
     "length too long": (
@@ -73,15 +79,30 @@ DOUBLED = (
     b'{"asset":{"version":"2.0"},"extras":{"a":{"b":1,"b":1}}}',
 )
 TEXTS: dict[str, tuple[bytes, str]] = {
-    "empty text": (b"", r"header\.magic: wanted b'glTF' or a JSON object, got b''"),
-    "stl": (b"solid cube", r"header\.magic: wanted b'glTF' or a JSON object"),
-    "zip": (b"PK\3\4" + bytes(60), r"header\.magic: wanted b'glTF' or a JSON object"),
-    "zeros": (bytes(4096), r"header\.magic: wanted b'glTF' or a JSON object"),
+    "empty text": (
+        b"",
+        r"header\.magic: wanted .* begins with b'glTF' or a JSON object, got b''",
+    ),
+    "stl": (
+        b"solid cube",
+        r"header\.magic: wanted .* begins with b'glTF' or a JSON object",
+    ),
+    "zip": (
+        b"PK\3\4" + bytes(60),
+        r"header\.magic: wanted .* begins with b'glTF' or a JSON object",
+    ),
+    "zeros": (
+        bytes(4096),
+        r"header\.magic: wanted .* begins with b'glTF' or a JSON object",
+    ),
     "half a document": (GOOD[:-3], r"JSON: line 1, column \d+: "),
     "two documents": (GOOD + GOOD, r"JSON: line 1, column \d+: Extra data"),
     "single quotes": (b"{'asset': 1}", r"JSON: line 1, column 2: "),
     "comment": (b'{"asset":1 // no\n}', r"JSON: line 1, column \d+: "),
-    "utf-16": ('{"asset":1}'.encode("utf-16"), r"header\.magic: wanted b'glTF' or a JSON object"),
+    "utf-16": (
+        '{"asset":1}'.encode("utf-16"),
+        r"header\.magic: wanted .* begins with b'glTF' or a JSON object",
+    ),
     "control character": (b'{"asset":"\x01"}', r"JSON: line 1, column \d+: Invalid control"),
     "deep lists": (b'{"a":' + b"[" * 500_000, r"JSON: nested too deeply"),
     "deep objects": (b'{"a":' * 300_000, r"JSON: nested too deeply"),

@@ -114,10 +114,17 @@ def test_crop_is_x0_x1_y0_y1(tmp_path: Path) -> None:
 
 WRONG = {
     "unknown flag": (["render", "s.glb", "-o", "a.exr", "--foccus", "1"], 2, "--focus"),
+    "misspelt flag": (["lenses", "--jsn"], 2, "--jsn (did you mean --json?)"),
+    "no value": (["render", "s.glb", "-o"], 2, "(see `daguerre render --help`)"),
     "unknown command": (["rendr"], 2, "'render'"),
     "no output": (["render", "s.glb"], 2, "--output"),
     "no scene": (["render", "-o", "a.exr"], 2, "SCENE"),
     "format": (["render", "s.glb", "-o", "a.gif"], 2, "ending in .exr, .png"),
+    "no suffix": (
+        ["render", "s.glb", "-o", "a"],
+        2,
+        "ending in .exr, .png, .jpg, .jpeg, .tif, .tiff",
+    ),
     "no folder": (["render", "s.glb", "-o", "no/a.exr"], 5, "there is no folder"),
     "camera": (["render", "s.glb", "-o", "a.exr", "-c", "Camra"], 3, "did you mean 'Camera'"),
     "focus": (["render", "s.glb", "-o", "a.exr", "--focus", "2 parsec"], 2, "--focus"),
@@ -130,7 +137,21 @@ WRONG = {
     "res": (["render", "s.glb", "-o", "a.exr", "--res", "big"], 2, "960x540"),
     "res 0": (["render", "s.glb", "-o", "a.exr", "--res", "0x5"], 2, "1 to 65536"),
     "spp": (["render", "s.glb", "-o", "a.exr", "--spp", "0"], 2, "--spp"),
-    "spp text": (["render", "s.glb", "-o", "a.exr", "--spp", "many"], 2, "--spp"),
+    "spp text": (
+        ["render", "s.glb", "-o", "a.exr", "--spp", "many"],
+        2,
+        "--spp: wanted a whole number, got 'many'",
+    ),
+    "iso text": (
+        ["render", "s.glb", "-o", "a.exr", "--iso=fast"],
+        2,
+        "--iso: wanted a number, got 'fast'",
+    ),
+    "flag of a parameter": (
+        ["info", "s.glb", "--focus", "-1"],
+        2,
+        "camera: focus_distance (--focus): wanted a number above 0, got -1.0",
+    ),
     "samples": (["render", "s.glb", "-o", "a.exr", "--samples", "8:8"], 2, "a < b"),
     "noise": (["render", "s.glb", "-o", "a.exr", "--noise", "0"], 2, "--noise: wanted"),
     "noise text": (["render", "s.glb", "-o", "a.exr", "--noise", "low"], 2, "--noise"),
@@ -151,6 +172,11 @@ WRONG = {
     "env missing": (["render", "s.glb", "-o", "a.exr", "--env", "no.hdr"], 3, "no.hdr"),
     "env scale alone": (["render", "s.glb", "-o", "a.exr", "--env-scale", "2"], 2, "--env"),
     "tone": (["render", "s.glb", "-o", "a.png", "--tone", "sof"], 2, "did you mean 'soft'"),
+    "other tone": (
+        ["render", "s.glb", "-o", "a.png", "--tone", "vivid"],
+        2,
+        "--tone: wanted srgb or soft; got 'vivid'",
+    ),
     "seed": (["render", "s.glb", "-o", "a.exr", "--seed", "-1"], 2, "--seed"),
     "core": (["render", "s.glb", "-o", "a.exr", "--f-stop", "0"], 3, "wanted a number above 0"),
     "same output twice": (["render", "s.glb", "-o", "a.exr", "-o", "./a.exr"], 2, "twice"),
@@ -255,6 +281,14 @@ def test_help_is_short(capsys: pytest.CaptureFixture[str]) -> None:
     assert "--blades" not in text
     assert "`daguerre render --help-all` lists all" in text
     assert len(text.splitlines()) < 60
+
+
+@pytest.mark.parametrize("words", [["-h"], ["lenses", "-h"]])
+def test_names_of_the_help_flag_have_an_order(
+    words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(words)
+    assert "  -h, --help, --help-all  Show" in capsys.readouterr().out
 
 
 def test_the_example_of_a_help_runs(capsys: pytest.CaptureFixture[str]) -> None:

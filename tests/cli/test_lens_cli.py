@@ -71,7 +71,7 @@ def test_through_focus_is_sharpest_in_the_middle(
         (["--psf", "10"], 2, "FIELD,DISTANCE"),
         (["--psf", "10,-1"], 2, "above 0"),
         (["--psf", "10kg,1"], 2, "--psf"),
-        (["--psf", "89deg,inf"], 3, "no light"),
+        (["--psf", "89deg,inf"], 3, "light reaches the film"),
         (["--through-focus"], 2, "--psf"),
         (["--plot", "x.gif"], 2, "--plot"),
         (["--drawing", "x.jpg"], 2, "--drawing"),

@@ -149,15 +149,15 @@ def test_files_that_are_no_photographs(tmp_path):
     cases = {
         "missing.jpg": (None, "no such file"),
         "text.jpg": (b"hello", "cannot be decoded"),
-        "text.dng": (b"hello", "cannot read it as a raw file"),
+        "text.dng": (b"hello", "LibRaw cannot read"),
         "text.exr": (b"hello", "OpenEXR"),
-        "text.xyz": (b"hello", "cannot read it as a raw file"),
+        "text.xyz": (b"hello", "LibRaw cannot read"),
         "empty.png": (b"", "cannot be decoded"),
     }
     raw().save(tmp_path / "whole.jpg")
     raw().save(tmp_path / "whole.dng")
     cases["cut.jpg"] = ((tmp_path / "whole.jpg").read_bytes()[:-600], "truncated JPEG")
-    cases["cut.dng"] = ((tmp_path / "whole.dng").read_bytes()[:400], "cannot read it as a raw file")
+    cases["cut.dng"] = ((tmp_path / "whole.dng").read_bytes()[:400], "LibRaw cannot read")
     for name, (data, wanted) in cases.items():
         if data is not None:
             (tmp_path / name).write_bytes(data)

@@ -61,7 +61,7 @@ class Camera(Value):
         fit_tolerance: RMS error of a polynomial lens, px, above which the exact lens replaces it;
             default: 0.5.
         focal_length: Focal length of an ideal lens, mm; default: 50. A lens with a prescription has
-            its own and refuses another.
+            its own focal length; another one is an error.
         zoom: Focal length to set a zoom lens to, mm; default: as its lens file says. ``daguerre
             lenses`` shows the range.
         decenter: Elements of a prescription off their axis, as in a lens that was dropped. For
@@ -106,8 +106,9 @@ class Camera(Value):
         natural_vignetting: Thin lens and pinhole: darken by cos^4 of the field angle.
         shift: Shift of the film, right and up, mm; default: 0,0.
         tilt: Tilt of the lens about x (up) and y (left), degrees; default: 0,0. The lens turns
-            about its entrance pupil. The film stays perpendicular to the camera's axis, with what
-            is straight ahead in its middle. The focus distance is measured along the lens's axis.
+            about its entrance pupil. The film stays perpendicular to the camera's axis, and the
+            point straight ahead stays in the middle of the picture. The focus distance is measured
+            along the lens's axis.
         shutter_time: Time for which each point of the film is exposed, s; 0 freezes motion.
             Default: from ``shutter_angle``.
         shutter_angle: Exposure time as a shutter angle, degrees; 360 is a whole frame; default:

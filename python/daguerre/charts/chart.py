@@ -158,7 +158,8 @@ class Chart:
         from daguerre.io.gltf.writer import Glb, Shape
 
         if Path(path).suffix.lower() != ".glb":
-            raise UsageError(f"{path}: chart: wanted a name ending in .glb")
+            got = repr(Path(path).suffix) if Path(path).suffix else "none"
+            raise UsageError(f"{path}: chart: wanted a name ending in .glb, got {got}")
         if luminance is not None:
             number(luminance, "chart: luminance", 0, 1e9, above=0)
         number(focal_length, "chart: focal_length", 1e-3, 1e6)

@@ -7,6 +7,7 @@ mismatch, 5 output or disk, 70 internal, 75 interrupted and resumable.
 from __future__ import annotations
 
 import errno
+import itertools
 import os
 import re
 import sys
@@ -22,7 +23,7 @@ from daguerre.errors import DaguerreError, InputError, OutputError, suggest
 from daguerre.memory import left_bytes, shown
 
 from . import console
-from .help import ALL, HelpCommand
+from .help import ALL, HelpCommand, HelpGroup
 
 INTERNAL = 70
 INTERRUPTED = 75
@@ -77,6 +78,7 @@ def _outline() -> typer.Typer:
 def _empty() -> typer.Typer:
     app = typer.Typer(
         name="daguerre",
+        cls=HelpGroup,
         help="Renders what a real camera would have recorded.",
         add_completion=False,
         no_args_is_help=False,
@@ -126,7 +128,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout.flush()
         return int(code or 0)
     except DaguerreError as error:
-        return _fail(str(error), error.exit_code)
+        return _fail(_with_flag(str(error)), error.exit_code)
     except BrokenPipeError:
         # Whoever read our output has seen enough, as in `daguerre lenses | head -1`.
         console.nobody_reads(sys.stdout)
@@ -167,14 +169,46 @@ def _command(name: str) -> Any:
 
 
 def _usage(error: Any) -> str:
-    """Typer's message, with a full stop less and a hint where help is."""
+    """Typer's message, without the full stop and with a hint where to find help."""
     text = str(error.format_message()).strip().rstrip(".")
+    number = re.match(r"Invalid value for '(.*)': Input should be a valid (number|integer)", text)
+    if number:
+        names = number[1].split("' / '")
+        kind = "a number" if number[2] == "number" else "a whole number"
+        text = f"{names[-1]}: wanted {kind}, got {_given(names)}"
     unknown = re.match(r"No such command '(.*)'$", text)
     if unknown:  # older releases of Typer suggest nothing
         text += suggest(unknown[1], COMMANDS)
+    text = re.sub(r"\(Possible options: (.*)\)$", r"(did you mean \1?)", text)
     context = getattr(error, "ctx", None)
-    where = context.command_path if context is not None else "daguerre"
+    where = context.command_path if context is not None else _named()
     return f"{text[:1].lower()}{text[1:]} (see `{where} --help`)"
+
+
+def _given(names: list[str]) -> str:
+    """The text that the command line gives to a flag of these names."""
+    for word, value in itertools.pairwise([*console.argv, ""]):
+        if word in names:
+            return repr(value)
+        if word.partition("=")[0] in names:
+            return repr(word.partition("=")[2])
+    return "something else"
+
+
+def _named() -> str:
+    """The program's name, and the command's if the command line begins with it."""
+    return " ".join(["daguerre", *(word for word in console.argv[:1] if word in COMMANDS)])
+
+
+def _with_flag(text: str) -> str:
+    """Adds the flag to an error of a camera's parameter: ``camera: zoom (--zoom): wanted ...``."""
+    found = re.match(r"camera: (\w+)(?=:)", text)
+    if not found:
+        return text
+    from daguerre.camera.parameters import CAMERA
+
+    flags = CAMERA[found[1]].flags if found[1] in CAMERA else ()
+    return f"{found[0]} ({flags[0]}){text[found.end() :]}" if flags else text
 
 
 def _internal(error: Exception) -> int:

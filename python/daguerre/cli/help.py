@@ -30,7 +30,19 @@ OTHER = "Other"
 Rows = list[tuple[str, str]]
 
 
-class HelpCommand(typer.core.TyperCommand):
+class InOrder:
+    """Shows the names of the help flag in a fixed order; typer's own order differs between runs."""
+
+    def get_help_option_names(self, ctx: Any) -> list[str]:
+        """Returns the names in the order of the settings."""
+        return list(ctx.help_option_names)
+
+
+class HelpGroup(InOrder, typer.core.TyperGroup):
+    """The program, with the names of its help flag in order."""
+
+
+class HelpCommand(InOrder, typer.core.TyperCommand):
     """A command whose help has its flags in groups."""
 
     def format_options(self, ctx: Any, formatter: Any) -> None:

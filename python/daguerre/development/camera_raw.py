@@ -74,7 +74,9 @@ def opened_raw(path: str | os.PathLike[str]) -> Iterator[Any]:
     except rawpy.LibRawError as error:
         reason = error.args[0] if error.args else error
         reason = reason.decode() if isinstance(reason, bytes) else str(reason)
-        raise InputError(f"{path}: LibRaw cannot read it as a raw file: {reason}") from None
+        raise InputError(
+            f"{path}: wanted a raw file, got a file that LibRaw cannot read: {reason}"
+        ) from None
 
 
 def _shot(path: Any, opened: Any, tags: Mapping[str, Any], demosaic: Demosaic) -> Channels:

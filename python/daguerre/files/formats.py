@@ -136,11 +136,11 @@ def check_written(path: str | os.PathLike[str], known: tuple[str, ...]) -> str:
     """
     suffix = Path(path).suffix.lower()
     if suffix not in known:
-        hint = suggest(suffix, known)
+        got = repr(suffix) + suggest(suffix, known) if suffix else "none"
         if suffix == ".dng":
-            hint = "; a raw file is made by frame.expose().save()"
+            got = "'.dng'; a raw file is made by frame.expose().save()"
         raise UsageError(
-            f"{path}: output format: wanted a name ending in {_either(known)}, got {suffix!r}{hint}"
+            f"{path}: output format: wanted a name ending in {_either(known)}, got {got}"
         )
     return suffix
 

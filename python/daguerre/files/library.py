@@ -41,5 +41,5 @@ def find(
         return path
     raise InputError(
         f"{what} {short(text)}: no {what} of the library and no file has this name"
-        f"{suggest(text, names)}"
+        f"{suggest(text, names, few=True)}"
     )

@@ -62,7 +62,9 @@ class Cryptomatte(Value):
         found = np.zeros(self.ids.shape[:2], np.float32)
         for name in dict.fromkeys(names):
             if name not in self.manifest:
-                raise UsageError(f"cryptomatte: no name {name!r}{suggest(name, self.manifest)}")
+                raise UsageError(
+                    f"cryptomatte: no name {name!r}{suggest(name, self.manifest, few=True)}"
+                )
             found += np.where(self.ids == self.manifest[name], self.coverage, 0).sum(axis=2)
         return found
 

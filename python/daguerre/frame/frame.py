@@ -176,7 +176,7 @@ class Frame(Value):
     def _stripes(self, tone: str) -> Iterator[tuple[slice, NDArray[np.float32]]]:
         """Encodes the picture in strips of rows, which needs little memory."""
         if tone not in TONES:
-            raise UsageError(f"frame: no tone {short(tone)}{suggest(tone, TONES)}")
+            raise UsageError(f"frame: no tone {short(tone)}{suggest(tone, TONES, few=True)}")
         for row in range(0, self.height, _STRIPE):
             rows = slice(row, row + _STRIPE)
             linear = np.nan_to_num(self.rgb[rows], nan=0.0, posinf=3e38)

@@ -169,7 +169,10 @@ def _read(
     config.attribute("oiio:UnassociatedAlpha", int(not floats))
     source = oiio.ImageInput.open(name, config)
     if source is None:
-        raise InputError(f"{where}: cannot be decoded: {_reason(oiio.geterror(), name)}")
+        raise InputError(
+            f"{where}: wanted an image, got a file that cannot be decoded: "
+            f"{_reason(oiio.geterror(), name)}"
+        )
     try:
         spec = source.spec()
         format = oiio.TypeDesc(oiio.FLOAT) if floats else spec.format

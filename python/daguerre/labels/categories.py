@@ -175,7 +175,7 @@ def _category(item: Item) -> Category | None:
     members = ("name", "id", "supercategory")
     for member in item.members():
         if member.key not in members:
-            member.fail(f"not known{suggest(str(member.key), members)}")
+            member.fail(f"not known{suggest(str(member.key), members, few=True)}")
     number, above = item.get("id"), item.get("supercategory")
     return Category(
         item.need("name").text(),

@@ -66,7 +66,9 @@ def chosen(root: Item, configurations: Sequence[Configuration], name: str | None
         if configuration.name == name:
             return configuration
     known = [configuration.name for configuration in configurations]
-    root.fail(f"configurations: no configuration named {short(name)}{suggest(name, known)}")
+    root.fail(
+        f"configurations: no configuration named {short(name)}{suggest(name, known, few=True)}"
+    )
 
 
 def _configuration(item: Item, count: int) -> Configuration:

@@ -90,7 +90,9 @@ def bracket(lens: Lens, zoom_mm: float) -> tuple[Position, Position, float]:
         )
     short, long = found[0].efl, found[-1].efl
     if not short - TOLERANCE * abs(short) <= zoom_mm <= long + TOLERANCE * abs(long):
-        wanted = f"{short:.4g} mm" if len(found) == 1 else f"{short:.4g} to {long:.4g} mm"
+        wanted = f"{short:.4g} to {long:.4g} mm"
+        if len(found) == 1:
+            wanted = f"{short:.4g} mm (this lens is not a zoom)"
         raise LensError(f"{lens.source}: zoom: wanted {wanted}, got {zoom_mm:g} mm", "lens-zoom")
     mm = min(max(zoom_mm, short), long)
     for low, high in itertools.pairwise(found):

@@ -19,7 +19,7 @@ TECHNIQUES = ("both", "camera", "light")
 MOST = 1e9
 #: Paths per sample index that ``auto`` uses, for each pixel of the frame.
 PER_PIXEL = {"flare": 0.5, "scatter": 2.0}
-WANTED = f"auto, off, or one or two numbers of paths per sample index, 0 .. {MOST:g}"
+WANTED = f"auto, off, or one or two numbers of paths for each sample, 0 .. {MOST:g}"
 
 
 def check_light_paths(value: object, where: str = "light_paths") -> Plan | None:
@@ -59,7 +59,7 @@ def check_paths(value: object, where: str) -> float | None:
         return 0.0
     paths = _path_counts([value], 1)
     if paths is None:
-        wanted = f"auto, off, or a number of paths per sample index, 0 .. {MOST:g}"
+        wanted = f"auto, off, or a number of paths for each sample, 0 .. {MOST:g}"
         raise UsageError(f"{where}: wanted {wanted}; got {short(value)}")
     return paths[0]
 

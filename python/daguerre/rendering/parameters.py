@@ -174,8 +174,9 @@ LIGHT_ROWS = (
         low=1, high=4096, flags=("--max-depth",), metavar="N", panel=SAMPLING, tells_default=True,
     ),
     Setting(
-        "light_paths", "Number of paths traced from the lights to the film, per sample index: M1 "
-        "straight to the lens, M2 with bounces", default="auto", kind="value", normal=_light_paths,
+        "light_paths", "Number of paths traced from the lights to the film for each sample of "
+        "{spp}: M1 straight to the lens, M2 with bounces", default="auto", kind="value",
+        normal=_light_paths,
         flags=("--light-paths",), metavar="auto|off|M1[,M2]", panel=SAMPLING, tells_default=True,
         explained=("light-paths.md",),
         in_python="Paths traced from the lights to the film, beside the paths from the lens "
@@ -183,7 +184,7 @@ LIGHT_ROWS = (
         "index, straight to the lens and with bounces.",
     ),
     Setting(
-        "flare", "Draw lens flare: ghosts of an exact lens, by N paths per sample index",
+        "flare", "Draw lens flare: ghosts of an exact lens, by N paths for each sample of {spp}",
         default="off",
         kind="value", normal=_paths,
         flags=("--flare",), metavar="auto|off|N", panel=SAMPLING, tells_default=True,
@@ -192,7 +193,7 @@ LIGHT_ROWS = (
         "sample index.",
     ),
     Setting(
-        "flare_order", "Number of reflections in a ghost; 4 draws those of 2 and of 4", default=2,
+        "flare_order", "Number of reflections in a ghost; 4 draws ghosts of 2 and of 4", default=2,
         kind="whole", normal=_order,
         flags=("--flare-order",), metavar="2|4", panel=SAMPLING, tells_default=True,
     ),
@@ -205,7 +206,7 @@ LIGHT_ROWS = (
     ),
     Setting(
         "scatter", "Draw light scattered by barrel, iris and surfaces of an exact lens, by N paths "
-        "per sample index", default="off", kind="value", normal=_paths,
+        "for each sample of {spp}", default="off", kind="value", normal=_paths,
         flags=("--scatter",), metavar="auto|off|N", panel=SAMPLING, tells_default=True,
         explained=("scatter.md",),
         in_python="Light scattered by barrel, blades and surfaces of an exact lens "
@@ -231,8 +232,8 @@ PLATE_ROWS = (
         tells_default=True, explained=("plates.md#alpha",),
     ),
     Setting(
-        "see_through", "Let smooth glass keep a hole in alpha for the background straight behind "
-        "it, instead of covering it with what the glass refracts", default=False, kind="flag",
+        "see_through", "Keep alpha open at smooth glass, for the background straight behind it; "
+        "without it, the glass covers the background", default=False, kind="flag",
         normal=_switch("True or False"), flags=("--see-through",), panel=PICTURE,
         explained=("plates.md#alpha",),
     ),
@@ -244,7 +245,7 @@ TRUTH_ROWS = (
         kind="choice", choices=tuple(GT_TIMES),
         flags=("--gt-time",), metavar="open|mid|close", panel=TRUTH,
         default_words="mid with motion", explained=("ground-truth.md",),
-        more="`--aov motion,motion_back` tells where things go and come from, px",
+        more="`--aov motion,motion_back` adds where things go and come from, px",
         in_python="open, mid or close: depth, distance, P, N, object_id and material_id are exact "
         "values at that moment of each pixel's exposure (``docs/ground-truth.md``), instead of "
         "means over the samples; default: mid with motion or ``gt_lens=\"mean\"``, else none.",
@@ -299,8 +300,7 @@ DIFFRACTION_ROWS = (
         tells_default=True,
     ),
     Setting(
-        "diffraction_zones", "Number of points along each side of the frame that have their own "
-        "diffraction",
+        "diffraction_zones", "Number of diffraction kernels along each side of the frame",
         default=Diffraction.zones, kind="whole", low=1, high=MOST_ZONES,
         flags=("--diffraction-zones",), metavar="N", panel=SAMPLING,
         tells_default=True,

@@ -156,7 +156,7 @@ class Scene(Value):
             UsageError: No such node, one without meshes, or an unknown effect.
         """
         if node not in self.nodes:
-            raise UsageError(f"catcher: no node {node!r}{suggest(node, list(self.nodes))}")
+            raise UsageError(f"catcher: no node {node!r}{suggest(node, self.nodes, few=True)}")
         found = check_effects(effects, f"catcher {node!r}: effects")
         if not self.nodes[node]:
             raise UsageError(f"catcher: wanted a node with a mesh, got {node!r} without any")
@@ -471,7 +471,8 @@ class Scene(Value):
             name = self.camera_aliases.get(name, name)
         if name not in self.cameras:
             raise InputError(
-                f"{self.path or 'scene'}: no camera named {name!r}{suggest(name, self.cameras)}"
+                f"{self.path or 'scene'}: no camera named {name!r}"
+                f"{suggest(name, self.cameras, few=True)}"
             )
         return self.cameras[name]
 

@@ -31,7 +31,8 @@ def check_surfaces(model: str, where: str) -> None:
     """
     if model not in TRACED:
         raise UsageError(
-            f"{where}: wanted a lens with surfaces (lens_model {' or '.join(TRACED)}), got {model}"
+            f"{where}: wanted a lens with surfaces, such as double-gauss-50mm-f2 "
+            f"(lens_model {' or '.join(TRACED)}), got {model}"
         )
 
 

@@ -113,7 +113,9 @@ class Focus:
         scene = self.scene
         if name not in scene.node_positions and name not in scene.nodes:
             known = set(scene.node_positions) | set(scene.nodes)
-            raise InputError(f"camera: focus_on: no node named {name!r}{suggest(name, known)}")
+            raise InputError(
+                f"camera: focus_on: no node named {name!r}{suggest(name, known, few=True)}"
+            )
         instances = [i for i in scene.nodes.get(name, []) if scene.instances[i].shown]
         eye, axis = self.world[:3, 3], -self.world[:3, 2]
         if not instances:

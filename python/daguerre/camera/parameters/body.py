@@ -153,8 +153,8 @@ STANDING = (
         parse=typed.pair("0,6"),
         default_words="0,0",
         more="The lens turns about its entrance pupil. The film stays perpendicular to the "
-        "camera's axis, with what is straight ahead in its middle. The focus distance is measured "
-        "along the lens's axis",
+        "camera's axis, and the point straight ahead stays in the middle of the picture. The focus "
+        "distance is measured along the lens's axis",
         needs=(needs.LENS_ITSELF,),
         movable=True,
     ),

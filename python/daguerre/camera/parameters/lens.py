@@ -92,7 +92,7 @@ LENS = (
         metavar="MM",
         usual=50.0,
         tells_default=True,
-        more="A lens with a prescription has its own and refuses another",
+        more="A lens with a prescription has its own focal length; another one is an error",
         needs=(needs.LENS_ITSELF, needs.WITHOUT_PRESCRIPTION),
         movable=True,
     ),

@@ -45,9 +45,10 @@ class JobFlags:
         option(
             "--aov",
             metavar="LIST",
-            help="Channels to write beside the picture: depth,P,N,albedo,object_id or all (these "
-            "five); ground truth: distance,material_id,motion,motion_back,coverage; with --stereo: "
-            "disparity; of a photograph: exposure,saturated.",
+            help="Channels to write beside the picture, with commas between: depth, P, N, albedo, "
+            "object_id, or all (these five); ground truth: distance, material_id, motion, "
+            "motion_back, coverage; with --stereo: disparity; of a photograph: exposure, "
+            "saturated.",
             panel=TRUTH,
         ),
     ] = None
@@ -84,7 +85,7 @@ class JobFlags:
         option(
             "--exposure",
             metavar="auto[:centre|spot|matrix]",
-            help="Choose the ISO by metering, as a camera does; metering mode [centre].",
+            help="Choose the ISO by metering, as a camera does, in this metering mode [centre].",
             panel=EXPOSURE_PANEL,
         ),
     ] = None
@@ -126,7 +127,7 @@ class JobFlags:
         option(
             "--noisy",
             metavar="FILE",
-            help="File for the picture as it is before --denoise; repeatable.",
+            help="File for the picture before --denoise; repeatable.",
             panel=FILES,
         ),
     ] = None
@@ -155,7 +156,7 @@ class JobFlags:
         option(
             "--samples",
             metavar="A:B",
-            help="Draw only the samples from A up to, not including, B: a pass for `merge`.",
+            help="Draw only the samples A to B - 1, as a pass for `merge`.",
             panel=FILES,
         ),
     ] = None

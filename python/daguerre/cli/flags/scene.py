@@ -231,7 +231,7 @@ class SceneFlags:
         from daguerre.scene.illuminance import scale_for
 
         if scene.environment is None:
-            raise UsageError("--env-lux: the scene has no environment; give --env or --sky")
+            raise UsageError("--env-lux: wanted an environment (--env or --sky), got none")
         scale = scale_for(scene.environment, lux, "--env-lux")
         scene.environment = replace(scene.environment, scale=scale)
 
@@ -271,9 +271,7 @@ class SceneFlags:
         from daguerre.errors import UsageError
 
         if scene.environment is None:
-            raise UsageError(
-                "--env-scale, --env-rotation: the scene has no environment; give --env"
-            )
+            raise UsageError("--env-scale, --env-rotation: wanted an environment (--env), got none")
         changes: dict[str, float] = {}
         if self.env_scale is not None:
             changes["scale"] = self._scale()

@@ -110,7 +110,10 @@ def _light(bench: Bench, field: float, is_angle: bool, distance_m: float) -> Pen
         light = pencil(bench, height, distance_mm=1e3 * distance_m)
     if light is None:
         unit = "degrees off the axis" if is_angle else "mm of image height"
-        raise InputError(f"{bench.lens.name}: --psf: no light arrives from {field:g} {unit}")
+        raise InputError(
+            f"{bench.lens.name}: --psf: wanted a field from which light reaches the film, "
+            f"got {field:g} {unit}"
+        )
     return light
 
 

@@ -160,6 +160,6 @@ def _groups(names: list[str], *, everything: bool) -> list[str]:
         else:
             known = [*BY_NAME, "all"]
             raise UsageError(
-                f"--aov: no channels {name!r}{suggest(name, known)}; known: {', '.join(known)}"
+                f"--aov: no channel {name!r}{suggest(name, known)}; known: {', '.join(known)}"
             )
     return sorted(groups - set(names_of(Source.ALWAYS)))

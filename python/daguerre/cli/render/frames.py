@@ -24,7 +24,7 @@ def frame_numbers(flag: str, text: str) -> list[int]:
         last = int(match[2]) if match[2] else first
         step = int(match[3]) if match[3] else 1
         if last < first or step < 1:
-            raise UsageError(f"{flag}: wanted {wanted}, rising; got {text!r}")
+            raise UsageError(f"{flag}: wanted {wanted}, each range from low to high; got {text!r}")
         if len(found) + (last - first) // step >= MOST:
             raise UsageError(f"{flag}: wanted at most {MOST} frames; got {text!r}")
         found |= dict.fromkeys(range(first, last + 1, step))

@@ -157,7 +157,7 @@ def check_places(outputs: list[Path], views: list[View]) -> None:
     """
     for path in outputs:
         for place in re.findall(r"\{[^{}]*\}", str(path)):
-            if place != CAMERA and suggest(place, [CAMERA]):
+            if place != CAMERA and suggest(place, [CAMERA], few=True):
                 raise UsageError(f"-o {path}: wanted {CAMERA}, got {place}")
         if CAMERA in str(path) and not views[0].name:
             raise UsageError(

@@ -63,7 +63,10 @@ def open_document(path: Path, folder: Folder) -> Document:
         text, binary = _split_chunks(path, data)
     elif path.suffix.lower() == ".glb" or data.lstrip()[:1] not in (b"{", b"\xef"):
         wanted = "b'glTF'" if path.suffix.lower() == ".glb" else "b'glTF' or a JSON object"
-        raise InputError(f"{path}: header.magic: wanted {wanted}, got {short(data[:4])}")
+        raise InputError(
+            f"{path}: header.magic: wanted a glTF file, which begins with {wanted}, "
+            f"got {short(data[:4])}"
+        )
     else:
         text, binary = memoryview(data), None
     root = parse(bytes(text), str(path))

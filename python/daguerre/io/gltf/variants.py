@@ -31,10 +31,8 @@ class Variants:
         self.names = [clean(item.need("name").text()) for item in items]
         self._materials = len(root.list_of("materials"))
         if chosen is not None and chosen not in self.names:
-            has = "" if self.names else ": the file has none"
-            raise InputError(
-                f"{root.file}: no variant named {chosen!r}{suggest(chosen, self.names) or has}"
-            )
+            hint = suggest(chosen, self.names, few=True) if self.names else ": the file has none"
+            raise InputError(f"{root.file}: no variant named {chosen!r}{hint}")
         self._chosen = None if chosen is None else self.names.index(chosen)
 
     def material(self, primitive: Item) -> int | None:

@@ -182,7 +182,8 @@ def _maker(name: str, maker: str | None) -> str | None:
         if known.upper() == maker.upper():
             return known
     raise LensError(
-        f"glass {name!r}: there is no catalogue of {short(maker)}{suggest(maker, MAKERS)}",
+        f"glass {name!r}: there is no catalogue of {short(maker)}"
+        f"{suggest(maker, MAKERS, few=True)}",
         "lens-glass",
     )
 
