@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre import doors, lenses
+from daguerre import doors, kinds, lenses
 from daguerre.doors import guarded
 
 
@@ -86,7 +86,7 @@ def test_doors_do_not_show() -> None:
     assert "scene" in inspect.signature(dg.render).parameters
     assert "spp" in inspect.signature(dg.render).parameters
     assert str(inspect.signature(lenses.load)).startswith("(name_or_path: 'str | Path | Lens'")
-    assert (dg.load.__name__, dg.load.__module__) == ("load", "daguerre")
+    assert (dg.load.__name__, dg.load.__module__) == ("load", "daguerre.io.load")
     assert "Args:" in (inspect.getdoc(dg.load) or "")
     assert inspect.getsource(lenses.load).startswith("@guarded")
     for value in (dg.load, dg.render, lenses.load, dg.Scene.add_mesh, lenses.Lens.focused):
@@ -94,3 +94,17 @@ def test_doors_do_not_show() -> None:
     lens = lenses.load("canon-serenar-50mm-f1.8")
     focused = pickle.loads(pickle.dumps(lens.focused))(2.0)
     assert focused.film_z_mm == lens.focused(2.0).film_z_mm
+
+
+def test_a_named_type_is_checked_as_what_it_names() -> None:
+    """``NDArray`` is such a name in NumPy 2.5 on Python 3.12 and newer."""
+
+    class Alias:
+        __value__ = np.ndarray
+
+    found = kinds.of(Alias)
+    assert found is not None
+    assert found.words == "numbers"
+    optional = kinds.of(Alias, none=True)
+    assert optional is not None
+    assert optional.take(Path("x")) is kinds.REFUSED

@@ -25,6 +25,7 @@ from tests.support.plate_frames import of_light
 
 #: A file's name and bytes.
 Seed = tuple[str, bytes]
+ROOT = Path(__file__).resolve().parents[2]
 LIBRARY = Path(dg.__file__).parent
 POINTS = ("opencv", (520.0, 515.0), (331.3, 236.8), (-0.28, 0.09, 1e-3, -2e-3, -0.01))
 
@@ -110,7 +111,7 @@ def calibrations(folder: Path) -> Iterator[Seed]:
     yield "take.json", tracked.opentrackio(folder / "take.json", moments).read_bytes()
     yield "transforms.json", tracked.nerfstudio(folder / "t.json", moments).read_bytes()
     for name in ("fisheye.yaml", "phone.yaml", "stereo.yaml"):
-        yield name, (LIBRARY.parents[1] / "scenes" / "calibrated" / name).read_bytes()
+        yield name, (ROOT / "scenes" / "calibrated" / name).read_bytes()
 
 
 def recipes(folder: Path) -> Iterator[Seed]:
@@ -122,7 +123,7 @@ def recipes(folder: Path) -> Iterator[Seed]:
     yield "settings.json", json.dumps(settings.to_json()).encode()
     effects = [{"effect": "vignetting", "model": "natural"}, {"effect": "distortion", "k1": 0.01}]
     yield "effects.json", json.dumps([*effects, {"effect": "glow", "strength": 0.2}]).encode()
-    categories = LIBRARY.parents[1] / "scenes" / "calibrated" / "categories.json"
+    categories = ROOT / "scenes" / "calibrated" / "categories.json"
     yield "categories.json", categories.read_bytes()
     shot(folder, "dng")
     dg.match_plate(folder / "shot.dng").save(folder / "camera.json")
