@@ -125,8 +125,8 @@ ABOUT_BLENDER = """## A lens in Blender
 
 ![Blender's default cube before a wall of lamps, through a double Gauss at f/2.](blender_lens.jpg)
 
-This is Blender's default scene through a double Gauss at f/2 that Daguerre exported. [A lens for
-other programs](../export.md) has the commands, and the same scene through Blender's own camera.
+This is Blender's default scene through a double Gauss at f/2 that Daguerre exported. [Take a lens
+elsewhere](../export.md) has the commands, and the same scene through Blender's own camera.
 """
 
 CREDITS = """
