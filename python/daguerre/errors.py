@@ -25,6 +25,11 @@ class DaguerreError(ValueError):
 
     exit_code = 3
 
+    def __str__(self) -> str:
+        """Returns the message, without the middle if it is long: files may hold very long names."""
+        text = super().__str__()
+        return text if len(text) <= 3000 else f"{text[:1000]} ... {text[-300:]}"
+
 
 class UsageError(DaguerreError):
     """A wrong command line or parameter (exit code 2)."""

@@ -108,3 +108,18 @@ def test_a_named_type_is_checked_as_what_it_names() -> None:
     optional = kinds.of(Alias, none=True)
     assert optional is not None
     assert optional.take(Path("x")) is kinds.REFUSED
+
+
+def test_a_message_stays_short(tmp_path: Path) -> None:
+    """Found by random files: a name of thousands of letters in a settings or a stock file."""
+    folder = Path(dg.stocks.__file__).parent / "library"
+    text = (folder / "generic-colour-negative-400.json").read_text()
+    (tmp_path / "stock.json").write_text(text.replace('"R"', f'"{"[" * 10_000}"'))
+    for wrong in (
+        lambda: dg.RenderSettings.of(filter="[" * 10_000),
+        lambda: dg.stocks.read(tmp_path / "stock.json"),
+    ):
+        with pytest.raises(dg.DaguerreError) as caught:
+            wrong()
+        assert len(str(caught.value)) < 2000
+        assert " ... " in str(caught.value)
