@@ -88,10 +88,10 @@ def test_each_frame_of_a_sequence_is_the_frame_of_its_time():
 @pytest.mark.parametrize(
     ("flags", "message"),
     [
-        (["--shutter=-1/48"], "shutter_time: wanted a number of at least 0"),
+        (["--shutter=-1/48"], "--shutter): wanted a number of at least 0"),
         (["--shutter", "0/0"], "--shutter: wanted a time"),
         (["--shutter", "1/48", "--shutter-angle", "90"], "wanted one of them, got both"),
-        (["--fps", "0"], "fps: wanted a number of at least"),
+        (["--fps", "0"], "--fps): wanted a number of at least"),
         (["--shutter-offset", "nan"], "--shutter-offset: wanted frames"),
         (["--shutter-type", "lefa"], "did you mean 'leaf'"),
         (["--shutter-type", "leaf", "--rolling", "top,9ms"], "a leaf shutter exposes all lines"),
