@@ -26,9 +26,9 @@ class DaguerreError(ValueError):
     exit_code = 3
 
     def __str__(self) -> str:
-        """Returns the message, without the middle if it is longer than any path: files may hold such names."""
+        """Returns the message; a very long one, as of a damaged file, without its middle."""
         text = super().__str__()
-        return text if len(text) <= 5000 else f"{text[:1000]} ... {text[-300:]}"
+        return text if len(text) <= 12000 else f"{text[:1000]} ... {text[-300:]}"
 
 
 class UsageError(DaguerreError):

@@ -114,9 +114,9 @@ def test_a_message_stays_short(tmp_path: Path) -> None:
     """Found by random files: a name of thousands of letters in a settings or a stock file."""
     folder = Path(dg.stocks.__file__).parent / "library"
     text = (folder / "generic-colour-negative-400.json").read_text()
-    (tmp_path / "stock.json").write_text(text.replace('"R"', f'"{"[" * 10_000}"'))
+    (tmp_path / "stock.json").write_text(text.replace('"R"', f'"{"[" * 20_000}"'))
     for wrong in (
-        lambda: dg.RenderSettings.of(filter="[" * 10_000),
+        lambda: dg.RenderSettings.of(filter="[" * 20_000),
         lambda: dg.stocks.read(tmp_path / "stock.json"),
     ):
         with pytest.raises(dg.DaguerreError) as caught:
