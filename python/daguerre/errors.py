@@ -25,11 +25,6 @@ class DaguerreError(ValueError):
 
     exit_code = 3
 
-    def __str__(self) -> str:
-        """Returns the message; a very long one, as of a damaged file, without its middle."""
-        text = super().__str__()
-        return text if len(text) <= 12000 else f"{text[:1000]} ... {text[-300:]}"
-
 
 class UsageError(DaguerreError):
     """A wrong command line or parameter (exit code 2)."""

@@ -55,7 +55,6 @@ def unseen(name: str) -> type[Unseen]:
 
 def of(hint: Any, *, none: bool = False) -> Kind | None:
     """Kind that an annotation names; None: anything, or a kind that is not checked."""
-    hint = _named(hint)
     parts = typing.get_args(hint) if _is_union(hint) else (hint,)
     none = none or None in parts or types.NoneType in parts
     found = [_single(part) for part in parts if part not in (None, types.NoneType)]
@@ -80,17 +79,13 @@ def of(hint: Any, *, none: bool = False) -> Kind | None:
     return Kind(words, take, any(kind.arrays for kind in known))
 
 
-def _named(hint: Any) -> Any:
-    """Returns the type that a ``type`` alias names, such as ``NDArray`` of NumPy 2.5."""
-    return getattr(hint, "__value__", hint)
-
-
 def _is_union(hint: Any) -> bool:
     return isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union
 
 
 def _single(hint: Any) -> Kind | None:
-    hint = _named(hint)
+    if hasattr(hint, "__value__"):  # a `type` alias, as NDArray of NumPy 2.5
+        return of(hint.__value__)
     origin = typing.get_origin(hint) or hint
     if origin in _PLAIN:
         return _PLAIN[origin]

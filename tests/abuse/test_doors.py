@@ -111,7 +111,7 @@ def test_a_named_type_is_checked_as_what_it_names() -> None:
 
 
 def test_a_message_stays_short(tmp_path: Path) -> None:
-    """Found by random files: a name of thousands of letters in a settings or a stock file."""
+    """Random files found it: a name of thousands of letters in a settings or a stock file."""
     folder = Path(dg.stocks.__file__).parent / "library"
     text = (folder / "generic-colour-negative-400.json").read_text()
     (tmp_path / "stock.json").write_text(text.replace('"R"', f'"{"[" * 20_000}"'))
@@ -122,4 +122,4 @@ def test_a_message_stays_short(tmp_path: Path) -> None:
         with pytest.raises(dg.DaguerreError) as caught:
             wrong()
         assert len(str(caught.value)) < 2000
-        assert " ... " in str(caught.value)
+        assert "..." in str(caught.value)

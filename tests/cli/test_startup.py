@@ -19,7 +19,11 @@ LOADED = (
     ("command", "rooms"),
     [
         (["--version"], {"rendering", "setup", "lenses", "sensors", "development"}),
-        (["--help"], {"camera", "scene", "rendering", "lenses", "sensors", "plates", "post"}),
+        (
+            ["--help"],
+            {"rendering", "setup", "lenses", "sensors", "development", "plates", "post"}
+            | {"camera", "scene"},
+        ),
         (["lenses"], {"rendering", "setup", "development", "analysis"}),
         (["render", "nowhere.glb", "-o", "x.exr"], {"analysis", "plots", "development", "post"}),
     ],

@@ -110,7 +110,7 @@ def work(name: str, seed: int, begin: int, seconds: float, most: int, folder: Pa
             use(path)
         except DaguerreError as error:
             accepted = False
-            if "\n" in str(error).strip() or len(str(error)) > 12_000:
+            if "\n" in str(error).strip() or len(str(error)) > 4000:
                 raise RuntimeError(f"not one line: {str(error)[:200]!r}") from error
         faulthandler.cancel_dump_traceback_later()
         took, memory = time.process_time() - started, _peak_mb() - before

@@ -15,7 +15,7 @@ from typing import Any
 
 from daguerre.camera.projection import Projection
 from daguerre.doors import guarded
-from daguerre.files.json_item import Item
+from daguerre.files.json_item import Item, short
 from daguerre.files.source import Source
 
 from .calibration import Calibration, projection
@@ -56,7 +56,7 @@ def read_transforms(
         named = item.need("file_path")
         name = named.text()
         if name in found:
-            named.fail(f"wanted each picture once, got {name!r} twice")
+            named.fail(f"wanted each picture once, got {short(name)} twice")
         pose = rigid(item.need("transform_matrix"))
         pose[:3, 3] *= unit_m
         settings = {"transform": pose}

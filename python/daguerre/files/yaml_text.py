@@ -17,7 +17,7 @@ import yaml
 
 from daguerre.errors import InputError
 
-from .json_item import Item
+from .json_item import Item, short
 
 OPENCV_MATRIX = "tag:yaml.org,2002:opencv-matrix"
 _OPENCV_HEAD = re.compile(r"\A\ufeff?%YAML:1\.0[^\n]*")
@@ -60,9 +60,9 @@ class _Plain(yaml.SafeLoader):
         event: Any = self.peek_event()  # type: ignore[no-untyped-call]
         if isinstance(event, yaml.AliasEvent) or event.anchor is not None:
             kind = "alias" if isinstance(event, yaml.AliasEvent) else "anchor"
-            self._refuse(f"wanted no anchors and aliases, got {kind} {event.anchor!r}", event)
+            self._refuse(f"wanted no anchors and aliases, got {kind} {short(event.anchor)}", event)
         if event.tag not in (None, OPENCV_MATRIX):
-            self._refuse(f"wanted no tags but !!opencv-matrix, got {event.tag!r}", event)
+            self._refuse(f"wanted no tags but !!opencv-matrix, got {short(event.tag)}", event)
         if event.tag and not isinstance(event, yaml.MappingStartEvent):
             self._refuse("!!opencv-matrix: wanted rows, cols, dt and data", event)
         return super().compose_node(parent, index)
@@ -74,7 +74,7 @@ class _Plain(yaml.SafeLoader):
             if not isinstance(key, yaml.ScalarNode):
                 self._refuse("wanted text as a name", key)
             if key.value in found:
-                self._refuse(f"wanted each name once, got {key.value!r} twice", key)
+                self._refuse(f"wanted each name once, got {short(key.value)} twice", key)
             found[key.value] = self.construct_object(value, deep=deep)
         return found
 

@@ -91,7 +91,7 @@ def _gaps(item: Item, count: int) -> dict[int, float]:
     for gap in gaps.members() if gaps else []:
         key = str(gap.key)
         if not key.isdecimal() or int(key) >= count:
-            gap.fail(f"wanted the index of a surface, 0 to {count - 1}, got {key!r}")
+            gap.fail(f"wanted the index of a surface, 0 to {count - 1}, got {short(key)}")
         value = gap.number(-1e5, 1e5)
         if value < 0 and int(key) < count - 1:
             raise LensError(

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from daguerre.files.json_item import Item, clean
+from daguerre.files.json_item import Item, clean, short
 
 from .configurations import Configuration, chosen, read_configurations
 from .diameters import with_derived_diameters
@@ -37,7 +37,7 @@ def lens_from(root: Item, path: Path, name: str | None) -> Lens:
     """Builds a lens from a file's value, at a configuration by name; None: the first."""
     schema = root.need("schema")
     if schema.text() != SCHEMA:
-        schema.fail(f"wanted {SCHEMA!r}, got {schema.value!r}")
+        schema.fail(f"wanted {SCHEMA!r}, got {short(schema.value)}")
     items = root.list_of("surfaces")
     if not items:
         root.need("surfaces")

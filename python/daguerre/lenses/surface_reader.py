@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NoReturn
 
-from daguerre.files.json_item import Item
+from daguerre.files.json_item import Item, short
 
 from .errors import LensError, reported
 from .glass_json import glass_from_json
@@ -118,7 +118,7 @@ def _asphere(item: Item) -> dict[int, float]:
         key = str(term.key)
         power = int(key[1:]) if key[:1] == "a" and key[1:].isdecimal() and len(key) < 6 else 0
         if not 2 <= power <= MAX_POWER:
-            term.fail(f"wanted a power of r as a2 to a{MAX_POWER}, got {key!r}")
+            term.fail(f"wanted a power of r as a2 to a{MAX_POWER}, got {short(key)}")
         if (value := term.number()) != 0:
             out[power] = value
     return out

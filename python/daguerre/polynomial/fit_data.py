@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 import daguerre._core as _core
+from daguerre.checks import short
 from daguerre.errors import CoreError, InputError
 
 FORMAT = "daguerre-lens-fit/0.1"
@@ -94,7 +95,7 @@ def from_dict(data: Any) -> _core.LensFit:
     """Makes a fit from the data of ``to_dict``."""
     form = data.get("format") if isinstance(data, dict) else None
     if form != FORMAT:
-        raise InputError(f"lens fit: format: wanted {FORMAT!r}, got {form!r}")
+        raise InputError(f"lens fit: format: wanted {FORMAT!r}, got {short(form)}")
     try:
         return _read(data)
     except CoreError as error:

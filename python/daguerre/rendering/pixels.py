@@ -60,7 +60,7 @@ def parse_filter(value: Any, where: str = "filter") -> tuple[str, float]:
     kind, _, radius = str(value).replace("-", "_").partition(":")
     if kind not in FILTERS:
         raise UsageError(
-            f"{where}: wanted {', '.join(FILTERS)}, got {kind!r}{suggest(kind, FILTERS)}"
+            f"{where}: wanted {', '.join(FILTERS)}, got {short(kind)}{suggest(kind, FILTERS)}"
         )
     try:
         number = float(radius) if radius else 0.0
@@ -68,7 +68,7 @@ def parse_filter(value: Any, where: str = "filter") -> tuple[str, float]:
         number = math.nan
     if radius and not LEAST_RADIUS <= number <= MOST_RADIUS:
         raise UsageError(
-            f"{where}: radius: wanted {LEAST_RADIUS:g} .. {MOST_RADIUS:g} px, got {radius!r}"
+            f"{where}: radius: wanted {LEAST_RADIUS:g} .. {MOST_RADIUS:g} px, got {short(radius)}"
         )
     return kind, number
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.checks import short
 from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.files.value import Value
@@ -49,7 +50,7 @@ class Mosaic(Value):
         """
         if name not in PATTERNS:
             raise UsageError(
-                f"{where}: pattern: wanted one of {', '.join(PATTERNS)}, got {name!r}"
+                f"{where}: pattern: wanted one of {', '.join(PATTERNS)}, got {short(name)}"
                 f"{suggest(str(name), PATTERNS)}"
             )
         rows = PATTERNS[name]

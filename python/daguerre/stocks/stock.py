@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from daguerre.checks import number
+from daguerre.checks import number, short
 from daguerre.color import illuminants
 from daguerre.doors import guarded
 from daguerre.errors import InputError
@@ -166,9 +166,10 @@ class Stock(Value):
 def _check(stock: Stock) -> None:
     where = f"stock {stock.name}"
     if stock.kind not in KINDS:
-        raise InputError(f"{where}: kind: wanted negative or reversal, got {stock.kind!r}")
+        raise InputError(f"{where}: kind: wanted negative or reversal, got {short(stock.kind)}")
     if stock.channels not in (("R", "G", "B"), ("Y",)):
-        raise InputError(f"{where}: layers: wanted R, G, B or Y, got {', '.join(stock.channels)}")
+        got = short(", ".join(stock.channels))
+        raise InputError(f"{where}: layers: wanted R, G, B or Y, got {got}")
     number(stock.iso, f"{where}: iso", 0, 1e6, above=0, error=InputError)
     number(stock.balance, f"{where}: balance", 1000, 25000, error=InputError)
     number(stock.granularity, f"{where}: granularity", 0, 1000, error=InputError)

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daguerre import units as q
-from daguerre.errors import UsageError, suggest
+from daguerre.errors import UsageError
 from daguerre.rendering import picture
 from daguerre.rendering.names import CAMERA
 from daguerre.rendering.parameters import DEFAULT
@@ -157,7 +157,7 @@ def check_places(outputs: list[Path], views: list[View]) -> None:
     """
     for path in outputs:
         for place in re.findall(r"\{[^{}]*\}", str(path)):
-            if place != CAMERA and suggest(place, [CAMERA], few=True):
+            if place != CAMERA:
                 raise UsageError(f"-o {path}: wanted {CAMERA}, got {place}")
         if CAMERA in str(path) and not views[0].name:
             raise UsageError(
