@@ -4,8 +4,8 @@
 
 Allowed: 3 x (vertices + indices + decoded 8-bit textures) + 200 B per pixel + 32 MB. The scenes are
 made here, in a temporary folder; each case is a process of its own. ``peak_memory_mb`` is the
-process's largest resident memory less that after ``import daguerre``. It reads /proc: Linux
-only.
+process's largest resident memory less that after the import of ``daguerre``, its cameras and its
+scenes. It reads /proc: Linux only.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ MB = 1e6
 CHILD = """
 import json, sys
 import daguerre
+daguerre.Camera, daguerre.Scene  # imported on first use, with numpy
 def resident(key):  # ru_maxrss would count the process that started this one
     lines = open("/proc/self/status").read().splitlines()
     return int(next(line for line in lines if line.startswith(key)).split()[1]) << 10
