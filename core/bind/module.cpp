@@ -1,5 +1,6 @@
 // module.cpp -- daguerre._core. Thin: arrays in, arrays out, no logic.
 #include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
 
 #include "bind/unlocked.h"
 #include "version.h"
@@ -33,10 +34,17 @@ void bind_post_blur(nb::module_& m);
 void bind_post_grain(nb::module_& m);
 void bind_post_waves(nb::module_& m);
 
+/// Has nanobind make its type of arrays now: where memory is short at the first array, it ends the process.
+void make_array_type() {
+    static const float zero = 0;
+    nb::cast(nb::ndarray<nb::memview, const float, nb::shape<1>, nb::device::cpu>(&zero, {1}, nb::none()));
+}
+
 NB_MODULE(_core, m) {
     m.attr("__version__") = DG_VERSION;
     dg::bind::watch_process();
     m.def("is_ending", &dg::bind::is_ending, "Whether Python is about to end: other threads draw no more.");
+    make_array_type();
     bind_errors(m);
     bind_codec(m);
     bind_motion(m);
