@@ -35,6 +35,19 @@ def test_a_picture_and_its_command(
     np.testing.assert_array_equal(dg.load_frame(tmp_path / "out" / "again.exr").rgb, before)
 
 
+def test_a_denoiser_that_cannot_be_loaded_leaves_the_picture_noisy(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def broken(name: str) -> None:
+        raise RuntimeError("could not load the thread pool library")
+
+    monkeypatch.setattr("daguerre.rendering.denoise.import_module", broken)
+    monkeypatch.setattr(extras, "missing", lambda module: False)
+    assert main(["demo", str(tmp_path), "--res", "30x20", "--spp", "1"]) == 0
+    assert "libatomic1" in capsys.readouterr().out.splitlines()[0]
+    assert (tmp_path / "demo.png").is_file()
+
+
 def test_a_folder_that_cannot_be_made(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "file").write_text("")
     assert main(["demo", str(tmp_path / "file" / "out")]) == 5

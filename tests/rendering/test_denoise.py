@@ -249,3 +249,13 @@ def test_the_real_denoiser_lowers_the_error_and_knows_it() -> None:
     assert clean.metadata["denoised"].startswith("mitsuba-oidn ")
     assert np.array_equal(clean.rgb, denoise(frame).rgb)
     assert Cleaner.of(frame).guides is not None
+
+
+def test_a_denoiser_that_cannot_be_loaded_is_one_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(name: str) -> None:
+        raise RuntimeError("could not load the thread pool library")
+
+    monkeypatch.setattr("daguerre.rendering.denoise.import_module", broken)
+    monkeypatch.setattr("daguerre.files.extras.missing", lambda module: False)
+    with pytest.raises(dg.UsageError, match="thread pool.*apt install libatomic1"):
+        denoise(dg.Frame(np.ones((4, 6, 3), np.float32)))

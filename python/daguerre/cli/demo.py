@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 import daguerre
-from daguerre.errors import OutputError
+from daguerre.errors import OutputError, UsageError
 from daguerre.files import extras
 
 from . import console
@@ -39,13 +39,26 @@ def demo(
     write_scene(scene)
     words = ["render", str(scene), "--lens", "double-gauss-50mm-f2", "--f-stop", "2"]
     words += ["--res", res, "--spp", str(spp), "--tone", "soft", "-o", str(folder / "demo.png")]
-    if extras.missing("mitsuba_oidn"):
+    if why_not := _cannot_denoise():
         words += ["-o", str(folder / "demo.exr")]
-        console.show(f"not denoised; denoising needs an extra: {extras.hint('mitsuba_oidn')}")
+        console.show(f"not denoised; {why_not}")
     else:
         words += ["--denoise", "--noisy", str(folder / "demo.exr")]
     console.show(shlex.join(["daguerre", *words]))
     return main(words)
+
+
+def _cannot_denoise() -> str:
+    """Reason why there is no denoiser; empty: there is one."""
+    from daguerre.rendering.denoise import check_available
+
+    if extras.missing("mitsuba_oidn"):
+        return f"denoising needs an extra: {extras.hint('mitsuba_oidn')}"
+    try:
+        check_available()
+    except UsageError as error:
+        return str(error)
+    return ""
 
 
 def write_scene(path: Path) -> None:

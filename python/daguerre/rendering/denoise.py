@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color.spectra import xyz_of
-from daguerre.errors import InputError
+from daguerre.errors import InputError, UsageError
 from daguerre.files import extras
 
 from .adaptive import DARK
@@ -33,12 +33,19 @@ BLOCK = 8
 
 
 def check_available() -> None:
-    """Checks that the denoiser is installed.
+    """Checks that the denoiser is installed and can be loaded.
 
     Raises:
         UsageError: It is not; the message says how to install it.
     """
     extras.need(MODULE, "denoise")
+    try:
+        import_module(MODULE)
+    except (ImportError, OSError, RuntimeError) as error:  # such as a system without libatomic
+        raise UsageError(
+            f"denoise: {PACKAGE} is installed but cannot be loaded ({error}); it needs the system's "
+            "libatomic: on Debian and Ubuntu, apt install libatomic1"
+        ) from error
 
 
 def denoise(frame: Frame) -> Frame:
