@@ -43,8 +43,8 @@ def check_available() -> None:
         import_module(MODULE)
     except (ImportError, OSError, RuntimeError) as error:  # such as a system without libatomic
         raise UsageError(
-            f"denoise: {PACKAGE} is installed but cannot be loaded ({error}); it needs the system's "
-            "libatomic: on Debian and Ubuntu, apt install libatomic1"
+            f"denoise: {PACKAGE} is installed but cannot be loaded ({error}); it needs the "
+            "system's libatomic: on Debian and Ubuntu, apt install libatomic1"
         ) from error
 
 
