@@ -181,12 +181,22 @@ TEST_CASE("in a white furnace all light comes out again") {
     const ScatterLens scatter = make(lens, 3, white);
     Uniform u(8);
     LightEnds all{};
-    for (int i = 0; i < 5000; ++i)
-        scatter.walk(Sky(lens).ray(u), scatter.at(550), 1, u.rng(), kPlain, &all);
+    std::vector<double> chance;
+    constexpr int kWalks = 60000;
+    for (int i = 0; i < kWalks; ++i) {
+        LightEnds ends{};
+        const LensRay ray = Sky(lens).ray(u);
+        scatter.walk(ray, scatter.at(550), 1, u.rng(), kPlain, &ends);
+        for (int k = 0; k < kLightEnds; ++k) all[k] += ends[k] / kWalks;
+        chance.push_back(ends[int(LightEnd::chance)]);
+    }
     CHECK(all[int(LightEnd::metal)] == doctest::Approx(0));
     CHECK(all[int(LightEnd::glass)] == 0);
-    CHECK(all[int(LightEnd::truncated)] / 5000 < 0.01);
-    CHECK((all[int(LightEnd::film)] + all[int(LightEnd::front)] + all[int(LightEnd::rear)]) / 5000 > 0.99);
+    CHECK(all[int(LightEnd::truncated)] + all[int(LightEnd::lost)] < 1e-3);
+    const SampleMoments m = moments(chance);
+    CHECK(std::abs(m.mean) <= 4 * std::sqrt(m.variance / m.count));
+    CHECK(all[int(LightEnd::film)] + all[int(LightEnd::front)] + all[int(LightEnd::rear)] ==
+          doctest::Approx(1 - m.mean).epsilon(1e-3));
 }
 
 TEST_CASE("light from a white sky to the film is light from the film to the sky") {
