@@ -6,12 +6,16 @@ See ``docs/scatter.md``.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import daguerre._core as _core
 from daguerre.checks import number, numbers, short
 from daguerre.doors import guarded
 from daguerre.errors import UsageError, core_errors
+
+_Lobe = tuple[float, float]
+_Finish = tuple[float, float, _Lobe]
 
 
 @guarded
@@ -62,9 +66,15 @@ def core_parts(given: Any) -> _core.LensScatter:
         )
     ]
     with core_errors(UsageError, "camera"):
-        return _core.LensScatter(
+        return _made(
             (float(parts.barrel), float(parts.barrel_gloss), lobes[0]),
             (float(parts.blades), float(parts.blades_gloss), lobes[0]),
             float(parts.surface_rms_nm),
             lobes[1],
         )
+
+
+@lru_cache(maxsize=8)
+def _made(barrel: _Finish, blades: _Finish, rms_nm: float, lobe: _Lobe) -> _core.LensScatter:
+    """Makes the core's record, whose tables take 10 ms, once for all cameras of one kind."""
+    return _core.LensScatter(barrel, blades, rms_nm, lobe)

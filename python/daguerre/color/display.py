@@ -22,7 +22,8 @@ def _shoulder(linear: NDArray[np.float32], knee: float = 0.8) -> NDArray[np.floa
     Separate channels would shift hues, so the largest one sets the scale of its pixel. Colours move
     toward white with light above 1, half way at 17.
     """
-    peak = linear.max(axis=2, keepdims=True)
+    red, green, blue = _channels(linear)
+    peak = np.maximum(np.maximum(red, green), blue)
     above = np.maximum(peak, knee)
     rolled = 1 - (1 - knee) ** 2 / (above + 1 - 2 * knee)
     over = np.maximum(peak - 1, 0)
@@ -32,9 +33,15 @@ def _shoulder(linear: NDArray[np.float32], knee: float = 0.8) -> NDArray[np.floa
 
 def _into_gamut(linear: NDArray[np.float32]) -> NDArray[np.float32]:
     """Mixes negative colours with the grey of their luminance until they are in the gamut."""
-    low = linear.min(axis=2, keepdims=True)
+    red, green, blue = _channels(linear)
+    low = np.minimum(np.minimum(red, green), blue)
     if (low >= 0).all():
         return linear
     grey = np.maximum(linear @ _LUMINANCE, 0)[..., None]
     share = np.where(low < 0, grey / np.maximum(grey - low, 1e-30), 1)
     return np.asarray(np.maximum(grey + share * (linear - grey), 0), np.float32)
+
+
+def _channels(linear: NDArray[np.float32]) -> list[NDArray[np.float32]]:
+    """Splits (H, W, 3) into three (H, W, 1): NumPy reduces a short last axis ten times slower."""
+    return np.split(linear, 3, axis=2)
