@@ -8,6 +8,7 @@
 namespace nb = nanobind;
 
 void bind_errors(nb::module_& m);
+void bind_cancel(nb::module_& m);
 void bind_codec(nb::module_& m);
 void bind_motion(nb::module_& m);
 void bind_glass(nb::module_& m);
@@ -46,6 +47,7 @@ NB_MODULE(_core, m) {
     m.def("is_ending", &dg::bind::is_ending, "Whether Python is about to end: other threads draw no more.");
     make_array_type();
     bind_errors(m);
+    bind_cancel(m);
     bind_codec(m);
     bind_motion(m);
     bind_glass(m);

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <thread>
 
+#include "math/cancel.h"
 #include "math/error.h"
 #include "spectrum/wavelengths.h"
 
@@ -35,6 +36,17 @@ class Lock {
     std::atomic_ref<std::uint32_t> lock_;
 };
 
+/// Resizes bit by bit, so that work that is cancelled need not wait for the zeros of a large film.
+template <class T>
+void make_room(std::vector<T>& all, std::size_t count) {
+    constexpr std::size_t kStep = 1 << 16;
+    all.reserve(count);
+    while (all.size() < count) {
+        throw_if_cancelled();
+        all.resize(std::min(count, all.size() + kStep));
+    }
+}
+
 }  // namespace
 
 Film::Film(FilmLayout layout) : layout_(layout) {
@@ -46,15 +58,15 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     const Vec3f x = rgb_from_xyz({1, 0, 0}), y = rgb_from_xyz({0, 1, 0}),
                 z = rgb_from_xyz({0, 0, 1});
     for (int i = 0; i < 3; ++i) rgb_from_xyz_[i] = {x[i], y[i], z[i]};
-    pixels_.resize(pixels);
-    if (layout.aovs) aovs_.resize(pixels);
-    if (layout.splats) splats_.resize(pixels);
-    if (layout.flare) flare_.resize(pixels);
-    if (layout.halves) halves_.resize(pixels);
-    if (layout.coverage) coverage_.resize(pixels);
+    make_room(pixels_, pixels);
+    if (layout.aovs) make_room(aovs_, pixels);
+    if (layout.splats) make_room(splats_, pixels);
+    if (layout.flare) make_room(flare_, pixels);
+    if (layout.halves) make_room(halves_, pixels);
+    if (layout.coverage) make_room(coverage_, pixels);
     if (layout.objects) objects_ = std::make_unique<CoverLists>(pixels);
-    if (layout.catchers) catchers_.resize(pixels);
-    if (layout.splats || layout.flare) row_locks_.resize(std::size_t(kLockStride) * layout.height);
+    if (layout.catchers) make_room(catchers_, pixels);
+    if (layout.splats || layout.flare) make_room(row_locks_, std::size_t(kLockStride) * layout.height);
     if (layout.objects && !layout.coverage)
         throw input_error("film", "objects", "coverage, too", "objects alone");
     if (layout.bands < 0 || layout.bands > kMostBands)
@@ -63,10 +75,10 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     if (layout.channels < 0 || layout.channels > Responses::kMost)
         throw input_error("film", "channels", "0 to " + std::to_string(Responses::kMost),
                           std::to_string(layout.channels));
-    bands_.resize(std::size_t(pixels) * layout.bands);
-    channels_.resize(std::size_t(pixels) * layout.channels);
-    if (layout.splats || layout.flare) channel_splats_.resize(channels_.size());
-    if (layout.catchers) catcher_channels_.resize(2 * channels_.size());
+    make_room(bands_, std::size_t(pixels) * layout.bands);
+    make_room(channels_, std::size_t(pixels) * layout.channels);
+    if (layout.splats || layout.flare) make_room(channel_splats_, channels_.size());
+    if (layout.catchers) make_room(catcher_channels_, 2 * channels_.size());
 }
 
 void Film::set_responses(Responses responses) {

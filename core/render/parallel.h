@@ -7,9 +7,12 @@
 #include <cstdint>
 #include <optional>
 
+#include "math/cancel.h"
+
 namespace dg {
 
-/// Runs run(0), ..., run(tasks - 1) on so many threads; 0: all.
+/// Runs run(0), ..., run(tasks - 1) on so many threads; 0: all. Throws if this thread's work was cancelled, which
+/// leaves tasks out.
 template <typename Run>
 void parallel_tasks(int threads, std::int64_t tasks, const Run& run) {
     // TBB keeps to the number of cores unless more is allowed.
@@ -17,7 +20,13 @@ void parallel_tasks(int threads, std::int64_t tasks, const Run& run) {
     if (threads > oneapi::tbb::this_task_arena::max_concurrency())
         allowed.emplace(oneapi::tbb::global_control::max_allowed_parallelism, threads);
     oneapi::tbb::task_arena arena(threads > 0 ? threads : oneapi::tbb::task_arena::automatic);
-    arena.execute([&] { oneapi::tbb::parallel_for(std::int64_t(0), tasks, run); });
+    const CancelToken* token = CancelScope::current();
+    const auto task = [&](std::int64_t i) {
+        const CancelScope scope(token);
+        if (!is_cancelled()) run(i);
+    };
+    arena.execute([&] { oneapi::tbb::parallel_for(std::int64_t(0), tasks, task); });
+    throw_if_cancelled();
 }
 
 }  // namespace dg

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "camera/inverse/pixel_cone.h"
+#include "math/cancel.h"
 #include "math/error.h"
 #include "render/camera_first_ray.h"
 #include "render/dispersion.h"
@@ -89,6 +90,7 @@ class CameraPass {
     }
 
     void draw_batch(Workspace& work) const {
+        throw_if_cancelled();
         const std::size_t n = work.samples.size();
         work.rays.assign(n, CameraRay{});
         generate_rays(camera_, work.camera_samples, work.rays);

@@ -5,6 +5,7 @@
 #include "optics/trace/trace_simd.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+#include "math/cancel.h"
 #include "optics/trace/film_landing-inl.h"
 #include "optics/trace/film_start-inl.h"
 
@@ -56,9 +57,11 @@ HWY_EXPORT(TargetName);
 
 void trace_to_scene(const LensTables& lens, const FilmRays& in, SceneRays& out,
                     int count) {
+    throw_if_cancelled();
     HWY_DYNAMIC_DISPATCH(ToScene)(lens, in, out, count);
 }
 void trace_to_film(const LensTables& lens, SceneRays& in, FilmRays& out, int count) {
+    throw_if_cancelled();
     HWY_DYNAMIC_DISPATCH(ToFilm)(lens, in, out, count);
 }
 const char* simd_target_name() {

@@ -1,5 +1,7 @@
 """Rendering for any front end: settings, sessions, jobs with checkpoints, passes and merging."""
 
+from daguerre._core import Cancelled, CancelToken
+
 from .checkpoint import Checkpoint
 from .job import Job
 from .output import Output
@@ -10,6 +12,8 @@ from .reporter import Control, Finished, Reporter, Stopped
 from .settings import RenderSettings
 
 __all__ = [
+    "CancelToken",
+    "Cancelled",
     "Checkpoint",
     "Control",
     "Finished",
