@@ -54,7 +54,7 @@ def info(
     from daguerre.setup.scene import build
 
     changes = camera_flags.changes() | shutter_flags.changes()
-    flags = Cameras(camera_flags.camera, calibration_flags, changes)
+    flags = Cameras(camera_flags.camera, calibration_flags, changes, camera_flags.placement)
     views = flags.views(None)
     calibration_flags.check(changes)
     scene = scene_flags.load(scene_path)

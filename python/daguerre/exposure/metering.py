@@ -84,6 +84,20 @@ def check_mode(mode: str, where: str = "meter") -> str:
     return known
 
 
+def mode_of(flag: str, text: str) -> str:
+    """Parses ``auto``, or ``auto:`` and a metering mode.
+
+    Raises:
+        UsageError: The text says something else.
+    """
+    kind, _, mode = text.partition(":")
+    if kind != "auto":
+        raise UsageError(
+            f"{flag}: wanted auto, auto:centre, auto:spot or auto:matrix; got {text!r}"
+        )
+    return check_mode(mode or "centre", f"{flag} auto")
+
+
 @guarded
 def meter(frame: Frame, mode: str = "centre", *, at: tuple[float, float] | None = None) -> Metered:
     """Meters a frame as a camera does.

@@ -11,6 +11,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from daguerre.errors import DaguerreError, UsageError
 
 from .reporter import Reporter
@@ -18,6 +21,7 @@ from .reporter import Reporter
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
     from daguerre.frame.picture import Picture
+    from daguerre.frame.raw import Raw
     from daguerre.sensors import Sensor
 
 PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
@@ -152,31 +156,51 @@ class Photograph:
 
     def _shoot(self, frame: Frame, offset: float, files: list[Path], tell: Reporter) -> None:
         """Writes one exposure to its files."""
-        from daguerre.development import develop
         from daguerre.development.dng import size_note
+
+        frame, raw = self._exposed(frame, offset, raw=any(_is_raw(file) for file in files))
+        for text in raw.notes if raw is not None else ():
+            tell.note(text)
+        for file in files:
+            if raw is not None and _is_raw(file):
+                raw.save(file)
+                if remark := size_note(raw):
+                    tell.note(f"{file}: {remark}")
+            else:
+                self._developed(frame, raw).save(file)
+
+    def _exposed(self, frame: Frame, offset: float, *, raw: bool) -> tuple[Frame, Raw | None]:
+        """Exposes a frame at an offset, EV; with a sensor, or if one is wanted, also a raw one."""
         from daguerre.exposure.lux_seconds import with_exposure
 
         if offset:
             frame = replace(frame, metadata=with_exposure(frame.metadata, 2.0**offset))
         if self.like is not None:
             frame = self.like.seen(frame, self.seed)
+        if self.sensor is None and not raw:
+            return frame, None
+        chosen = self.iso is not None or "metering" in frame.metadata
+        iso = frame.metadata.get("isoSpeed") if chosen else None  # the sensor has its own
+        return frame, frame.expose(self.sensor, iso, seed=self.seed)
+
+    def _developed(self, frame: Frame, raw: Raw | None) -> Picture:
+        from daguerre.development import develop
+
         looks: dict[str, Any] = {} if self.look is None else {"look": self.look}
-        raw = None
-        if self.sensor is not None or any(_is_raw(file) for file in files):
-            chosen = self.iso is not None or "metering" in frame.metadata
-            iso = frame.metadata.get("isoSpeed") if chosen else None  # the sensor has its own
-            raw = frame.expose(self.sensor, iso, seed=self.seed)
-            for text in raw.notes:
-                tell.note(text)
-        for file in files:
-            if raw is not None and _is_raw(file):
-                raw.save(file)
-                if remark := size_note(raw):
-                    tell.note(f"{file}: {remark}")
-            elif raw is not None and self.sensor is not None:
-                self._finished(develop(raw, **looks)).save(file)
-            else:
-                self._finished(develop(frame, **looks)).save(file)
+        source = frame if raw is None or self.sensor is None else raw
+        return self._finished(develop(source, **looks))
+
+    def shown(self, frame: Frame, tone: str) -> NDArray[np.uint8]:
+        """Pixels for display, (H, W, 3), as in a .png of one exposure.
+
+        Args:
+            frame: The frame.
+            tone: Tone curve if the picture is not developed.
+        """
+        if not self.develops:
+            return frame.display(tone)
+        frame = self.metered(frame, [Path("shown.png")], Reporter())
+        return self._developed(*self._exposed(frame, 0.0, raw=False)).bytes8()
 
     def _finished(self, picture: Picture) -> Picture:
         return picture if self.like is None else self.like.finished(picture, self.seed)

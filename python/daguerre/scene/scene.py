@@ -465,7 +465,10 @@ class Scene(Value):
         if name is None:
             if self.default_camera is None:
                 where = self.path or "scene"
-                raise InputError(f"{where}: cameras: wanted one, in the file or by add_camera")
+                raise InputError(
+                    f"{where}: cameras: wanted one, in the file, by add_camera, or by "
+                    "--position and --look-at"
+                )
             name = self.default_camera
         if name not in self.cameras:
             name = self.camera_aliases.get(name, name)

@@ -15,6 +15,7 @@ from .exposure import EXPOSURE
 from .iris import IRIS
 from .lens import CHOICE, LENS
 from .opening import FOCUS, STOP
+from .place import PLACE
 from .shutter import SHUTTER_ROWS
 
 __all__ = [
@@ -43,7 +44,9 @@ LIGHT = Table(EXPOSURE)
 SHUTTER = Table(SHUTTER_ROWS)
 CAMERA = Table(OPTICS, LIGHT, SHUTTER)
 #: Rows of the flags of a camera; a name such as ``scatter.barrel`` is a part of a field.
-CAMERA_FLAGS = Table(CHOICE, LENS, STOP, FOCUS, IRIS, GHOSTS, PARTS, SENSOR, STANDING, EXPOSURE)
+CAMERA_FLAGS = Table(
+    CHOICE, PLACE, LENS, STOP, FOCUS, IRIS, GHOSTS, PARTS, SENSOR, STANDING, EXPOSURE
+)
 
 #: Names of those that may change while the shutter is open.
 MOVABLE = tuple(row.name for row in CAMERA if row.movable)

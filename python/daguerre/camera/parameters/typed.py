@@ -16,6 +16,11 @@ def pair(example: str) -> Callable[[str, str], tuple[float, ...]]:
     return lambda flag, text: units.numbers(flag, text, 2, example)
 
 
+def point(example: str) -> Callable[[str, str], tuple[float, ...]]:
+    """A reader of three numbers between commas."""
+    return lambda flag, text: units.numbers(flag, text, 3, example)
+
+
 def number(wanted: str) -> Callable[[str, str], float]:
     """A reader of a number or a fraction."""
     return lambda flag, text: units.plain_number(flag, text, wanted)

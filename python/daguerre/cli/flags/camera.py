@@ -4,6 +4,7 @@ from typing import Any
 
 from daguerre.camera.lens_scatter import LensScatter
 from daguerre.camera.parameters import CAMERA, CAMERA_FLAGS
+from daguerre.camera.placement import Placement
 
 from .from_table import TableFlags, made_of
 
@@ -20,10 +21,19 @@ class CameraFlags(TableFlags):
         given.pop("camera", None)
         if isinstance(given.get("sensor"), tuple):
             given["sensor_size"] = given.pop("sensor")
-        parts = {name: given.pop(name) for name in list(given) if name.startswith("scatter.")}
-        if parts:
-            given["scatter"] = LensScatter(
-                **{name.removeprefix("scatter."): value for name, value in parts.items()}
-            )
+        _parts(given, "place.")
+        if parts := _parts(given, "scatter."):
+            given["scatter"] = LensScatter(**parts)
         self.table.refuse_rivals(given)
         return given
+
+    @property
+    def placement(self) -> Placement:
+        """Place of the camera; parts not given stay as in the scene."""
+        return Placement(**_parts(self.given(), "place."))
+
+
+def _parts(given: dict[str, Any], prefix: str) -> dict[str, Any]:
+    """Takes the parts of one field out of given parameters."""
+    names = [name for name in given if name.startswith(prefix)]
+    return {name.removeprefix(prefix): given.pop(name) for name in names}

@@ -59,7 +59,8 @@ def render(
     given = camera_flags.changes() | shutter_flags.changes()
     changes = over_plate(plate, given, calibrated=bool(calibration_flags.found))
     start = scene_flags.start
-    cameras = Cameras(camera_flags.camera, calibration_flags, changes, plate, start)
+    place = camera_flags.placement
+    cameras = Cameras(camera_flags.camera, calibration_flags, changes, place, plate, start)
     plan = plan_of(job_flags, settings_flags, map_flags, cameras)
     scene_flags.check_plates(picture.frame for picture in plan.pictures)
     labels = coco_of(job_flags.coco, job_flags.categories, plan)

@@ -59,7 +59,7 @@ def photograph_of(
         asked,
         sensor,
         iso,
-        None if exposure is None else _meter_mode(exposure),
+        None if exposure is None else _metering(exposure),
         changes.get("exposure_compensation", 0.0),
         () if bracket is None else _offsets(bracket),
         look,
@@ -69,15 +69,10 @@ def photograph_of(
     )
 
 
-def _meter_mode(text: str) -> str:
-    kind, _, mode = text.partition(":")
-    if kind != "auto":
-        raise UsageError(
-            f"--exposure: wanted auto, auto:centre, auto:spot or auto:matrix; got {text!r}"
-        )
-    from daguerre.exposure.metering import check_mode
+def _metering(text: str) -> str:
+    from daguerre.exposure.metering import mode_of
 
-    return check_mode(mode or "centre", "--exposure auto")
+    return mode_of("--exposure", text)
 
 
 def _offsets(text: str) -> tuple[float, ...]:

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daguerre import units as q
+from daguerre.camera.placement import Placement
 from daguerre.errors import UsageError
 from daguerre.rendering import picture
 from daguerre.rendering.names import CAMERA
@@ -48,7 +49,7 @@ class View:
         """Makes the view for a job."""
 
         def camera(scene: Scene) -> Camera:
-            given = scene.camera(self.camera)
+            given = cameras.placed(scene, self.camera)
             found: Camera = cameras.flags.camera(given, self.calibration, cameras.changes)
             if not self.shift:
                 return found
@@ -70,6 +71,7 @@ class Cameras:
         names: Value of ``--camera``.
         flags: Calibrations that replace lenses.
         changes: Parameters that the command line changes.
+        placement: Where it puts the camera.
         plate: Camera of a photograph, whose size is the default; None: there is none.
         start: Time of frame 0, s.
     """
@@ -77,13 +79,28 @@ class Cameras:
     names: str | None
     flags: CalibrationFlags
     changes: dict[str, Any]
+    placement: Placement = field(default_factory=Placement)
     plate: PlateCamera | None = None
     start: float = 0.0
 
     def views(self, stereo: str | None) -> list[View]:
         """Views of the cameras, with those of a stereo pair."""
         found = {name: one.starting(self.start) for name, one in self.flags.found.items()}
-        return views_of(self.names, found, stereo)
+        views = views_of(self.names, found, stereo)
+        if self.placement.given and len({view.camera for view in views}) > 1:
+            raise UsageError("--position, --look-at, --roll: wanted one --camera, got several")
+        return views
+
+    def placed(self, scene: Scene, name: str | None) -> Camera:
+        """Returns the scene's camera of a name at its place; a placed one needs none to be there.
+
+        Raises:
+            InputError: There is no such camera.
+        """
+        from daguerre.camera.camera import Camera
+
+        bare = name is None and scene.default_camera is None and self.placement.complete
+        return self.placement.of(Camera() if bare else scene.camera(name))
 
     def check_frames(
         self, pictures: Sequence[picture.Picture], stereo: str | None, scene: Scene
