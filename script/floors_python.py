@@ -39,6 +39,7 @@ FLOORS = [
     {"rendering"},
     {"maps", "labels", "charts"},
     {"plates"},
+    {"viewfinder"},
     {"__init__"},
     {"cli"},
     {"__main__"},

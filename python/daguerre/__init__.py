@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from .analysis.calibrate import calibrate, calibrate_all
     from .camera.camera import Camera
     from .camera.lens_scatter import LensScatter
+    from .camera.placement import look_at
     from .camera.projection import Projection
     from .camera.rolling_shutter import RollingShutter
     from .exposure import metering
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
     from .scene.lights import DirectionalLight, PointLight, SphereLight, SpotLight
     from .scene.materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
     from .scene.scene import Scene
+    from .viewfinder.notebook import view
 
 __all__ = [
     "Camera",
@@ -101,6 +103,7 @@ __all__ = [
     "light_probe",
     "load",
     "load_frame",
+    "look_at",
     "match_plate",
     "merge",
     "metering",
@@ -116,12 +119,15 @@ __all__ = [
     "stereo_pair",
     "stmaps",
     "stocks",
+    "view",
 ]
 
 # Imported on first use, so that `import daguerre` and the command line start quickly.
 _LAZY = {
     "Camera": "camera.camera",
     "LensScatter": "camera.lens_scatter",
+    "look_at": "camera.placement",
+    "view": "viewfinder.notebook",
     "Projection": "camera.projection",
     "RollingShutter": "camera.rolling_shutter",
     "Keys": "motion.values",

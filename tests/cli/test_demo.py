@@ -48,6 +48,16 @@ def test_a_denoiser_that_cannot_be_loaded_leaves_the_picture_noisy(
     assert (tmp_path / "demo.png").is_file()
 
 
+def test_it_opens_in_the_viewfinder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("websockets", reason="needs the extra view")
+    opened = []
+    monkeypatch.setattr("daguerre.viewfinder.run.run", lambda *all_: opened.append(all_) or 0)
+    assert main(["demo", str(tmp_path), "--view", "--res", "30x20"]) == 0
+    ((stage, dials, *_),) = opened
+    assert stage.settings.film.resolution == (30, 20)
+    assert dials.texts == {"lens": "double-gauss-50mm-f2", "f_stop": "2", "spp": "32"}
+
+
 def test_a_folder_that_cannot_be_made(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "file").write_text("")
     assert main(["demo", str(tmp_path / "file" / "out")]) == 5

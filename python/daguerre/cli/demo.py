@@ -27,6 +27,9 @@ def demo(
     spp: Annotated[
         int, option("--spp", metavar="N", help="Samples per pixel, at least 1 [32].")
     ] = 32,
+    view: Annotated[
+        bool, option("--view", help="Open the scene in the viewfinder, and render nothing.")
+    ] = False,
 ) -> int:
     """Renders a demo scene: a table-top at night.
 
@@ -37,8 +40,11 @@ def demo(
 
     scene = folder / "night_table.glb"
     write_scene(scene)
-    words = ["render", str(scene), "--lens", "double-gauss-50mm-f2", "--f-stop", "2"]
-    words += ["--res", res, "--spp", str(spp), "--tone", "soft", "-o", str(folder / "demo.png")]
+    words = ["view" if view else "render", str(scene), "--lens", "double-gauss-50mm-f2"]
+    words += ["--f-stop", "2", "--res", res, "--spp", str(spp), "--tone", "soft"]
+    if view:
+        return main(words)
+    words += ["-o", str(folder / "demo.png")]
     if why_not := _cannot_denoise():
         words += ["-o", str(folder / "demo.exr")]
         console.show(f"not denoised; {why_not}")

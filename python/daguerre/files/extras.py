@@ -10,11 +10,14 @@ from daguerre.errors import UsageError
 EXTRAS = {
     "DracoPy": ("DracoPy", "compression"),
     "opengl_basisu": ("opengl_basisu", "compression"),
+    "anywidget": ("anywidget", "notebook"),
     "PyOpenColorIO": ("opencolorio", "color"),
     "matplotlib": ("matplotlib", "plot"),
     "mitsuba_oidn": ("mitsuba-oidn", "denoise"),
     "rawpy": ("rawpy", "raw"),
+    "simplejpeg": ("simplejpeg", "view"),
     "tifffile": ("tifffile", "raw"),
+    "websockets": ("websockets", "view"),
     "yaml": ("PyYAML", "calibration"),
 }
 #: Extensions of glTF that need a package, with its import name.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape
@@ -14,7 +15,6 @@ from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM, Lens
 from .lens_outline import Points, clear_heights, element_outlines
 
 if TYPE_CHECKING:
-    from daguerre.analysis.bench import Bench
     from daguerre.analysis.pencils import Pencil
 
 WIDTH = 760.0  # px
@@ -61,16 +61,21 @@ def draw(lens: Lens) -> str:
     return to_svg(section(lens))
 
 
-def section(lens: Lens, film_z: float | None = None, half_image: float | None = None) -> Drawing:
-    """Draws the meridional section: elements, stop, film and rays of three fields.
+def section(
+    lens: Lens,
+    film_z: float | None = None,
+    half_image: float | None = None,
+    light: Sequence[Pencil] | None = None,
+) -> Drawing:
+    """Draws the meridional section: elements, stop, film and rays.
 
     Args:
         lens: The lens, with the gaps of its zoom and focus.
         film_z: Position of the film, mm; default: that of the prescription.
         half_image: Radius of the image circle, mm; default: the lens's, else that of 36 x 24 mm.
+        light: Light of up to three points of the meridional plane; default: of three fields.
     """
     # The bench, a layer above, aims the rays.
-    from daguerre.analysis.bench import at_film
     from daguerre.analysis.bench import half_image as stated
 
     heights = [max(pair) for pair in clear_heights(lens)]
@@ -85,7 +90,7 @@ def section(lens: Lens, film_z: float | None = None, half_image: float | None = 
     shapes: list[Line | Polygon] = [
         Line([(left, 0), (right, 0)], "#999999", 0.6, "8 3 2 3"),
         *glass,
-        *_rays(at_film(lens, image_z, half), left, top),
+        *_rays(_fields(lens, image_z, half) if light is None else light, left, top),
         *_stop(lens, heights),
         Line([(image_z, -half), (image_z, half)], "#333333", 1.8),
     ]
@@ -135,13 +140,19 @@ def _stop(lens: Lens, heights: list[float]) -> list[Line]:
     return [Line([(at, side * edge), (at, side * outer)], "#000000", 2.5) for side in (-1, 1)]
 
 
-def _rays(bench: Bench, left: float, top: float) -> list[Line]:
-    """Fans of rays of three fields, from edge to edge of the light that passes."""
+def _fields(lens: Lens, film_z: float, half: float) -> list[Pencil | None]:
+    """Light of the axis, and of two points off it."""
+    from daguerre.analysis.bench import at_film
     from daguerre.analysis.pencils import pencil
 
+    bench = at_film(lens, film_z, half)
+    return [pencil(bench, -share * bench.field_mm) for share in FIELDS]
+
+
+def _rays(pencils: Sequence[Pencil | None], left: float, top: float) -> list[Line]:
+    """Fans of rays, from edge to edge of the light that passes."""
     out = []
-    for share, color in zip(FIELDS, COLORS, strict=True):
-        light = pencil(bench, -share * bench.field_mm)
+    for light, color in zip(pencils, COLORS, strict=False):
         if light is None:
             continue
         scan = np.linspace(light.low[1], light.high[1], 161)

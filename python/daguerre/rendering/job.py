@@ -124,7 +124,7 @@ class Job:
 
     def open(self, picture: Picture) -> Session:
         """Makes and checks the session of a picture; reports warnings of each camera once."""
-        from daguerre.setup.camera_facts import camera_warnings, lit
+        from daguerre.setup.camera_facts import UNLIT, camera_warnings, lit
 
         from .session import Session
 
@@ -141,10 +141,7 @@ class Job:
             x0, y0, x1, y1 = session.crop
             check_denoised((x1 - x0, y1 - y0))
         if first and not lit(scene):
-            self.reporter.warning(
-                f"{self.name}: the scene has no lights, so the picture will be black; "
-                "add one or use --env"
-            )
+            self.reporter.warning(f"{self.name}: {UNLIT}")
         for text in session.warnings:
             self.reporter.warning(f"{self.name}: {text}")
         for text in (*(picture.view.notes(camera) if new else ()), *session.notes):

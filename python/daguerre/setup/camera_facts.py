@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from daguerre.scene.parts import Instance
     from daguerre.scene.scene import Scene
 
+    from .resolved import ResolvedCamera
+
 #: A blur of 1/1500 of the diagonal is the classical limit of "sharp" (Ray, ch. 22).
 COC_PER_DIAGONAL = 1 / 1500
 
@@ -99,10 +101,24 @@ def camera_facts(
         core_scene: Built scene, for autofocus; see :func:`needs_autofocus`.
         resolution: Width and height of the picture, px.
     """
-    from daguerre.camera.shutter import describe, shutter_time
     from daguerre.setup.camera import set_up
 
-    setup = set_up(scene, camera, resolution, core_scene)
+    return facts_of(set_up(scene, camera, resolution, core_scene), camera, scene.time, resolution)
+
+
+def facts_of(
+    setup: ResolvedCamera, camera: Camera, time: float, resolution: tuple[int, int]
+) -> Facts:
+    """Returns the numbers of a camera that is set up for the core.
+
+    Args:
+        setup: The camera as it was resolved.
+        camera: The camera as it was given.
+        time: Scene time, s.
+        resolution: Width and height of the picture, px.
+    """
+    from daguerre.camera.shutter import describe, shutter_time
+
     lens, glass = setup.lens, setup.lens.glass
     focal, stop, squeeze = float(lens.focal_length_mm), lens.f_stop, lens.squeeze
     focus = math.inf if lens.focus_distance_m is None else float(lens.focus_distance_m)
@@ -117,7 +133,7 @@ def camera_facts(
         ev100 = math.log2(stop**2 / shutter) - math.log2(camera.iso / 100)
     full = field_of_view_deg(lens.pinhole_focal_length_mm, camera.sensor_size, squeeze)
     shown = field_of_view_deg(lens.pinhole_focal_length_mm, setup.frame_size_mm, squeeze)
-    projection = camera.frozen_at(scene.time).projection
+    projection = camera.frozen_at(time).projection
     if projection is not None:
         full = shown = projection.field_of_view()
     return Facts(
@@ -255,6 +271,10 @@ def _moves(scene: Scene) -> dict[str, Any]:
     cameras = {name: list(c.motion) for name, c in scene.cameras.items() if c.motion}
     found: dict[str, Any] = {name: count for name, count in counts.items() if count}
     return found | ({"cameras": cameras} if cameras else {})
+
+
+#: Warning about a scene that is not lit.
+UNLIT = "the scene has no lights, so the picture will be black; add one or use --env"
 
 
 def lit(scene: Scene) -> bool:

@@ -1,0 +1,163 @@
+"""Dials: what a user turned, as texts of the command line's flags.
+
+One value serves the page (as JSON), the command line that repeats the picture, and the camera. The
+rows that parse the flags parse the texts of dials, so all three mean the same, to the bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from daguerre import lenses
+from daguerre.camera.camera import Camera
+from daguerre.camera.ideal import IDEAL
+from daguerre.camera.parameters import CAMERA_FLAGS, SHUTTER
+from daguerre.camera.placement import Placement
+from daguerre.checks import short
+from daguerre.development.parameters import DEVELOP
+from daguerre.errors import UsageError
+from daguerre.exposure.metering import mode_of
+from daguerre.parameters.parameter import Parameter
+from daguerre.parameters.table import Table
+from daguerre.rendering.parameters import TABLE as RENDERING
+from daguerre.rendering.settings import RenderSettings
+
+#: Longest text of a dial.
+MAX_TEXT = 200
+TIME = Parameter("time", "Time in the scene's animation, s", "s", flags=("--time",))
+EXPOSURE = Parameter(
+    "exposure",
+    "Metering mode that chooses the ISO",
+    kind="text",
+    flags=("--exposure",),
+    parse=mode_of,
+)
+#: Parameters that read files, which no page may name.
+_FILES = ("aperture_image", "front_mask", "iris_mask")
+_PICTURE = ("spp", "seed", "max_depth", "light_paths", "flare", "scatter")
+#: Dials that another dial takes back.
+_TAKEN_BACK = {
+    "lens": ("zoom", "decenter", "ripple", "focal_length", "aperture_diameter", "degree"),
+    "iso": ("exposure",),
+    "exposure": ("iso",),
+}
+
+DIALS = Table(
+    (row for row in (*CAMERA_FLAGS, *SHUTTER) if row.flags and row.name not in _FILES),
+    (RENDERING[name] for name in _PICTURE),
+    DEVELOP["look"],
+    EXPOSURE,
+    TIME,
+)
+
+
+#: Dials whose flags also take files: the texts that a page may give.
+_FROM_LIBRARY: dict[str, Callable[[str], bool]] = {
+    "lens": lambda text: text in IDEAL or text in lenses.names(),
+    "sensor": lambda text: not text.lower().endswith(".json"),
+    "shutter_curve": lambda text: text == "box" or text.startswith("trapezoid:"),
+}
+
+
+@dataclass(frozen=True)
+class Dials:
+    """Texts of the dials that are not where the scene has them.
+
+    Attributes:
+        texts: Text of each dial by the name of its parameter.
+        given: Texts of the command line, which a page may set again though they name files.
+    """
+
+    texts: Mapping[str, str] = field(default_factory=dict)
+    given: Mapping[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, texts: Mapping[str, str]) -> Dials:
+        """Makes the dials of a command line."""
+        return cls(dict(texts), dict(texts))
+
+    def turned(self, changes: Mapping[str, str | None]) -> Dials:
+        """Returns the dials after a turn; None puts one back to the scene's value.
+
+        A dial that excludes another one takes it back.
+
+        Raises:
+            UsageError: No such dial, or a text that its flag would not accept.
+        """
+        texts = dict(self.texts)
+        for name, text in changes.items():
+            row = DIALS.find(name, "view", UsageError)
+            for other in self._taken_back(row):
+                texts.pop(other, None)
+            if text is not None:
+                self._check(row, text)
+                texts[name] = text
+        return Dials(texts, self.given)
+
+    def values(self) -> dict[str, Any]:
+        """Parsed values by the name of their parameter."""
+        return {name: _value(DIALS[name], text) for name, text in self.texts.items()}
+
+    def camera(self, camera: Camera) -> Camera:
+        """Returns the camera with the dials."""
+        values = {name: v for name, v in self.values().items() if name in _CAMERA}
+        if isinstance(values.get("sensor"), tuple):
+            values["sensor_size"] = values.pop("sensor")
+        place = _parts(values, "place.")
+        if scatter := _parts(values, "scatter."):
+            from daguerre.camera.lens_scatter import LensScatter
+
+            values["scatter"] = LensScatter(**scatter)
+        return Placement(**place).of(camera).with_(**values)
+
+    def settings(self, settings: RenderSettings) -> RenderSettings:
+        """Returns the settings with the dials."""
+        values = {name: v for name, v in self.values().items() if name in _PICTURE}
+        return settings.with_(**values)
+
+    def words(self) -> list[str]:
+        """Words of the command line that has these dials."""
+        words: list[str] = []
+        for row in DIALS:
+            if (text := self.texts.get(row.name)) is None:
+                continue
+            if row.kind == "flag":
+                names = row.flags[0].split("/")
+                words.append(names[0] if _value(row, text) else names[-1])
+            else:
+                words.append(f"{row.flag}={text}")  # a minus in front would be another flag
+        return words
+
+    def _taken_back(self, row: Parameter) -> list[str]:
+        rivals = next((names for names in DIALS.rivals() if row.name in names), (row.name,))
+        return [*rivals, *_TAKEN_BACK.get(row.name, ())]
+
+    def _check(self, row: Parameter, text: str) -> None:
+        if len(text) > MAX_TEXT:
+            raise UsageError(
+                f"{row.flag}: wanted a text of at most {MAX_TEXT} characters, got {short(text)}"
+            )
+        allowed = _FROM_LIBRARY.get(row.name)
+        if allowed and text != self.given.get(row.name) and not allowed(text):
+            raise UsageError(f"{row.flag}: wanted a name of the library, got {short(text)}")
+        row.check(_value(row, text), row.flag)
+
+
+_CAMERA = {row.name for row in (*CAMERA_FLAGS, *SHUTTER)} - {"camera"}
+
+
+def _value(row: Parameter, text: str) -> Any:
+    """Parses the text of a dial as its flag does."""
+    if row.repeated:
+        return tuple(row.from_text(part) for part in text.split(" "))
+    if row.parser is None and row.kind in ("whole", "number", "flag", "choice"):
+        return row.read(text, row.flag, UsageError)
+    return row.from_text(text)
+
+
+def _parts(values: dict[str, Any], prefix: str) -> dict[str, Any]:
+    """Takes the parts of one field out of values."""
+    names = [name for name in values if name.startswith(prefix)]
+    return {name.removeprefix(prefix): values.pop(name) for name in names}

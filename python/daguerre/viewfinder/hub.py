@@ -1,0 +1,378 @@
+"""Hub: one who turns, any number who watch, and the painter between them."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import json
+import shlex
+from collections.abc import Coroutine, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+from daguerre import sensors, units
+from daguerre.camera.ideal import IDEAL
+from daguerre.development.looks import LOOKS
+from daguerre.errors import DaguerreError, UsageError
+from daguerre.files import extras
+from daguerre.lenses import library
+
+from .dials import DIALS, Dials
+from .glass import drawing_of, glass_at
+from .image import image_of, value_at
+from .messages import (
+    Draw,
+    Drawing,
+    Got,
+    Message,
+    Probe,
+    Reload,
+    Save,
+    Section,
+    Show,
+    Turn,
+    parse,
+)
+from .painter import MODELS, Drawn, Painter, Wish
+from .readings import readings_of
+from .saving import save, save_camera
+from .stage import Stage
+from .tev import Tev
+
+#: Time between two signs of life, s: browsers show pages no pings of the protocol.
+_PING_S = 10
+
+
+class Line(Protocol):
+    """Connection to a page."""
+
+    async def send(self, message: str | bytes) -> None:
+        """Sends a message."""
+
+
+@dataclass(eq=False)
+class Guest:
+    """A page that is connected.
+
+    Attributes:
+        line: Its connection.
+        turns: Whether it may turn the dials.
+        busy: Number of the picture that is on its way; None: none.
+        sent: Number of the newest picture that was sent.
+    """
+
+    line: Line
+    turns: bool
+    busy: int | None = None
+    sent: int = 0
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A picture as it goes to pages: its number, its head and its bytes."""
+
+    number: int
+    drawn: Drawn
+    bytes: bytes
+
+
+class Hub:
+    """State that all pages share.
+
+    Args:
+        stage: Scene, camera and settings.
+        dials: Dials of the command line.
+        words: Other words of the command line, with which the picture can be repeated; None: there
+            is no command line.
+        loop: Event loop of the server.
+        folder: Folder for saved files.
+        tev: Viewer that gets each whole picture, too; None: none.
+    """
+
+    def __init__(
+        self,
+        stage: Stage,
+        dials: Dials,
+        words: Sequence[str] | None,
+        loop: asyncio.AbstractEventLoop,
+        folder: Path = Path(),
+        tev: Tev | None = None,
+    ) -> None:
+        self._stage, self._words, self._loop, self._folder = stage, words, loop, folder
+        self.dials, self.number, self.error = dials, -1, ""
+        self._show = Show(denoised=False, models=False)
+        self._tev = tev
+        self._readings: dict[str, Any] = {}
+        self._sheet: Sheet | None = None
+        self._sheets = 0
+        self._guests: list[Guest] = []
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._painter = Painter(self.publish, self._failed)
+        self._wish()
+        self._start(self._watch())
+
+    def close(self) -> None:
+        """Ends the painter."""
+        for task in self._tasks:
+            task.cancel()
+        self._painter.close()
+        if self._tev is not None:
+            self._tev.close()
+
+    def join(self, line: Line) -> Guest:
+        """Lets a page in; the first one turns."""
+        guest = Guest(line, not any(other.turns for other in self._guests))
+        self._guests.append(guest)
+        return guest
+
+    async def leave(self, guest: Guest) -> None:
+        """Forgets a page; if it turned, the next one does."""
+        self._guests.remove(guest)
+        if guest.turns and self._guests:
+            self._guests[0].turns = True
+            await self._tell(self._guests[0], {"role": "turns"})
+
+    async def welcome(self, guest: Guest) -> None:
+        """Sends a page all that it shows at first."""
+        await self._tell(guest, {"role": "turns" if guest.turns else "watches"})
+        await self._tell(guest, {"open": self._opened()})
+        await self._tell(guest, self._state())
+        await self._offer(guest)
+
+    async def hear(self, guest: Guest, text: str | bytes) -> None:
+        """Acts on a message of a page; a wrong one is answered by its reason."""
+        try:
+            await self._act(guest, parse(text))
+        except Exception as error:  # whatever it is, the page stays
+            await self._tell(guest, {"refused": _reason(error)})
+
+    @property
+    def command(self) -> str:
+        """Command line that draws the picture of these dials; empty: there is none."""
+        if self._words is None:
+            return ""
+        return shlex.join(["daguerre", "render", *self._words, *self.dials.words()])
+
+    @property
+    def picture(self) -> Drawn | None:
+        """Newest picture; None: none is drawn yet."""
+        return None if self._sheet is None else self._sheet.drawn
+
+    async def _act(self, guest: Guest, message: Message) -> None:
+        match message:
+            case Got(number):
+                if guest.busy == number:
+                    guest.busy = None
+                    await self._offer(guest)
+            case Probe(x, y):
+                await self._tell(guest, {"value": self._value(x, y)})
+            case Section(x, y):
+                found = await asyncio.to_thread(self._section, x, y)
+                await self._tell(guest, {"section": found})
+            case Drawing(name):
+                await self._tell(guest, {"drawing": await asyncio.to_thread(drawing_of, name)})
+            case _ if not guest.turns:
+                raise UsageError("view: this page watches; another one turns the dials")
+            case Turn(changes):
+                await self._turn(self.dials.turned(changes))
+            case Draw(samples):
+                await self._turn(self.dials.turned({"spp": str(samples)}))
+            case Save(kind):
+                path = await asyncio.to_thread(self._save, kind)
+                await self._tell_all({"saved": str(path)})
+            case Show():
+                await self._change_show(message)
+            case Reload():
+                self._stage = await asyncio.to_thread(self._stage.reload)
+                await self._turn(self.dials)
+                await self._tell_all({"open": self._opened()})
+
+    async def _turn(self, dials: Dials) -> None:
+        self._stage.shot(dials)  # or an error, and everything stays as it is
+        self.dials, self.error = dials, ""
+        self._wish()
+        await self._tell_all(self._state())
+
+    def _wish(self) -> None:
+        """Has the picture drawn anew."""
+        self.number += 1
+        self._painter.wish(Wish(self.number, self._stage, self.dials, self._show.models))
+
+    async def _change_show(self, show: Show) -> None:
+        """Shows pictures in another way; denoising begins with the picture that is there."""
+        if show.denoised:
+            extras.need("mitsuba_oidn", "denoise")
+        if show.models and self._stage.shot(self.dials).camera.lens in IDEAL:
+            raise UsageError("show: wanted a lens of the library to compare its models")
+        redraws, self._show = show.models != self._show.models, show
+        if redraws:
+            self._wish()
+        elif self._sheet is not None and self._sheet.drawn.wish.number == self.number:
+            await asyncio.to_thread(self.publish, self._sheet.drawn)
+        await self._tell_all(self._state())
+
+    async def _watch(self) -> None:
+        """Tells the pages when the scene's file changes, and at times that the server lives."""
+        path = self._stage.scene.path
+        known = _stamp(path)
+        for second in itertools.count(1):
+            await asyncio.sleep(1)
+            now = _stamp(path)
+            if now not in (known, None):
+                known = now
+                await self._tell_all({"changed": "" if path is None else path.name})
+            if second % _PING_S == 0:
+                await self._tell_all({"ping": second})
+
+    def _value(self, x: int, y: int) -> dict[str, Any] | None:
+        if self._sheet is None or self._sheet.drawn.panels:
+            return None
+        drawn = self._sheet.drawn
+        width, height = self._stage.shot(drawn.wish.dials).settings.film.resolution
+        frame = drawn.frame
+        found = value_at(frame, x * frame.width // width, y * frame.height // height)
+        return found and found | {"picture": self._sheet.number, "samples": drawn.samples}
+
+    def _section(self, x: float, y: float) -> dict[str, Any]:
+        if self._sheet is None:
+            raise UsageError("section: wanted a picture; it is not drawn yet")
+        drawn = self._sheet.drawn
+        width, height = self._stage.shot(drawn.wish.dials).settings.film.resolution
+        own = drawn.session.prepared.setup.resolution
+        return glass_at(drawn.session, x * own[0] / width, y * own[1] / height) | {"x": x, "y": y}
+
+    def _save(self, kind: str) -> Path:
+        if self._sheet is None:
+            raise UsageError("save: wanted a picture; it is not drawn yet")
+        if kind == "json":
+            return save_camera(self._sheet.drawn, self._folder, self.command, self.dials.texts)
+        return save(self._sheet.drawn, self._folder, kind)
+
+    def _opened(self) -> dict[str, Any]:
+        """All that the rings can choose from."""
+        scene, settings = self._stage.scene, self._stage.settings
+        return {
+            "scene": "scene" if scene.path is None else scene.path.name,
+            "lenses": _lenses(),
+            "shutter_types": list(DIALS["shutter_type"].choices),
+            "sensors": [*units.SENSORS, *sensors.names()],
+            "looks": list(LOOKS),
+            "cameras": list(scene.cameras),
+            "duration_s": scene.duration,
+            "denoises": not extras.missing("mitsuba_oidn"),
+            "models": list(MODELS),
+            "resolution": settings.film.resolution,
+            "spp": settings.sampling.most,
+        }
+
+    def _state(self) -> dict[str, Any]:
+        return {
+            "state": {
+                "turn": self.number,
+                "dials": dict(self.dials.texts),
+                "command": self.command,
+                "readings": self._readings,
+                "show": asdict(self._show),
+                "error": self.error,
+            }
+        }
+
+    # The painter's thread
+
+    def publish(self, drawn: Drawn) -> None:
+        """Develops a picture and sends it to the pages; may be called by any thread."""
+        if self._tev is not None:
+            self._tev.send(drawn)
+        image = image_of(drawn, denoised=self._show.denoised)
+        readings = readings_of(drawn)
+        self._sheets += 1
+        head = {
+            "picture": self._sheets,
+            "turn": drawn.wish.number,
+            "size": image.size,
+            "kind": image.kind,
+            "samples": drawn.samples,
+            "rests": drawn.rests,
+            "panels": [panel.model for panel in drawn.panels],
+            "histogram": image.histogram,
+        }
+        text = json.dumps(head).encode()
+        sheet = Sheet(self._sheets, drawn, len(text).to_bytes(4, "little") + text + image.bytes)
+        self._loop.call_soon_threadsafe(self._hand_out, sheet, readings)
+
+    def _failed(self, wish: Wish, error: Exception) -> None:
+        self._loop.call_soon_threadsafe(self._report, wish, _reason(error))
+
+    # The server's thread
+
+    def _hand_out(self, sheet: Sheet, readings: dict[str, Any]) -> None:
+        if sheet.drawn.wish.number != self.number:
+            return  # a newer wish came
+        self._sheet = sheet
+        if readings != self._readings:
+            self._readings = readings
+            self._start(self._tell_all(self._state()))
+        for guest in self._guests:
+            self._start(self._offer(guest))
+
+    def _report(self, wish: Wish, text: str) -> None:
+        """Says why a wish cannot be drawn, and puts the dials back to those that could."""
+        if wish.number != self.number:
+            return
+        if self._sheet is not None and self._sheet.drawn.wish.dials != self.dials:
+            self.dials = self._sheet.drawn.wish.dials
+            self._wish()
+        self.error = text
+        self._start(self._tell_all(self._state()))
+
+    def _start(self, work: Coroutine[Any, Any, None]) -> None:
+        task = self._loop.create_task(work)
+        self._tasks.add(task)  # the loop itself keeps no hold of it
+        task.add_done_callback(self._tasks.discard)
+
+    async def _offer(self, guest: Guest) -> None:
+        """Sends a page the newest picture, unless one is on its way."""
+        sheet = self._sheet
+        if sheet is None or guest.busy is not None or guest.sent == sheet.number:
+            return
+        guest.busy = guest.sent = sheet.number
+        await guest.line.send(sheet.bytes)
+
+    async def _tell(self, guest: Guest, message: dict[str, Any]) -> None:
+        await guest.line.send(json.dumps(message))
+
+    async def _tell_all(self, message: dict[str, Any]) -> None:
+        text = json.dumps(message)
+        await asyncio.gather(*(guest.line.send(text) for guest in self._guests))
+
+
+def _reason(error: Exception) -> str:
+    """Message of an error; one that a user cannot correct says whose fault it is."""
+    match error:
+        case DaguerreError():
+            return str(error)
+        case MemoryError():
+            return "memory: wanted more than there is; try a smaller picture"
+        case OSError(strerror=str(reason)):
+            return f"{error.filename}: {reason}"
+    what = f"{type(error).__name__}: {error}"
+    return f"internal: {what}; this is a fault of daguerre, please report it"
+
+
+def _lenses() -> list[dict[str, Any]]:
+    """Lenses to choose from, ideal ones first."""
+    ideal = [{"name": name, "title": name, "year": None, "drawn": False} for name in IDEAL]
+    return ideal + [
+        {"name": one.name, "title": one.title, "year": one.year, "drawn": True}
+        for one in library.entries()
+    ]
+
+
+def _stamp(path: Path | None) -> tuple[int, int] | None:
+    """Time and size of a file; None: there is none."""
+    try:
+        facts = None if path is None else path.stat()
+    except OSError:
+        return None
+    return None if facts is None else (facts.st_mtime_ns, facts.st_size)

@@ -1,0 +1,198 @@
+"""Messages from the page: JSON texts, checked before anything reads them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from daguerre import lenses
+from daguerre.checks import short
+from daguerre.errors import UsageError
+
+from .dials import DIALS
+
+#: Longest message, bytes.
+MAX_BYTES = 64 << 10
+#: File types that a page may save.
+SAVED = ("exr", "png", "jpg", "dng", "json")
+
+
+@dataclass(frozen=True)
+class Turn:
+    """Dials that the user turned; None: back to the scene's value."""
+
+    changes: Mapping[str, str | None]
+
+
+@dataclass(frozen=True)
+class Got:
+    """Picture that the page has shown, so that the next one may follow."""
+
+    picture: int
+
+
+@dataclass(frozen=True)
+class Probe:
+    """Pixel of the whole picture whose values the page asks for."""
+
+    x: int
+    y: int
+
+
+@dataclass(frozen=True)
+class Save:
+    """File type to save the picture in."""
+
+    kind: str
+
+
+@dataclass(frozen=True)
+class Draw:
+    """Number of samples per pixel to draw here."""
+
+    samples: int
+
+
+@dataclass(frozen=True)
+class Section:
+    """Point of the picture whose rays through the lens, and spread, the page asks for."""
+
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
+class Reload:
+    """Request to load the scene again, after its file changed."""
+
+
+@dataclass(frozen=True)
+class Show:
+    """Way in which pictures are shown: denoised, or by three models of the lens side by side."""
+
+    denoised: bool
+    models: bool
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Name of a lens of the library whose drawing the page asks for."""
+
+    lens: str
+
+
+Message = Turn | Got | Probe | Save | Draw | Section | Reload | Show | Drawing
+
+
+def parse(text: str | bytes) -> Message:
+    """Parses a message.
+
+    Raises:
+        UsageError: The message has another form.
+    """
+    if isinstance(text, bytes):
+        raise UsageError("message: wanted text, got bytes")
+    try:
+        data = json.loads(text, parse_constant=_no_constant, object_pairs_hook=_once)
+    except (ValueError, RecursionError) as error:
+        raise UsageError(f"message: wanted JSON, got {short(text)}") from error
+    if not isinstance(data, dict) or len(data) != 1:
+        raise UsageError(f"message: wanted one request, got {short(text)}")
+    ((name, value),) = data.items()
+    if name not in _READERS:
+        raise UsageError(f"message: wanted one of {', '.join(_READERS)}, got {short(name)}")
+    return _READERS[name](value)
+
+
+def _turn(value: Any) -> Turn:
+    if not isinstance(value, dict):
+        raise UsageError(f"turn: wanted dials by name, got {short(value)}")
+    for name, text in value.items():
+        DIALS.find(name, "turn", UsageError)
+        if text is not None and not isinstance(text, str):
+            raise UsageError(f"turn: {name}: wanted a text or null, got {short(text)}")
+    return Turn(value)
+
+
+def _save(value: Any) -> Save:
+    if value not in SAVED:
+        raise UsageError(f"save: wanted one of {', '.join(SAVED)}, got {short(value)}")
+    return Save(value)
+
+
+def _draw(value: Any) -> Draw:
+    return Draw(_whole(value, "draw", 1, 1 << 20))
+
+
+def _got(value: Any) -> Got:
+    return Got(_whole(value, "got", 0, 1 << 53))
+
+
+def _probe(value: Any) -> Probe:
+    x, y = _pair(value, "probe")
+    return Probe(int(x), int(y))
+
+
+def _section(value: Any) -> Section:
+    return Section(*_pair(value, "section"))
+
+
+def _reload(value: Any) -> Reload:
+    if value is not True:
+        raise UsageError(f"reload: wanted true, got {short(value)}")
+    return Reload()
+
+
+def _show(value: Any) -> Show:
+    names = ("denoised", "models")
+    fits = isinstance(value, dict) and value.keys() == set(names)
+    if not fits or not all(isinstance(value[name], bool) for name in names):
+        raise UsageError(f"show: wanted denoised and models, true or false; got {short(value)}")
+    return Show(**value)
+
+
+def _drawing(value: Any) -> Drawing:
+    if not isinstance(value, str) or value not in lenses.names():
+        raise UsageError(f"drawing: wanted a lens of the library, got {short(value)}")
+    return Drawing(value)
+
+
+def _whole(value: Any, where: str, low: int, high: int) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+        raise UsageError(f"{where}: wanted a whole number of {low} to {high}, got {short(value)}")
+    return value
+
+
+def _pair(value: Any, where: str) -> tuple[float, float]:
+    fits = isinstance(value, list) and len(value) == 2
+    if not fits or not all(
+        isinstance(v, int | float) and not isinstance(v, bool) and abs(v) < 1e6 for v in value
+    ):
+        raise UsageError(f"{where}: wanted a pixel [x, y], got {short(value)}")
+    return float(value[0]), float(value[1])
+
+
+def _no_constant(name: str) -> float:
+    raise ValueError(name)  # NaN and infinities are no JSON
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError("a name twice")
+    return found
+
+
+_READERS: dict[str, Callable[[Any], Message]] = {
+    "turn": _turn,
+    "got": _got,
+    "probe": _probe,
+    "save": _save,
+    "draw": _draw,
+    "section": _section,
+    "reload": _reload,
+    "show": _show,
+    "drawing": _drawing,
+}

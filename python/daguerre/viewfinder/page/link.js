@@ -1,0 +1,71 @@
+// link.js -- the socket to the renderer: messages out, pictures in, back again after a break.
+
+const RETRY_MS = [200, 500, 1000, 2000];
+const SILENCE_MS = 25000;   // the server pings; a socket that is silent longer is dead
+
+export class Link {
+  /** handlers: told(message), picture(head, bytes), status(text). */
+  constructor(handlers) {
+    this.handlers = handlers;
+    this.token = decodeURIComponent(location.hash.slice(1));
+    this.tries = 0;
+    this.open();
+    // A lid that opens, a network that returns: do not wait for the next try.
+    for (const name of ['online', 'focus', 'visibilitychange']) addEventListener(name, () => this.wake());
+  }
+
+  open() {
+    clearTimeout(this.timer);
+    const url = new URL('live', document.baseURI);
+    url.protocol = url.protocol.replace('http', 'ws');
+    const socket = new WebSocket(url);
+    this.socket = socket;
+    socket.binaryType = 'arraybuffer';
+    socket.onopen = () => {
+      socket.send(this.token);
+      this.alive();
+    };
+    socket.onmessage = (event) => {
+      if (socket !== this.socket) return;
+      this.tries = 0;
+      this.alive();
+      if (typeof event.data === 'string') {
+        const message = JSON.parse(event.data);
+        if (!message.ping) this.handlers.told(message);
+      } else this.unpack(event.data);
+    };
+    socket.onclose = (event) => {
+      if (socket === this.socket) this.lost(event);
+    };
+  }
+
+  unpack(bytes) {
+    const length = new DataView(bytes).getUint32(0, true);
+    const head = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));
+    this.handlers.picture(head, new Uint8Array(bytes, 4 + length));
+  }
+
+  alive() {
+    clearTimeout(this.silence);
+    this.silence = setTimeout(() => this.socket.close(), SILENCE_MS);
+  }
+
+  lost(event) {
+    clearTimeout(this.silence);
+    const final = {
+      4401: 'This page has the wrong token. Open the address that daguerre view prints.',
+      4429: 'Too many pages watch this picture. Close one, and reload this page.',
+    }[event.code];
+    this.handlers.status(final ?? 'Connection lost; trying again');
+    if (final) return;
+    this.timer = setTimeout(() => this.open(), RETRY_MS[Math.min(this.tries++, RETRY_MS.length - 1)]);
+  }
+
+  wake() {
+    if (document.visibilityState === 'visible' && this.socket.readyState === WebSocket.CLOSED) this.open();
+  }
+
+  send(message) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+}

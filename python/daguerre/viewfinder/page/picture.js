@@ -1,0 +1,161 @@
+// picture.js -- the canvas: the picture, and what photographers lay over it.
+
+const ZEBRA = 250, PEAK = 60;
+
+export class Picture {
+  constructor(canvas, over) {
+    this.canvas = canvas;
+    this.over = over;
+    this.context = canvas.getContext('2d', {willReadFrequently: true});
+    this.head = null;
+    this.last = null;   // bitmap of the picture before the last turn
+    this.shows = {grid: false, horizon: false, zebra: false, peaking: false};
+    this.tilt = null;
+  }
+
+  /** Shows a picture; resolves when it is on the screen. */
+  async show(head, bytes) {
+    const bitmap = head.kind === 'rgb' ? fromRgb(bytes, head.size)
+      : await createImageBitmap(new Blob([bytes], {type: 'image/jpeg'}));
+    if (this.head && head.picture < this.head.picture) return false;   // a newer one was faster
+    if (this.head && head.turn !== this.head.turn) this.last = this.bitmap;
+    this.bitmap = bitmap;
+    this.head = head;
+    this.draw(bitmap);
+    this.overlay();
+    return true;
+  }
+
+  draw(bitmap) {
+    this.canvas.width = bitmap.width;
+    this.canvas.height = bitmap.height;
+    this.context.drawImage(bitmap, 0, 0);
+  }
+
+  compare(on) {
+    if (on && this.last) this.draw(this.last);
+    else if (this.bitmap) this.draw(this.bitmap);
+    this.overlay();
+  }
+
+  toggle(name, on) {
+    this.shows[name] = on;
+    this.overlay();
+  }
+
+  overlay() {
+    const {over, canvas} = this;
+    over.width = canvas.width;
+    over.height = canvas.height;
+    const context = over.getContext('2d');
+    context.clearRect(0, 0, over.width, over.height);
+    if (!over.width) return;
+    if (this.shows.zebra || this.shows.peaking) this.marks(context);
+    if (this.shows.grid) this.grid(context);
+    if (this.shows.horizon && this.tilt) this.horizon(context);
+  }
+
+  /** Takes the camera's roll (degrees), view direction and vertical field of view (degrees). */
+  lean(roll, forward, field) {
+    this.tilt = {roll: (roll * Math.PI) / 180, pitch: Math.asin(Math.max(-1, Math.min(1, forward[1]))),
+      field: (field * Math.PI) / 180};
+    if (this.shows.horizon) this.overlay();
+  }
+
+  /** The horizon as a pinhole sees it, gold where the camera is level. */
+  horizon(context) {
+    const {width, height} = this.over, {roll, pitch, field} = this.tilt;
+    const down = (Math.tan(pitch) / Math.tan(field / 2)) * (height / 2);
+    context.save();
+    context.translate(width / 2, height / 2);
+    context.rotate(roll);
+    context.strokeStyle = Math.abs(roll) < 0.002 ? '#e8b84a' : 'rgba(255,255,255,.8)';
+    context.lineWidth = Math.max(1, width / 480);
+    context.beginPath();
+    context.moveTo(-width, down);
+    context.lineTo(width, down);
+    context.stroke();
+    context.restore();
+  }
+
+  marks(context) {
+    const {width, height} = this.canvas;
+    const seen = this.context.getImageData(0, 0, width, height).data;
+    const out = context.createImageData(width, height);
+    const luma = new Float32Array(width * height);
+    for (let i = 0, p = 0; i < luma.length; i++, p += 4) {
+      luma[i] = 0.2126 * seen[p] + 0.7152 * seen[p + 1] + 0.0722 * seen[p + 2];
+    }
+    for (let y = 1; y < height - 1; y++) {
+      for (let x = 1; x < width - 1; x++) {
+        const i = y * width + x, p = 4 * i;
+        const clipped = Math.max(seen[p], seen[p + 1], seen[p + 2]) >= ZEBRA;
+        if (this.shows.zebra && clipped && (x + y) % 8 < 4) out.data.set([20, 20, 20, 220], p);
+        if (this.shows.peaking) {
+          const edge = Math.abs(luma[i - 1] + luma[i + 1] + luma[i - width] + luma[i + width] - 4 * luma[i]);
+          if (edge > PEAK) out.data.set([255, 60, 40, 230], p);
+        }
+      }
+    }
+    context.putImageData(out, 0, 0);
+  }
+
+  grid(context) {
+    const {width, height} = this.over;
+    context.strokeStyle = 'rgba(255,255,255,.55)';
+    context.lineWidth = Math.max(1, width / 960);
+    context.beginPath();
+    for (const t of [1 / 3, 2 / 3]) {
+      context.moveTo(width * t, 0);
+      context.lineTo(width * t, height);
+      context.moveTo(0, height * t);
+      context.lineTo(width, height * t);
+    }
+    context.stroke();
+  }
+
+  /** Pixel of the whole picture under a pointer. */
+  pixel(event, [width, height]) {
+    const box = this.canvas.getBoundingClientRect();
+    const x = ((event.clientX - box.left) / box.width) * width;
+    const y = ((event.clientY - box.top) / box.height) * height;
+    return [Math.floor(Math.min(width - 1, Math.max(0, x))), Math.floor(Math.min(height - 1, Math.max(0, y)))];
+  }
+}
+
+/** A canvas with the pixels of a small picture, which needs no decoding. */
+function fromRgb(bytes, [width, height]) {
+  const canvas = document.createElement('canvas');
+  canvas.width = width;
+  canvas.height = height;
+  const context = canvas.getContext('2d');
+  const image = context.createImageData(width, height);
+  for (let from = 0, to = 0; from < bytes.length; from += 3, to += 4) {
+    image.data[to] = bytes[from];
+    image.data[to + 1] = bytes[from + 1];
+    image.data[to + 2] = bytes[from + 2];
+    image.data[to + 3] = 255;
+  }
+  context.putImageData(image, 0, 0);
+  return canvas;
+}
+
+export function drawHistogram(canvas, histogram) {
+  const context = canvas.getContext('2d');
+  const {width, height} = canvas;
+  context.clearRect(0, 0, width, height);
+  context.globalCompositeOperation = 'lighter';
+  const top = Math.max(...histogram.flatMap((line) => line.slice(1, -1)), 1e-4);
+  histogram.forEach((line, c) => {
+    context.fillStyle = ['rgb(190,50,50)', 'rgb(50,160,60)', 'rgb(60,90,200)'][c];
+    context.beginPath();
+    context.moveTo(0, height);
+    line.forEach((share, i) => {
+      const x = (i * width) / (line.length - 1);
+      context.lineTo(x, height - Math.min(1, Math.sqrt(share / top)) * (height - 2));
+    });
+    context.lineTo(width, height);
+    context.fill();
+  });
+  context.globalCompositeOperation = 'source-over';
+}

@@ -1,0 +1,109 @@
+"""Readings: the numbers of a camera that the page shows beside its dials."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.camera.placement import look_at
+from daguerre.errors import DaguerreError
+from daguerre.exposure.metering import meter
+from daguerre.rendering.session import Session
+from daguerre.setup.camera_facts import UNLIT, camera_warnings, facts_of, lit
+
+from .painter import Drawn
+from .stage import Shot
+
+
+def readings_of(drawn: Drawn) -> dict[str, Any]:
+    """Numbers of the camera that drew a picture, as JSON values; infinity is null."""
+    session, shot = drawn.session, drawn.shot
+    facts = facts_of(
+        session.prepared.setup, session.camera, session.scene.time, session.prepared.size
+    )
+    return {
+        "lens": facts.lens,
+        "focal_length_mm": facts.focal_length_mm,
+        "f_stop": facts.f_stop,
+        "t_stop": facts.t_stop,
+        "zoom_mm": facts.zoom_mm,
+        "zoom_range_mm": facts.zoom_range_mm,
+        "field_of_view_deg": facts.picture_field_of_view_deg,
+        "focus_m": _finite(facts.focus_m),
+        "hyperfocal_m": facts.hyperfocal_m,
+        "near_m": facts.near_m,
+        "far_m": _finite(facts.far_m),
+        "shutter_s": facts.shutter_s,
+        "shutter": facts.shutter,
+        "ev100": facts.ev100,
+        "warnings": _warnings(session),
+        "meter": _meter(drawn),
+        **_body(session, shot),
+    }
+
+
+def _warnings(session: Session) -> list[str]:
+    """Warnings as the command line gives them."""
+    unlit = [] if lit(session.scene) else [UNLIT]
+    return [*camera_warnings(session.camera), *unlit, *session.warnings]
+
+
+def _meter(drawn: Drawn) -> dict[str, float] | None:
+    """Light that a meter reads: of the scene, and of a lamp on it by the same exposure value.
+
+    Lux are those of an incident meter with the constant C = 250 (ISO 2720): E = 2.5 * 2^EV100.
+    """
+    photograph = drawn.shot.photograph
+    try:
+        read = meter(drawn.frame, photograph.meters or "centre", at=drawn.shot.camera.focus_at)
+    except DaguerreError:  # a black picture, or a pinhole, which has no exposure
+        return None
+    return {
+        "luminance": read.luminance,
+        "ev100": read.ev100,
+        "lux": 2.5 * 2.0**read.ev100,
+        "iso": read.iso * 2.0**photograph.ev,
+    }
+
+
+def _body(session: Session, shot: Shot) -> dict[str, Any]:
+    """Positions of the dials of the body, and the place of the camera."""
+    camera = session.camera.frozen_at(session.scene.time)
+    white, pose = camera.white_balance, np.asarray(camera.transform, np.float64)
+    lens = session.prepared.setup.lens
+    return {
+        "fps": camera.fps,
+        "iso": camera.iso,
+        "ev": camera.exposure_compensation,
+        "white_k": white if isinstance(white, float | int) else None,
+        "blades": camera.blades,
+        "widest": None if lens.f_stop is None else widest_of(session),
+        "closest_m": None,
+        "spp": shot.settings.sampling.most,
+        "time_s": session.scene.time,
+        "place": {
+            "position": pose[:3, 3].tolist(),
+            "forward": (-pose[:3, 2] / np.linalg.norm(pose[:3, 2])).tolist(),
+            "roll": roll_of(pose),
+        },
+    }
+
+
+def widest_of(session: Session) -> float:
+    """Smallest f-stop of the lens; an ideal lens has none, and begins at f/1."""
+    glass = session.prepared.setup.lens.glass
+    return 1.0 if glass is None else float(glass.lens.first_order().f_number)
+
+
+def roll_of(pose: NDArray[np.float64]) -> float:
+    """Roll of a camera from level, degrees; see ``look_at``."""
+    level = look_at(tuple(pose[:3, 3]), tuple(pose[:3, 3] - pose[:3, 2]))
+    right = pose[:3, 0] / np.linalg.norm(pose[:3, 0])
+    return float(np.degrees(np.arctan2(-right @ level[:3, 1], right @ level[:3, 0])))
+
+
+def _finite(value: float | None) -> float | None:
+    return value if value is not None and math.isfinite(value) else None

@@ -1,0 +1,83 @@
+"""Run: opens the server, prints the page's address, and serves until it is stopped."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import webbrowser
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from daguerre.errors import UsageError
+
+from .dials import Dials
+from .door import Door, check_origin, is_loopback, new_token
+from .hub import Hub
+from .server import free_socket, serve
+from .stage import Stage
+from .tev import Tev
+
+INTERRUPTED = 0  # a viewfinder ends by Ctrl-C alone
+
+
+@dataclass(frozen=True)
+class Listening:
+    """Address of the server.
+
+    Attributes:
+        host: Address to listen on.
+        port: Port; if it is in use, the next free one.
+        token: Token of the page; None: a new random one.
+        browser: Whether to open a browser.
+        proxies: Addresses of proxies that lead here, such as ``https://hub.example``.
+        tev: Address of a tev that gets the pictures, too; None: none.
+    """
+
+    host: str = "127.0.0.1"
+    port: int = 8321
+    token: str | None = None
+    browser: bool = True
+    proxies: tuple[str, ...] = ()
+    tev: str | None = None
+
+
+def run(
+    stage: Stage,
+    dials: Dials,
+    words: Sequence[str],
+    where: Listening,
+    say: Callable[[str], None],
+) -> int:
+    """Serves a viewfinder until Ctrl-C.
+
+    Args:
+        stage: Scene, camera and settings.
+        dials: Dials of the command line.
+        words: Its other words.
+        where: Address of the server.
+        say: Prints a line.
+
+    Raises:
+        UsageError: The address cannot be used.
+    """
+    if not is_loopback(where.host):
+        if where.token is None:
+            raise UsageError(f"--host {where.host}: wanted --token too: others can reach it")
+        say(f"warning: whoever reaches {where.host} and has the token can see and turn the camera")
+    for proxy in where.proxies:
+        check_origin(proxy)
+    tev = None if where.tev is None else Tev(where.tev)
+    sock = free_socket(where.host, where.port)
+    port = sock.getsockname()[1]
+    if port != where.port and where.port:
+        say(f"port {where.port} is in use; this is {port}")
+    token = where.token or new_token()
+    host = f"[{where.host}]" if ":" in where.host else where.host
+    url = f"http://{host}:{port}/#{token}"
+    say(url)
+    if where.browser:
+        webbrowser.open(url)
+    door = Door.at(where.host, port, token, where.proxies)
+    with contextlib.suppress(KeyboardInterrupt):
+        asyncio.run(serve(sock, door, lambda loop: Hub(stage, dials, words, loop, tev=tev)))
+    return INTERRUPTED

@@ -1,0 +1,195 @@
+"""Server: the page's files, and a WebSocket for each page that has the token."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import errno
+import socket
+from collections.abc import Callable
+from dataclasses import dataclass
+from http import HTTPStatus
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
+
+from daguerre.errors import UsageError
+
+from .door import HEADERS, Door
+from .hub import Hub
+from .messages import MAX_BYTES
+
+if TYPE_CHECKING:
+    from websockets.asyncio.server import ServerConnection
+    from websockets.http11 import Request, Response
+
+PAGE = Path(__file__).parent / "page"
+KINDS = {
+    ".html": "text/html; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".svg": "image/svg+xml",
+}
+SOCKET = "/live"
+#: Seconds within which a page sends its token.
+PATIENCE_S = 5.0
+#: Pages at once.
+MOST_GUESTS = 16
+#: Connections at once, with those that have not sent a token yet.
+MOST_LINES = 64
+#: Ports to try after one that is in use.
+TRIES = 20
+
+
+@dataclass
+class Server:
+    """A viewfinder's server.
+
+    Attributes:
+        door: Who is let in.
+        hub: State that the pages share.
+    """
+
+    door: Door
+    hub: Hub
+    guests: int = 0
+    lines: int = 0
+
+    def answer(self, connection: ServerConnection, request: Request) -> Response | None:
+        """Answers a request with a file of the page; None: a WebSocket."""
+        path = urlsplit(request.path).path
+        if not self.door.knows_host(request.headers.get_all("Host")):
+            return _plain(connection, HTTPStatus.MISDIRECTED_REQUEST, "wrong Host")
+        if path == SOCKET:
+            if not self.door.knows_origin(request.headers.get_all("Origin")):
+                return _plain(connection, HTTPStatus.FORBIDDEN, "wrong Origin")
+            if self.lines >= MOST_LINES:
+                return _plain(connection, HTTPStatus.SERVICE_UNAVAILABLE, "too many connections")
+            return None
+        # Before version 17, websockets itself refuses all but GET.
+        if getattr(request, "method", "GET") not in ("GET", "HEAD"):
+            return _plain(connection, HTTPStatus.METHOD_NOT_ALLOWED, "wanted GET")
+        body = FILES.get("/index.html" if path == "/" else path)
+        if body is None:
+            return _plain(connection, HTTPStatus.NOT_FOUND, "no such file")
+        return _file(connection, path, body)
+
+    async def talk(self, connection: ServerConnection) -> None:
+        """Serves a WebSocket until it closes."""
+        self.lines += 1
+        try:
+            if await self._has_token(connection):
+                await self._serve(connection)
+        finally:
+            self.lines -= 1
+
+    async def _has_token(self, connection: ServerConnection) -> bool:
+        try:
+            first = await asyncio.wait_for(connection.recv(), PATIENCE_S)
+        except TimeoutError:
+            await connection.close(4408, "no token")
+            return False
+        if isinstance(first, str) and self.door.opens(first):
+            if self.guests < MOST_GUESTS:
+                return True
+            await connection.close(4429, "too many pages")
+            return False
+        await connection.close(4401, "wrong token")
+        return False
+
+    async def _serve(self, connection: ServerConnection) -> None:
+        self.guests += 1
+        guest = self.hub.join(_Line(connection))
+        try:
+            await self.hub.welcome(guest)
+            async for message in connection:
+                await self.hub.hear(guest, message)
+        finally:
+            self.guests -= 1
+            await self.hub.leave(guest)
+
+
+class _Line:
+    """Connection of the hub to a page; one that has closed takes messages and drops them."""
+
+    def __init__(self, connection: ServerConnection) -> None:
+        self._connection = connection
+
+    async def send(self, message: str | bytes) -> None:
+        from websockets.exceptions import ConnectionClosed
+
+        with contextlib.suppress(ConnectionClosed):
+            await self._connection.send(message)
+
+
+def _read_files() -> dict[str, bytes]:
+    """Files of the page by path, read once: no request reaches the disk."""
+    return {
+        f"/{path.relative_to(PAGE).as_posix()}": path.read_bytes()
+        for path in sorted(PAGE.rglob("*"))
+        if path.suffix in KINDS
+    }
+
+
+FILES = _read_files()
+
+
+def _plain(connection: ServerConnection, status: HTTPStatus, text: str) -> Response:
+    return _with_headers(connection.respond(status, f"{text}\n"))
+
+
+def _file(connection: ServerConnection, path: str, body: bytes) -> Response:
+    answer = connection.respond(HTTPStatus.OK, "")
+    answer.body = body
+    del answer.headers["Content-Type"], answer.headers["Content-Length"]
+    answer.headers["Content-Type"] = KINDS[Path(path).suffix or ".html"]
+    answer.headers["Content-Length"] = str(len(body))
+    return _with_headers(answer)
+
+
+def _with_headers(answer: Response) -> Response:
+    for name, value in HEADERS.items():
+        answer.headers[name] = value
+    return answer
+
+
+def free_socket(host: str, port: int) -> socket.socket:
+    """Opens a listening socket at a port, or at the next one that is free.
+
+    Raises:
+        UsageError: None of the next ports is free, or the host is not of this machine.
+    """
+    if not 0 <= port < 1 << 16:
+        raise UsageError(f"--port: wanted a number of 0 to 65535, got {port}")
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    for each in range(port, min(port + TRIES, 1 << 16) if port else 1):
+        try:
+            return socket.create_server((host, each), family=family, backlog=128)
+        except OSError as error:
+            if error.errno != errno.EADDRINUSE:
+                raise UsageError(f"--host {host}: {error.strerror or error}") from None
+    raise UsageError(f"--port {port}: wanted a free port, got none up to {port + TRIES - 1}")
+
+
+async def serve(
+    sock: socket.socket, door: Door, hub_of: Callable[[asyncio.AbstractEventLoop], Hub], **more: Any
+) -> None:
+    """Serves until it is cancelled."""
+    from websockets.asyncio.server import serve as listen
+
+    server = Server(door, hub_of(asyncio.get_running_loop()))
+    try:
+        async with listen(
+            server.talk,
+            sock=sock,
+            process_request=server.answer,
+            compression=None,
+            max_size=MAX_BYTES,
+            max_queue=8,
+            open_timeout=PATIENCE_S,
+            server_header=None,
+            **more,
+        ) as listening:
+            await listening.serve_forever()
+    finally:
+        server.hub.close()

@@ -1,0 +1,78 @@
+"""Messages of the page: the known ones are read, any other is one error."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+import daguerre as dg
+from daguerre.viewfinder import messages as m
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('{"turn": {"f_stop": "2", "zoom": null}}', m.Turn({"f_stop": "2", "zoom": None})),
+        ('{"got": 12}', m.Got(12)),
+        ('{"probe": [3, 4.5]}', m.Probe(3, 4)),
+        ('{"save": "png"}', m.Save("png")),
+        ('{"draw": 256}', m.Draw(256)),
+        ('{"section": [3, 4.5]}', m.Section(3, 4.5)),
+        ('{"reload": true}', m.Reload()),
+    ],
+)
+def test_a_message_is_read(text: str, message: Any) -> None:
+    assert m.parse(text) == message
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "{",
+        "null",
+        "[]",
+        "12",
+        '"turn"',
+        "{}",
+        b'{"got": 1}',
+        "\ud800",
+        "[" * 60000,
+        '{"turn": ' * 5000,
+        '{"turn": {}, "got": 1}',
+        '{"turn": {}, "turn": {}}',
+        '{"turn": {"f_stop": "2", "f_stop": "4"}}',
+        '{"__proto__": {"role": "turns"}}',
+        '{"constructor": {"prototype": {"x": 1}}}',
+        '{"turn": {"__proto__": "1"}}',
+        '{"turn": {"f_stop": 2}}',
+        '{"turn": {"f_stop": ["2"]}}',
+        '{"turn": "f_stop"}',
+        '{"got": -1}',
+        '{"got": 1.5}',
+        '{"got": true}',
+        '{"got": NaN}',
+        '{"got": 1e400}',
+        '{"probe": [1]}',
+        '{"probe": [1, "2"]}',
+        '{"probe": [1, Infinity]}',
+        '{"probe": {"0": 1, "1": 2, "length": 2}}',
+        '{"save": "../../x.png"}',
+        '{"save": ["png"]}',
+        '{"draw": 0}',
+        '{"draw": 99999999999}',
+        '{"reload": 1}',
+        '{"eval": "1"}',
+    ],
+)
+def test_any_other_message_is_one_error(text: Any) -> None:
+    with pytest.raises(dg.UsageError, match="wanted"):
+        m.parse(text)
+
+
+def test_long_messages_are_shortened_in_errors() -> None:
+    with pytest.raises(dg.UsageError) as caught:
+        m.parse(json.dumps({"x" * 50000: 1}))
+    assert len(str(caught.value)) < 300
