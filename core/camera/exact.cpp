@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 
 #include "camera/kept/aim_state.h"
 #include "camera/kept/fit_state.h"
@@ -234,7 +235,8 @@ float ExactLens::dirt_transmission(Vec2f front_mm, Vec2f iris_mm) const {
 void ExactLens::generate(std::span<const CameraSample> samples,
                          std::span<CameraRay> rays) const {
     DG_CHECK(samples.size(), ==, rays.size());
-    thread_local Buffers b;
+    thread_local const auto own = std::make_unique<Buffers>();   // large
+    Buffers& b = *own;
     const float inv_h0 = float(1 / unit_), origin = float(state_->order.entrance_pupil_z - advance_);
     const Vec2f shift = film_shift_;
     const bool tilted = state_->tilted;
@@ -317,7 +319,8 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
                           std::span<Reprojection> out) const {
     DG_CHECK(rays.size(), ==, wavelength_nm.size());
     DG_CHECK(rays.size(), ==, out.size());
-    thread_local Buffers b;
+    thread_local const auto own = std::make_unique<Buffers>();   // large
+    Buffers& b = *own;
     const float inv_h0 = float(1 / unit_);
     const Vec2f shift = film_shift_;
     for (std::size_t begin = 0; begin < rays.size(); begin += kLensBatch) {
@@ -359,7 +362,8 @@ void ExactLens::reproject(std::span<const CameraRay> rays, std::span<const float
                           std::span<Reprojection> out) const {
     DG_CHECK(rays.size(), ==, wavelength_nm.size());
     DG_CHECK(rays.size(), ==, out.size());
-    thread_local Buffers b;
+    thread_local const auto own = std::make_unique<Buffers>();   // large
+    Buffers& b = *own;
     const float inv_h0 = float(1 / unit_);
     for (std::size_t begin = 0; begin < rays.size(); begin += kLensBatch) {
         const int count = int(std::min<std::size_t>(kLensBatch, rays.size() - begin));
@@ -385,7 +389,8 @@ Vec2f ExactLens::trace_open(std::span<const CameraRay> rays, std::span<const flo
                             const GhostLens& ghosts, const std::vector<GhostStep>& steps, OpenLandings& out) const {
     DG_CHECK(rays.size(), ==, wavelength_nm.size());
     DG_CHECK(rays.size(), <=, std::size_t(kLensBatch));
-    thread_local Buffers b;
+    thread_local const auto own = std::make_unique<Buffers>();   // large
+    Buffers& b = *own;
     const int padded = fill(b, rays, wavelength_nm, 0, int(rays.size()));
     trace_open_ghost(ghosts, steps, b.scene, b.film, out, padded);
     return film_shift_;
