@@ -32,7 +32,7 @@ class CancelScope {
     static const CancelToken* current() { return current_; }
 
   private:
-    // What a thread has of its own must stay small: the C library ends the process if there is no memory for it.
+    // Threads hold little of their own: the C library ends the process if there is no memory for that.
     inline static thread_local const CancelToken* current_ = nullptr;
     const CancelToken* before_;
 };

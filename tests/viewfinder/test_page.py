@@ -61,6 +61,8 @@ def stage_of(file: Path) -> Any:
 
 @pytest.fixture
 def page(chromium: Browser, server: Live) -> Browser:
+    chromium.open("about:blank")  # the page before would look for its server
+    chromium.run("1")
     chromium.errors.clear()
     chromium.asked.clear()
     chromium.size(1280, 800)
