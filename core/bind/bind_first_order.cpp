@@ -80,6 +80,12 @@ void bind_first_order(nb::module_& m, nb::class_<dg::Prescription>& lens) {
             },
             "distance_m"_a, "from_sensor"_a)
         .def(
+            "closest_focus_m",
+            [](const Prescription& lens, bool from_sensor) {
+                return closest_focus_m(lens, first_order(lens), focus_from(from_sensor));
+            },
+            "from_sensor"_a)
+        .def(
             "best_focus",
             [](const Prescription& lens, double f_stop, double distance_m, bool from_sensor,
                const std::vector<std::pair<double, double>>& wavelengths) {

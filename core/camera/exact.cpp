@@ -8,6 +8,7 @@
 #include "camera/kept/fit_state.h"
 #include "camera/mean_ray.h"
 #include "camera/tilt.h"
+#include "math/thread_scratch.h"
 #include "optics/expansion/lens_fit_simd.h"
 #include "optics/lens/lens_error.h"
 #include "optics/trace/intersect.h"
@@ -235,8 +236,7 @@ float ExactLens::dirt_transmission(Vec2f front_mm, Vec2f iris_mm) const {
 void ExactLens::generate(std::span<const CameraSample> samples,
                          std::span<CameraRay> rays) const {
     DG_CHECK(samples.size(), ==, rays.size());
-    thread_local const auto own = std::make_unique<Buffers>();   // large
-    Buffers& b = *own;
+    Buffers& b = thread_scratch<Buffers>([] {});
     const float inv_h0 = float(1 / unit_), origin = float(state_->order.entrance_pupil_z - advance_);
     const Vec2f shift = film_shift_;
     const bool tilted = state_->tilted;
@@ -319,8 +319,7 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
                           std::span<Reprojection> out) const {
     DG_CHECK(rays.size(), ==, wavelength_nm.size());
     DG_CHECK(rays.size(), ==, out.size());
-    thread_local const auto own = std::make_unique<Buffers>();   // large
-    Buffers& b = *own;
+    Buffers& b = thread_scratch<Buffers>([] {});
     const float inv_h0 = float(1 / unit_);
     const Vec2f shift = film_shift_;
     for (std::size_t begin = 0; begin < rays.size(); begin += kLensBatch) {
@@ -362,8 +361,7 @@ void ExactLens::reproject(std::span<const CameraRay> rays, std::span<const float
                           std::span<Reprojection> out) const {
     DG_CHECK(rays.size(), ==, wavelength_nm.size());
     DG_CHECK(rays.size(), ==, out.size());
-    thread_local const auto own = std::make_unique<Buffers>();   // large
-    Buffers& b = *own;
+    Buffers& b = thread_scratch<Buffers>([] {});
     const float inv_h0 = float(1 / unit_);
     for (std::size_t begin = 0; begin < rays.size(); begin += kLensBatch) {
         const int count = int(std::min<std::size_t>(kLensBatch, rays.size() - begin));
@@ -389,8 +387,7 @@ Vec2f ExactLens::trace_open(std::span<const CameraRay> rays, std::span<const flo
                             const GhostLens& ghosts, const std::vector<GhostStep>& steps, OpenLandings& out) const {
     DG_CHECK(rays.size(), ==, wavelength_nm.size());
     DG_CHECK(rays.size(), <=, std::size_t(kLensBatch));
-    thread_local const auto own = std::make_unique<Buffers>();   // large
-    Buffers& b = *own;
+    Buffers& b = thread_scratch<Buffers>([] {});
     const int padded = fill(b, rays, wavelength_nm, 0, int(rays.size()));
     trace_open_ghost(ghosts, steps, b.scene, b.film, out, padded);
     return film_shift_;

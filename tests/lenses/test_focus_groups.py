@@ -9,7 +9,7 @@ import pytest
 
 from daguerre import lenses
 from daguerre.lenses.errors import LensError
-from daguerre.lenses.focus import Focused, path_of
+from daguerre.lenses.focus import Focused, closest_focus_m, path_of
 
 GROUPS = ["telephoto-600mm-f5.6", "portrait-85mm-f2", "canon-ts-e-90mm-f2.8-macro"]
 WHOLE = "tessar-50mm-f2.8"
@@ -162,3 +162,19 @@ def test_every_lens_of_the_library_focuses() -> None:
         if path_of(lens) is not None:
             assert found.film_z_mm == pytest.approx(found.lens.image_z, abs=1e-6)
         assert min(s.thickness or 0 for s in found.lens.surfaces[:-1]) >= 0
+
+
+@pytest.mark.parametrize("measured_from", ["pupil", "sensor"])
+def test_every_lens_of_the_library_focuses_at_its_closest_distance(measured_from: str) -> None:
+    for name in lenses.names():
+        lens = lenses.load(name)
+        closest = closest_focus_m(lens, from_sensor=measured_from == "sensor")
+        for share, reached in ((1 + 1e-6, True), (0.99, False)):
+            if closest == 0:
+                continue
+            try:
+                lens.focused(share * closest, measured_from=measured_from)  # type: ignore[arg-type]
+            except LensError:
+                assert not reached, (name, closest)
+            else:
+                assert reached, (name, closest)

@@ -42,10 +42,10 @@ class Live:
 
 
 class _Nowhere:
-    """Line of a page that reads nothing; an answer to it is an error."""
+    """Line of a page that turns; a refusal is an error."""
 
     async def send(self, message: str | bytes) -> None:
-        raise AssertionError(message)
+        assert "refused" not in str(message), message
 
 
 @contextlib.contextmanager

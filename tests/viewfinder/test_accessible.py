@@ -13,7 +13,7 @@ import daguerre as dg
 from daguerre.viewfinder.dials import Dials
 from daguerre.viewfinder.stage import Stage
 
-from .chromium import Browser, browser, program
+from .chromium import Browser, program
 from .live import TOKEN, Live, live
 from .test_painter import scene
 
@@ -37,11 +37,10 @@ def server() -> Iterator[Live]:
 
 
 @pytest.fixture
-def page(server: Live, tmp_path: Path) -> Iterator[Browser]:
-    with browser(tmp_path / "profile") as found:
-        found.open(f"http://{server.host}/#{TOKEN}")
-        found.until("document.getElementById('frame')?.dataset.rests === 'true'")
-        yield found
+def page(server: Live, page: Browser) -> Browser:
+    page.open(f"http://{server.host}/#{TOKEN}")
+    page.until("document.getElementById('frame')?.dataset.rests === 'true'")
+    return page
 
 
 @pytest.mark.parametrize(("width", "height"), [(1280, 800), (390, 844)])

@@ -17,7 +17,7 @@ import pytest
 import daguerre as dg
 from daguerre.viewfinder.stage import Stage
 
-from .chromium import Browser, browser, program
+from .chromium import Browser, program
 from .live import TOKEN, Live, live
 from .test_painter import scene
 
@@ -104,12 +104,6 @@ def wire(server: Live, own_port: int, page: Browser) -> Iterator[Wire]:
     rests(page)
     yield made
     made.close()
-
-
-@pytest.fixture
-def page(tmp_path: Path) -> Iterator[Browser]:
-    with browser(tmp_path / "profile") as found:
-        yield found
 
 
 def rests(page: Browser, after: int = -1, timeout: float = 60) -> int:

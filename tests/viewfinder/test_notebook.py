@@ -7,7 +7,6 @@ import json
 import queue
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ import pytest
 
 import daguerre as dg
 
-from .chromium import Browser, browser, program
+from .chromium import Browser, program
 from .test_painter import scene
 
 pytest.importorskip("anywidget", reason="needs the extra notebook")
@@ -50,12 +49,6 @@ def view() -> Iterator[Any]:
     made = dg.view(scene(), resolution=(96, 64), spp=2)
     yield made
     made.close()
-
-
-@pytest.fixture
-def page(tmp_path: Path) -> Iterator[Browser]:
-    with browser(tmp_path / "profile") as found:
-        yield found
 
 
 class Kernel:

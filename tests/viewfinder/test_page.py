@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import shlex
 import time
@@ -144,6 +145,45 @@ def test_a_click_focuses_there(page: Browser, server: Live, tmp_path: Path) -> N
     page.click("#picture", 40, 30)
     rests(page, before)
     assert "--focus-at=" in command_of(page)
+    check_bits(page, server, tmp_path)
+
+
+def test_a_key_held_down_turns_a_step_each_time(page: Browser) -> None:
+    before = turn_of(page)
+    page.run("document.getElementById('ring-iso').focus()")
+    for _ in range(10):
+        page.press("ArrowRight")
+    rests(page, before)
+    assert "--iso=1000" in command_of(page)
+
+
+def test_a_ring_does_not_jump_back_while_its_picture_is_drawn(page: Browser) -> None:
+    before = turn_of(page)
+    page.run(
+        "window.places = []; (function watch() {"
+        "places.push(Number(document.getElementById('ring-focus_distance').value));"
+        "requestAnimationFrame(watch); })()"
+    )
+    page.drag("#ring-focus_distance", 120)
+    rests(page, before)
+    places = json.loads(page.run("JSON.stringify(window.places)"))
+    assert places[0] < places[-1]
+    # The text of the command line has four digits.
+    assert all(b > a - 1e-3 for a, b in itertools.pairwise(places)), places
+
+
+def test_the_focus_ring_ends_where_the_lens_does(
+    page: Browser, server: Live, tmp_path: Path
+) -> None:
+    before = turn_of(page)
+    for _ in range(12):
+        page.drag("#ring-focus_distance", 500)
+    rests(page, before)
+    ring = "document.querySelector('#ring-focus_distance')"
+    assert page.run(f"{ring}.max - {ring}.value") == pytest.approx(0, abs=1e-6)
+    shown = page.run(f"{ring}.closest('.ring').querySelector('output').textContent")
+    assert shown.endswith("closest"), shown
+    assert page.errors == []
     check_bits(page, server, tmp_path)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.viewfinder import painter
 from daguerre.viewfinder.dials import Dials
 from daguerre.viewfinder.image import image_of
 from daguerre.viewfinder.painter import MODELS, Drawn, Painter, Wish
@@ -49,7 +50,8 @@ class Seen:
 
     def wish(self, number: int, dials: Dials | None = None, *, models: bool = False) -> None:
         """Asks for a picture."""
-        self.painter.wish(Wish(number, self.stage, dials or Dials(), models))
+        dials = dials or Dials()
+        self.painter.wish(Wish(number, self.stage, dials, self.stage.shot(dials), models))
 
     def until_rest(self, number: int) -> list[Drawn]:
         """Pictures until that at rest of a wish."""
@@ -119,13 +121,13 @@ def test_a_wish_that_cannot_be_is_a_failure_and_the_next_one_is_drawn(seen: Seen
 
 @pytest.mark.parametrize("fault", [MemoryError, RuntimeError], ids=lambda one: one.__name__)
 def test_after_a_fault_of_any_kind_the_next_wish_is_drawn(
-    seen: Seen, stage: Stage, monkeypatch: pytest.MonkeyPatch, fault: type[Exception]
+    seen: Seen, monkeypatch: pytest.MonkeyPatch, fault: type[Exception]
 ) -> None:
-    def fails(*_: object) -> None:
+    def fails(*_: object, **__: object) -> None:
         raise fault("planted")
 
     with monkeypatch.context() as patch:
-        patch.setattr(stage, "shot", fails)
+        patch.setattr(painter, "Session", fails)
         seen.wish(1)
         assert isinstance(seen.failures.get(timeout=60)[1], fault)
     seen.wish(2)

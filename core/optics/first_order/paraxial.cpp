@@ -104,11 +104,28 @@ double iris_radius(const Prescription& lens, const FirstOrder& f, double f_stop)
     return std::abs(0.5 * f.efl / f_stop / f.entrance_magnification);
 }
 
-double film_position(const Prescription& lens, const FirstOrder& f, double distance_m,
-                     FocusFrom from) {
+namespace {
+
+void check_converging(const Prescription& lens, const FirstOrder& f) {
     if (!(f.efl > 0))
         throw lens_error("lens-afocal", -1, lens.name, "focal length",
                          "a converging lens", std::to_string(f.efl) + " mm");
+}
+
+}  // namespace
+
+double closest_focus_m(const Prescription& lens, const FirstOrder& f, FocusFrom from) {
+    check_converging(lens, f);
+    // From object to front focus, and from rear focus to image, lies one focal length each.
+    const double focal = std::sqrt(f.efl * (f.front_principal_z - f.front_focal_z));
+    const double mm = from == FocusFrom::pupil ? focal + f.entrance_pupil_z - f.front_focal_z
+                                               : 2 * focal + f.back_focal_z - f.front_focal_z;
+    return std::max(0.0, mm) * 1e-3;
+}
+
+double film_position(const Prescription& lens, const FirstOrder& f, double distance_m,
+                     FocusFrom from) {
+    check_converging(lens, f);
     if (std::isnan(distance_m) || distance_m <= 0)
         throw input_error(lens.name, "focus distance", "a positive number of metres",
                           std::to_string(distance_m));
@@ -118,20 +135,18 @@ double film_position(const Prescription& lens, const FirstOrder& f, double dista
     const double focal2 = f.efl * (f.front_principal_z - f.front_focal_z);
     const double x_min = std::sqrt(focal2);
     const double mm = 1e3 * distance_m;
-    double x, nearest;
+    double x;
     if (from == FocusFrom::pupil) {
         x = mm - (f.entrance_pupil_z - f.front_focal_z);
-        nearest = x_min + f.entrance_pupil_z - f.front_focal_z;
     } else {
         // Object to film is x + f^2/x + (rear focus - front focus).
         const double t = mm - (f.back_focal_z - f.front_focal_z);
-        nearest = 2 * x_min + f.back_focal_z - f.front_focal_z;
         x = t >= 2 * x_min ? 0.5 * (t + std::sqrt(t * t - 4 * focal2)) : 0;
     }
     if (!(x >= x_min * (1 - 1e-9)))
         throw lens_error(
             "lens-focus-near", -1, lens.name, "focus distance",
-            metres(std::max(0.0, nearest) * 1e-3) + " or more (the nearest possible)",
+            metres(closest_focus_m(lens, f, from)) + " or more (the nearest possible)",
             metres(distance_m));
     return f.back_focal_z + focal2 / x;
 }

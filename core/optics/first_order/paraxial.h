@@ -57,6 +57,9 @@ double widest_f_stop(const Prescription& lens, const FirstOrder& first_order);
 
 enum class FocusFrom { pupil, sensor };
 
+/// Closest distance, m, for which the whole lens moves: 1:1.
+double closest_focus_m(const Prescription& lens, const FirstOrder& first_order, FocusFrom from);
+
 /// z of the film, mm, when the whole lens is moved to focus at a distance (m, infinity
 /// allowed) along the axis, measured from the centre of the entrance pupil or from the
 /// film. Exact conjugate by Newton's x x' = f^2. A magnification beyond 1:1 is an Error

@@ -98,6 +98,7 @@ TEST_CASE("too close is an error that names the nearest distance, which then wor
         const double nearest = std::stod(message.substr(message.find("wanted ") + 7));
         CHECK(nearest > 0.04);
         CHECK(nearest < 0.25);
+        CHECK(nearest == doctest::Approx(closest_focus_m(lens, f, from)).epsilon(1e-3));
         CHECK_NOTHROW(film_position(lens, f, nearest * 1.001, from));
         CHECK_THROWS_AS(film_position(lens, f, nearest * 0.99, from), Error);
     }

@@ -80,6 +80,19 @@ def focused(lens: Lens, setting: LensSetting) -> Focused:
         return _done(moved, sharp(moved))
 
 
+def closest_focus_m(lens: Lens, *, from_sensor: bool = False) -> float:
+    """Closest distance in focus, m: the end of its groups' travel, or 1:1 if the whole lens moves.
+
+    Args:
+        lens: Lens at its zoom.
+        from_sensor: Whether the distance begins at the sensor, not at the entrance pupil.
+    """
+    path = path_of(lens)
+    if path is None:
+        return float(lens.prescription.closest_focus_m(from_sensor))
+    return _nearest(path.at(1.0), from_sensor=from_sensor)
+
+
 def path_of(lens: Lens) -> Path | None:
     """Path of the groups at the lens's zoom position; None: the whole lens moves.
 

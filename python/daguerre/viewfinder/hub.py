@@ -104,10 +104,12 @@ class Hub:
         self._show = Show(denoised=False, models=False)
         self._tev = tev
         self._readings: dict[str, Any] = {}
+        self._read = -1
         self._sheet: Sheet | None = None
         self._sheets = 0
         self._guests: list[Guest] = []
         self._tasks: set[asyncio.Task[None]] = set()
+        self._shot = stage.shot(dials)
         self._painter = Painter(self.publish, self._failed)
         self._wish()
         self._start(self._watch())
@@ -176,6 +178,7 @@ class Hub:
                 raise UsageError("view: this page watches; another one turns the dials")
             case Turn(changes):
                 await self._turn(self.dials.turned(changes))
+                await self._tell(guest, {"heard": True})
             case Draw(samples):
                 await self._turn(self.dials.turned({"spp": str(samples)}))
             case Save(kind):
@@ -189,21 +192,22 @@ class Hub:
                 await self._tell_all({"open": self._opened()})
 
     async def _turn(self, dials: Dials) -> None:
-        self._stage.shot(dials)  # or an error, and everything stays as it is
-        self.dials, self.error = dials, ""
+        shot = self._stage.shot(dials)  # or an error, and everything stays as it is
+        self._shot, self.dials, self.error = shot, dials, ""
         self._wish()
         await self._tell_all(self._state())
 
     def _wish(self) -> None:
         """Has the picture drawn anew."""
         self.number += 1
-        self._painter.wish(Wish(self.number, self._stage, self.dials, self._show.models))
+        wish = Wish(self.number, self._stage, self.dials, self._shot, self._show.models)
+        self._painter.wish(wish)
 
     async def _change_show(self, show: Show) -> None:
         """Shows pictures in another way; denoising begins with the picture that is there."""
         if show.denoised:
             extras.need("mitsuba_oidn", "denoise")
-        if show.models and self._stage.shot(self.dials).camera.lens in IDEAL:
+        if show.models and self._shot.camera.lens in IDEAL:
             raise UsageError("show: wanted a lens of the library to compare its models")
         redraws, self._show = show.models != self._show.models, show
         if redraws:
@@ -229,7 +233,7 @@ class Hub:
         if self._sheet is None or self._sheet.drawn.panels:
             return None
         drawn = self._sheet.drawn
-        width, height = self._stage.shot(drawn.wish.dials).settings.film.resolution
+        width, height = drawn.wish.shot.settings.film.resolution
         frame = drawn.frame
         found = value_at(frame, x * frame.width // width, y * frame.height // height)
         return found and found | {"picture": self._sheet.number, "samples": drawn.samples}
@@ -238,7 +242,7 @@ class Hub:
         if self._sheet is None:
             raise UsageError("section: wanted a picture; it is not drawn yet")
         drawn = self._sheet.drawn
-        width, height = self._stage.shot(drawn.wish.dials).settings.film.resolution
+        width, height = drawn.wish.shot.settings.film.resolution
         own = drawn.session.prepared.setup.resolution
         return glass_at(drawn.session, x * own[0] / width, y * own[1] / height) | {"x": x, "y": y}
 
@@ -270,6 +274,7 @@ class Hub:
         return {
             "state": {
                 "turn": self.number,
+                "read": self._read,
                 "dials": dict(self.dials.texts),
                 "command": self.command,
                 "readings": self._readings,
@@ -310,8 +315,8 @@ class Hub:
         if sheet.drawn.wish.number != self.number:
             return  # a newer wish came
         self._sheet = sheet
-        if readings != self._readings:
-            self._readings = readings
+        if (readings, self.number) != (self._readings, self._read):
+            self._readings, self._read = readings, self.number
             self._start(self._tell_all(self._state()))
         for guest in self._guests:
             self._start(self._offer(guest))
@@ -321,7 +326,7 @@ class Hub:
         if wish.number != self.number:
             return
         if self._sheet is not None and self._sheet.drawn.wish.dials != self.dials:
-            self.dials = self._sheet.drawn.wish.dials
+            self.dials, self._shot = self._sheet.drawn.wish.dials, self._sheet.drawn.wish.shot
             self._wish()
         self.error = text
         self._start(self._tell_all(self._state()))

@@ -37,12 +37,14 @@ class Wish:
         number: Number of the turn that made it; a higher one is newer.
         stage: Scene, camera and settings.
         dials: Positions of the dials.
+        shot: The picture that they ask for.
         models: Whether it compares models of the lens.
     """
 
     number: int
     stage: Stage
     dials: Dials
+    shot: Shot
     models: bool = False
 
 
@@ -139,7 +141,7 @@ class Painter:
                 self._fail(wish, error)
 
     def _pictures(self, wish: Wish) -> Iterator[Drawn]:
-        shot = wish.stage.shot(wish.dials)
+        shot = wish.shot
         if wish.models:
             yield from _compared(wish, shot)
             return

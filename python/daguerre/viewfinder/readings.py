@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from daguerre.camera.placement import look_at
 from daguerre.errors import DaguerreError
 from daguerre.exposure.metering import meter
+from daguerre.lenses.focus import closest_focus_m
 from daguerre.rendering.session import Session
-from daguerre.setup.camera_facts import UNLIT, camera_warnings, facts_of, lit
+from daguerre.setup.camera_facts import UNLIT, Facts, camera_warnings, facts_of, lit
+from daguerre.setup.resolved import ResolvedLens
 
 from .painter import Drawn
 from .stage import Shot
@@ -32,10 +34,7 @@ def readings_of(drawn: Drawn) -> dict[str, Any]:
         "zoom_mm": facts.zoom_mm,
         "zoom_range_mm": facts.zoom_range_mm,
         "field_of_view_deg": facts.picture_field_of_view_deg,
-        "focus_m": _finite(facts.focus_m),
-        "hyperfocal_m": facts.hyperfocal_m,
-        "near_m": facts.near_m,
-        "far_m": _finite(facts.far_m),
+        **_distances(session, facts),
         "shutter_s": facts.shutter_s,
         "shutter": facts.shutter,
         "ev100": facts.ev100,
@@ -43,6 +42,46 @@ def readings_of(drawn: Drawn) -> dict[str, Any]:
         "meter": _meter(drawn),
         **_body(session, shot),
     }
+
+
+def _distances(session: Session, facts: Facts) -> dict[str, float | None]:
+    """Distances of the focus ring, from where the camera measures them; None: infinity."""
+    camera, lens = session.camera, session.prepared.setup.lens
+    from_sensor = camera.focus_from == "sensor"
+    film_mm = lens.entrance_pupil_offset_mm or lens.pinhole_focal_length_mm
+    more = 1e-3 * film_mm if from_sensor else 0.0
+    found = {
+        "focus_m": facts.focus_m,
+        "hyperfocal_m": facts.hyperfocal_m,
+        "near_m": facts.near_m,
+        "far_m": facts.far_m,
+    }
+    closest = closest_m(lens, from_sensor=from_sensor, breathes=camera.focus_breathing)
+    return {
+        "closest_m": None if closest is None else _rounded_up(closest),
+        **{name: _finite(None if m is None else m + more) for name, m in found.items()},
+    }
+
+
+def closest_m(lens: ResolvedLens, *, from_sensor: bool, breathes: bool) -> float | None:
+    """Closest distance of the focus ring, m; None: no end.
+
+    Ideal lenses whose film moves reach 1:1; the others focus anywhere.
+    """
+    if lens.glass is not None:
+        return closest_focus_m(lens.glass.lens, from_sensor=from_sensor)
+    if lens.focus_distance_m is None or lens.projection is not None or not breathes:
+        return None
+    return 1e-3 * lens.focal_length_mm * (4 if from_sensor else 2)
+
+
+def _rounded_up(value: float) -> float:
+    """Value with the four digits of the ring's texts, not below it."""
+    if not value > 0:
+        return 0.0
+    digits = 3 - math.floor(math.log10(value))
+    scale = 10.0**digits
+    return math.ceil(round(value * scale, 6)) / scale
 
 
 def _warnings(session: Session) -> list[str]:
@@ -81,7 +120,6 @@ def _body(session: Session, shot: Shot) -> dict[str, Any]:
         "white_k": white if isinstance(white, float | int) else None,
         "blades": camera.blades,
         "widest": None if lens.f_stop is None else widest_of(session),
-        "closest_m": None,
         "spp": shot.settings.sampling.most,
         "time_s": session.scene.time,
         "place": {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "geometry/ray.h"
 #include "math/across.h"
+#include "math/thread_scratch.h"
 #include "render/flare/flare_aim.h"
 
 namespace dg {
@@ -71,7 +71,7 @@ float MapRays::passed(const MapLanding& l, float iris_opening) const {
 }
 
 std::vector<MapLanding> MapRays::trace(std::span<const MapRay> rays) const {
-    thread_local const auto open = std::make_unique<OpenLandings>();   // large
+    OpenLandings& open = thread_scratch<OpenLandings>([] {});
     std::vector<MapLanding> landings(rays.size());
     std::vector<CameraRay> some;
     std::vector<float> nm;
@@ -88,13 +88,13 @@ std::vector<MapLanding> MapRays::trace(std::span<const MapRay> rays) const {
             some.push_back({.ray = {.origin = to_float(l.place), .direction = to_float(l.direction)}});
             nm.push_back(rays[begin + i].nm);
         }
-        const Vec2f own = lens_.trace_open(some, nm, ghosts_, steps_, *open);
+        const Vec2f own = lens_.trace_open(some, nm, ghosts_, steps_, open);
         for (std::size_t i = 0; i < count; ++i) {
             MapLanding& l = landings[begin + i];
-            const Vec2f mm = own - Vec2f{open->x[i], open->y[i]} - shift;
-            l = {sensor_.px_from_mm(mm), open->beyond[i], open->pass[i], open->sound[i] > 0,
-                 std::int16_t(open->lost_after[i]), {}};
-            for (int k = 0; k < kMostCrossings; ++k) l.iris[k] = {open->iris_x[k][i], open->iris_y[k][i]};
+            const Vec2f mm = own - Vec2f{open.x[i], open.y[i]} - shift;
+            l = {sensor_.px_from_mm(mm), open.beyond[i], open.pass[i], open.sound[i] > 0,
+                 std::int16_t(open.lost_after[i]), {}};
+            for (int k = 0; k < kMostCrossings; ++k) l.iris[k] = {open.iris_x[k][i], open.iris_y[k][i]};
         }
     }
     return landings;

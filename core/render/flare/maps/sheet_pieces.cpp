@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
+#include "math/thread_scratch.h"
 #include "render/flare/maps/coarse_light.h"
 #include "render/flare/maps/color_table.h"
 
@@ -62,8 +62,7 @@ SheetPieces::SheetPieces(const MapRays& rays, const GhostMap& map, const SmallSo
 /// By the light of cells that may come to the frame.
 SheetSmooth SheetPieces::smoothness() const {
     std::vector<SheetSmooth::CellLight> cells;
-    thread_local const auto own = std::make_unique<MapBatch>();   // large
-    MapBatch& batch = *own;
+    MapBatch& batch = thread_scratch<MapBatch>([] {});
     for (std::uint32_t c = 0; c < map_.cells().size(); ++c) {
         const GhostMap::Cell& cell = map_.cells()[c];
         if (cell.exact) continue;
@@ -85,8 +84,7 @@ bool SheetPieces::near(Vec2f px, float reach) const {
 
 /// So many places of a piece, with what else a landing depends on.
 void SheetPieces::draw(MapBatch& batch, const SheetPiece& piece, int count) const {
-    thread_local const auto own = std::make_unique<CellNumbers>();   // large
-    CellNumbers& u = *own;
+    CellNumbers& u = thread_scratch<CellNumbers>([] {});
     u.fill(hash64(key_, piece.cell), 0, std::uint64_t(count));
     draw_places(batch, piece, source_, u, count);
 }
@@ -124,8 +122,7 @@ SheetPieces::Looked SheetPieces::look(const SheetPiece& piece, int count) const 
 }
 
 void SheetPieces::look_at_map(const SheetPiece& piece, int count, Looked& to) const {
-    thread_local const auto own = std::make_unique<MapBatch>();   // large
-    MapBatch& batch = *own;
+    MapBatch& batch = thread_scratch<MapBatch>([] {});
     draw(batch, piece, count);
     map_.landings(map_.cells()[piece.cell], batch, count);
     for (int i = 0; i < count; ++i) {
@@ -137,8 +134,7 @@ void SheetPieces::look_at_map(const SheetPiece& piece, int count, Looked& to) co
 }
 
 void SheetPieces::look_by_rays(const SheetPiece& piece, int count, Looked& to) const {
-    thread_local const auto own = std::make_unique<MapBatch>();   // large
-    MapBatch& batch = *own;
+    MapBatch& batch = thread_scratch<MapBatch>([] {});
     draw(batch, piece, count);
     const std::vector<MapLanding> landings = trace(batch, map_.cells()[piece.cell], count);
     to.level = level_.of_rays();
@@ -198,8 +194,7 @@ void SheetPieces::keep(SheetPiece piece, int count, Looked looked, const Looked*
 /// Root of the mean square of what exact rays have else than the map: light, or its place against the pitch there.
 float SheetPieces::wrong(std::uint32_t c) const {
     const GhostMap::Cell& cell = map_.cells()[c];
-    thread_local const auto own = std::make_unique<MapBatch>();   // large
-    MapBatch& batch = *own;
+    MapBatch& batch = thread_scratch<MapBatch>([] {});
     draw(batch, {c, {0, 0}, 1, 0}, kTests);
     map_.landings(cell, batch, kTests);
     const std::vector<MapLanding> exact = trace(batch, cell, kTests);
@@ -217,8 +212,7 @@ float SheetPieces::wrong(std::uint32_t c) const {
 /// How far apart the ends of what is seen land, from the middle of a cell and from near its corners.
 float SheetPieces::spread(std::uint32_t cell) {
     if (spread_[cell] >= 0) return spread_[cell];
-    thread_local const auto own = std::make_unique<MapBatch>();   // large
-    MapBatch& batch = *own;
+    MapBatch& batch = thread_scratch<MapBatch>([] {});
     constexpr Vec2f kPlaces[] = {{0.5f, 0.5f}, {0.1f, 0.1f}, {0.9f, 0.1f}, {0.1f, 0.9f}, {0.9f, 0.9f}};
     int count = 0;
     for (const Vec2f at : kPlaces)

@@ -3,6 +3,13 @@
 const RETRY_MS = [200, 500, 1000, 2000];
 const SILENCE_MS = 25000;   // the server pings; a socket that is silent longer is dead
 
+/** Head and bytes of a picture's message, a Uint8Array. */
+export function unpack(message) {
+  const length = new DataView(message.buffer, message.byteOffset, 4).getUint32(0, true);
+  const head = JSON.parse(new TextDecoder().decode(message.subarray(4, 4 + length)));
+  return [head, message.subarray(4 + length)];
+}
+
 export class Link {
   /** handlers: told(message), picture(head, bytes), status(text). */
   constructor(handlers) {
@@ -32,17 +39,11 @@ export class Link {
       if (typeof event.data === 'string') {
         const message = JSON.parse(event.data);
         if (!message.ping) this.handlers.told(message);
-      } else this.unpack(event.data);
+      } else this.handlers.picture(...unpack(new Uint8Array(event.data)));
     };
     socket.onclose = (event) => {
       if (socket === this.socket) this.lost(event);
     };
-  }
-
-  unpack(bytes) {
-    const length = new DataView(bytes).getUint32(0, true);
-    const head = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));
-    this.handlers.picture(head, new Uint8Array(bytes, 4 + length));
   }
 
   alive() {

@@ -30,6 +30,7 @@ class Panel {
     this.state = null;   // dials and readings
     this.mine = false;   // whether this page may turn
     this.wish = null;
+    this.unheard = 0;    // turns that the server has not taken yet
     this.rings = {};
     const canvas = this.find('picture');
     this.picture = new Picture(canvas, this.find('over'));
@@ -50,18 +51,26 @@ class Panel {
     if (waits) return;
     requestAnimationFrame(() => {
       this.link.send({turn: this.wish});
+      this.unheard++;
       this.wish = null;
     });
   }
 
+  /** Whether the readings are those of all that was turned; if not, what was turned stays where it is. */
+  get upToDate() {
+    return this.wish === null && this.unheard === 0 && (this.state.read === this.state.turn || this.state.error !== '');
+  }
+
   told(message) {
     if (message.open) this.opened(message.open);
+    if (message.heard) this.unheard--;
+    if (message.role || message.refused) this.unheard = 0;
     if (message.role) this.mine = message.role === 'turns';
     if (message.role === 'watches') this.status('Watching: another page turns the rings');
     if (message.state) {
       this.state = message.state;
-      if (this.open) this.update();
     }
+    if (this.open && this.state && (message.state || message.heard || message.refused)) this.update();
     if (message.refused) this.complain(message.refused);
     if ('value' in message) this.loupeValue(message.value);
     if (message.section) showSection(this.find, message.section);
@@ -158,13 +167,14 @@ class Panel {
     this.find('hyperfocal').disabled = !this.mine || readings.hyperfocal_m === null;
     this.find('lock').disabled = !this.mine || !readings.meter;
     press(this.find('lock'), this.locked && 'iso' in dials);
-    this.tripod.stand(readings.place, readings.focus_m);
+    this.tripod.stand(readings.place, readings.focus_m, this.upToDate);
     this.picture.lean(readings.place.roll, readings.place.forward, readings.field_of_view_deg[1]);
     this.numbers(readings);
   }
 
   updateRings(dials, readings) {
-    const {rings, open} = this;
+    const {rings, open, upToDate} = this;
+    for (const ring of Object.values(rings)) ring.holds &&= !upToDate;
     const own = (...names) => names.some((name) => name in dials);
     const iris = readings.f_stop !== null;
     rings.focus_distance.show(scales.focusScale(readings.closest_m), readings.focus_m ?? Infinity, {

@@ -14,6 +14,7 @@ export class Ring {
     this.name = name;
     this.turned = turned;
     this.scale = null;
+    this.holds = false;   // stays where it was turned to
     element.classList.add('ring');
     element.innerHTML = `
       <div class="ring-head"><label for="ring-${name}"></label><output></output>
@@ -35,7 +36,6 @@ export class Ring {
   /** Engraves another scale; `span` is a pair of values around the mark, such as the depth of field. */
   show(scale, value, {span = null, own = false, disabled = false, extra = ''} = {}) {
     this.scale = scale;
-    this.value = value;
     this.span = span;
     this.extra = extra;
     this.input.min = scale.low;
@@ -43,7 +43,10 @@ export class Ring {
     this.input.step = 'any';
     this.input.disabled = disabled;
     this.back.hidden = !own;
-    if (!this.busy) this.place(scale.position(value));
+    if (!this.busy && !this.holds) {
+      this.value = value;
+      this.place(scale.position(value));
+    }
     this.draw();
   }
 
@@ -64,6 +67,7 @@ export class Ring {
     this.value = value;
     this.place(stepped);
     this.draw();
+    this.holds = true;
     this.turned(this.scale.text(value));
   }
 

@@ -59,7 +59,7 @@ export function feet(value) {
 
 /** Focus: a helicoid turns with 1/distance. */
 export function focusScale(closest) {
-  const near = Math.max(closest || 0.25, 0.01);
+  const near = Math.max(closest ?? 0.25, 0.01);
   const marks = [0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.7, 0.85, 1, 1.2, 1.5, 2, 3, 5, 10, 20, 50, Infinity];
   return {
     low: 0, high: 1 / near, step: 1 / near / 300,
@@ -67,7 +67,7 @@ export function focusScale(closest) {
     value: (position) => (position < 1e-6 ? Infinity : 1 / position),
     marks: marks.filter((m) => m >= near).map((m) => ({value: m, label: m === Infinity ? '∞' : `${m}`, full: true})),
     text: (value) => (value === Infinity ? 'inf' : `${round(value, 4)}`),
-    label: (value) => `${metres(value)} · ${feet(value)}`,
+    label: (value) => `${metres(value)} · ${feet(value)}${closest !== null && value < near * 1.0001 ? ' · closest' : ''}`,
     reversed: true,
   };
 }

@@ -14,6 +14,7 @@ export class Tripod {
     this.move = move;
     this.clicked = () => {};
     this.position = null;
+    this.holds = false;   // stays where it was moved to
     let from = null;
     const fingers = new Map();
     const spread = () => {
@@ -62,8 +63,9 @@ export class Tripod {
   }
 
   /** Takes the camera's place from the server, and the point that it turns about. */
-  stand(place, focus) {
-    if (!place) return;
+  stand(place, focus, upToDate) {
+    this.holds &&= !upToDate;
+    if (!place || this.holds) return;
     const {position, forward, roll} = place;
     const far = this.position && this.target ? length(sub(this.target, this.position)) : 0;
     this.position = position;
@@ -74,6 +76,7 @@ export class Tripod {
   send() {
     const dials = {'place.position': text(this.position), 'place.look_at': text(this.target)};
     dials['place.roll'] = Math.abs(this.roll) > 1e-6 ? String(Number(this.roll.toFixed(3))) : null;
+    this.holds = true;
     this.move(dials);
   }
 

@@ -1,5 +1,6 @@
 // widget.js -- the panel in a notebook's cell; messages go by the kernel's comm instead of a socket.
 
+import {unpack} from './link.js';
 import {mount} from './main.js';
 
 /** Has the face of Link. */
@@ -8,22 +9,20 @@ class KernelLink {
     this.model = model;
     model.on('msg:custom', (content, buffers) => {
       if (content.text) handlers.told(JSON.parse(content.text));
-      else if (buffers.length) this.unpack(buffers[0], handlers);
+      else if (buffers.length) handlers.picture(...unpack(bytesOf(buffers[0])));
     });
     handlers.status('');
     model.send({begin: true});
   }
 
-  unpack(view, handlers) {
-    const bytes = new Uint8Array(view.buffer ?? view, view.byteOffset ?? 0, view.byteLength);
-    const length = new DataView(bytes.buffer, bytes.byteOffset, 4).getUint32(0, true);
-    const head = JSON.parse(new TextDecoder().decode(bytes.subarray(4, 4 + length)));
-    handlers.picture(head, bytes.subarray(4 + length));
-  }
-
   send(message) {
     this.model.send({text: JSON.stringify(message)});
   }
+}
+
+/** Bytes of a buffer of the kernel: an ArrayBuffer or a view of one. */
+function bytesOf(buffer) {
+  return new Uint8Array(buffer.buffer ?? buffer, buffer.byteOffset ?? 0, buffer.byteLength);
 }
 
 export function render({model, el}) {
