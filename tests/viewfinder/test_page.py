@@ -85,6 +85,15 @@ def rests(page: Browser, after: int = -1) -> None:
     )
 
 
+def settled(page: Browser, server: Live) -> None:
+    """Waits until no turn is under way: a slow machine shows pictures of the first half of a drag."""
+    known = -1
+    while known != server.hub.number:
+        known = server.hub.number
+        rests(page, known - 1)
+        time.sleep(0.1)
+
+
 def command_of(page: Browser) -> str:
     """Command that the page shows."""
     return str(page.run("document.getElementById('command').value"))
@@ -92,6 +101,7 @@ def command_of(page: Browser) -> str:
 
 def check_bits(page: Browser, server: Live, folder: Path) -> None:
     """The picture at rest has the bits of the command that the page shows."""
+    settled(page, server)
     words = shlex.split(command_of(page))
     assert words[:2] == ["daguerre", "render"]
     out = folder / "out.exr"

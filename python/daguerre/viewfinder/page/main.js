@@ -57,7 +57,7 @@ class Panel {
   }
 
   /** Whether the readings are those of all that was turned; if not, what was turned stays where it is. */
-  get upToDate() {
+  get current() {
     return this.wish === null && this.unheard === 0 && (this.state.read === this.state.turn || this.state.error !== '');
   }
 
@@ -167,14 +167,14 @@ class Panel {
     this.find('hyperfocal').disabled = !this.mine || readings.hyperfocal_m === null;
     this.find('lock').disabled = !this.mine || !readings.meter;
     press(this.find('lock'), this.locked && 'iso' in dials);
-    this.tripod.stand(readings.place, readings.focus_m, this.upToDate);
+    this.tripod.stand(readings.place, readings.focus_m, this.current);
     this.picture.lean(readings.place.roll, readings.place.forward, readings.field_of_view_deg[1]);
     this.numbers(readings);
   }
 
   updateRings(dials, readings) {
-    const {rings, open, upToDate} = this;
-    for (const ring of Object.values(rings)) ring.holds &&= !upToDate;
+    const {rings, open, current} = this;
+    for (const ring of Object.values(rings)) ring.holds &&= !current;
     const own = (...names) => names.some((name) => name in dials);
     const iris = readings.f_stop !== null;
     rings.focus_distance.show(scales.focusScale(readings.closest_m), readings.focus_m ?? Infinity, {

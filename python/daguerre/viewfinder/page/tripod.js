@@ -63,8 +63,8 @@ export class Tripod {
   }
 
   /** Takes the camera's place from the server, and the point that it turns about. */
-  stand(place, focus, upToDate) {
-    this.holds &&= !upToDate;
+  stand(place, focus, current) {
+    this.holds &&= !current;
     if (!place || this.holds) return;
     const {position, forward, roll} = place;
     const far = this.position && this.target ? length(sub(this.target, this.position)) : 0;
