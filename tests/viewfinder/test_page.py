@@ -86,7 +86,7 @@ def rests(page: Browser, after: int = -1) -> None:
 
 
 def settled(page: Browser, server: Live) -> None:
-    """Waits until no turn is under way: a slow machine shows pictures of the first half of a drag."""
+    """Waits until no turn is under way: slow machines show pictures of the first half of a drag."""
     known = -1
     while known != server.hub.number:
         known = server.hub.number
