@@ -158,16 +158,17 @@ def test_a_click_focuses_there(page: Browser, server: Live, tmp_path: Path) -> N
     check_bits(page, server, tmp_path)
 
 
-def test_a_key_held_down_turns_a_step_each_time(page: Browser) -> None:
+def test_a_key_held_down_turns_a_step_each_time(page: Browser, server: Live) -> None:
     before = turn_of(page)
     page.run("document.getElementById('ring-iso').focus()")
     for _ in range(10):
         page.press("ArrowRight")
     rests(page, before)
+    settled(page, server)
     assert "--iso=1000" in command_of(page)
 
 
-def test_a_ring_does_not_jump_back_while_its_picture_is_drawn(page: Browser) -> None:
+def test_a_ring_does_not_jump_back_while_its_picture_is_drawn(page: Browser, server: Live) -> None:
     before = turn_of(page)
     page.run(
         "window.places = []; (function watch() {"
@@ -176,6 +177,7 @@ def test_a_ring_does_not_jump_back_while_its_picture_is_drawn(page: Browser) -> 
     )
     page.drag("#ring-focus_distance", 120)
     rests(page, before)
+    settled(page, server)
     places = json.loads(page.run("JSON.stringify(window.places)"))
     assert places[0] < places[-1]
     # The text of the command line has four digits.
@@ -189,6 +191,7 @@ def test_the_focus_ring_ends_where_the_lens_does(
     for _ in range(12):
         page.drag("#ring-focus_distance", 500)
     rests(page, before)
+    settled(page, server)
     ring = "document.querySelector('#ring-focus_distance')"
     assert page.run(f"{ring}.max - {ring}.value") == pytest.approx(0, abs=1e-6)
     shown = page.run(f"{ring}.closest('.ring').querySelector('output').textContent")
