@@ -9,6 +9,7 @@
 #include "film/film.h"
 #include "film/filter.h"
 #include "film/neighbours.h"
+#include "film/word_columns.h"
 #include "math/error.h"
 #include "spectrum/wavelengths.h"
 
@@ -82,6 +83,34 @@ WordsView state(nb::handle film, const std::string& part) {
     const auto bytes = f.state(part);
     const std::size_t height = f.layout().height, width = f.layout().width;
     return WordsView(bytes.data(), {height, width, bytes.size() / 4 / height / width}, film);
+}
+
+using FlatWords = nb::ndarray<const std::uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using FlatWordsView = nb::ndarray<nb::numpy, const std::uint32_t, nb::ndim<1>>;
+
+FlatWordsView flat(std::vector<std::uint32_t> words) {
+    auto kept = std::make_unique<std::vector<std::uint32_t>>(std::move(words));
+    const std::uint32_t* const data = kept->data();
+    const std::size_t size = kept->size();
+    return FlatWordsView(data, {size}, nb::capsule(kept.release(), [](void* p) noexcept {
+        delete static_cast<std::vector<std::uint32_t>*>(p);
+    }));
+}
+
+auto columns_of(const Words& words) {
+    dg::WordColumns found;
+    {
+        const nb::gil_scoped_release others_run;
+        if (words.size()) found = dg::word_columns({words.data(), words.size()}, words.shape(2));
+    }
+    return nb::make_tuple(flat(std::move(found.columns)), flat(std::move(found.words)));
+}
+
+void add_state(dg::Film& film, const std::string& part, const FlatWords& columns, const FlatWords& words) {
+    const nb::gil_scoped_release others_run;
+    const std::span all(words.data(), words.size());
+    if (part == kObjects) film.add_object_words(all);
+    else film.add_state(part, {columns.data(), columns.size()}, all);
 }
 
 using Ids = nb::ndarray<const std::uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
@@ -183,7 +212,12 @@ void bind_film(nb::module_& m) {
         .def("set_state", [](Film& f, const std::string& part, const Words& words) {
             if (part == kObjects) return set_objects(f, words);
             f.set_state(part, std::as_bytes(std::span(words.data(), words.size())));
-        });
+        })
+        .def("add_state", &add_state, "part"_a, "columns"_a, "words"_a,
+             "Adds a part of the state of a film of the same layout: of its words those of these columns, as "
+             "word_columns returns them.");
+    m.def("word_columns", &columns_of, "words"_a,
+          "Columns of the last axis of (H, W, words) that are not 0 everywhere, and their words.");
     m.def("mean_of_next_colour", &next_colour, "plane"_a, "reach"_a,
           "For each pixel the mean of those near it that have the next of three colours.");
 }

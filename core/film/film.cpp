@@ -323,6 +323,15 @@ void Film::Sums::add(const Sums& other) {
     for (int k = 0; k < 3; ++k) rgb_squares[k].add(other.rgb_squares[k]);
 }
 
+namespace {
+
+template <typename T>
+void add_all(std::vector<T>& to, const std::vector<T>& more) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i].add(more[i]);
+}
+
+}  // namespace
+
 void Film::merge(const Film& other) {
     if (!(layout_ == other.layout_)) {
         const auto words = [](const FilmLayout& l) {
@@ -339,47 +348,48 @@ void Film::merge(const Film& other) {
         };
         throw input_error("film", "merge", words(layout_), words(other.layout_));
     }
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
-        Pixel& a = pixels_[i];
-        const Pixel& b = other.pixels_[i];
-        a.add(b);
-        a.count += b.count;
-        a.bad += b.bad;
-        a.first_bad = std::min(a.first_bad, b.first_bad);
-    }
-    for (std::size_t i = 0; i < splats_.size(); ++i) splats_[i].add(other.splats_[i]);
-    for (std::size_t i = 0; i < flare_.size(); ++i) flare_[i].add(other.flare_[i]);
-    for (std::size_t i = 0; i < halves_.size(); ++i) {
-        HalfPixel& a = halves_[i];
-        const HalfPixel& b = other.halves_[i];
-        for (int k = 0; k < 3; ++k) a.own[k].add(b.own[k]), a.splats[k].add(b.splats[k]);
-        a.count += b.count;
-    }
-    for (std::size_t i = 0; i < coverage_.size(); ++i) {
-        coverage_[i].white += other.coverage_[i].white;
-        coverage_[i].covered += other.coverage_[i].covered;
-    }
+    add_all(pixels_, other.pixels_);
+    add_all(splats_, other.splats_);
+    add_all(flare_, other.flare_);
+    add_all(halves_, other.halves_);
+    add_all(coverage_, other.coverage_);
     if (objects_) objects_->add(*other.objects_);
-    for (std::size_t i = 0; i < catchers_.size(); ++i)
-        for (int k = 0; k < 3; ++k) {
-            catchers_[i].with[k].add(other.catchers_[i].with[k]);
-            catchers_[i].without[k].add(other.catchers_[i].without[k]);
-        }
-    for (std::size_t i = 0; i < catcher_channels_.size(); ++i) catcher_channels_[i].add(other.catcher_channels_[i]);
-    for (std::size_t i = 0; i < bands_.size(); ++i) bands_[i].add(other.bands_[i]);
-    for (std::size_t i = 0; i < channels_.size(); ++i) channels_[i].add(other.channels_[i]);
-    for (std::size_t i = 0; i < channel_splats_.size(); ++i)
-        channel_splats_[i].add(other.channel_splats_[i]);
-    for (std::size_t i = 0; i < aovs_.size(); ++i) {
-        AovPixel& a = aovs_[i];
-        const AovPixel& b = other.aovs_[i];
-        for (std::size_t k = 0; k < a.sums.size(); ++k) a.sums[k].add(b.sums[k]);
-        a.passed += b.passed;
-        a.hits += b.hits;
-        if (b.object_sample < a.object_sample) {
-            a.object_sample = b.object_sample;
-            a.object_id = b.object_id;
-        }
+    add_all(catchers_, other.catchers_);
+    add_all(catcher_channels_, other.catcher_channels_);
+    add_all(bands_, other.bands_);
+    add_all(channels_, other.channels_);
+    add_all(channel_splats_, other.channel_splats_);
+    add_all(aovs_, other.aovs_);
+}
+
+void Film::Pixel::add(const Pixel& other) {
+    Sums::add(other);
+    count += other.count;
+    bad += other.bad;
+    first_bad = std::min(first_bad, other.first_bad);
+}
+
+void Film::HalfPixel::add(const HalfPixel& other) {
+    for (int k = 0; k < 3; ++k) own[k].add(other.own[k]), splats[k].add(other.splats[k]);
+    count += other.count;
+}
+
+void Film::CoveragePixel::add(const CoveragePixel& other) {
+    white += other.white;
+    covered += other.covered;
+}
+
+void Film::CatcherPixel::add(const CatcherPixel& other) {
+    for (int k = 0; k < 3; ++k) with[k].add(other.with[k]), without[k].add(other.without[k]);
+}
+
+void Film::AovPixel::add(const AovPixel& other) {
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(other.sums[k]);
+    passed += other.passed;
+    hits += other.hits;
+    if (other.object_sample < object_sample) {
+        object_sample = other.object_sample;
+        object_id = other.object_id;
     }
 }
 

@@ -194,6 +194,11 @@ class Film {
     void set_object_words(std::span<const std::uint32_t> words);
     /// Throws Error for another number of bytes.
     void set_state(const std::string& part, std::span<const std::byte> bytes);
+    /// Adds a part of the state of a film of the same layout, exactly as merge does. Of the words of each pixel only
+    /// those of these columns come, in rising order; the others are 0. Throws Error for another number of words.
+    void add_state(const std::string& part, std::span<const std::uint32_t> columns,
+                   std::span<const std::uint32_t> words);
+    void add_object_words(std::span<const std::uint32_t> words);
 
   private:
     static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -205,21 +210,26 @@ class Film {
     struct Pixel : Sums {
         std::uint32_t count = 0, bad = 0, first_bad = kNone;
         std::uint32_t lock = 0;   // of add_shared; 0 at rest
+        void add(const Pixel& other);
     };
     struct HalfPixel {   // of the samples with even indices
         ValueSum own[3], splats[3];
         std::uint32_t count = 0, unused[3] = {};
+        void add(const HalfPixel& other);
     };
     /// Whole steps of 2^-30: 2^33 samples of white fit.
     struct CoveragePixel {
         std::int64_t white = 0, covered = 0;
+        void add(const CoveragePixel& other);
     };
     struct CatcherPixel {
         ValueSum with[3], without[3];
+        void add(const CatcherPixel& other);
     };
     struct AovPixel {
         std::array<ValueSum, kAovChannels.size()> sums;   // in their order
         std::uint32_t passed = 0, hits = 0, object_sample = kNone, object_id = 0;
+        void add(const AovPixel& other);
     };
 
     /// Index of a full-frame pixel, or -1 outside the region.
@@ -254,6 +264,9 @@ class Film {
     /// Sums of `each` values per pixel over the pixel's count.
     std::vector<float> means(const std::vector<ValueSum>& sums, int each) const;
     const std::vector<AovPixel>& require_aovs() const;
+    /// Calls `act` with the values of a part, which is one of state_parts().
+    template <typename Act>
+    void with_part(const std::string& part, const Act& act);
 
     FilmLayout layout_;
     std::array<Vec3f, 3> rgb_from_xyz_;  // rows

@@ -1,6 +1,8 @@
 // film_state.cpp -- the sums of a film as the bytes that they are, and back.
+#include <algorithm>
 #include <bit>
 #include <cstring>
+#include <functional>
 
 #include "film/film.h"
 #include "math/error.h"
@@ -31,6 +33,21 @@ std::vector<std::string> Film::state_parts() const {
     if (!channel_splats_.empty()) parts.push_back("channel_splats");
     if (!catcher_channels_.empty()) parts.push_back("catcher_channels");
     return parts;
+}
+
+template <typename Act>
+void Film::with_part(const std::string& part, const Act& act) {
+    if (part == "sums") act(pixels_);
+    if (part == "aovs") act(aovs_);
+    if (part == "splats") act(splats_);
+    if (part == "flare") act(flare_);
+    if (part == "halves") act(halves_);
+    if (part == "coverage") act(coverage_);
+    if (part == "catchers") act(catchers_);
+    if (part == "bands") act(bands_);
+    if (part == "channels") act(channels_);
+    if (part == "channel_splats") act(channel_splats_);
+    if (part == "catcher_channels") act(catcher_channels_);
 }
 
 std::span<const std::byte> Film::state(const std::string& part) const {
@@ -73,6 +90,42 @@ void Film::set_state(const std::string& part, std::span<const std::byte> bytes) 
     std::memcpy(const_cast<std::byte*>(to.data()), bytes.data(), to.size());   // of this very film
     // Nobody holds a lock of this film: one that a damaged file brings would never open.
     for (Pixel& pixel : pixels_) pixel.lock = 0;
+}
+
+namespace {
+
+/// Adds to values that lie side by side in pixels, of whose words only some columns come.
+template <typename T>
+void add_columns(std::vector<T>& to, std::size_t pixels, std::span<const std::uint32_t> columns,
+                 const std::uint32_t* words) {
+    const std::size_t each = to.size() / pixels;
+    std::vector<T> pixel(each);
+    std::vector<std::uint32_t> all(each * sizeof(T) / 4);
+    for (std::size_t p = 0; p < pixels; ++p) {
+        for (const std::uint32_t column : columns) all[column] = *words++;
+        std::memcpy(pixel.data(), all.data(), 4 * all.size());
+        for (std::size_t k = 0; k < each; ++k) to[p * each + k].add(pixel[k]);
+    }
+}
+
+}  // namespace
+
+void Film::add_state(const std::string& part, std::span<const std::uint32_t> columns,
+                     std::span<const std::uint32_t> words) {
+    const std::size_t pixels = pixels_.size(), each = state(part).size() / 4 / pixels;
+    const bool rises = std::ranges::adjacent_find(columns, std::ranges::greater_equal()) == columns.end();
+    if (!rises || (!columns.empty() && columns.back() >= each) || words.size() != pixels * columns.size())
+        throw input_error("film state", "words of " + part,
+                          "at most " + std::to_string(each) + " columns of " + std::to_string(pixels),
+                          std::to_string(columns.size()) + " with " + std::to_string(words.size()) + " words");
+    with_part(part, [&](auto& to) { add_columns(to, pixels, columns, words.data()); });
+}
+
+void Film::add_object_words(std::span<const std::uint32_t> words) {
+    if (!objects_) throw input_error("film state", "part", "no objects", "'objects'");
+    CoverLists more(pixels_.size());
+    more.set_words(words, layout_.width);
+    objects_->add(more);
 }
 
 }  // namespace dg

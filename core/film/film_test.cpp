@@ -6,9 +6,11 @@
 #include <thread>
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
+#include "film/word_columns.h"
 #include "math/error.h"
 #include "math/hash.h"
 #include "math/statistics.h"
@@ -345,6 +347,49 @@ TEST_CASE("halves share no sample, make up the picture, and have no ghosts") {
     CHECK(film.half_xyz(Film::Half::odd, true) == std::vector<float>{32, 0, 0});
     CHECK(film.half_xyz(Film::Half::even) == std::vector<float>{3, 6, 9});
     CHECK_THROWS_AS(Film(FilmLayout{1, 1}).half_xyz(Film::Half::even), Error);
+}
+
+TEST_CASE("sums that come as columns of words are added as a merge adds them") {
+    const FilmLayout layout{.width = 3, .height = 2, .aovs = true, .splats = true, .flare = true, .halves = true,
+                            .coverage = true, .catchers = true, .bands = 3, .channels = 2};
+    Film merged(layout), added(layout), more(layout);
+    std::uint64_t number = 0;
+    for (Film* film : {&merged, &added, &more}) {
+        number = film == &added ? 0 : number;   // these two begin alike
+        for (const std::string& part : film->state_parts()) {
+            std::vector<std::uint32_t> words(film->state(part).size() / 4);
+            for (std::uint32_t& word : words) {
+                const std::uint64_t dice = hash64(1, number++);
+                word = dice % 3 ? std::uint32_t(dice >> 32) : 0;
+            }
+            film->set_state(part, std::as_bytes(std::span(words)));
+        }
+    }
+    CHECK(whole_state(merged) == whole_state(added));
+    merged.merge(more);
+    for (const std::string& part : more.state_parts()) {
+        const std::span<const std::byte> bytes = more.state(part);
+        std::vector<std::uint32_t> words(bytes.size() / 4);
+        std::memcpy(words.data(), bytes.data(), bytes.size());
+        const std::size_t each = words.size() / 6;
+        const WordColumns kept = word_columns(words, each);
+        CHECK(kept.words.size() == 6 * kept.columns.size());
+        added.add_state(part, kept.columns, kept.words);
+        CHECK_THROWS_AS(added.add_state(part, kept.columns, std::span(kept.words).subspan(1)), Error);
+        CHECK_THROWS_AS(added.add_state(part, std::vector{std::uint32_t(each)}, std::span(words).first(6)), Error);
+        CHECK_THROWS_AS(added.add_state(part, std::vector{1u, 1u}, std::span(words).first(12)), Error);
+    }
+    CHECK(whole_state(merged) == whole_state(added));
+    CHECK_THROWS_AS(added.add_state("nonsense", {}, {}), Error);
+    CHECK_THROWS_AS(added.add_object_words({}), Error);
+}
+
+TEST_CASE("columns of zeros stay away") {
+    const std::vector<std::uint32_t> words{0, 5, 0, 7, 0, 0, 0, 9};
+    const WordColumns kept = word_columns(words, 4);
+    CHECK(kept.columns == std::vector<std::uint32_t>{1, 3});
+    CHECK(kept.words == std::vector<std::uint32_t>{5, 7, 0, 9});
+    CHECK(word_columns(std::vector<std::uint32_t>(8), 4).words.empty());
 }
 
 TEST_CASE("films of different layout do not merge") {

@@ -26,18 +26,26 @@ def set_film_state(film: Any, state: Mapping[str, NDArray[np.uint32]], where: st
         MismatchError: A part is missing, unknown or of another size; the film is unchanged then.
         InputError: A list is damaged.
     """
-    shapes = {part: _shape(part, film.state(part)) for part in film.state_parts()}
-    given = {part: _shape(part, words) for part, words in state.items()}
-    if given != shapes:
-        raise MismatchError(f"{where}: sums of another layout: wanted {shapes}, got {given}")
+    check_layout(film, {part: np.shape(words) for part, words in state.items()}, where)
     with core_errors(InputError, where):
         for part, words in state.items():
             film.set_state(part, np.ascontiguousarray(words, np.uint32))
 
 
-def _shape(part: str, words: NDArray[np.uint32]) -> tuple[int, ...]:
+def check_layout(film: Any, given: Mapping[str, tuple[int, ...]], where: str) -> None:
+    """Checks that sums have the shapes of a film's, by part.
+
+    Raises:
+        MismatchError: They do not.
+    """
+    shapes = {part: _shape(part, film.state(part).shape) for part in film.state_parts()}
+    got = {part: _shape(part, shape) for part, shape in given.items()}
+    if got != shapes:
+        raise MismatchError(f"{where}: sums of another layout: wanted {shapes}, got {got}")
+
+
+def _shape(part: str, shape: tuple[int, ...]) -> tuple[int, ...]:
     """Shape that films of one layout share; for lists the number of rows."""
-    shape = np.shape(words)
     return (*shape[:1], *shape[2:]) if part == OBJECTS else shape
 
 

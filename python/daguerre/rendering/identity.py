@@ -53,9 +53,13 @@ def key(session: Drawn) -> dict[str, str]:
         "scene": one.built.hash,
         "camera": _hash_json(without_exposure(facts_of(one.setup))),
         "settings": _hash_json(_settings_facts(session)),
-        "build": f"{_core.__version__} {platform.machine()} {_core.simd_target()} "
-        f"{one.core_scene.intersector}",
+        "build": f"{build()} {one.core_scene.intersector}",
     }
+
+
+def build() -> str:
+    """Version, processor and SIMD target, on which the bits of a picture depend."""
+    return f"{_core.__version__} {platform.machine()} {_core.simd_target()}"
 
 
 def metadata(session: Drawn) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Unpack
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre.cached import cached_property
 from daguerre.camera.camera import Camera
-from daguerre.checks import MAX_SAMPLES, whole
+from daguerre.checks import MAX_SAMPLES, shown, whole
 from daguerre.doors import guarded
 from daguerre.errors import InputError, MismatchError, UsageError, core_errors
 from daguerre.frame.frame import Frame
@@ -21,8 +21,9 @@ from daguerre.scene.scene import Scene
 from daguerre.setup.built_scene import BuiltScene
 
 from . import identity
-from .adaptive import Round
+from .adaptive import PARTS, Round
 from .backdrop import behind, over, shows_plate
+from .columns import Columns, add_columns
 from .film_frame import frame_of, set_film_state
 from .film_parts import area
 from .keywords import SettingsKeywords, settings_of
@@ -119,17 +120,20 @@ class Session:
         end = whole(end, "samples", 0, MAX_SAMPLES)
         if not begin < end:
             raise UsageError(f"samples: wanted 0 <= a < b <= 2^31, got {begin}:{end}")
-        for a, b in self.ranges:
-            if begin < b and a < end:
-                raise MismatchError(
-                    f"samples: {begin}:{end} overlaps {a}:{b}, which is drawn already"
-                )
+        self._check_new(begin, end)
         if self.round is not None:
             raise MismatchError("samples: wanted another round of adaptive sampling, got a range")
         if not self._add(_core.render, (begin, end), progress):
             return False
         self.ranges = join_ranges([*self.ranges, (begin, end)])
         return True
+
+    def _check_new(self, begin: int, end: int) -> None:
+        for a, b in self.ranges:
+            if begin < b and a < end:
+                raise MismatchError(
+                    f"samples: {begin}:{end} overlaps {a}:{b}, which is drawn already"
+                )
 
     def draw_round(self, until: int, progress: Progress | None = None) -> bool:
         """Draws the parts of ``round`` up to ``until``; see ``daguerre.rendering.adaptive``.
@@ -249,6 +253,44 @@ class Session:
         self._torn = False
         self.ranges = join_ranges(ranges)
         self.round = round
+
+    def clear(self) -> None:
+        """Forgets all samples."""
+        self._film = new_film(self.prepared, self.light_plan)
+        self._torn, self.ranges, self.round = False, [], None
+        self.counters = _core.RenderCounters()
+
+    @core_errors(InputError, "render")
+    def add(
+        self,
+        sums: Mapping[str, Columns],
+        samples: Sequence[tuple[int, int]] = (),
+        until: int | None = None,
+    ) -> None:
+        """Adds sums that another session of the same picture drew.
+
+        Args:
+            sums: Columns of its ``state``, by part.
+            samples: Ranges [begin, end) of samples of every pixel that it drew.
+            until: One past the last part of ``round`` that it drew, from those drawn here on.
+
+        Raises:
+            UsageError: The sums are no columns, or a range is none.
+            MismatchError: The sums have another layout, or samples are drawn already.
+        """
+        if not all(isinstance(one, Columns) for one in sums.values()):
+            raise UsageError(f"sums: wanted columns by part, got {shown(sums)}")
+        for begin, end in samples:
+            self._check_new(
+                whole(begin, "samples", 0, MAX_SAMPLES), whole(end, "samples", 0, MAX_SAMPLES)
+            )
+        until = None if until is None else whole(until, "until", 0, PARTS)
+        add_columns(self._whole_film(), sums, "sums")
+        if samples:
+            self.ranges = join_ranges([*self.ranges, *samples])
+        elif until is not None and self.round is not None:
+            self.round = replace(self.round, drawn=until)
+            self.ranges = join_ranges([(0, int(self.sample_counts().min()))])
 
     @cached_property
     def key(self) -> dict[str, str]:
