@@ -27,6 +27,7 @@ from typing import Any
 import numpy as np
 
 import daguerre as dg
+from daguerre.cli.demo import write_scene
 from daguerre.rendering import Cancelled, CancelToken
 from daguerre.rendering.session import Session
 from daguerre.viewfinder.dials import Dials
@@ -62,12 +63,8 @@ def loaded(path: str | None) -> tuple[dg.Scene, dg.Camera]:
     """The scene and its camera."""
     with tempfile.TemporaryDirectory() as folder:
         if path is None:
-            sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "scenes"))
-            import night_table
-
             path = str(Path(folder) / "night_table.glb")
-            sys.argv[1:] = [path]
-            night_table.main()
+            write_scene(Path(path))
         scene = dg.load(path)
     return scene, scene.camera()
 

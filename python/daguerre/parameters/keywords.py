@@ -30,7 +30,7 @@ def takes(rows: Rows, keywords: Any) -> Callable[[Function], Function]:
     types = keywords.__annotations__
 
     def decorate(function: Function) -> Function:
-        signature = inspect.signature(function)
+        signature = _signature(function)
         own = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
         made = [
             inspect.Parameter(
@@ -45,6 +45,14 @@ def takes(rows: Rows, keywords: Any) -> Callable[[Function], Function]:
         return function
 
     return decorate
+
+
+def _signature(function: Callable[..., Any]) -> inspect.Signature:
+    """Signature of a function, or of a class without those that its bases show."""
+    if not isinstance(function, type):
+        return inspect.signature(function)
+    own = inspect.signature(function.__init__)  # type: ignore[misc]
+    return own.replace(parameters=list(own.parameters.values())[1:])
 
 
 def with_rows(text: str | None, rows: Rows, names: Iterable[str]) -> str | None:
