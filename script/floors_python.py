@@ -39,7 +39,7 @@ FLOORS = [
     {"rendering"},
     {"maps", "labels", "charts"},
     {"plates"},
-    {"viewfinder"},
+    {"viewfinder", "cluster"},
     {"__init__"},
     {"cli"},
     {"__main__"},
@@ -63,6 +63,7 @@ HAND_OVERS = {
     ("lenses/lens.py", "zoom_range_mm", "lenses.zoom"),
     ("plates/match/plate_camera.py", "save", "plates.match.writer"),
     ("polynomial/lens_fit.py", "save", "export"),
+    ("rendering/render.py", "_on_cluster", "cluster.opened"),
     ("stocks/stock.py", "expose", "stocks.negative"),
 }
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}

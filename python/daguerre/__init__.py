@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from .camera.placement import look_at
     from .camera.projection import Projection
     from .camera.rolling_shutter import RollingShutter
+    from .cluster.session import ClusterSession
     from .exposure import metering
     from .frame.frame import Frame
     from .frame.raw import Raw
@@ -58,6 +59,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Camera",
     "Categories",
+    "ClusterSession",
     "Conductor",
     "DaguerreError",
     "Dielectric",
@@ -127,6 +129,7 @@ _LAZY = {
     "Camera": "camera.camera",
     "LensScatter": "camera.lens_scatter",
     "look_at": "camera.placement",
+    "ClusterSession": "cluster.session",
     "view": "viewfinder.notebook",
     "Projection": "camera.projection",
     "RollingShutter": "camera.rolling_shutter",

@@ -22,6 +22,16 @@ MAX_NUMBERS = 1 << 31
 DEFLATE_LIMIT = 1032
 
 
+def is_loopback(host: str) -> bool:
+    """Whether an address is reached from this machine alone."""
+    from ipaddress import ip_address  # not at every start of the program
+
+    try:
+        return host == "localhost" or ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
 def array(values: ArrayLike, where: str, what: str, columns: int) -> NDArray[np.float32]:
     """Checks finite numbers of shape (N, columns); returns float32."""
     numbers = to_numbers(values, where, what, f"shape (N, {columns})")

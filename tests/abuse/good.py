@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 
 import daguerre as dg
+from daguerre.rendering.columns import columns_of
+from tests.cluster.fake import Fake
 
 from .world import LENS, SIZE, TRIANGLE, World, moved
 
@@ -40,6 +42,7 @@ BY_NAME: dict[str, Make] = {
     "calibration": lambda w: w.ros,
     "camera": lambda w: w.camera,
     "chart": lambda w: w.chart,
+    "client": lambda w: Fake(["w"]),
     "count": lambda w: 3,
     "data": lambda w: w.fit.to_dict(),
     "depth": lambda w: np.full((6, 8), 2.0, np.float32),
@@ -190,6 +193,7 @@ ARGS: dict[str, Make] = {
     "dg.Scene.set_environment": lambda w: {"image": np.ones((4, 8, 3), np.float32), "scale": 1.0},
     "dg.Scene.set_plate": lambda w: {"pixels": w.image},
     "dg.Session": lambda w: {"scene": w.scene, "resolution": SIZE},
+    "dg.Session.add": lambda w: {"sums": columns_of(w.state)},
     "dg.Session.draw": constant(begin=2, end=3),
     "dg.Session.draw_round": constant(until=4),
     "dg.Session.object_ids": lambda w: {"moment": moment(w)},
@@ -483,10 +487,17 @@ ARGS: dict[str, Make] = {
     "dg.stocks.read": lambda w: {"path": library_file("stocks", "generic-reversal-100")},
 }
 
+ARGS |= {
+    path.replace("dg.Session.", "dg.ClusterSession."): made
+    for path, made in ARGS.items()
+    if path.startswith("dg.Session.")
+}
+
 #: The object of methods, by the path of its class.
 RECEIVERS: dict[str, Make] = {
     "dg.Camera": lambda w: w.camera,
     "dg.Categories": lambda w: dg.Categories(),
+    "dg.ClusterSession": lambda w: w.cluster_session,
     "dg.Frame": lambda w: w.frame,
     "dg.Keys": lambda w: dg.keys([(0.0, 1.0), (1.0, 2.0)]),
     "dg.PlateCamera": lambda w: w.plate_camera,

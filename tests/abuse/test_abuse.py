@@ -23,6 +23,7 @@ FEW, MANY = 4, 60
 #: Good arguments that are refused all the same, and why.
 REFUSED = {
     "dg.Session.draw_round": "a round is planned by a driver",
+    "dg.ClusterSession.draw_round": "a round is planned by a driver",
 }
 
 

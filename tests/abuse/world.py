@@ -13,6 +13,7 @@ import daguerre as dg
 from daguerre import analysis, polynomial
 from daguerre.analysis.iris import Iris
 from daguerre.rendering.passes import pass_of, write_pass
+from tests.cluster.fake import Fake
 from tests.support import light_probes, tracked
 from tests.support.plate_frames import of_light, ramp
 
@@ -61,6 +62,11 @@ class World:
         session = dg.Session(self.scene, resolution=SIZE, halves=True)
         session.draw(0, 2)
         return session
+
+    @property
+    def cluster_session(self) -> dg.ClusterSession:
+        """A session that a cluster in this process draws."""
+        return dg.ClusterSession(self.scene, resolution=SIZE, halves=True, client=Fake(["w"]))
 
     @property
     def state(self) -> dict[str, Any]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from daguerre.viewfinder.door import Door, is_loopback, new_token
+from daguerre.checks import is_loopback
+from daguerre.viewfinder.door import Door, new_token
 
 DOOR = Door.at("127.0.0.1", 8321, "secret")
 

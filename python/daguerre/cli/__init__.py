@@ -54,6 +54,8 @@ COMMANDS = {
     "match-plate": Command(".match_plate", "Find the camera settings of a photograph."),
     "light-probe": Command(".light_probe", "Build an environment from photographs of a probe."),
     "composite": Command(".composite", "Put rendered objects into a photograph."),
+    "scheduler": Command(".cluster", "Start the scheduler of a cluster."),
+    "worker": Command(".cluster", "Start a worker of a cluster."),
     "demo": Command(".demo", "Render a first picture, without any file of your own."),
     "version": Command(".version", "Print the version and the libraries in use."),
 }

@@ -12,6 +12,7 @@ EXTRAS = {
     "opengl_basisu": ("opengl_basisu", "compression"),
     "anywidget": ("anywidget", "notebook"),
     "PyOpenColorIO": ("opencolorio", "color"),
+    "distributed": ("distributed", "cluster"),
     "matplotlib": ("matplotlib", "plot"),
     "mitsuba_oidn": ("mitsuba-oidn", "denoise"),
     "rawpy": ("rawpy", "raw"),

@@ -16,7 +16,7 @@ from .film_memory import check_denoised, check_picture
 from .loop import Loop
 from .picture import Picture
 from .reporter import Control, Finished, Reporter, Stopped
-from .schedule import work_of
+from .schedule import WorkOf, work_of
 
 if TYPE_CHECKING:
     from daguerre.setup.built_scene import BuiltScene
@@ -52,6 +52,7 @@ class Job:
         written: Called when the files of a picture are written.
         skipped: Called with a picture whose files exist already.
         staged: Called with a frame's number and its scene, to add per-frame data such as a plate.
+        work_of: Makes the work of a picture; that of a cluster draws it elsewhere.
         done: Number of pictures that are complete.
     """
 
@@ -71,6 +72,7 @@ class Job:
         self.written: Hook = _nothing
         self.skipped: Callable[[Picture], None] = lambda picture: None
         self.staged: Callable[[int, Scene], None] = lambda frame, scene: None
+        self.work_of: WorkOf = work_of
         self.done = 0
         self._staged: tuple[int, Scene] | None = None
         self._warned: set[str] = set()
@@ -189,7 +191,7 @@ class Drawing:
         self.tell, self.control, self.setup_s = job.reporter, job.control, setup_s
         self.checkpoint = Checkpoint(self.output.checkpoint, job.interval_s)
         noise = picture.settings.sampling.noise
-        work = work_of(session, picture.wanted, noise, self.output.judge)
+        work = job.work_of(session, picture.wanted, noise, self.output.judge)
         self.loop = Loop(
             session, work, self.checkpoint, self.tell, self.control, self._snapshot, self._preview
         )

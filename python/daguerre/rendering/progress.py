@@ -19,6 +19,8 @@ class Status:
         left_s: Estimated time left, s; None until there is a rate.
         noise: Relative error reached by adaptive sampling; None until it is known.
         noise_wanted: Target relative error; None: not adaptive.
+        workers: Number of workers that draw; None: this machine alone does.
+        drawn_again: Number of their tasks that were lost, and began anew.
     """
 
     fraction: float
@@ -30,6 +32,8 @@ class Status:
     left_s: float | None
     noise: float | None = None
     noise_wanted: float | None = None
+    workers: int | None = None
+    drawn_again: int = 0
 
     @property
     def words(self) -> list[str]:
@@ -39,6 +43,8 @@ class Status:
             f"{round(self.samples, 1):g}/{round(self.samples_wanted, 1):g} spp",
             f"{quantity(self.samples_per_s)} samples/s",
             f"{quantity(self.rays_per_s)} rays/s",
+            *([f"{self.workers} workers"] if self.workers is not None else []),
+            *([f"{self.drawn_again} tasks drawn again"] if self.drawn_again else []),
         ]
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import Unpack
+from typing import Any, Unpack
 
 from daguerre.camera.camera import Camera
 from daguerre.doors import guarded
@@ -20,7 +21,7 @@ from .parameters import TABLE
 from .progress import Status
 from .reporter import Control, Reporter
 from .rounds import rounds
-from .schedule import work_of
+from .schedule import WorkOf, work_of
 from .session import Session
 from .settings import RenderSettings
 
@@ -37,6 +38,7 @@ def render(
     settings: RenderSettings | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
+    cluster: Any = None,
     **keywords: Unpack[RenderKeywords],
 ) -> Frame:
     """Renders a picture.
@@ -50,6 +52,8 @@ def render(
             from it.
         progress: Called about ten times a second with a ``rendering.Status``. Returning False
             stops the render after the current samples and returns the picture so far.
+        cluster: ``distributed.Client`` of a Dask cluster whose workers draw, or an address as for
+            ``--cluster``, such as ``local:4``; None: this machine draws. The bits are the same.
         {keywords}
 
     Returns:
@@ -61,10 +65,11 @@ def render(
         MismatchError: The checkpoint belongs to another picture.
     """
     session = Session(scene, camera, settings=settings_of(settings, keywords))
-    if checkpoint is None and progress is None:
+    if checkpoint is None and progress is None and cluster is None:
         return finish(session)
     kept = Checkpoint(None if checkpoint is None else Path(checkpoint))
-    _draw(session, kept, _Watch(progress or (lambda status: None)))
+    with nullcontext(work_of) if cluster is None else _on_cluster(cluster) as make_work:
+        _draw(session, kept, _Watch(progress or (lambda status: None)), make_work)
     return session.frame()
 
 
@@ -91,9 +96,16 @@ class _Watch(Reporter, Control):
             self.stops = 1
 
 
-def _draw(session: Session, checkpoint: Checkpoint, watch: _Watch) -> None:
+def _on_cluster(cluster: Any) -> AbstractContextManager[WorkOf]:
+    """Context of the work of a cluster."""
+    from daguerre.cluster.opened import work_on
+
+    return work_on(cluster)
+
+
+def _draw(session: Session, checkpoint: Checkpoint, watch: _Watch, make_work: WorkOf) -> None:
     sampling = session.settings.sampling
-    work = work_of(session, (0, sampling.most), sampling.noise)
+    work = make_work(session, (0, sampling.most), sampling.noise, None)
     checkpoint.load(session, work)
     loop = Loop(session, work, checkpoint, watch, watch)
     if loop.run():

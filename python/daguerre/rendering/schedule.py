@@ -5,6 +5,7 @@ Both measure work in mean samples per pixel, so that they are timed and shown in
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 from daguerre.errors import MismatchError
@@ -13,8 +14,6 @@ from . import rounds
 from .ranges import missing_ranges
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from .adaptive import Round
     from .passes import Pass
     from .rounds import Judge
@@ -147,6 +146,10 @@ class Rounds:
     def _round(self) -> Round:
         assert self.session.round is not None
         return self.session.round
+
+
+#: Type of :func:`work_of`, and of what draws elsewhere.
+WorkOf = Callable[["Session", tuple[int, int], "float | None", "Judge | None"], Work]
 
 
 def work_of(

@@ -8,12 +8,12 @@ listens on, and a WebSocket must first send the token, which only the printed UR
 from __future__ import annotations
 
 import hmac
-import ipaddress
 import secrets
 from collections.abc import Sequence
 from dataclasses import dataclass
 from urllib.parse import urlsplit
 
+from daguerre.checks import is_loopback
 from daguerre.errors import UsageError
 
 #: Headers of every answer. The page has scripts, styles and pictures of its own alone.
@@ -33,14 +33,6 @@ _TOKEN_BYTES = 32
 def new_token() -> str:
     """Makes a token of 256 random bits."""
     return secrets.token_urlsafe(_TOKEN_BYTES)
-
-
-def is_loopback(host: str) -> bool:
-    """Whether an address is reached from this machine alone."""
-    try:
-        return host == "localhost" or ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False
 
 
 def check_origin(text: str) -> None:

@@ -8,10 +8,11 @@ import webbrowser
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from daguerre.checks import is_loopback
 from daguerre.errors import UsageError
 
 from .dials import Dials
-from .door import Door, check_origin, is_loopback, new_token
+from .door import Door, check_origin, new_token
 from .hub import Hub
 from .server import free_socket, serve
 from .stage import Stage

@@ -10,13 +10,14 @@ from typing import Annotated
 from daguerre.camera.parameters.exposure import EXPOSURE_PANEL
 from daguerre.rendering.parameters import DEFAULT, FILES, PICTURE, SAMPLING, TRUTH
 
+from .cluster import ClusterFlags
 from .groups import Text, option
 
 _WIDTH, _HEIGHT = DEFAULT["resolution"]
 
 
 @dataclass(frozen=True)
-class JobFlags:
+class JobFlags(ClusterFlags):
     """Pictures, files, and how the command runs."""
 
     output: Annotated[

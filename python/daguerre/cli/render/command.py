@@ -77,4 +77,5 @@ def render(
         plan = replace(plan, stage=lambda n, now: scene_flags.throw_plate(now, taken, n))
     if job_flags.dry_run:
         return describe(plan, scene, scene_path)
-    return run(plan, scene, scene_path, labels, launched)
+    with job_flags.crew(console.warn) as crew:
+        return run(plan, scene, scene_path, labels, launched, crew)

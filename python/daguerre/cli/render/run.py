@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from daguerre.cli import console
 from daguerre.cli.signals import Signals
@@ -17,10 +17,15 @@ from .maps import write_maps
 from .plan import Plan
 from .reporter import ConsoleReporter
 
+if TYPE_CHECKING:
+    from daguerre.cluster.crew import Crew
+
 INTERRUPTED = 75
 
 
-def run(plan: Plan, scene: Scene, path: Path, labels: Labels, launched: float) -> int:
+def run(
+    plan: Plan, scene: Scene, path: Path, labels: Labels, launched: float, crew: Crew | None = None
+) -> int:
     """Draws the pictures one after the other; returns the exit code.
 
     Args:
@@ -29,8 +34,13 @@ def run(plan: Plan, scene: Scene, path: Path, labels: Labels, launched: float) -
         path: File of the scene, for messages.
         labels: Collector of labels.
         launched: Start of the command, by ``time.monotonic``, s.
+        crew: Workers of a cluster that draw; None: this machine does.
     """
     job = _job(plan, scene, path)
+    if crew is not None:
+        from daguerre.cluster.work import work_of
+
+        job.work_of = work_of(crew, job)
 
     def opened(picture: Picture, session: Any) -> None:
         maps = plan.maps_of(picture)

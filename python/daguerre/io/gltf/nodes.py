@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from daguerre.files.json_item import Item
+from daguerre.files.value import Value
 from daguerre.scene.transforms import Matrix, affine, compose
 
 #: Limit of lengths, m; squares of longer ones overflow a float.
@@ -39,7 +40,7 @@ class Placed:
     end: int
 
 
-class Tree:
+class Tree(Value):
     """The nodes of a file.
 
     Args:

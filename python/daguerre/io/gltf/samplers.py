@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from daguerre.files.json_item import Item
 from daguerre.files.notes import Notes
+from daguerre.files.value import Value
 
 from .accessors import Accessors
 from .pointers import Target
@@ -24,7 +25,7 @@ _MODES = ("LINEAR", "STEP", "CUBICSPLINE")
 _SLACK = 0.01
 
 
-class Track:
+class Track(Value):
     """Samples of a value over time.
 
     Args:

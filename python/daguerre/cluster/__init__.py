@@ -1,0 +1,1 @@
+"""Cluster: one picture or sequence, drawn by many machines with the bits of one."""

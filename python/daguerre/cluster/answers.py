@@ -1,0 +1,143 @@
+"""Answers of workers, as bytes: sums with a key and a checksum, a wish for values, or a failure.
+
+Each begins with a line of JSON. Sums are the parts of a pass file (``daguerre.rendering.passes``)
+without its picture, which only the client makes, and without columns of zeros.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+from zlib import crc32
+
+import numpy as np
+
+from daguerre.errors import InputError, MismatchError
+from daguerre.rendering.columns import Columns
+
+
+@dataclass(frozen=True)
+class Needs:
+    """A worker needs values before it can draw.
+
+    Attributes:
+        worker: Its address.
+        names: Hashes of the values.
+    """
+
+    worker: str
+    names: list[str]
+
+    def to_bytes(self) -> bytes:
+        """Packs the wish."""
+        return _line(needs=self.names, worker=self.worker)
+
+
+@dataclass(frozen=True)
+class Failed:
+    """A worker could not do its task.
+
+    Attributes:
+        worker: Its address.
+        reason: Sentence that says why.
+    """
+
+    worker: str
+    reason: str
+
+    def to_bytes(self) -> bytes:
+        """Packs the failure."""
+        return _line(failed=self.reason, worker=self.worker)
+
+
+@dataclass(frozen=True)
+class Sums:
+    """Sums of some samples of a picture.
+
+    Attributes:
+        worker: Address of the worker that drew them.
+        key: Values that must agree with the picture, by name; see ``Session.key``.
+        parts: Words of the film by part.
+        facts: Time that drawing took, number of rays; JSON values.
+    """
+
+    worker: str
+    key: dict[str, str]
+    parts: Mapping[str, Columns]
+    facts: dict[str, Any]
+
+    def to_bytes(self) -> bytes:
+        """Packs the sums."""
+        blocks = [b.data for one in self.parts.values() for b in (one.kept, one.words)]
+        check = 0
+        for block in blocks:
+            check = crc32(block, check)
+        sizes = [
+            [name, one.shape, len(one.kept), len(one.words)] for name, one in self.parts.items()
+        ]
+        line = _line(parts=sizes, worker=self.worker, key=self.key, facts=self.facts, check=check)
+        return b"".join([line, *blocks])
+
+    def check_key(self, wanted: dict[str, str], *, mixed: bool = False) -> None:
+        """Checks that the sums belong to a picture.
+
+        Args:
+            wanted: Key of the picture.
+            mixed: Whether another build will do.
+
+        Raises:
+            MismatchError: They do not.
+        """
+        for name, value in wanted.items():
+            got = self.key.get(name)
+            if got != value and not (mixed and name == "build"):
+                raise MismatchError(f"{name}: wanted that of the client, {value[:60]}, got {got}")
+
+
+#: Most bytes of the line.
+_LINE = 1 << 20
+
+Answer = Needs | Failed | Sums
+
+
+def answer_of(data: bytes | memoryview) -> Answer:
+    """Unpacks an answer; its words stay where they are.
+
+    Raises:
+        InputError: It is damaged.
+    """
+    try:
+        line = bytes(data[:_LINE]).split(b"\n", 1)[0]
+        head, rest = json.loads(line), memoryview(data)[len(line) + 1 :]
+        worker = str(head["worker"])
+        if "needs" in head:
+            return Needs(worker, [str(name) for name in head["needs"]])
+        if "failed" in head:
+            return Failed(worker, str(head["failed"]))
+        if crc32(rest) != head["check"]:
+            raise ValueError("another checksum")
+        return Sums(worker, head["key"], dict(_parts(head["parts"], rest)), head["facts"])
+    except (ValueError, LookupError, TypeError, AttributeError) as error:
+        raise InputError(f"damaged answer: {error}") from None
+
+
+def _line(**head: Any) -> bytes:
+    """Line of JSON, filled up so that the words after it lie aligned."""
+    text = json.dumps(head, separators=(",", ":")).encode()
+    return text + b" " * (-(len(text) + 1) % 8) + b"\n"
+
+
+def _parts(facts: Any, data: memoryview) -> Iterator[tuple[str, Columns]]:
+    """Parts over bytes, not copied."""
+    begin = 0
+    for name, shape, *counts in facts:
+        blocks = []
+        for count in counts:
+            words = np.frombuffer(data[begin : begin + 4 * count], np.uint32)
+            if len(words) != count:
+                raise ValueError("words are missing")
+            blocks.append(np.require(words, requirements="A"))
+            begin += 4 * count
+        yield str(name), Columns(tuple(shape), *blocks)

@@ -1,0 +1,319 @@
+"""Packing: scenes, cameras and settings as JSON and plain arrays, for another machine.
+
+Unlike a pickle, a packed value can name no code: a reader makes values of Daguerre's own classes
+and nothing else. Parts that are shared stay shared, so that a scene is as small as in memory.
+
+Large arrays travel by themselves, under their hash: scenes of a sequence share most of them. A
+packed value is two lines of JSON, and the bytes of its small arrays::
+
+    {"version": ..., "large": [hash, ...]}
+    {"root": ..., "parts": [...], "arrays": [[dtype, shape, hash or null], ...]}
+
+``parts`` are lists, dictionaries and objects, which refer to each other by number.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import importlib
+import json
+import math
+from collections import OrderedDict
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path, PurePath
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre._core import __version__
+from daguerre.errors import DaguerreError, InputError, MismatchError, UsageError
+from daguerre.files.json_item import Item, short
+from daguerre.files.value import Value
+
+_OURS = "daguerre."
+_KINDS = "biufc?"
+#: Size from which an array travels by itself, bytes.
+LARGE = 1 << 16
+
+
+@dataclass(frozen=True)
+class Packed:
+    """A packed value.
+
+    Attributes:
+        data: Its text, and its small arrays.
+        large: Its large arrays by their hash.
+    """
+
+    data: bytes
+    large: dict[str, NDArray[Any]]
+
+
+def hash_of(data: Any) -> str:
+    """Name under which bytes, or those of an array, are kept: their SHA-256."""
+    return hashlib.sha256(data).hexdigest()
+
+
+def pack(value: Any, name: Callable[[NDArray[Any]], str] = hash_of) -> Packed:
+    """Packs a value.
+
+    Args:
+        value: The value.
+        name: Hash of an array in C order; :func:`hash_of`, perhaps with a memory.
+
+    Raises:
+        UsageError: It has a part that is neither plain nor of Daguerre, such as a function.
+    """
+    writer = _Writer(name)
+    root = writer.of(value)
+    head = {"version": __version__, "large": sorted(writer.large)}
+    body = {"root": root, "parts": writer.parts, "arrays": writer.facts}
+    lines = [
+        json.dumps(one, separators=(",", ":"), allow_nan=False).encode() for one in (head, body)
+    ]
+    return Packed(b"\n".join([*lines, b"".join(writer.small)]), writer.large)
+
+
+def large_of(data: bytes) -> list[str]:
+    """Hashes of the large arrays of a packed value.
+
+    Raises:
+        MismatchError: Another version of Daguerre packed it.
+        InputError: It is damaged.
+    """
+    with _damage():
+        head = json.loads(data[: data.index(b"\n")])
+        if head["version"] != __version__:
+            raise MismatchError(
+                f"packed value: wanted one of daguerre {__version__}, got one of "
+                f"{short(head['version'])}"
+            )
+        return [str(one) for one in head["large"]]
+
+
+def unpack(data: bytes, large: Callable[[str], bytes]) -> Any:
+    """Unpacks what :func:`pack` packed.
+
+    Args:
+        data: ``Packed.data``.
+        large: Returns the bytes of a large array by its hash.
+
+    Raises:
+        MismatchError: Another version of Daguerre packed it.
+        InputError: It is damaged.
+    """
+    large_of(data)
+    with _damage():
+        _, line, rest = data.split(b"\n", 2)
+        body = json.loads(line)
+        return _Reader(body["parts"], _arrays(body["arrays"], rest, large)).of(body["root"])
+
+
+_WRONG = (ImportError, LookupError, ValueError, TypeError, AttributeError, RecursionError)
+
+
+@contextmanager
+def _damage() -> Iterator[None]:
+    try:
+        yield
+    except DaguerreError:
+        raise
+    except _WRONG as error:
+        raise InputError(f"packed value: damaged: {type(error).__name__}: {error}") from None
+
+
+def _arrays(facts: Any, data: bytes, large: Callable[[str], bytes]) -> list[NDArray[Any]]:
+    """Arrays over packed bytes, not copied, and so read-only."""
+    found, begin = [], 0
+    for text, shape, name in facts:
+        kind = np.dtype(text)
+        if kind.kind not in _KINDS:
+            raise ValueError(f"an array of {text}")
+        if min(shape, default=0) < 0:
+            raise ValueError("an array of negative size")
+        count = math.prod(shape)
+        source = data if name is None else large(name)
+        at = begin if name is None else 0
+        found.append(
+            np.frombuffer(source, kind, count, at).reshape(shape)
+            if count
+            else np.zeros(shape, kind)
+        )
+        begin += count * kind.itemsize if name is None else 0
+    if begin != len(data):
+        raise ValueError("bytes are left over")
+    return found
+
+
+class _Writer:
+    """Parts of a value, each once."""
+
+    def __init__(self, name: Callable[[NDArray[Any]], str]) -> None:
+        self.parts: list[Any] = []
+        self.facts: list[Any] = []  # of arrays
+        self.small: list[bytes] = []
+        self.large: dict[str, NDArray[Any]] = {}
+        self._name = name
+        self._numbers: dict[int, Any] = {}
+        self._alive: list[Any] = []  # so that no id is used twice
+
+    def of(self, value: Any) -> Any:
+        """JSON of a value: itself, or its parts with the key of their kind."""
+        if value is None or isinstance(value, bool | str) or type(value) is int:
+            return value
+        if type(value) is float:
+            return value if math.isfinite(value) else {"float": str(value)}
+        if type(value) is tuple:
+            return {"tuple": [self.of(one) for one in value]}
+        if isinstance(value, PurePath):
+            return {"path": str(value)}
+        if isinstance(value, np.generic):
+            return {"scalar": self._array(np.asarray(value))}
+        if id(value) not in self._numbers:
+            self._alive.append(value)
+            if isinstance(value, np.ndarray):
+                self._numbers[id(value)] = {"array": self._array(value)}
+            else:
+                self._part(value)
+        return self._numbers[id(value)]
+
+    def _array(self, array: NDArray[Any]) -> int:
+        if array.dtype.kind not in _KINDS:
+            raise UsageError(f"packing: wanted an array of numbers, got one of {array.dtype}")
+        plain, name = np.ascontiguousarray(array).reshape(array.shape), None
+        if plain.nbytes < LARGE:
+            self.small.append(plain.tobytes())
+        else:
+            name = self._name(plain)
+            self.large[name] = plain
+        self.facts.append([plain.dtype.str, plain.shape, name])
+        return len(self.facts) - 1
+
+    def _part(self, value: Any) -> None:
+        number = len(self.parts)
+        self._numbers[id(value)] = {"part": number}
+        self.parts.append(None)  # its own parts may refer to it
+        self.parts[number] = self._contents(value)
+
+    def _contents(self, value: Any) -> Any:
+        if type(value) in _SEQUENCES:
+            return {type(value).__name__: [self.of(one) for one in value]}
+        if type(value) in _MAPPINGS:
+            pairs = [[self.of(key), self.of(one)] for key, one in value.items()]
+            return {type(value).__name__: pairs}
+        if isinstance(value, Item):
+            _, (held, place) = value.__reduce__()
+            return {"item": [self.of(held), self.of(place)]}
+        kind = type(value)
+        if _class_of(_name_of(kind)) is not kind:
+            raise UsageError(
+                f"packing: wanted a value of daguerre, numbers or text, got {short(value)}; "
+                "values of your own classes cannot go to another machine"
+            )
+        return {"class": _name_of(kind), "state": self.of(_state_of(value))}
+
+
+_SEQUENCES = {kind: kind.__name__ for kind in (list, set, frozenset)}
+_MAPPINGS = {kind: kind.__name__ for kind in (dict, OrderedDict)}
+
+
+def _state_of(value: Any) -> dict[str, Any]:
+    """Attributes that a pickle would keep."""
+    if isinstance(value, Value):
+        return value.__getstate__()
+    return dict(vars(value))
+
+
+def _name_of(kind: type[Any]) -> str:
+    return f"{kind.__module__}:{kind.__qualname__}"
+
+
+def _class_of(name: str) -> type[Any] | None:
+    """A class of values of Daguerre by its name; None: there is none."""
+    module, _, rest = name.partition(":")
+    if not module.startswith(_OURS):
+        return None
+    found: Any = importlib.import_module(module)
+    for part in rest.split("."):
+        found = vars(found).get(part)
+    if not isinstance(found, type) or _name_of(found) != name:
+        return None
+    return found if issubclass(found, Value) or dataclasses.is_dataclass(found) else None
+
+
+class _Reader:
+    """Values of packed parts."""
+
+    def __init__(self, parts: list[Any], arrays: list[NDArray[Any]]) -> None:
+        self._parts, self._arrays = parts, arrays
+        self._made: dict[int, Any] = {}
+
+    def of(self, given: Any) -> Any:
+        """Value of its JSON."""
+        if not isinstance(given, dict):
+            return given
+        ((key, what),) = given.items()
+        match key:
+            case "part":
+                return self._part(what)
+            case "array":
+                return self._arrays[what]
+            case "tuple":
+                return tuple(self.of(one) for one in what)
+            case "float":
+                return float(what)
+            case "path":
+                return Path(what)
+            case "scalar":
+                return self._arrays[what][()]
+        raise ValueError(f"no kind of value {short(key)}")
+
+    def _part(self, number: int) -> Any:
+        if number not in self._made:
+            self._make(number, self._parts[number])
+        return self._made[number]
+
+    def _make(self, number: int, given: dict[str, Any]) -> None:
+        if "class" in given:
+            self._make_object(number, given)
+            return
+        ((key, what),) = given.items()
+        match key:
+            case "list":
+                found = self._made[number] = []
+                found.extend(self.of(one) for one in what)
+            case "dict" | "OrderedDict":
+                pairs = self._made[number] = {} if key == "dict" else OrderedDict()
+                pairs.update((self.of(k), self.of(v)) for k, v in what)
+            case "set" | "frozenset":
+                kind = set if key == "set" else frozenset
+                self._made[number] = kind(self.of(one) for one in what)
+            case "item":
+                self._made[number] = _item(*map(self.of, what))
+            case _:
+                raise ValueError(f"no kind of part {short(key)}")
+
+    def _make_object(self, number: int, given: dict[str, Any]) -> None:
+        kind = _class_of(given["class"])
+        if kind is None:
+            raise ValueError(f"no class of values {short(given['class'])}")
+        made: Any = object.__new__(kind)
+        self._made[number] = made
+        state = self.of(given["state"])
+        if isinstance(made, Value):
+            made.__setstate__(state)
+        else:
+            vars(made).update(state)
+
+
+def _item(value: Any, place: tuple[str | int, ...]) -> Item:
+    """An item at its place."""
+    item = Item(None, place[0])
+    for key in place[1:]:
+        item = Item(None, key, item)
+    item.value = value
+    return item

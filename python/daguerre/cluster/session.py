@@ -1,0 +1,96 @@
+"""A session whose samples a cluster draws."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Unpack
+
+from daguerre.camera.camera import Camera
+from daguerre.checks import MAX_SAMPLES, short, whole
+from daguerre.doors import guarded
+from daguerre.errors import UsageError
+from daguerre.parameters.keywords import takes
+from daguerre.rendering.keywords import SettingsKeywords
+from daguerre.rendering.parameters import TABLE
+from daguerre.rendering.schedule import Work
+from daguerre.rendering.session import Session
+from daguerre.rendering.settings import RenderSettings
+from daguerre.scene.scene import Scene
+from daguerre.setup.built_scene import BuiltScene
+
+from .crew import Crew
+from .work import ClusterParts, ClusterRange
+
+Progress = Callable[[float], bool]
+
+
+@guarded(init=True)
+@takes(TABLE, SettingsKeywords)
+class ClusterSession(Session):
+    """A session whose samples the workers of a Dask cluster draw; the rest is as in ``Session``.
+
+    The result has the bits of one machine. ``frame`` returns the picture of what has arrived.
+
+    Args:
+        scene: The scene.
+        camera: Camera, or its name in the scene; default: the scene's own.
+        client: ``distributed.Client`` of the cluster.
+        settings: How it is rendered; the keywords change it.
+        built: ``Session.built`` of another session of the same, unchanged scene; it is reused if
+            both expose at the same time.
+        {keywords}
+
+    Raises:
+        UsageError: A parameter is out of its range.
+        InputError: The scene or the lens cannot be used, or no worker may draw.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        camera: Camera | str | None = None,
+        *,
+        client: Any,
+        settings: RenderSettings | None = None,
+        built: BuiltScene | None = None,
+        **keywords: Unpack[SettingsKeywords],
+    ) -> None:
+        if not hasattr(client, "submit"):
+            raise UsageError(f"client: wanted a distributed.Client, got {short(client)}")
+        super().__init__(scene, camera, settings=settings, built=built, **keywords)
+        self._crew = Crew(client)
+        self._crew.workers.wait()
+
+    def draw(self, begin: int, end: int, progress: Progress | None = None) -> bool:
+        """Has samples [begin, end) of every pixel drawn.
+
+        Args:
+            begin: First sample index.
+            end: One past the last.
+            progress: Called with the fraction done; returning False stops.
+
+        Returns:
+            False if stopped. The samples that arrived before are in the picture; see ``ranges``.
+        """
+        begin = whole(begin, "samples", 0, MAX_SAMPLES)
+        end = whole(end, "samples", 0, MAX_SAMPLES)
+        if not begin < end:
+            raise UsageError(f"samples: wanted 0 <= a < b <= 2^31, got {begin}:{end}")
+        self._check_new(begin, end)
+        return self._work_off(ClusterRange(self, (begin, end), self._crew), progress)
+
+    def draw_round(self, until: int, progress: Progress | None = None) -> bool:
+        """Has the parts of ``round`` up to ``until`` drawn; see ``Session.draw_round``."""
+        if self.round is None:
+            raise UsageError("draw_round: wanted a planned round, got none")
+        return self._work_off(ClusterParts(self, until, self._crew), progress)
+
+    def _work_off(self, work: Work, progress: Progress | None) -> bool:
+        try:
+            while work.prepare(1.0):
+                work.draw(lambda fraction: True)
+                if progress is not None and not progress(work.done() / work.total()):
+                    return False
+        finally:
+            self._crew.drop_all()
+        return True

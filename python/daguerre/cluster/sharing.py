@@ -1,0 +1,188 @@
+"""Sharing of one picture among workers: how long tasks are, which answers are folded on the way."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import groupby, pairwise
+from typing import TYPE_CHECKING, Any
+
+from .crew import Crew, Flight
+from .task import Place, Task
+
+if TYPE_CHECKING:
+    from daguerre.rendering.session import Session
+
+    from .answers import Sums
+
+#: Tasks that wait at each worker while it draws one.
+AHEAD = 2
+#: Length of a task, s, once it is known how fast workers are.
+TASK_S = 15.0
+#: Time that a step waits for results, s.
+STEP_S = 0.5
+#: Answers that a worker adds at once.
+FAN_IN = 4
+#: Share of its time that the client may spend adding answers; beyond, workers add some first.
+ADDING = 0.5
+#: A task that takes so many times as long as it should is drawn a second time, by an idle worker.
+LATE = 3.0
+
+
+class Sharing:
+    """Tasks of one picture, and how fast they are drawn.
+
+    Args:
+        session: Session of the picture.
+        crew: Workers.
+        place: The picture among the values of the crew.
+    """
+
+    def __init__(self, session: Session, crew: Crew, place: Place) -> None:
+        self.session, self.crew, self.place = session, crew, place
+        self._take_s = self._add_s = self._task_s = 0.0  # of one answer, and of one task
+        self._waited = 0.0
+
+    @property
+    def flights(self) -> list[Flight]:
+        """Tasks of this picture that are under way or have landed, in the order of their begin."""
+        return self.crew.flights_of(self.place)
+
+    def begin(self, begin: int, end: int, round: str) -> None:
+        """Sends parts of a round to the workers."""
+        self.crew.begin(Task(self.place.scene, self.place.view, begin, end, round))
+
+    def room(self) -> int:
+        """Number of tasks that may begin."""
+        most = AHEAD * max(1, len(self.crew.workers.good))
+        flights = self.crew.flights
+        pending = sum(not one.landed for one in flights)
+        return min(most - pending, FAN_IN * most - len(flights))
+
+    def size(self, left: float) -> float:
+        """Samples of the next task, from the speed so far; smaller toward the end."""
+        if not self.crew.per_second:
+            return 1.0
+        fair = left / (2 * max(1, len(self.crew.workers.good)))
+        return max(1.0, min(TASK_S * self.crew.per_second, fair))
+
+    def take(self, first: int | None = None) -> tuple[Task, Sums] | None:
+        """A task that has landed and its sums, after waiting a little; None: none.
+
+        Args:
+            first: Where the next answer begins that is wanted; None: any.
+
+        Raises:
+            GivenUp: A task failed on several workers.
+        """
+        end = time.monotonic() + STEP_S
+        while True:
+            self.crew.look()
+            self.crew.serve()
+            self._drop_twins()
+            self._fold()
+            ready = self._ready(first)
+            if ready is not None:
+                began = time.process_time()  # another thread fetches the sums
+                sums = self.crew.result(ready, self.session.key)
+                if sums is not None:
+                    self._take_s = time.process_time() - began
+                    return ready.task, sums
+            elif time.monotonic() > end:
+                return None
+            else:
+                self._draw_late_ones_again()
+                time.sleep(0.02)
+
+    @contextmanager
+    def adding(self, samples: float, sums: Sums) -> Iterator[None]:
+        """Context in which sums are added; learns how long that takes, and how fast workers are."""
+        began = time.process_time()
+        yield
+        self._add_s = self._take_s + time.process_time() - began
+        self.session.counters.rays += int(sums.facts["rays"])
+        seconds = float(sums.facts["seconds"])
+        if seconds > 0:
+            self._task_s = seconds / sums.facts["tasks"]
+            self.crew.per_second = max(samples / seconds, 1e-3)
+
+    def facts(self) -> dict[str, Any]:
+        """Values for a ``Status``."""
+        return {"workers": len(self.crew.workers.good), "drawn_again": self.crew.drawn_again}
+
+    @property
+    def group(self) -> int:
+        """Number of tasks in an answer that the client takes, so that it keeps up with workers."""
+        if not self._task_s:
+            return 1
+        busy = self._add_s * len(self.crew.workers.good) / self._task_s
+        return max(1, math.ceil(busy / ADDING))
+
+    def _ready(self, first: int | None) -> Flight | None:
+        """Flight whose answer the client takes now."""
+        flights, group = self.flights, self.group
+        under_way = not all(one.landed for one in flights)
+        for one in flights:
+            if first is not None and one.task.begin != first:
+                continue
+            if one.landed and (one.alone or one.tasks >= group or group < FAN_IN or not under_way):
+                return one
+        return None
+
+    def _fold(self) -> None:
+        """Has workers add answers that lie side by side, if there are too many for the client."""
+        flights, group = self.flights, self.group
+        if group < FAN_IN:
+            return
+        under_way = not all(one.landed for one in flights)
+        for row in _rows([f for f in flights if f.has_sums and not f.alone and f.tasks < group]):
+            while len(row) >= (FAN_IN if under_way else 2):
+                self.crew.fold(row[:FAN_IN])
+                row = row[FAN_IN:]
+
+    def _drop_twins(self) -> None:
+        """Gives up tasks that were drawn a second time, once one of the two has landed."""
+        for _, same in groupby(self.flights, lambda one: (one.task.begin, one.task.end)):
+            twins = list(same)
+            landed = next((one for one in twins if one.landed), None)
+            if landed is not None and len(twins) > 1:
+                self.crew.drop(*(one for one in twins if one is not landed))
+
+    def _draw_late_ones_again(self) -> None:
+        """Has idle workers draw tasks that take much longer than they should."""
+        if time.monotonic() - self._waited < STEP_S:
+            return
+        self._waited = time.monotonic()
+        flights = [one for one in self.flights if not (one.landed or one.parts)]
+        held = self.crew.holders()
+        idle = sum(not keys for keys in held.values())
+        for one in sorted(flights, key=lambda flight: flight.began):
+            has_twin = sum(other.task == one.task for other in flights) > 1
+            if idle > 0 and not has_twin and _age(one) > self._late_s(one.task):
+                busy = {name for name, keys in held.items() if keys}
+                self.crew.begin(one.task, one.failed_on, but=busy)
+                idle -= 1
+
+    def _late_s(self, task: Task) -> float:
+        """Time after which a task is late, s."""
+        speed = self.crew.per_second
+        return max(LATE * (task.end - task.begin) / speed, STEP_S) if speed else math.inf
+
+
+def _age(flight: Flight) -> float:
+    return time.monotonic() - flight.began
+
+
+def _rows(flights: list[Flight]) -> Iterator[list[Flight]]:
+    """Flights that follow each other without a gap."""
+    if not flights:
+        return
+    row = flights[:1]
+    for one, other in pairwise(flights):
+        if one.task.end != other.task.begin:
+            yield row
+            row = []
+        row.append(other)
+    yield row

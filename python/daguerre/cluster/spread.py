@@ -1,0 +1,132 @@
+"""Spread of a job over workers: a picture to each, then what is left of all to idle ones.
+
+A worker that draws a picture alone sets it up once, and adds its answers where they are.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import astuple
+from typing import TYPE_CHECKING
+
+from daguerre.rendering.ranges import missing_ranges
+from daguerre.rendering.schedule import pass_size
+
+from .task import Place, Task
+
+if TYPE_CHECKING:
+    from daguerre.rendering.job import Job
+    from daguerre.rendering.session import Session
+
+    from .crew import Crew
+    from .sharing import Sharing
+
+Range = tuple[int, int]
+#: Pictures of each worker beyond the one under way, whose sums may wait.
+PICTURES_AHEAD = 2
+
+
+class Spread:
+    """Tasks of the picture under way, and of those of its job to come.
+
+    Args:
+        crew: Workers.
+        job: The job; None: there is but one picture.
+    """
+
+    def __init__(self, crew: Crew, job: Job | None = None) -> None:
+        self.crew, self.job = crew, job
+        self._now = 0  # number of the picture under way
+        self._places: dict[int, Place] = {}
+        self._homes: dict[int, str] = {}
+
+    def open(self, session: Session) -> Place:
+        """Place of the picture that begins now."""
+        if self.job is None:
+            self.crew.drop_all()  # of a picture before that was stopped
+            self._homes.clear()
+            keep = self.crew.values.keep
+            self._places = {0: Place(keep(session.scene), keep((session.camera, session.settings)))}
+            return self._places[0]
+        self._now = self.job.done
+        for number in [one for one in self._places if one < self._now]:
+            for name in astuple(self._places.pop(number)):
+                self.crew.values.forget(name)
+        return self._place(self._now)
+
+    def fill(self, sharing: Sharing, wanted: Range, known: Sequence[Range]) -> bool:
+        """Begins tasks while there is room; False: nothing is left to begin.
+
+        Args:
+            sharing: How the picture under way is drawn.
+            wanted: Samples of it.
+            known: Those that are drawn, or given up.
+        """
+        room = sharing.room()
+        if room <= 0:
+            return True
+        free = self._free(wanted, known)
+        pending = Counter(one.home for one in self.crew.flights if not one.landed)
+        good = sorted(self.crew.workers.good)
+        for _ in range(room):
+            worker = min(good, key=lambda one: pending[one], default="")
+            number = self._choice(worker, free)
+            if number is None:
+                return False
+            left = sum(b - a for ranges in free.values() for a, b in ranges)
+            (begin, last), *others = free[number]
+            end = begin + pass_size((begin, last), sharing.size(left))
+            free[number] = [(end, last), *others] if end < last else others
+            place = self._place(number)
+            home = worker if self._homes[number] == worker else ""
+            self.crew.begin(Task(place.scene, place.view, begin, end), home=home)
+            pending[home] += 1
+        return True
+
+    def _numbers(self) -> Iterator[int]:
+        """Numbers of the pictures that may be drawn now."""
+        yield self._now
+        if self.job is None:
+            return
+        ahead = PICTURES_AHEAD * max(1, len(self.crew.workers.good))
+        for number in range(self._now + 1, min(self._now + 1 + ahead, len(self.job.pictures))):
+            if self.job.pictures[number].settings.sampling.noise is not None:
+                return  # adaptive sampling waits for its own sums
+            yield number
+
+    def _free(self, wanted: Range, known: Sequence[Range]) -> dict[int, list[Range]]:
+        """Samples that nobody draws, by the number of the picture."""
+        taken = defaultdict(list)
+        for one in self.crew.flights:
+            taken[one.task.scene, one.task.view].append((one.task.begin, one.task.end))
+        found = {}
+        for number in self._numbers():
+            place = self._places.get(number)
+            own = [] if place is None else taken[place.scene, place.view]
+            if number == self._now:
+                found[number] = missing_ranges([*known, *own], wanted)
+            else:
+                assert self.job is not None
+                found[number] = missing_ranges(own, self.job.pictures[number].wanted)
+        return found
+
+    def _choice(self, worker: str, free: dict[int, list[Range]]) -> int | None:
+        """Picture of which a worker draws next: its own, a new one, or one of another."""
+        open_ones = [number for number, ranges in free.items() if ranges]
+        for number in open_ones:
+            if self._homes.get(number) == worker:
+                return number
+        for number in open_ones:
+            if self._homes.get(number) not in self.crew.workers.good:  # nobody's
+                self._homes[number] = worker
+                return number
+        return open_ones[0] if open_ones else None
+
+    def _place(self, number: int) -> Place:
+        if number not in self._places:
+            assert self.job is not None
+            picture, keep = self.job.pictures[number], self.crew.values.keep
+            scene, camera = self.job.scene_of(picture), self.job.camera_of(picture)
+            self._places[number] = Place(keep(scene), keep((camera, picture.settings)))
+        return self._places[number]

@@ -1,0 +1,189 @@
+"""Tasks: functions that a worker runs; they take and return text and bytes."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
+from typing import Any
+
+from daguerre.errors import DaguerreError, MismatchError
+from daguerre.rendering.adaptive import Round
+from daguerre.rendering.columns import columns_of
+from daguerre.rendering.identity import build
+from daguerre.rendering.session import Session
+
+from .answers import Failed, Needs, Sums, answer_of
+from .store import Store
+
+#: One task draws at a time, by all threads of the worker.
+_DRAWS = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Place:
+    """Hashes of a scene, and of its camera and settings."""
+
+    scene: str
+    view: str
+
+
+@dataclass(frozen=True)
+class Task:
+    """Part of a picture to draw.
+
+    Attributes:
+        scene: Hash of the scene.
+        view: Hash of camera and settings.
+        begin: First sample of every pixel, or first part of the round.
+        end: One past the last.
+        round: Hash of a round of adaptive sampling; None: samples of every pixel.
+    """
+
+    scene: str
+    view: str
+    begin: int
+    end: int
+    round: str | None = None
+
+    @property
+    def values(self) -> list[str]:
+        """Hashes of the values that it needs."""
+        return [name for name in (self.scene, self.view, self.round) if name is not None]
+
+    @property
+    def words(self) -> str:
+        """The samples, or the parts of a round."""
+        what = "samples" if self.round is None else "parts of a round"
+        return f"{what} {self.begin}:{self.end}"
+
+    def to_text(self) -> str:
+        """JSON of the task."""
+        return json.dumps(asdict(self))
+
+
+def draw(text: str) -> bytes | memoryview:
+    """Draws a task; returns an answer: sums as a memoryview, which Dask does not pickle."""
+    return _answered(Task(**json.loads(text)), _drawn)
+
+
+def fold(text: str, *answers: memoryview) -> bytes | memoryview:
+    """Adds answers of tasks that lie side by side; returns one answer for all.
+
+    If one of them is no sums, the new answer has failed, and the client looks at each by itself.
+    """
+    return _answered(Task(**json.loads(text)), lambda task: _folded(task, answers))
+
+
+def keep(name: str, data: bytes) -> str:
+    """Keeps a value for tasks to come; returns why not, or nothing."""
+    try:
+        Store().put(name, data)
+    except Exception as error:
+        return _reason(error)
+    return ""
+
+
+def worker_build() -> str:
+    """Build of this worker."""
+    return build()
+
+
+def _answered(task: Task, act: Callable[[Task], Sums]) -> bytes | memoryview:
+    """Answer of an act, whatever happens in it: nothing that a worker made is unpickled.
+
+    Dask tells its client the type of a result before the client fetches it.
+    """
+    try:
+        with _DRAWS:
+            lacking = Store().lacks(task.values)
+            if not lacking:
+                return memoryview(act(task).to_bytes())
+            return Needs(_address(), lacking).to_bytes()
+    except Exception as error:
+        return Failed(_address(), _reason(error)).to_bytes()
+
+
+def _reason(error: Exception) -> str:
+    """Sentence that says why a worker cannot do its task."""
+    if isinstance(error, MemoryError):
+        return "memory: wanted more than there is"
+    return str(error) if isinstance(error, DaguerreError | OSError) else repr(error)
+
+
+def _drawn(task: Task) -> Sums:
+    began = time.monotonic()
+    session = _session(task.scene, task.view, _threads())
+    ready = time.monotonic()
+    session.clear()
+    if task.round is None:
+        session.draw(task.begin, task.end)
+    else:
+        begin, count = Store().value(task.round)
+        session.round = Round(begin, count, task.begin)
+        session.draw_round(task.end)
+    facts = {
+        "seconds": time.monotonic() - ready,
+        "set_up_s": ready - began,
+        "rays": int(session.counters.rays),
+        "tasks": 1,
+    }
+    return Sums(_address(), session.key, columns_of(session.state()), facts)
+
+
+def _folded(task: Task, answers: tuple[memoryview, ...]) -> Sums:
+    session = _session(task.scene, task.view, _threads())
+    session.clear()
+    facts: dict[str, Any] = {"seconds": 0.0, "set_up_s": 0.0, "rays": 0, "tasks": 0}
+    for data in answers:
+        found = answer_of(data)
+        if not isinstance(found, Sums):
+            raise MismatchError("fold: wanted sums of all tasks")
+        found.check_key(session.key)
+        session.add(found.parts)
+        facts = {name: value + found.facts[name] for name, value in facts.items()}
+    return Sums(_address(), session.key, columns_of(session.state()), facts)
+
+
+#: Scene of the core of the last session, which the next one can use if it shows the same scene.
+_built: Any = None
+
+
+@lru_cache(maxsize=1)
+def _scene(name: str) -> Any:
+    return Store().value(name)
+
+
+@lru_cache(maxsize=1)
+def _session(scene: str, view: str, threads: int) -> Session:
+    """Session of a picture; the newest is kept, with its scene in the form of the core."""
+    global _built
+    camera, settings = Store().value(view)
+    settings = replace(settings, threads=threads)
+    found = Session(_scene(scene), camera, settings=settings, built=_built)
+    _built = found.built
+    return found
+
+
+def _worker() -> Any:
+    """Worker of Dask that runs this; None: none does, as in a test."""
+    from distributed import get_worker
+
+    try:
+        return get_worker()
+    except ValueError:
+        return None
+
+
+def _threads() -> int:
+    """Threads of the worker; 0: all cores."""
+    worker = _worker()
+    return 0 if worker is None else int(worker.state.nthreads)
+
+
+def _address() -> str:
+    worker = _worker()
+    return "worker" if worker is None else str(worker.address)

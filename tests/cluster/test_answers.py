@@ -1,0 +1,80 @@
+"""Sums on their way: nothing changes, damage is found, strangers are refused by name."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import daguerre as dg
+from daguerre.cluster.answers import Failed, Needs, Sums, answer_of
+from daguerre.errors import InputError, MismatchError
+from daguerre.rendering.columns import columns_of
+from daguerre.rendering.session import Session
+from tests.viewfinder.test_painter import scene
+
+HOW = dg.RenderSettings.of(resolution=(24, 16), spp=8, aovs=True)
+
+
+def drawn(begin: int, end: int) -> Session:
+    made = scene()
+    session = Session(made, made.camera(), settings=HOW)
+    session.draw(begin, end)
+    return session
+
+
+def test_they_arrive_as_they_were() -> None:
+    session = drawn(0, 2)
+    sums = Sums("worker", session.key, columns_of(session.state()), {"seconds": 0.5})
+    found = answer_of(sums.to_bytes())
+    assert isinstance(found, Sums)
+    assert (found.worker, found.key, found.facts) == (sums.worker, sums.key, sums.facts)
+    assert found.parts.keys() == sums.parts.keys()
+    for name, one in sums.parts.items():
+        there = found.parts[name]
+        assert there.shape == one.shape
+        assert np.array_equal(there.kept, one.kept)
+        assert np.array_equal(there.words, one.words)
+    assert len(sums.to_bytes()) < sum(words.nbytes for words in session.state().values())
+
+
+@pytest.mark.parametrize("answer", [Needs("a:1", ["x", "y"]), Failed("b:2", "no \n such \u2603")])
+def test_so_do_wishes_and_failures(answer: Needs | Failed) -> None:
+    assert answer_of(answer.to_bytes()) == answer
+
+
+def test_damage_is_found() -> None:
+    session = drawn(0, 1)
+    data = Sums("worker", session.key, columns_of(session.state()), {}).to_bytes()
+    for wrong in (data[:-1], data[:-5] + b"x" + data[-4:], b"", b"{}\n"):
+        with pytest.raises(InputError, match="damaged answer"):
+            answer_of(wrong)
+
+
+@pytest.mark.parametrize("name", ["scene", "camera", "settings", "build"])
+def test_strangers_are_refused(name: str) -> None:
+    session = drawn(0, 1)
+    sums = Sums("worker", session.key | {name: "another"}, columns_of(session.state()), {})
+    with pytest.raises(MismatchError, match=f"{name}: wanted that of the client"):
+        sums.check_key(session.key)
+    if name == "build":
+        sums.check_key(session.key, mixed=True)
+
+
+@settings(deadline=None, max_examples=30)
+@given(order=st.permutations(range(8)), cuts=st.sets(st.integers(1, 7)))
+def test_any_order_and_split_gives_the_same_bits(order: list[int], cuts: set[int]) -> None:
+    whole = drawn(0, 8).frame()
+    ends = [0, *sorted(cuts), 8]
+    parts = list(pairwise(ends))
+    made = scene()
+    merged = Session(made, made.camera(), settings=HOW)
+    for part in sorted(parts, key=lambda part: order[part[0]]):
+        merged.add(columns_of(drawn(*part).state()), [part])
+    assert merged.ranges == [(0, 8)]
+    assert np.array_equal(merged.frame().rgb, whole.rgb)
+    with pytest.raises(MismatchError, match="drawn already"):
+        merged.add(columns_of(merged.state()), parts[:1])

@@ -1,0 +1,179 @@
+"""Pictures of a local cluster have the bits of one machine, whatever happens to its workers."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import daguerre as dg
+from daguerre import cli
+from daguerre.cluster import task as on_worker
+from daguerre.cluster.address import connected
+from daguerre.cluster.crew import Crew
+from daguerre.cluster.work import work_of
+from daguerre.errors import InputError
+from daguerre.rendering.checkpoint import Checkpoint
+from daguerre.rendering.loop import Loop
+from daguerre.rendering.reporter import Control, Reporter
+from daguerre.rendering.session import Session
+from tests.faults.scene import write_scene
+
+pytest.importorskip("distributed", reason="needs the extra cluster")
+pytestmark = pytest.mark.xdist_group("cluster")
+LENS = "double-gauss-50mm-f2"
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("DAGUERRE_CLUSTER_CACHE", str(tmp_path_factory.mktemp("cache")))
+        with connected("local:2") as made:
+            yield made
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_scene(tmp_path_factory.mktemp("scene") / "scene.glb")
+
+
+def drawn(crew: Crew, session: Session) -> dg.Frame:
+    """Frame of a session that a crew draws."""
+    crew.workers.wait()
+    sampling = session.settings.sampling
+    work = work_of(crew)(session, (0, sampling.most), sampling.noise, None)
+    assert Loop(session, work, Checkpoint(None), Reporter(), Control()).run()
+    return session.frame()
+
+
+SETTINGS: dict[str, dict[str, Any]] = {
+    "samples": {"spp": 24},
+    "noise": {"noise": 0.1, "spp": 128},
+    "all layers": {"spp": 8, "aovs": True, "cryptomatte": ("object",), "bands": 4},
+    "light paths and flare": {"spp": 8, "light_paths": "auto", "flare": "auto"},
+    "crop": {"spp": 8, "crop": (5, 3, 30, 21)},
+}
+
+
+@pytest.mark.parametrize("given", SETTINGS.values(), ids=SETTINGS)
+def test_the_bits_are_those_of_one_machine(client: Any, file: Path, given: dict[str, Any]) -> None:
+    scene = dg.load(file)
+    camera = scene.camera().with_(lens=LENS, shutter_type="electronic")
+    settings = dg.RenderSettings.of(resolution=(48, 32), **given)
+    alone = dg.render(scene, camera, settings=settings)
+    frame = drawn(Crew(client), Session(scene, camera, settings=settings))
+    assert np.array_equal(frame.rgb, alone.rgb)
+    assert np.array_equal(frame.variance, alone.variance, equal_nan=True)
+    assert frame.aovs.keys() == alone.aovs.keys()
+    for name, plane in frame.aovs.items():
+        assert np.array_equal(plane, alone.aovs[name], equal_nan=True), name
+
+
+def test_a_scene_travels_once_to_each_worker(client: Any, file: Path) -> None:
+    crew, scene = Crew(client), dg.load(file)
+    scene.node_positions["only of this test"] = np.zeros(3)
+    sent: list[str] = []
+    run = client.run
+    crew.client = type("Counting", (), {"__getattr__": lambda self, name: getattr(client, name)})()
+
+    def counted(function: Any, *given: Any, **more: Any) -> Any:
+        if function is on_worker.keep:
+            sent.extend(f"{given[0]} {one}" for one in more["workers"])
+        return run(function, *given, **more)
+
+    crew.client.run = counted
+    for seed in (1, 2):
+        session = Session(scene, LENS and scene.camera(), resolution=(24, 16), spp=8, seed=seed)
+        drawn(crew, session)
+    name = crew.values.keep(scene)
+    of_scene = [one for one in sent if one.startswith(name)]
+    assert 1 <= len(of_scene) == len(set(of_scene)) <= 2
+
+
+def test_a_killed_worker_costs_nothing(client: Any, file: Path) -> None:
+    scene = dg.load(file)
+    session = Session(scene, scene.camera(), resolution=(96, 64), spp=256)
+    alone = dg.render(scene, scene.camera(), resolution=(96, 64), spp=256)
+    told: list[str] = []
+    pids = client.run(os.getpid)
+    victim = pids[sorted(pids)[0]]
+    timer = threading.Timer(0.7, os.kill, (victim, signal.SIGKILL))
+    timer.start()
+    frame = drawn(Crew(client, tell=told.append), session)
+    timer.join()
+    assert np.array_equal(frame.rgb, alone.rgb)
+    end = time.monotonic() + 30
+    while victim in client.run(os.getpid).values():
+        assert time.monotonic() < end
+        time.sleep(0.1)
+
+
+def test_all_of_a_local_cluster_listens_on_this_machine_alone(client: Any) -> None:
+    psutil = pytest.importorskip("psutil")
+    top = psutil.Process()
+    assert {
+        one.laddr.ip
+        for each in (top, *top.children(recursive=True))
+        for one in each.net_connections("inet")
+        if one.status == psutil.CONN_LISTEN
+    } == {"127.0.0.1"}
+
+
+def fails(*given: object) -> bytes:
+    """A task on a worker that cannot."""
+    raise OSError(28, "No space left on device")
+
+
+def test_a_task_that_fails_everywhere_is_said(
+    client: Any, file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(on_worker, "draw", fails)
+    scene = dg.load(file)
+    session = Session(scene, scene.camera(), resolution=(24, 16), spp=8)
+    with pytest.raises(InputError, match=r"cluster: samples \d+:\d+ failed on .*No space left"):
+        drawn(Crew(client), session)
+
+
+def test_a_worker_of_another_build_is_refused_by_name(client: Any, file: Path) -> None:
+    scene = dg.load(file)
+    session = Session(scene, scene.camera(), resolution=(24, 16), spp=8)
+    session.key["build"] = "1.2.3 of another machine"
+    with pytest.raises(InputError, match=r"build: wanted that of the client, 1\.2\.3"):
+        drawn(Crew(client), session)
+    session.clear()
+    drawn(Crew(client, mixed=True), session)
+
+
+def test_the_command(client: Any, file: Path, tmp_path: Path) -> None:
+    words = ["render", str(file), "--res", "48x32", "--spp", "16", "-q"]
+    assert cli.main([*words, "-o", str(tmp_path / "a.exr")]) == 0
+    address = client.scheduler.address
+    assert cli.main([*words, "-o", str(tmp_path / "b.exr"), "--cluster", address]) == 0
+    a, b = (dg.load_frame(tmp_path / name).rgb for name in ("a.exr", "b.exr"))
+    assert np.array_equal(a, b)
+
+
+@pytest.mark.parametrize(
+    ("address", "said"),
+    [
+        ("nonsense", "wanted local, local:N, tcp://HOST:PORT"),
+        ("tcp://10.1.2.3:8786", "wanted tls:// for another machine"),
+        ("http://127.0.0.1:1", "wanted local"),
+        ("local:0", "1 to 1024 workers"),
+        ("missing.yaml", "cannot read"),
+    ],
+)
+def test_wrong_addresses(
+    file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], address: str, said: str
+) -> None:
+    words = ["render", str(file), "-o", str(tmp_path / "a.exr"), "--cluster", address]
+    assert cli.main(words) in (2, 3)
+    assert said in capsys.readouterr().err
+    assert not (tmp_path / "a.exr").exists()
