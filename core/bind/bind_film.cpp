@@ -6,6 +6,7 @@
 
 #include "bind/arrays.h"
 #include "bind/record.h"
+#include "bind/unlocked.h"
 #include "film/film.h"
 #include "film/filter.h"
 #include "film/neighbours.h"
@@ -100,14 +101,14 @@ FlatWordsView flat(std::vector<std::uint32_t> words) {
 auto columns_of(const Words& words) {
     dg::WordColumns found;
     {
-        const nb::gil_scoped_release others_run;
+        const dg::bind::Unlocked unlocked;
         if (words.size()) found = dg::word_columns({words.data(), words.size()}, words.shape(2));
     }
     return nb::make_tuple(flat(std::move(found.columns)), flat(std::move(found.words)));
 }
 
 void add_state(dg::Film& film, const std::string& part, const FlatWords& columns, const FlatWords& words) {
-    const nb::gil_scoped_release others_run;
+    const dg::bind::Unlocked unlocked;
     const std::span all(words.data(), words.size());
     if (part == kObjects) film.add_object_words(all);
     else film.add_state(part, {columns.data(), columns.size()}, all);

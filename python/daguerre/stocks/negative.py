@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -171,7 +172,7 @@ def _add_grain(density: NDArray[np.float32], stock: Stock, pitch: float, seed: i
     height, width = density.shape[:2]
     area = stock.grain_area()
     radius = np.sqrt(area / np.pi) / pitch
-    scale = np.log10(np.e) * area * sharpness(float(radius)) / pitch**2
+    scale = np.log10(math.e) * area * sharpness(float(radius)) / pitch**2
     for k, layer in enumerate(stock.layers):
         for row in range(0, height, _STRIPE):
             rows = slice(row, min(row + _STRIPE, height))
