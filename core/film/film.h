@@ -264,9 +264,9 @@ class Film {
     /// Sums of `each` values per pixel over the pixel's count.
     std::vector<float> means(const std::vector<ValueSum>& sums, int each) const;
     const std::vector<AovPixel>& require_aovs() const;
-    /// Calls `act` with the values of a part, which is one of state_parts().
-    template <typename Act>
-    void with_part(const std::string& part, const Act& act);
+    /// Calls `act` with the values of a part of a film, which is one of state_parts().
+    template <typename Self, typename Act>
+    static void with_part(Self& film, const std::string& part, const Act& act);
 
     FilmLayout layout_;
     std::array<Vec3f, 3> rgb_from_xyz_;  // rows

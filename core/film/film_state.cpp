@@ -35,19 +35,19 @@ std::vector<std::string> Film::state_parts() const {
     return parts;
 }
 
-template <typename Act>
-void Film::with_part(const std::string& part, const Act& act) {
-    if (part == "sums") act(pixels_);
-    if (part == "aovs") act(aovs_);
-    if (part == "splats") act(splats_);
-    if (part == "flare") act(flare_);
-    if (part == "halves") act(halves_);
-    if (part == "coverage") act(coverage_);
-    if (part == "catchers") act(catchers_);
-    if (part == "bands") act(bands_);
-    if (part == "channels") act(channels_);
-    if (part == "channel_splats") act(channel_splats_);
-    if (part == "catcher_channels") act(catcher_channels_);
+template <typename Self, typename Act>
+void Film::with_part(Self& film, const std::string& part, const Act& act) {
+    if (part == "sums") act(film.pixels_);
+    if (part == "aovs") act(film.aovs_);
+    if (part == "splats") act(film.splats_);
+    if (part == "flare") act(film.flare_);
+    if (part == "halves") act(film.halves_);
+    if (part == "coverage") act(film.coverage_);
+    if (part == "catchers") act(film.catchers_);
+    if (part == "bands") act(film.bands_);
+    if (part == "channels") act(film.channels_);
+    if (part == "channel_splats") act(film.channel_splats_);
+    if (part == "catcher_channels") act(film.catcher_channels_);
 }
 
 std::span<const std::byte> Film::state(const std::string& part) const {
@@ -55,22 +55,15 @@ std::span<const std::byte> Film::state(const std::string& part) const {
                   sizeof(CoveragePixel) == kCoverageBytes && sizeof(CatcherPixel) == kCatcherBytes &&
                   sizeof(Sums) == kSplatBytes && sizeof(HalfPixel) == kHalfBytes &&
                   sizeof(ValueSum) == kBandBytes);
-    if (part == "sums") return std::as_bytes(std::span(pixels_));
-    if (part == "aovs" && layout_.aovs) return std::as_bytes(std::span(aovs_));
-    if (part == "splats" && layout_.splats) return std::as_bytes(std::span(splats_));
-    if (part == "flare" && layout_.flare) return std::as_bytes(std::span(flare_));
-    if (part == "halves" && layout_.halves) return std::as_bytes(std::span(halves_));
-    if (part == "coverage" && layout_.coverage) return std::as_bytes(std::span(coverage_));
-    if (part == "catchers" && layout_.catchers) return std::as_bytes(std::span(catchers_));
-    if (part == "bands" && layout_.bands) return std::as_bytes(std::span(bands_));
-    if (part == "channels" && layout_.channels) return std::as_bytes(std::span(channels_));
-    if (part == "channel_splats" && !channel_splats_.empty())
-        return std::as_bytes(std::span(channel_splats_));
-    if (part == "catcher_channels" && !catcher_channels_.empty())
-        return std::as_bytes(std::span(catcher_channels_));
-    std::string known;
-    for (const std::string& name : state_parts()) known += (known.empty() ? "" : " or ") + name;
-    throw input_error("film state", "part", known, "'" + part + "'");
+    const std::vector<std::string> parts = state_parts();
+    if (std::ranges::find(parts, part) == parts.end()) {
+        std::string known;
+        for (const std::string& name : parts) known += (known.empty() ? "" : " or ") + name;
+        throw input_error("film state", "part", known, "'" + part + "'");
+    }
+    std::span<const std::byte> found;
+    with_part(*this, part, [&](const auto& values) { found = std::as_bytes(std::span(values)); });
+    return found;
 }
 
 std::vector<std::uint32_t> Film::object_words() const {
@@ -118,7 +111,7 @@ void Film::add_state(const std::string& part, std::span<const std::uint32_t> col
         throw input_error("film state", "words of " + part,
                           "at most " + std::to_string(each) + " columns of " + std::to_string(pixels),
                           std::to_string(columns.size()) + " with " + std::to_string(words.size()) + " words");
-    with_part(part, [&](auto& to) { add_columns(to, pixels, columns, words.data()); });
+    with_part(*this, part, [&](auto& to) { add_columns(to, pixels, columns, words.data()); });
 }
 
 void Film::add_object_words(std::span<const std::uint32_t> words) {
