@@ -57,6 +57,13 @@ def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
         Store(tmp_path / "file" / "cache").put(hash_of(b"a"), b"a")
 
 
+def test_a_value_that_another_worker_removes_meanwhile_is_no_error(tmp_path: Path) -> None:
+    (tmp_path / "gone.packed").symlink_to(tmp_path / "nowhere")
+    store = Store(tmp_path, limit=1)
+    store.put(hash_of(b"value"), b"value")
+    assert store.get(hash_of(b"value"))[:] == b"value"
+
+
 def test_the_folder_of_strangers_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

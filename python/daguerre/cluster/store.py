@@ -11,6 +11,7 @@ from typing import Any
 
 from daguerre.errors import InputError, OutputError
 from daguerre.files.atomic import write_bytes
+from daguerre.files.limited_folder import drop_oldest
 
 from .packing import hash_of, large_of, unpack
 
@@ -18,6 +19,7 @@ from .packing import hash_of, large_of, unpack
 FOLDER = "DAGUERRE_CLUSTER_CACHE"
 #: Size at which the values used longest ago are removed, bytes.
 LIMIT = 8 << 30
+_ENDING = ".packed"
 
 
 class Store:
@@ -59,9 +61,9 @@ class Store:
         try:
             self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
             write_bytes(self._path(name), data)
+            drop_oldest(self.folder, self.limit, _is_value, self._path(name).name)
         except OSError as error:
             raise OutputError(f"{self.folder}: cannot write: {error.strerror or error}") from error
-        self._shrink(name)
 
     def get(self, name: str) -> Any:
         """Returns the bytes of a name, without reading them.
@@ -79,16 +81,12 @@ class Store:
             raise InputError(f"{path}: cannot read: {reason}") from error
 
     def _path(self, name: str) -> Path:
-        return self.folder / f"{name}.packed"
+        return self.folder / f"{name}{_ENDING}"
 
-    def _shrink(self, newest: str) -> None:
-        """Removes values until all fit, those used longest ago first, and never the newest."""
-        files = {path: path.stat() for path in self.folder.glob("*.packed")}
-        size = sum(facts.st_size for facts in files.values())
-        for path, facts in sorted(files.items(), key=lambda one: one[1].st_mtime):
-            if size > self.limit and path.stem != newest:
-                path.unlink(missing_ok=True)
-                size -= facts.st_size
+
+def _is_value(name: str) -> bool:
+    """Whether a file of the folder has a packed value."""
+    return name.endswith(_ENDING)
 
 
 def _own_folder() -> Path:

@@ -13,10 +13,10 @@ import contextlib
 import hashlib
 import os
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
 
 import daguerre._core as _core
+from daguerre.files.limited_folder import drop_oldest
 
 MAX_BYTES = 256 << 20
 
@@ -83,27 +83,12 @@ def store(key: str, state: bytes) -> None:
         except OSError:
             Path(name).unlink(missing_ok=True)
             raise
-        _drop_oldest(place)
+        drop_oldest(place, MAX_BYTES, _is_ours)
 
 
-def _drop_oldest(place: Path) -> None:
-    """Removes the least recently used files until all fit into MAX_BYTES."""
-
-    def entries() -> Iterator[tuple[float, int, str]]:
-        with os.scandir(place) as scan:
-            for entry in scan:
-                with contextlib.suppress(OSError):  # another process removed it
-                    facts = entry.stat(follow_symlinks=False)
-                    if entry.name.endswith(".aim") or entry.name.startswith(".new-"):
-                        yield facts.st_mtime, facts.st_size, entry.path
-
-    kept = sorted(entries(), reverse=True)
-    total = 0
-    for _, size, path in kept:
-        total += size
-        if total > MAX_BYTES:
-            with contextlib.suppress(OSError):
-                Path(path).unlink()
+def _is_ours(name: str) -> bool:
+    """Whether a file is of this cache, or was never finished."""
+    return name.endswith(".aim") or name.startswith(".new-")
 
 
 def exact_lens(
