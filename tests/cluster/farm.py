@@ -45,6 +45,19 @@ def certificates(folder: Path, name: str = "ca") -> tuple[Path, Path, Path]:
     return ca, cert, key
 
 
+def listening(pid: int) -> set[str]:
+    """Addresses on which a process and those that it started listen."""
+    import psutil  # Dask needs it, too
+
+    top = psutil.Process(pid)
+    return {
+        one.laddr.ip
+        for each in (top, *top.children(recursive=True))
+        for one in each.net_connections("inet")
+        if one.status == psutil.CONN_LISTEN
+    }
+
+
 @dataclass
 class Farm:
     """Processes of a cluster.

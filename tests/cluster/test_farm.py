@@ -18,9 +18,8 @@ import daguerre as dg
 from daguerre import cli
 from tests.faults.scene import write_scene
 
-from .farm import PYTHON, Farm, certificates, has_namespaces, on_networks
+from .farm import PYTHON, Farm, certificates, has_namespaces, listening, on_networks
 
-psutil = pytest.importorskip("psutil", reason="needs the extra cluster")
 pytest.importorskip("distributed", reason="needs the extra cluster")
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("cluster")]
 NAMES = ["w1", "w2", "w3"]
@@ -138,23 +137,12 @@ def test_strangers_are_refused(networks: Farm, file: Path, tmp_path: Path) -> No
         assert "Traceback" not in done.stderr
 
 
-def listening(process: subprocess.Popen[bytes]) -> set[str]:
-    """Addresses on which a process and those that it started listen."""
-    top = psutil.Process(process.pid)
-    return {
-        one.laddr.ip
-        for each in (top, *top.children(recursive=True))
-        for one in each.net_connections("inet")
-        if one.status == psutil.CONN_LISTEN
-    }
-
-
 def test_all_listen_on_this_machine_alone(farm: Farm, file: Path, tmp_path: Path) -> None:
     out = tmp_path / "a.exr"
     words = ["render", str(file), "--res", "24x16", "--spp", "4", "-q", "-o", str(out)]
     assert cli.main([*words, "--cluster", farm.address]) == 0
     for name, process in farm.running.items():
-        assert listening(process) == {"127.0.0.1"}, name
+        assert listening(process.pid) == {"127.0.0.1"}, name
 
 
 @pytest.mark.parametrize(

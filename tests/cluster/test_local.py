@@ -26,6 +26,8 @@ from daguerre.rendering.reporter import Control, Reporter
 from daguerre.rendering.session import Session
 from tests.faults.scene import write_scene
 
+from .farm import listening
+
 pytest.importorskip("distributed", reason="needs the extra cluster")
 pytestmark = pytest.mark.xdist_group("cluster")
 LENS = "double-gauss-50mm-f2"
@@ -116,14 +118,7 @@ def test_a_killed_worker_costs_nothing(client: Any, file: Path) -> None:
 
 
 def test_all_of_a_local_cluster_listens_on_this_machine_alone(client: Any) -> None:
-    psutil = pytest.importorskip("psutil")
-    top = psutil.Process()
-    assert {
-        one.laddr.ip
-        for each in (top, *top.children(recursive=True))
-        for one in each.net_connections("inet")
-        if one.status == psutil.CONN_LISTEN
-    } == {"127.0.0.1"}
+    assert listening(os.getpid()) == {"127.0.0.1"}
 
 
 def fails(*given: object) -> bytes:

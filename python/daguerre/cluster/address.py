@@ -113,13 +113,13 @@ def reason_of(error: BaseException) -> str:
 
 def _read(path: Path) -> tuple[str, Certificates | None]:
     """Address and certificates of a file; paths in it are relative to it."""
-    import yaml
+    from daguerre.files import yaml_text
 
     try:
-        found = yaml.safe_load(path.read_text())
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
-        raise InputError(f"{path}: cannot read: {reason}") from None
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot read: {error.strerror or error}") from None
+    found = yaml_text.parse(data, str(path)).value
     if not isinstance(found, dict) or "address" not in found or found.keys() - set(_KEYS):
         raise InputError(f"{path}: wanted address and perhaps ca, cert and key, got {short(found)}")
     files = {name: path.parent / str(found[name]) for name in _KEYS[1:] if name in found}

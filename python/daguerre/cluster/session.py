@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any, Unpack
 
 from daguerre.camera.camera import Camera
-from daguerre.checks import MAX_SAMPLES, short, whole
+from daguerre.checks import short
 from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.parameters.keywords import takes
@@ -72,17 +72,12 @@ class ClusterSession(Session):
         Returns:
             False if stopped. The samples that arrived before are in the picture; see ``ranges``.
         """
-        begin = whole(begin, "samples", 0, MAX_SAMPLES)
-        end = whole(end, "samples", 0, MAX_SAMPLES)
-        if not begin < end:
-            raise UsageError(f"samples: wanted 0 <= a < b <= 2^31, got {begin}:{end}")
-        self._check_new(begin, end)
-        return self._work_off(ClusterRange(self, (begin, end), self._crew), progress)
+        wanted = self._new_range(begin, end)
+        return self._work_off(ClusterRange(self, wanted, self._crew), progress)
 
     def draw_round(self, until: int, progress: Progress | None = None) -> bool:
         """Has the parts of ``round`` up to ``until`` drawn; see ``Session.draw_round``."""
-        if self.round is None:
-            raise UsageError("draw_round: wanted a planned round, got none")
+        self._planned_round()
         return self._work_off(ClusterParts(self, until, self._crew), progress)
 
     def _work_off(self, work: Work, progress: Progress | None) -> bool:

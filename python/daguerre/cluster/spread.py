@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import astuple
 from typing import TYPE_CHECKING
 
-from daguerre.rendering.ranges import missing_ranges
+from daguerre.rendering.ranges import Range, missing_ranges
 from daguerre.rendering.schedule import pass_size
 
 from .task import Place, Task
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from .crew import Crew
     from .sharing import Sharing
 
-Range = tuple[int, int]
 #: Pictures of each worker beyond the one under way, whose sums may wait.
 PICTURES_AHEAD = 2
 

@@ -116,11 +116,7 @@ class Session:
             False if stopped. The sums then contain part of the pass, so the session refuses to
             draw or to return a picture until ``set_state`` restores complete sums.
         """
-        begin = whole(begin, "samples", 0, MAX_SAMPLES)
-        end = whole(end, "samples", 0, MAX_SAMPLES)
-        if not begin < end:
-            raise UsageError(f"samples: wanted 0 <= a < b <= 2^31, got {begin}:{end}")
-        self._check_new(begin, end)
+        begin, end = self._new_range(begin, end)
         if self.round is not None:
             raise MismatchError("samples: wanted another round of adaptive sampling, got a range")
         if not self._add(_core.render, (begin, end), progress):
@@ -128,12 +124,28 @@ class Session:
         self.ranges = join_ranges([*self.ranges, (begin, end)])
         return True
 
-    def _check_new(self, begin: int, end: int) -> None:
+    def _new_range(self, begin: int, end: int) -> tuple[int, int]:
+        """Checks a range of samples, none of which may be drawn already."""
+        begin = whole(begin, "samples", 0, MAX_SAMPLES)
+        end = whole(end, "samples", 0, MAX_SAMPLES)
+        if not begin < end:
+            raise UsageError(f"samples: wanted 0 <= a < b <= 2^31, got {begin}:{end}")
         for a, b in self.ranges:
             if begin < b and a < end:
                 raise MismatchError(
                     f"samples: {begin}:{end} overlaps {a}:{b}, which is drawn already"
                 )
+        return begin, end
+
+    def _planned_round(self) -> Round:
+        """Round that is under way.
+
+        Raises:
+            UsageError: There is none.
+        """
+        if self.round is None:
+            raise UsageError("draw_round: wanted a planned round, got none")
+        return self.round
 
     def draw_round(self, until: int, progress: Progress | None = None) -> bool:
         """Draws the parts of ``round`` up to ``until``; see ``daguerre.rendering.adaptive``.
@@ -141,15 +153,16 @@ class Session:
         Returns:
             False if stopped, see ``draw``.
         """
-        if self.round is None:
-            raise UsageError("draw_round: wanted a planned round, got none")
-        begin, count, drawn = self.round.begin, self.round.count, self.round.drawn
-        round = _core.SampleRound(begin, count, drawn, until)
+        now = self._planned_round()
+        round = _core.SampleRound(now.begin, now.count, now.drawn, until)
         if not self._add(_core.render_round, (round,), progress):
             return False
-        self.round = replace(self.round, drawn=until)
-        self.ranges = join_ranges([(0, int(self.sample_counts().min()))])
+        self._drew_round(now, until)
         return True
+
+    def _drew_round(self, now: Round, until: int) -> None:
+        self.round = replace(now, drawn=until)
+        self.ranges = join_ranges([(0, int(self.sample_counts().min()))])
 
     @core_errors(InputError, "render")
     def _add(self, draw: Callable[..., Any], which: tuple[Any, ...], progress: Any) -> bool:
@@ -280,17 +293,13 @@ class Session:
         """
         if not all(isinstance(one, Columns) for one in sums.values()):
             raise UsageError(f"sums: wanted columns by part, got {shown(sums)}")
-        for begin, end in samples:
-            self._check_new(
-                whole(begin, "samples", 0, MAX_SAMPLES), whole(end, "samples", 0, MAX_SAMPLES)
-            )
+        ranges = [self._new_range(begin, end) for begin, end in samples]
         until = None if until is None else whole(until, "until", 0, PARTS)
         add_columns(self._whole_film(), sums, "sums")
-        if samples:
-            self.ranges = join_ranges([*self.ranges, *samples])
+        if ranges:
+            self.ranges = join_ranges([*self.ranges, *ranges])
         elif until is not None and self.round is not None:
-            self.round = replace(self.round, drawn=until)
-            self.ranges = join_ranges([(0, int(self.sample_counts().min()))])
+            self._drew_round(self.round, until)
 
     @cached_property
     def key(self) -> dict[str, str]:
