@@ -69,7 +69,7 @@ def local(rounds: int = 3) -> dict[str, float]:
     from daguerre.rendering.schedule import work_of as here
 
     scene, camera = scene_and_camera()
-    settings = dg.RenderSettings.of(resolution=(360, 240), spp=64, threads=2)
+    settings = dg.RenderSettings.of(resolution=(720, 480), spp=64, threads=2)
     one, two = [], []
     with opened("local:2") as crew:
         for warm in (True, *[False] * rounds):

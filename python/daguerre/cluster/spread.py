@@ -78,7 +78,8 @@ class Spread:
             end = begin + pass_size((begin, last), sharing.size(left))
             free[number] = [(end, last), *others] if end < last else others
             place = self._place(number)
-            home = worker if self._homes[number] == worker else ""
+            several = len(free) > 1  # the last picture is everybody's
+            home = worker if several and self._homes[number] == worker else ""
             self.crew.begin(Task(place.scene, place.view, begin, end), home=home)
             pending[home] += 1
         return True
