@@ -7,7 +7,7 @@ from asyncio import CancelledError
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from daguerre.errors import InputError, MismatchError
 
@@ -16,6 +16,9 @@ from .answers import Answer, Failed, Needs, Sums, answer_of
 from .task import Place, Task
 from .values import Values
 from .workers import PATIENCE_S, Tell, Workers
+
+if TYPE_CHECKING:
+    from daguerre.rendering.light_paths import Plan
 
 #: Workers on which a task may fail before it is given up.
 TRIES = 3
@@ -189,6 +192,14 @@ class Crew:
         else:
             self._failed(flight, answer)
         return None
+
+    def piloted(self, flight: Flight) -> Plan | None:
+        """Result of the pilot render of the worker whose sums have landed; None: none is known."""
+        flight.answer = self._answer(flight)
+        if not isinstance(flight.answer, Sums) or flight.answer.facts["piloted"] is None:
+            return None
+        m1, m2 = flight.answer.facts["piloted"]
+        return float(m1), float(m2)
 
     def drop(self, *flights: Flight) -> None:
         """Gives up tasks."""

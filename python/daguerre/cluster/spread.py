@@ -17,6 +17,8 @@ from .task import Place, Task
 
 if TYPE_CHECKING:
     from daguerre.rendering.job import Job
+    from daguerre.rendering.light_paths import Plan
+    from daguerre.rendering.picture import Picture
     from daguerre.rendering.session import Session
 
     from .crew import Crew
@@ -45,14 +47,24 @@ class Spread:
         if self.job is None:
             self.crew.drop_all()  # of a picture before that was stopped
             self._homes.clear()
-            keep = self.crew.values.keep
-            self._places = {0: Place(keep(session.scene), keep((session.camera, session.settings)))}
+            keep, plan = self.crew.values.keep, session.light_plan
+            view = keep((session.camera, session.settings, plan.piloted))
+            self._places = {0: Place(keep(session.scene), view)}
             return self._places[0]
         self._now = self.job.done
         for number in [one for one in self._places if one < self._now]:
             for name in astuple(self._places.pop(number)):
                 self.crew.values.forget(name)
-        return self._place(self._now)
+        return self._place(self._now, session)
+
+    def piloted(self, picture: Picture) -> Plan | None:
+        """Result of the pilot render of a picture that a worker drew; None: none did."""
+        assert self.job is not None
+        place = self._places.get(self.job.pictures.index(picture))
+        if place is None:
+            return None
+        found = next((one for one in self.crew.flights_of(place) if one.has_sums), None)
+        return None if found is None else self.crew.piloted(found)
 
     def fill(self, sharing: Sharing, wanted: Range, known: Sequence[Range]) -> bool:
         """Begins tasks while there is room; False: nothing is left to begin.
@@ -123,10 +135,13 @@ class Spread:
                 return number
         return open_ones[0] if open_ones else None
 
-    def _place(self, number: int) -> Place:
+    def _place(self, number: int, session: Session | None = None) -> Place:
+        """Place of a picture; with its session, workers need no pilot render."""
         if number not in self._places:
             assert self.job is not None
             picture, keep = self.job.pictures[number], self.crew.values.keep
             scene, camera = self.job.scene_of(picture), self.job.camera_of(picture)
-            self._places[number] = Place(keep(scene), keep((camera, picture.settings)))
+            piloted = None if session is None else session.light_plan.piloted
+            view = keep((camera, picture.settings, piloted))
+            self._places[number] = Place(keep(scene), view)
         return self._places[number]

@@ -118,7 +118,7 @@ def _drawn(task: Task) -> Sums:
     began = time.monotonic()
     session = _session(task.scene, task.view, _threads())
     ready = time.monotonic()
-    session.clear()
+    _empty(session)
     if task.round is None:
         session.draw(task.begin, task.end)
     else:
@@ -130,13 +130,13 @@ def _drawn(task: Task) -> Sums:
         "set_up_s": ready - began,
         "rays": int(session.counters.rays),
         "tasks": 1,
-    }
+    } | _plan(session)
     return Sums(_address(), session.key, columns_of(session.state()), facts)
 
 
 def _folded(task: Task, answers: tuple[memoryview, ...]) -> Sums:
     session = _session(task.scene, task.view, _threads())
-    session.clear()
+    _empty(session)
     facts: dict[str, Any] = {"seconds": 0.0, "set_up_s": 0.0, "rays": 0, "tasks": 0}
     for data in answers:
         found = answer_of(data)
@@ -145,9 +145,24 @@ def _folded(task: Task, answers: tuple[memoryview, ...]) -> Sums:
         found.check_key(session.key)
         session.add(found.parts)
         facts = {name: value + found.facts[name] for name, value in facts.items()}
-    return Sums(_address(), session.key, columns_of(session.state()), facts)
+    return Sums(_address(), session.key, columns_of(session.state()), facts | _plan(session))
 
 
+def _plan(session: Session) -> dict[str, Any]:
+    """Result of the pilot render, which spares the client its own."""
+    return {"piloted": session.light_plan.piloted}
+
+
+def _empty(session: Session) -> None:
+    """Empties the film of a session, unless it is new."""
+    global _used
+    if session is _used:
+        session.clear()
+    _used = session
+
+
+#: Session of the last task.
+_used: Session | None = None
 #: Scene of the core of the last session, which the next one can use if it shows the same scene.
 _built: Any = None
 
@@ -161,9 +176,9 @@ def _scene(name: str) -> Any:
 def _session(scene: str, view: str, threads: int) -> Session:
     """Session of a picture; the newest is kept, with its scene in the form of the core."""
     global _built
-    camera, settings = Store().value(view)
+    camera, settings, piloted = Store().value(view)
     settings = replace(settings, threads=threads)
-    found = Session(_scene(scene), camera, settings=settings, built=_built)
+    found = Session(_scene(scene), camera, settings=settings, built=_built, piloted=piloted)
     _built = found.built
     return found
 

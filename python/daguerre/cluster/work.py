@@ -194,6 +194,8 @@ def work_of(crew: Crew, job: Job | None = None) -> WorkOf:
         job: Job whose pictures it draws; None: each by itself.
     """
     spread = Spread(crew, job)
+    if job is not None:
+        job.piloted = spread.piloted
 
     def made(
         session: Session, wanted: tuple[int, int], noise: float | None, judge: Judge | None = None

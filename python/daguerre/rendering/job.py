@@ -21,6 +21,7 @@ from .schedule import WorkOf, work_of
 if TYPE_CHECKING:
     from daguerre.setup.built_scene import BuiltScene
 
+    from .light_paths import Plan
     from .session import Session
 
 #: Share of the time that previews may take.
@@ -73,6 +74,7 @@ class Job:
         self.skipped: Callable[[Picture], None] = lambda picture: None
         self.staged: Callable[[int, Scene], None] = lambda frame, scene: None
         self.work_of: WorkOf = work_of
+        self.piloted: Callable[[Picture], Plan | None] = lambda picture: None
         self.done = 0
         self._staged: tuple[int, Scene] | None = None
         self._warned: set[str] = set()
@@ -136,7 +138,10 @@ class Job:
         which = f"camera {name}: " if "camera" in picture.facts else ""
         for warning in camera_warnings(camera) if new else ():
             self.reporter.warning(which + warning)
-        session = Session(scene, camera, settings=picture.settings, built=self._built)
+        piloted = self.piloted(picture)
+        session = Session(
+            scene, camera, settings=picture.settings, built=self._built, piloted=piloted
+        )
         self._built = session.built
         picture.output.check(session.metadata, self.reporter)
         if picture.output.denoise:

@@ -40,6 +40,7 @@ class LightPlan:
         flare: Number of ghost paths.
         scatter: Number of paths that the lens scatters.
         notes: Reasons why some are not drawn.
+        piloted: Result of the pilot render, from which the numbers come; None: there was none.
         core: Settings of the core for the picture.
     """
 
@@ -48,6 +49,7 @@ class LightPlan:
     flare: float
     scatter: float
     notes: tuple[str, ...]
+    piloted: Plan | None
     core: _core.RenderSettings
 
     @property
@@ -56,15 +58,21 @@ class LightPlan:
         return any(part.settings.light_paths != OFF for part in self.parts)
 
 
-def plan_light(one: Prepared) -> LightPlan:
-    """Makes the plan for a picture, with a pilot render for automatic numbers."""
+def plan_light(one: Prepared, piloted: Plan | None = None) -> LightPlan:
+    """Makes the plan for a picture.
+
+    Args:
+        one: The picture.
+        piloted: Result of a pilot render of the same picture; None: automatic numbers need one.
+    """
     with core_errors(UsageError):
         core = _settings(one, one.setup, NONE)
     wanted = check_light_paths(one.settings.light.light_paths)
     if one.scene.has_catchers or one.scene.plate is not None:
         _check_catchers(one)
         wanted = OFF
-    plan = pilot(one, core) if wanted is None else wanted
+    piloted = (piloted or pilot(one, core)) if wanted is None else None
+    plan = wanted or piloted or OFF
     # The pilot renders the whole frame; a crop gets paths in proportion to its pixels.
     shared = one.share(area(one.window)) if wanted is None else 1.0
     core.light_paths = light_paths = (plan[0] * shared, plan[1] * shared)
@@ -80,7 +88,7 @@ def plan_light(one: Prepared) -> LightPlan:
         grown = one.share(area(one.overscan.region(one.size)))
         times = one.share(outer) if wanted is None else grown
         parts.append(_around(one, (plan[0] * times, plan[1] * times), paths, outer))
-    return LightPlan(parts, light_paths, **paths, notes=tuple(notes), core=core)
+    return LightPlan(parts, light_paths, **paths, notes=tuple(notes), piloted=piloted, core=core)
 
 
 def new_film(one: Prepared, plan: LightPlan) -> _core.Film:

@@ -52,6 +52,8 @@ class Session:
         settings: How it is rendered; the keywords change it.
         built: ``Session.built`` of another session of the same, unchanged scene; it is reused if
             both expose at the same time.
+        piloted: ``light_plan.piloted`` of another session of the same picture; default: a pilot
+            render finds how many light paths pay off, if their number is ``"auto"``.
         {keywords}
 
     Raises:
@@ -67,11 +69,12 @@ class Session:
         *,
         settings: RenderSettings | None = None,
         built: BuiltScene | None = None,
+        piloted: tuple[float, float] | None = None,
         **keywords: Unpack[SettingsKeywords],
     ) -> None:
         self.settings = settings_of(settings, keywords)
         self.prepared = one = prepare(scene, camera, self.settings, built)
-        self.light_plan = plan_light(one)
+        self.light_plan = plan_light(one, piloted)
         self.scene, self.camera, self.built = one.scene, one.camera, one.built
         self.width, self.height = one.size
         self.crop, self.overscan, self.interval = one.crop, one.overscan, one.interval
@@ -269,6 +272,8 @@ class Session:
 
     def clear(self) -> None:
         """Forgets all samples."""
+        self._torn = True
+        self._film = None  # type: ignore[assignment]  # before the new one takes as much memory
         self._film = new_film(self.prepared, self.light_plan)
         self._torn, self.ranges, self.round = False, [], None
         self.counters = _core.RenderCounters()
