@@ -81,9 +81,7 @@ class Sharing:
         while True:
             self.crew.look()
             self.crew.serve()
-            self._drop_twins()
-            self._fold()
-            ready = self._ready(first)
+            ready = self._ready(self._folded(self._without_twins(self.flights)), first)
             if ready is not None:
                 began = time.process_time()  # another thread fetches the sums
                 sums = self.crew.result(ready, self.session.key)
@@ -120,35 +118,42 @@ class Sharing:
         busy = self._add_s * len(self.crew.workers.good) / self._task_s
         return max(1, math.ceil(busy / ADDING))
 
-    def _ready(self, first: int | None) -> Flight | None:
+    def _ready(self, flights: list[Flight], first: int | None) -> Flight | None:
         """Flight whose answer the client takes now."""
-        flights, group = self.flights, self.group
-        under_way = not all(one.landed for one in flights)
-        for one in flights:
-            if first is not None and one.task.begin != first:
-                continue
-            if one.landed and (one.alone or one.tasks >= group or group < FAN_IN or not under_way):
+        group = self.group
+        landed = [one for one in flights if one.landed]
+        rest = group < FAN_IN or len(landed) == len(flights)  # take them as they are
+        for one in landed:
+            fits = first is None or one.task.begin == first
+            if fits and (rest or one.alone or one.tasks >= group):
                 return one
         return None
 
-    def _fold(self) -> None:
+    def _folded(self, flights: list[Flight]) -> list[Flight]:
         """Has workers add answers that lie side by side, if there are too many for the client."""
-        flights, group = self.flights, self.group
+        group = self.group
         if group < FAN_IN:
-            return
-        under_way = not all(one.landed for one in flights)
-        for row in _rows([f for f in flights if f.has_sums and not f.alone and f.tasks < group]):
-            while len(row) >= (FAN_IN if under_way else 2):
+            return flights
+        few = [one for one in flights if one.has_sums and not one.alone and one.tasks < group]
+        least = FAN_IN if any(not one.landed for one in flights) else 2
+        folded = False
+        for row in _rows(few):
+            while len(row) >= least:
                 self.crew.fold(row[:FAN_IN])
-                row = row[FAN_IN:]
+                row, folded = row[FAN_IN:], True
+        return self.flights if folded else flights
 
-    def _drop_twins(self) -> None:
+    def _without_twins(self, flights: list[Flight]) -> list[Flight]:
         """Gives up tasks that were drawn a second time, once one of the two has landed."""
-        for _, same in groupby(self.flights, lambda one: (one.task.begin, one.task.end)):
+        late: list[Flight] = []
+        for _, same in groupby(flights, lambda one: (one.task.begin, one.task.end)):
             twins = list(same)
-            landed = next((one for one in twins if one.landed), None)
-            if landed is not None and len(twins) > 1:
-                self.crew.drop(*(one for one in twins if one is not landed))
+            landed = next((one for one in twins if one.landed), None) if len(twins) > 1 else None
+            late += [one for one in twins if landed is not None and one is not landed]
+        if not late:
+            return flights
+        self.crew.drop(*late)
+        return [one for one in flights if one not in late]
 
     def _draw_late_ones_again(self) -> None:
         """Has idle workers draw tasks that take much longer than they should."""
