@@ -233,7 +233,7 @@ def test_tasks_bound_to_a_worker_that_goes_begin_anew() -> None:
     crew.workers.wait()
     made = scene()
     session = Session(made, made.camera(), settings=HOW)
-    place = crew.values.keep(session.scene), crew.values.keep((session.camera, HOW))
+    place = crew.values.keep(session.scene), crew.values.keep((session.camera, HOW, None))
     flight = crew.begin(on_worker.Task(*place, 0, 1), but={"a", "b"})
     assert flight.only == {"c"}
     fake.names.remove("c")
@@ -279,7 +279,7 @@ def test_a_wish_for_values_of_a_picture_to_come_is_served_at_once() -> None:
     crew.workers.wait()
     made = scene()
     keep = crew.values.keep
-    flight = crew.begin(on_worker.Task(keep(made), keep((made.camera(), HOW)), 0, 1))
+    flight = crew.begin(on_worker.Task(keep(made), keep((made.camera(), HOW, None)), 0, 1))
     assert flight.has_words
     crew.serve()
     (again,) = crew.flights

@@ -71,8 +71,12 @@ def plan_light(one: Prepared, piloted: Plan | None = None) -> LightPlan:
     if one.scene.has_catchers or one.scene.plate is not None:
         _check_catchers(one)
         wanted = OFF
-    piloted = (piloted or pilot(one, core)) if wanted is None else None
-    plan = wanted or piloted or OFF
+    if piloted is not None:
+        piloted = check_light_paths(piloted, "piloted")
+    if wanted is not None:
+        plan, piloted = wanted, None
+    else:
+        plan = piloted = piloted or pilot(one, core)
     # The pilot renders the whole frame; a crop gets paths in proportion to its pixels.
     shared = one.share(area(one.window)) if wanted is None else 1.0
     core.light_paths = light_paths = (plan[0] * shared, plan[1] * shared)
