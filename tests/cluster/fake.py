@@ -44,11 +44,13 @@ class Fake:
         names: Addresses of the workers.
         plan: Called with worker, function and arguments instead of the function.
         slow: Seconds that a worker takes more, by its address.
+        reached: Workers that accept connections; None: all.
     """
 
     names: list[str]
     plan: PLAN = lambda worker, function, given: function(*given)
     slow: dict[str, float] = field(default_factory=dict)
+    reached: list[str] | None = None
     done: list[tuple[str, str]] = field(default_factory=list)
     gone: list[str] = field(default_factory=list)
     security: Any = None
@@ -77,6 +79,13 @@ class Fake:
         self.done.append((name, function.__name__))
         self.where.append((made, name))
         return made
+
+    def gather(self, future: Future, direct: bool) -> Any:
+        assert direct == (self.reached is None)
+        return future.result()
+
+    def sync(self, function: Any) -> Any:
+        return self.names if self.reached is None else self.reached
 
     def processing(self) -> dict[str, list[str]]:
         held: dict[str, list[str]] = {name: [] for name in self.names}

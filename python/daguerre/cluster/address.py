@@ -88,7 +88,7 @@ def _local(count: int) -> Iterator[Any]:
         dashboard_address="127.0.0.1:0",
         silence_logs=logging.CRITICAL,
     )
-    with cluster, Client(cluster, direct_to_workers=True) as client:
+    with cluster, Client(cluster) as client:
         yield client
 
 

@@ -7,6 +7,7 @@ from asyncio import CancelledError
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from daguerre.errors import InputError, MismatchError
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Workers on which a task may fail before it is given up.
 TRIES = 3
+#: A task that takes so many times as long as it should is late, unless it takes less than LATE_S.
+LATE, LATE_S = 3.0, 0.5
 #: Time of one try to reach a scheduler that went away, s.
 _RETRY_S = 5
 
@@ -201,6 +204,11 @@ class Crew:
         m1, m2 = flight.answer.facts["piloted"]
         return float(m1), float(m2)
 
+    def is_late(self, flight: Flight) -> bool:
+        """Whether a task takes much longer than it should, by the speed of workers."""
+        should = (flight.task.end - flight.task.begin) / self.per_second if self.per_second else inf
+        return time.monotonic() - flight.began > max(LATE * should, LATE_S)
+
     def drop(self, *flights: Flight) -> None:
         """Gives up tasks."""
         self.client.cancel([flight.future for flight in flights], force=True)
@@ -253,7 +261,8 @@ class Crew:
         if flight.answer is not None or flight.future.status in ("cancelled", "lost"):
             return flight.answer
         try:
-            return answer_of(flight.future.result())
+            direct = self.workers.all_are_reached
+            return answer_of(self.client.gather(flight.future, direct=direct))
         except InputError as error:
             return Failed("a worker", str(error))
         except CancelledError:

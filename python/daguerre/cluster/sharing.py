@@ -27,8 +27,6 @@ STEP_S = 0.5
 FAN_IN = 4
 #: Share of its time that the client may spend adding answers; beyond, workers add some first.
 ADDING = 0.5
-#: A task that takes so many times as long as it should is drawn a second time, by an idle worker.
-LATE = 3.0
 
 
 class Sharing:
@@ -165,19 +163,10 @@ class Sharing:
         idle = sum(not keys for keys in held.values())
         for one in sorted(flights, key=lambda flight: flight.began):
             has_twin = sum(other.task == one.task for other in flights) > 1
-            if idle > 0 and not has_twin and _age(one) > self._late_s(one.task):
+            if idle > 0 and not has_twin and self.crew.is_late(one):
                 busy = {name for name, keys in held.items() if keys}
                 self.crew.begin(one.task, one.failed_on, but=busy)
                 idle -= 1
-
-    def _late_s(self, task: Task) -> float:
-        """Time after which a task is late, s."""
-        speed = self.crew.per_second
-        return max(LATE * (task.end - task.begin) / speed, STEP_S) if speed else math.inf
-
-
-def _age(flight: Flight) -> float:
-    return time.monotonic() - flight.began
 
 
 def _rows(flights: list[Flight]) -> Iterator[list[Flight]]:

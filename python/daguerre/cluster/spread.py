@@ -5,6 +5,7 @@ A worker that draws a picture alone sets it up once, and adds its answers where 
 
 from __future__ import annotations
 
+import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import astuple
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING
 from daguerre.rendering.ranges import Range, missing_ranges
 from daguerre.rendering.schedule import pass_size
 
+from .crew import GivenUp
 from .task import Place, Task
 
 if TYPE_CHECKING:
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
 
 #: Pictures of each worker beyond the one under way, whose sums may wait.
 PICTURES_AHEAD = 2
+#: Time between two looks for sums, s.
+WAIT_S = 0.02
 
 
 class Spread:
@@ -58,13 +62,24 @@ class Spread:
         return self._place(self._now, session)
 
     def piloted(self, picture: Picture) -> Plan | None:
-        """Result of the pilot render of a picture that a worker drew; None: none did."""
+        """Result of the pilot render of a picture, after waiting for a worker; None: none draws."""
         assert self.job is not None
-        place = self._places.get(self.job.pictures.index(picture))
-        if place is None:
-            return None
-        found = next((one for one in self.crew.flights_of(place) if one.has_sums), None)
-        return None if found is None else self.crew.piloted(found)
+        place, control = self._places.get(self.job.pictures.index(picture)), self.job.control
+        while place is not None and not control.stops:
+            try:
+                self.crew.look()
+                self.crew.serve()
+            except GivenUp:  # the picture's own work will find out
+                return None
+            flights = self.crew.flights_of(place)
+            for one in flights:
+                if one.has_sums:
+                    return self.crew.piloted(one)
+            if not flights or any(one.landed or self.crew.is_late(one) for one in flights):
+                return None
+            time.sleep(WAIT_S)
+            control.poll()
+        return None
 
     def fill(self, sharing: Sharing, wanted: Range, known: Sequence[Range]) -> bool:
         """Begins tasks while there is room; False: nothing is left to begin.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -15,6 +16,8 @@ from . import task as on_worker
 LOOK_S = 0.5
 #: Time to wait for a worker while there is none, s.
 PATIENCE_S = 60.0
+#: Time in which a worker accepts a connection of the client, s.
+REACH_S = 2.0
 
 Tell = Callable[[str], None]
 
@@ -32,6 +35,7 @@ class Workers:
         self._client, self._mixed, self._tell = client, mixed, tell
         self._refused: dict[str, str] = {}
         self._there: set[str] = set()
+        self._reached: set[str] = set()
         self._looked, self._alone_since = -LOOK_S, time.monotonic()
 
     @property
@@ -43,6 +47,11 @@ class Workers:
     def all_are_good(self) -> bool:
         """Whether any worker may draw."""
         return not self._refused
+
+    @property
+    def all_are_reached(self) -> bool:
+        """Whether the client fetches answers from the workers, not through the scheduler."""
+        return self.good <= self._reached
 
     def look(self) -> None:
         """Looks who is there, now and then.
@@ -102,3 +111,22 @@ class Workers:
                 self.refuse(worker, f"it has no daguerre of this version ({got})")
             elif isinstance(got, str) and got != wanted and not self._mixed:
                 self.refuse(worker, f"build: wanted that of the client, {wanted}, got {got}")
+        self._reached |= reached(self._client, new)
+
+
+def reached(client: Any, workers: Iterable[str]) -> set[str]:
+    """Workers that accept a connection of the client; others are behind their scheduler."""
+    from distributed.comm import connect
+
+    async def reach(address: str) -> str | None:
+        try:
+            found = await connect(address, timeout=REACH_S, **client.connection_args)
+        except OSError:
+            return None
+        await found.close()
+        return address
+
+    async def reach_all() -> list[str | None]:
+        return await asyncio.gather(*map(reach, workers))
+
+    return {address for address in client.sync(reach_all) if address is not None}
