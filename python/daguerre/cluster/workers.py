@@ -116,7 +116,7 @@ class Workers:
 
 def reached(client: Any, workers: Iterable[str]) -> set[str]:
     """Workers that accept a connection of the client; others are behind their scheduler."""
-    from distributed.comm import connect
+    from distributed.comm.core import connect
 
     async def reach(address: str) -> str | None:
         try:
