@@ -96,7 +96,7 @@ def start() -> dict[str, float]:
         return {"workers_s": reached, "first_sums_s": time.monotonic() - began}
 
 
-def sequence(frames: int = 8, spp: int = 1) -> dict[str, float]:
+def sequence(frames: int = 8, spp: int = 4) -> dict[str, float]:
     """Frames of 4K by two workers, against one process of two threads."""
     from daguerre import cli
 
@@ -121,7 +121,7 @@ def recorded(size: tuple[int, int]) -> tuple[Session, bytes]:
     scene, camera = scene_and_camera()
     session = Session(scene, camera, resolution=size, spp=1 << 20)
     session.draw(0, 1)
-    facts = {"seconds": TASK_S, "set_up_s": 0.0, "rays": 1, "tasks": 1}
+    facts = {"seconds": TASK_S, "set_up_s": 0.0, "pack_s": 0.0, "rays": 1, "tasks": 1}
     sums = Sums("w", session.key, columns_of(session.state()), facts)
     session.clear()
     return session, sums.to_bytes()

@@ -100,6 +100,7 @@ class Crew:
         flights: Tasks under way.
         drawn_again: Number of tasks that began anew.
         per_second: Samples of all pixels that a worker drew last, 1/s; 0: not known yet.
+        answer_s: Time that the last answer took to be packed, fetched and added, s.
     """
 
     def __init__(self, client: Any, *, mixed: bool = False, tell: Tell = lambda text: None) -> None:
@@ -110,7 +111,7 @@ class Crew:
         self.values = Values()
         self.flights: list[Flight] = []
         self.drawn_again = 0
-        self.per_second = 0.0
+        self.per_second = self.answer_s = 0.0
 
     def look(self) -> None:
         """Looks after workers and scheduler; both may come and go.

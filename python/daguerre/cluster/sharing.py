@@ -19,8 +19,10 @@ if TYPE_CHECKING:
 
 #: Tasks that wait at each worker while it draws one.
 AHEAD = 2
-#: Length of a task, s, once it is known how fast workers are.
-TASK_S = 15.0
+#: Length of a task, s, once it is known how fast workers are; and at most, if its sums take long.
+TASK_S, LONG_S = 15.0, 120.0
+#: A task takes at least so many times as long as the work with its answer.
+WORTH = 20.0
 #: Time that a step waits for results, s.
 STEP_S = 0.5
 #: Answers that a worker adds at once.
@@ -60,11 +62,12 @@ class Sharing:
         return min(most - pending, FAN_IN * most - len(flights))
 
     def size(self, left: float) -> float:
-        """Samples of the next task, from the speed so far; smaller toward the end."""
+        """Samples of the next task, by what is known of workers; fewer toward the end."""
         if not self.crew.per_second:
             return 1.0
         fair = left / (2 * max(1, len(self.crew.workers.good)))
-        return max(1.0, min(TASK_S * self.crew.per_second, fair))
+        length = min(max(TASK_S, WORTH * self.crew.answer_s), LONG_S)
+        return max(1.0, min(length * self.crew.per_second, fair))
 
     def take(self, first: int | None = None) -> tuple[Task, Sums] | None:
         """A task that has landed and its sums, after waiting a little; None: none.
@@ -102,6 +105,8 @@ class Sharing:
         seconds = float(sums.facts["seconds"])
         if seconds > 0:
             self._task_s = seconds / sums.facts["tasks"]
+            packing = float(sums.facts["pack_s"]) / sums.facts["tasks"]
+            self.crew.answer_s = packing + self._add_s
             self.crew.per_second = max(samples / seconds, 1e-3)
 
     def facts(self) -> dict[str, Any]:

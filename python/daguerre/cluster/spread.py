@@ -5,6 +5,7 @@ A worker that draws a picture alone sets it up once, and adds its answers where 
 
 from __future__ import annotations
 
+import math
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
@@ -12,7 +13,6 @@ from dataclasses import astuple
 from typing import TYPE_CHECKING
 
 from daguerre.rendering.ranges import Range, missing_ranges
-from daguerre.rendering.schedule import pass_size
 
 from .crew import GivenUp
 from .task import Place, Task
@@ -102,7 +102,8 @@ class Spread:
                 return False
             left = sum(b - a for ranges in free.values() for a, b in ranges)
             (begin, last), *others = free[number]
-            end = begin + pass_size((begin, last), sharing.size(left))
+            tasks = max(1, round((last - begin) / sharing.size(left)))
+            end = begin + math.ceil((last - begin) / tasks)
             free[number] = [(end, last), *others] if end < last else others
             place = self._place(number)
             several = len(free) > 1  # the last picture is everybody's

@@ -125,19 +125,22 @@ def _drawn(task: Task) -> Sums:
         begin, count = Store().value(task.round)
         session.round = Round(begin, count, task.begin)
         session.draw_round(task.end)
+    drew = time.monotonic()
+    parts = columns_of(session.state())
     facts = {
-        "seconds": time.monotonic() - ready,
+        "seconds": drew - ready,
         "set_up_s": ready - began,
+        "pack_s": 2 * (time.monotonic() - drew),  # the bytes take as long as the columns
         "rays": int(session.counters.rays),
         "tasks": 1,
     } | _plan(session)
-    return Sums(_address(), session.key, columns_of(session.state()), facts)
+    return Sums(_address(), session.key, parts, facts)
 
 
 def _folded(task: Task, answers: tuple[memoryview, ...]) -> Sums:
     session = _session(task.scene, task.view, _threads())
     _empty(session)
-    facts: dict[str, Any] = {"seconds": 0.0, "set_up_s": 0.0, "rays": 0, "tasks": 0}
+    facts: dict[str, Any] = dict.fromkeys(_ADDED, 0)
     for data in answers:
         found = answer_of(data)
         if not isinstance(found, Sums):
@@ -161,6 +164,8 @@ def _empty(session: Session) -> None:
     _used = session
 
 
+#: Facts whose sum is that of several tasks.
+_ADDED = ("seconds", "set_up_s", "pack_s", "rays", "tasks")
 #: Session of the last task.
 _used: Session | None = None
 #: Scene of the core of the last session, which the next one can use if it shows the same scene.
