@@ -15,9 +15,10 @@ from daguerre.cluster import sharing, store, workers
 from daguerre.cluster import task as on_worker
 from daguerre.cluster.answers import Failed, Needs, Sums, answer_of
 from daguerre.cluster.crew import Crew
+from daguerre.cluster.spread import Spread
 from daguerre.cluster.work import work_of
 from daguerre.errors import InputError
-from daguerre.rendering import Job, Output, Picture, View, in_order
+from daguerre.rendering import Job, Output, Picture, View, in_order, light_plan
 from daguerre.rendering.checkpoint import Checkpoint
 from daguerre.rendering.identity import build
 from daguerre.rendering.loop import Loop
@@ -272,6 +273,89 @@ def test_pictures_of_a_sequence_go_to_a_worker_each(tmp_path: Path) -> None:
     assert len(by_one) >= 4  # the last ones are drawn by whoever is idle
     assert {names[0] for names in by_one} == {"a", "b", "c"}
     assert len(crew.values._kept) == 2  # scene and view of the last one
+
+
+@pytest.mark.parametrize("slow", [{}, {"a": 0.5, "b": 0.5}], ids=["landed", "under way"])
+def test_workers_do_the_pilot_renders_of_pictures_to_come(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, slow: dict[str, float]
+) -> None:
+    at: list[str] = []
+    pilot = light_plan.pilot
+
+    def plan(worker: str, function: Any, given: tuple[Any, ...]) -> Any:
+        at.append(worker)
+        answer = function(*given)
+        at.pop()
+        return answer
+
+    def counted(*given: Any) -> Any:
+        pilots.append(at[-1] if at else "client")
+        return pilot(*given)
+
+    pilots: list[str] = []
+    monkeypatch.setattr(light_plan, "pilot", counted)
+    settings = HOW.with_(spp=1, light_paths="auto")
+    pictures = in_order([Picture(View(), settings, Output((tmp_path / "a.#.exr",)))], range(1, 6))
+    job, fake = Job(scene(), pictures), Fake(["a", "b"], plan, slow)
+    crew = Crew(fake)
+    crew.workers.wait()
+    job.work_of = work_of(crew, job)
+    assert job.run()
+    assert pilots[0] == "client"
+    assert "client" not in pilots[1:]
+    assert {"a", "b"} >= set(pilots[1:]) != set()
+
+
+def test_a_stop_ends_the_wait_for_a_pilot_render(tmp_path: Path) -> None:
+    class Stopping(Control):
+        def poll(self) -> None:
+            self.stops = 1
+
+    picture = Picture(View(), HOW.with_(spp=1), Output((tmp_path / "a.#.exr",)))
+    job = Job(scene(), in_order([picture], range(1, 4)), control=Stopping())
+    crew = Crew(Fake(["a"], slow={"a": 60.0}))
+    crew.workers.wait()
+    spread = Spread(crew, job)
+    session = job.open(job.pictures[0])
+    sharing_ = sharing.Sharing(session, crew, spread.open(session))
+    spread.fill(sharing_, (0, 1), [])
+    began = time.monotonic()
+    assert spread.piloted(job.pictures[1]) is None
+    assert time.monotonic() - began < 10
+    assert job.control.stops
+
+
+def test_tasks_are_long_if_their_answers_are_work() -> None:
+    crew = Crew(Fake(["a", "b"]))
+    crew.workers.wait()
+    made = scene()
+    session, spread = Session(made, made.camera(), settings=HOW), Spread(crew)
+    one = sharing.Sharing(session, crew, spread.open(session))
+    assert one.size(1e9) == 1  # nothing is known
+    crew.per_second = 2.0
+    assert one.size(1e9) == 2 * sharing.TASK_S
+    crew.answer_s = 3.0
+    assert one.size(1e9) == 2 * sharing.WORTH * 3
+    crew.answer_s = 100.0
+    assert one.size(1e9) == 2 * sharing.LONG_S
+    assert one.size(20) == 5  # two for each worker
+
+
+def test_a_remnant_is_no_task_of_its_own() -> None:
+    crew = Crew(Fake(["a"]))
+    crew.workers.wait()
+    made = scene()
+    session, spread = Session(made, made.camera(), settings=HOW), Spread(crew)
+    one = sharing.Sharing(session, crew, spread.open(session))
+    crew.per_second = 2.0 / sharing.TASK_S  # 2 samples in a task
+    spread.fill(one, (0, 5), [])
+    spans = [(flight.task.begin, flight.task.end) for flight in crew.flights]
+    assert spans == [(0, 3), (3, 5)]
+
+
+def test_answers_of_workers_that_the_client_cannot_reach_come_through_the_scheduler() -> None:
+    fake = Fake(["a", "b"], reached=["a"])  # the fake checks which way is taken
+    assert np.array_equal(drawn(Crew(fake)).rgb, alone().rgb)
 
 
 def test_a_wish_for_values_of_a_picture_to_come_is_served_at_once() -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -19,6 +21,7 @@ from daguerre.cluster import task as on_worker
 from daguerre.cluster.address import connected
 from daguerre.cluster.crew import Crew
 from daguerre.cluster.work import work_of
+from daguerre.cluster.workers import reached
 from daguerre.errors import InputError
 from daguerre.rendering.checkpoint import Checkpoint
 from daguerre.rendering.loop import Loop
@@ -119,6 +122,23 @@ def test_a_killed_worker_costs_nothing(client: Any, file: Path) -> None:
 
 def test_all_of_a_local_cluster_listens_on_this_machine_alone(client: Any) -> None:
     assert listening(os.getpid()) == {"127.0.0.1"}
+
+
+def test_answers_come_from_workers_that_can_be_reached(client: Any) -> None:
+    there = set(client.nthreads())
+    assert reached(client, [*there, "tcp://127.0.0.1:1"]) == there
+
+
+def test_a_script_without_a_main_guard_is_told_so(file: Path, tmp_path: Path) -> None:
+    script = tmp_path / "draw.py"
+    script.write_text(
+        "import daguerre as dg\n"
+        f"dg.render(dg.load({str(file)!r}), resolution=(24, 16), spp=1, cluster='local:1')\n"
+    )
+    ran = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60)
+    assert ran.returncode == 1
+    assert 'put it under `if __name__ == "__main__":`' in ran.stderr
+    assert ran.stderr.strip().splitlines()[-1].startswith("daguerre.errors.InputError: cluster:")
 
 
 def fails(*given: object) -> bytes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import multiprocessing
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -21,6 +22,10 @@ from .certificates import Certificates
 TIMEOUT_S = 10
 WANTED = "local, local:N, tcp://HOST:PORT, tls://HOST:PORT or FILE.yaml"
 _KEYS = ("address", "ca", "cert", "key")
+_NO_GUARD = (
+    "cluster: local workers run this script again as they start, up to the call that wants them; "
+    'put it under `if __name__ == "__main__":`'
+)
 
 
 @contextlib.contextmanager
@@ -80,14 +85,19 @@ def _local(count: int) -> Iterator[Any]:
 
     if not 1 <= count <= 1024:
         raise UsageError(f"--cluster: wanted local:N with 1 to 1024 workers, got {count}")
+    if getattr(multiprocessing.current_process(), "_inheriting", False):
+        raise SystemExit(_NO_GUARD)  # a process of LocalCluster that runs the script again
     threads = max(1, CPU_COUNT // count)
-    cluster = LocalCluster(
-        n_workers=count,
-        threads_per_worker=threads,
-        host="127.0.0.1",
-        dashboard_address="127.0.0.1:0",
-        silence_logs=logging.CRITICAL,
-    )
+    try:
+        cluster = LocalCluster(
+            n_workers=count,
+            threads_per_worker=threads,
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",
+            silence_logs=logging.CRITICAL,
+        )
+    except RuntimeError as error:
+        raise InputError(f"cluster: local workers did not start: {reason_of(error)}") from None
     with cluster, Client(cluster) as client:
         yield client
 
