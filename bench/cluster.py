@@ -32,11 +32,10 @@ from daguerre.cli.demo import write_scene
 from daguerre.cluster import task as on_worker
 from daguerre.cluster import workers
 from daguerre.cluster.address import connected
-from daguerre.cluster.answers import Sums, answer_of
+from daguerre.cluster.answers import Sums, answer_of, packed_sums
 from daguerre.cluster.crew import Crew
 from daguerre.cluster.opened import opened
 from daguerre.cluster.work import work_of
-from daguerre.rendering.columns import columns_of
 from daguerre.rendering.session import Session
 
 LENS = "double-gauss-50mm-f2"
@@ -122,9 +121,9 @@ def recorded(size: tuple[int, int]) -> tuple[Session, bytes]:
     session = Session(scene, camera, resolution=size, spp=1 << 20)
     session.draw(0, 1)
     facts = {"seconds": TASK_S, "set_up_s": 0.0, "pack_s": 0.0, "rays": 1, "tasks": 1}
-    sums = Sums("w", session.key, columns_of(session.state()), facts)
+    data = bytes(packed_sums("w", session.key, session.state(), facts))
     session.clear()
-    return session, sums.to_bytes()
+    return session, data
 
 
 def random_view(size: int) -> memoryview:

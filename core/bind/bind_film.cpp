@@ -98,13 +98,22 @@ FlatWordsView flat(std::vector<std::uint32_t> words) {
     }));
 }
 
-auto columns_of(const Words& words) {
-    dg::WordColumns found;
+FlatWordsView used_of(const Words& words) {
+    std::vector<std::uint32_t> found;
     {
         const dg::bind::Unlocked unlocked;
-        if (words.size()) found = dg::word_columns({words.data(), words.size()}, words.shape(2));
+        if (words.size()) found = dg::used_columns({words.data(), words.size()}, words.shape(2));
     }
-    return nb::make_tuple(flat(std::move(found.columns)), flat(std::move(found.words)));
+    return flat(std::move(found));
+}
+
+using FlatWordsOut = nb::ndarray<std::uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+void take_to(const Words& words, const FlatWords& columns, const FlatWordsOut& to) {
+    const dg::bind::Unlocked unlocked;
+    if (words.size())
+        dg::take_columns({words.data(), words.size()}, words.shape(2), {columns.data(), columns.size()},
+                         {to.data(), to.size()});
 }
 
 void add_state(dg::Film& film, const std::string& part, const FlatWords& columns, const FlatWords& words) {
@@ -216,9 +225,16 @@ void bind_film(nb::module_& m) {
         })
         .def("add_state", &add_state, "part"_a, "columns"_a, "words"_a,
              "Adds a part of the state of a film of the same layout: of its words those of these columns, as "
-             "word_columns returns them.");
-    m.def("word_columns", &columns_of, "words"_a,
-          "Columns of the last axis of (H, W, words) that are not 0 everywhere, and their words.");
+             "take_columns takes them.")
+        .def("clear", [](Film& f) {
+            const dg::bind::Unlocked unlocked;
+            f.clear();
+        }, "Takes all samples away.");
+    nb::class_<KeptFilms>(m, "KeptFilms", "While one lives, the next film of the same layout has the memory of the last.")
+        .def(nb::init<>());
+    m.def("used_columns", &used_of, "words"_a, "Columns of the last axis of (H, W, words) that are not 0 everywhere.");
+    m.def("take_columns", &take_to, "words"_a, "columns"_a, "to"_a,
+          "Writes the words of these columns, pixel by pixel, to a flat array.");
     m.def("mean_of_next_colour", &next_colour, "plane"_a, "reach"_a,
           "For each pixel the mean of those near it that have the next of three colours.");
 }

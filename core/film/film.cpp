@@ -58,6 +58,12 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     const Vec3f x = rgb_from_xyz({1, 0, 0}), y = rgb_from_xyz({0, 1, 0}),
                 z = rgb_from_xyz({0, 0, 1});
     for (int i = 0; i < 3; ++i) rgb_from_xyz_[i] = {x[i], y[i], z[i]};
+    if (std::unique_ptr<Film> kept = take_kept(layout)) {
+        *this = std::move(*kept);
+        clear();
+        responses_ = {};
+        return;
+    }
     make_room(pixels_, pixels);
     if (layout.aovs) make_room(aovs_, pixels);
     if (layout.splats) make_room(splats_, pixels);

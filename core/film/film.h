@@ -82,6 +82,11 @@ class Film {
     /// Throws Error unless 1 <= width, height and both fit in 2^31 pixels, bands is 0 .. kMostBands and
     /// channels is 0 .. Responses::kMost.
     explicit Film(FilmLayout layout);
+    Film(Film&&) = default;
+    Film& operator=(Film&&) = default;
+    ~Film();
+    /// Takes all samples away.
+    void clear();
     const FilmLayout& layout() const { return layout_; }
     /// Says where its region lies from now on: in a frame that begins elsewhere.
     void place(int offset_x, int offset_y) { layout_.offset_x = offset_x, layout_.offset_y = offset_y; }
@@ -268,6 +273,9 @@ class Film {
     template <typename Self, typename Act>
     static void with_part(Self& film, const std::string& part, const Act& act);
 
+    /// Film of this layout whose memory is kept; null: there is none.
+    static std::unique_ptr<Film> take_kept(const FilmLayout& layout);
+
     FilmLayout layout_;
     std::array<Vec3f, 3> rgb_from_xyz_;  // rows
     std::vector<Pixel> pixels_;
@@ -283,6 +291,16 @@ class Film {
     std::vector<ValueSum> bands_, channels_, channel_splats_;   // those of a pixel side by side
     std::vector<ValueSum> catcher_channels_;   // with the objects, then without
     Responses responses_;
+};
+
+/// While one lives, the memory of a film that ends waits for the next film of the same layout, as new memory costs time:
+/// the system clears it page by page.
+class KeptFilms {
+  public:
+    KeptFilms();
+    ~KeptFilms();
+    KeptFilms(const KeptFilms&) = delete;
+    KeptFilms& operator=(const KeptFilms&) = delete;
 };
 
 }  // namespace dg

@@ -372,10 +372,11 @@ TEST_CASE("sums that come as columns of words are added as a merge adds them") {
         std::vector<std::uint32_t> words(bytes.size() / 4);
         std::memcpy(words.data(), bytes.data(), bytes.size());
         const std::size_t each = words.size() / 6;
-        const WordColumns kept = word_columns(words, each);
-        CHECK(kept.words.size() == 6 * kept.columns.size());
-        added.add_state(part, kept.columns, kept.words);
-        CHECK_THROWS_AS(added.add_state(part, kept.columns, std::span(kept.words).subspan(1)), Error);
+        const std::vector<std::uint32_t> columns = used_columns(words, each);
+        std::vector<std::uint32_t> kept(6 * columns.size());
+        take_columns(words, each, columns, kept);
+        added.add_state(part, columns, kept);
+        CHECK_THROWS_AS(added.add_state(part, columns, std::span(kept).subspan(1)), Error);
         CHECK_THROWS_AS(added.add_state(part, std::vector{std::uint32_t(each)}, std::span(words).first(6)), Error);
         CHECK_THROWS_AS(added.add_state(part, std::vector{1u, 1u}, std::span(words).first(12)), Error);
     }
@@ -384,12 +385,53 @@ TEST_CASE("sums that come as columns of words are added as a merge adds them") {
     CHECK_THROWS_AS(added.add_object_words({}), Error);
 }
 
+TEST_CASE("a film in the memory of another one is empty") {
+    const FilmLayout all{3, 2, 1, 1, true, true, true, true, true, true, true, 2, 0};
+    const auto draw = [](Film& film) {
+        film.add(1, 1, 0, {1, 2, 3});
+        film.count(1, 1);
+        film.splat(2, 2, 1, {3, 2, 1});
+        film.add_shared(2, 1, 5, {std::numeric_limits<float>::quiet_NaN(), 0, 0});
+    };
+    const auto memory = [](const Film& film) { return film.state("sums").data(); };
+    const Film fresh(all);
+    const KeptFilms keep;
+    {
+        Film film(all);
+        draw(film);
+        CHECK(whole_state(film) != whole_state(fresh));
+        film.clear();
+        CHECK(whole_state(film) == whole_state(fresh));
+    }
+    const std::byte* place = nullptr;
+    {
+        const Film another(FilmLayout{5, 5});
+        Film film(all);
+        draw(film);
+        place = memory(film);
+    }   // `another` ends last, and is kept in place of the first
+    {
+        Film film(all);
+        CHECK(whole_state(film) == whole_state(fresh));
+        draw(film);
+        place = memory(film);
+    }
+    Film film(all);
+    CHECK(memory(film) == place);
+    CHECK(whole_state(film) == whole_state(fresh));
+    Film drawn(std::move(film));
+    draw(drawn);
+    CHECK(memory(drawn) == place);
+}
+
 TEST_CASE("columns of zeros stay away") {
     const std::vector<std::uint32_t> words{0, 5, 0, 7, 0, 0, 0, 9};
-    const WordColumns kept = word_columns(words, 4);
-    CHECK(kept.columns == std::vector<std::uint32_t>{1, 3});
-    CHECK(kept.words == std::vector<std::uint32_t>{5, 7, 0, 9});
-    CHECK(word_columns(std::vector<std::uint32_t>(8), 4).words.empty());
+    const std::vector<std::uint32_t> columns = used_columns(words, 4);
+    CHECK(columns == std::vector<std::uint32_t>{1, 3});
+    std::vector<std::uint32_t> kept(4);
+    take_columns(words, 4, columns, kept);
+    CHECK(kept == std::vector<std::uint32_t>{5, 7, 0, 9});
+    CHECK(used_columns(std::vector<std::uint32_t>(8), 4).empty());
 }
 
 TEST_CASE("films of different layout do not merge") {

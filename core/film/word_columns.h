@@ -7,12 +7,10 @@
 
 namespace dg {
 
-struct WordColumns {
-    std::vector<std::uint32_t> columns;   // that are kept, in rising order
-    std::vector<std::uint32_t> words;     // of these, pixel by pixel
-};
-
-/// Words of pixels with `each` words, at least one, without the columns of zeros.
-WordColumns word_columns(std::span<const std::uint32_t> words, std::size_t each);
+/// Columns of pixels with `each` words, at least one, that are not 0 everywhere; in rising order.
+std::vector<std::uint32_t> used_columns(std::span<const std::uint32_t> words, std::size_t each);
+/// Words of these columns, pixel by pixel; `to` has room for as many.
+void take_columns(std::span<const std::uint32_t> words, std::size_t each, std::span<const std::uint32_t> columns,
+                  std::span<std::uint32_t> to);
 
 }  // namespace dg

@@ -10,13 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import daguerre as dg
-from daguerre.cluster.answers import Failed, Needs, Sums, answer_of
+from daguerre.cluster.answers import Failed, Needs, Sums, answer_of, packed_sums
 from daguerre.errors import InputError, MismatchError
 from daguerre.rendering.columns import columns_of
 from daguerre.rendering.session import Session
 from tests.viewfinder.test_painter import scene
 
-HOW = dg.RenderSettings.of(resolution=(24, 16), spp=8, aovs=True)
+HOW = dg.RenderSettings.of(resolution=(24, 16), spp=8, aovs=True, cryptomatte=("object",))
 
 
 def drawn(begin: int, end: int) -> Session:
@@ -28,17 +28,17 @@ def drawn(begin: int, end: int) -> Session:
 
 def test_they_arrive_as_they_were() -> None:
     session = drawn(0, 2)
-    sums = Sums("worker", session.key, columns_of(session.state()), {"seconds": 0.5})
-    found = answer_of(sums.to_bytes())
+    data = packed_sums("worker", session.key, session.state(), {"seconds": 0.5})
+    found, parts = answer_of(data), columns_of(session.state())
     assert isinstance(found, Sums)
-    assert (found.worker, found.key, found.facts) == (sums.worker, sums.key, sums.facts)
-    assert found.parts.keys() == sums.parts.keys()
-    for name, one in sums.parts.items():
+    assert (found.worker, found.key, found.facts) == ("worker", session.key, {"seconds": 0.5})
+    assert found.parts.keys() == parts.keys()
+    for name, one in parts.items():
         there = found.parts[name]
         assert there.shape == one.shape
         assert np.array_equal(there.kept, one.kept)
         assert np.array_equal(there.words, one.words)
-    assert len(sums.to_bytes()) < sum(words.nbytes for words in session.state().values())
+    assert len(data) < sum(words.nbytes for words in session.state().values())
 
 
 @pytest.mark.parametrize("answer", [Needs("a:1", ["x", "y"]), Failed("b:2", "no \n such \u2603")])
@@ -48,8 +48,8 @@ def test_so_do_wishes_and_failures(answer: Needs | Failed) -> None:
 
 def test_damage_is_found() -> None:
     session = drawn(0, 1)
-    data = Sums("worker", session.key, columns_of(session.state()), {}).to_bytes()
-    for wrong in (data[:-1], data[:-5] + b"x" + data[-4:], b"", b"{}\n"):
+    data = bytes(packed_sums("worker", session.key, session.state(), {}))
+    for wrong in (data[:-1], data[:-5] + b"x" + data[-4:], data[:-1] + b"x", b"", b"{}\n"):
         with pytest.raises(InputError, match="damaged answer"):
             answer_of(wrong)
 

@@ -6,6 +6,7 @@ import json
 import time
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -196,8 +197,11 @@ def test_wrong_sums_refuse_their_worker() -> None:
         data = function(*given)
         found = answer_of(data)
         if worker == "liar" and isinstance(found, Sums):
-            key = found.key | {"scene": "another"}
-            return Sums(worker, key, found.parts, found.facts).to_bytes()
+            head, words = bytes(data).split(b"\n", 1)
+            key = found.key | {"scene": "x" * len(found.key["scene"])}
+            facts = json.loads(head) | {"key": key, "worker": worker}
+            lie = json.dumps(facts, separators=(",", ":")).encode()
+            return memoryview(lie.ljust(len(head)) + b"\n" + words)
         return data
 
     told: list[str] = []
@@ -347,10 +351,11 @@ def test_a_remnant_is_no_task_of_its_own() -> None:
     made = scene()
     session, spread = Session(made, made.camera(), settings=HOW), Spread(crew)
     one = sharing.Sharing(session, crew, spread.open(session))
-    crew.per_second = 2.0 / sharing.TASK_S  # 2 samples in a task
-    spread.fill(one, (0, 5), [])
-    spans = [(flight.task.begin, flight.task.end) for flight in crew.flights]
-    assert spans == [(0, 3), (3, 5)]
+    for last, wanted in ((4, [(0, 4)]), (11, [(0, 3), (3, 6)])):
+        with mock.patch.object(one, "size", return_value=3.0):
+            spread.fill(one, (0, last), [])
+        assert [(flight.task.begin, flight.task.end) for flight in crew.flights] == wanted
+        crew.drop_all()
 
 
 def test_answers_of_workers_that_the_client_cannot_reach_come_through_the_scheduler() -> None:

@@ -15,7 +15,7 @@ from zlib import crc32
 import numpy as np
 
 from daguerre.errors import InputError, MismatchError
-from daguerre.rendering.columns import Columns
+from daguerre.rendering.columns import Columns, Words, kept_of, take
 
 
 @dataclass(frozen=True)
@@ -68,18 +68,6 @@ class Sums:
     parts: Mapping[str, Columns]
     facts: dict[str, Any]
 
-    def to_bytes(self) -> bytes:
-        """Packs the sums."""
-        blocks = [b.data for one in self.parts.values() for b in (one.kept, one.words)]
-        check = 0
-        for block in blocks:
-            check = crc32(block, check)
-        sizes = [
-            [name, one.shape, len(one.kept), len(one.words)] for name, one in self.parts.items()
-        ]
-        line = _line(parts=sizes, worker=self.worker, key=self.key, facts=self.facts, check=check)
-        return b"".join([line, *blocks])
-
     def check_key(self, wanted: dict[str, str], *, mixed: bool = False) -> None:
         """Checks that the sums belong to a picture.
 
@@ -102,6 +90,33 @@ _LINE = 1 << 20
 Answer = Needs | Failed | Sums
 
 
+def packed_sums(
+    worker: str, key: dict[str, str], state: Mapping[str, Words], facts: dict[str, Any]
+) -> memoryview:
+    """Packs sums: the line, columns and words of each part, and the checksum of those.
+
+    Args:
+        worker: Address of the worker.
+        key: Key of the picture.
+        state: Sums, as in ``Session.state``; they may be large, so they are copied once.
+        facts: JSON values.
+    """
+    kept = {part: kept_of(part, words) for part, words in state.items()}
+    sizes = [[part, state[part].shape, len(own), count] for part, (own, count) in kept.items()]
+    line = np.frombuffer(_line(parts=sizes, worker=worker, key=key, facts=facts), np.uint32)
+    total = sum(len(own) + count for own, count in kept.values())
+    data = np.empty(len(line) + total + 1, np.uint32)
+    data[: len(line)] = line
+    place = len(line)
+    for part, (own, count) in kept.items():
+        begin = place + len(own)
+        data[place:begin] = own
+        place = begin + count
+        take(part, state[part], own, data[begin:place])
+    data[-1] = crc32(data[len(line) : -1].data)
+    return data.data.cast("B")
+
+
 def answer_of(data: bytes | memoryview) -> Answer:
     """Unpacks an answer; its words stay where they are.
 
@@ -116,9 +131,10 @@ def answer_of(data: bytes | memoryview) -> Answer:
             return Needs(worker, [str(name) for name in head["needs"]])
         if "failed" in head:
             return Failed(worker, str(head["failed"]))
-        if crc32(rest) != head["check"]:
+        words, check = rest[:-4], rest[-4:]
+        if crc32(words) != int.from_bytes(check, "little"):
             raise ValueError("another checksum")
-        return Sums(worker, head["key"], dict(_parts(head["parts"], rest)), head["facts"])
+        return Sums(worker, head["key"], dict(_parts(head["parts"], words)), head["facts"])
     except (ValueError, LookupError, TypeError, AttributeError) as error:
         raise InputError(f"damaged answer: {error}") from None
 

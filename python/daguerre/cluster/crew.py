@@ -186,9 +186,7 @@ class Crew:
         if isinstance(answer, Sums):
             return answer
         if flight.parts:
-            for part in flight.parts:
-                part.alone = True
-            self.flights.extend(flight.parts)
+            self._take_apart(flight)
         elif answer is None:
             self._again(flight)
         elif isinstance(answer, Needs):
@@ -214,6 +212,11 @@ class Crew:
         """Gives up tasks."""
         self.client.cancel([flight.future for flight in flights], force=True)
         self.flights = [one for one in self.flights if one not in flights]
+
+    def unfold(self, flight: Flight) -> None:
+        """Gives up a fold; the client takes the answers of its parts."""
+        self.drop(flight)
+        self._take_apart(flight)
 
     def drop_all(self) -> None:
         """Gives up all tasks."""
@@ -295,6 +298,11 @@ class Crew:
             self._failed(flight, Failed(needs.worker, reason))
         else:
             self.begin(flight.task, flight.failed_on, home=flight.home)
+
+    def _take_apart(self, fold: Flight) -> None:
+        for part in fold.parts:
+            part.alone = True
+        self.flights.extend(fold.parts)
 
     def _failed(self, flight: Flight, failed: Failed) -> None:
         failed_on, task = (*flight.failed_on, failed.worker), flight.task

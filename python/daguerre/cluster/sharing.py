@@ -159,11 +159,15 @@ class Sharing:
         return [one for one in flights if one not in late]
 
     def _draw_late_ones_again(self) -> None:
-        """Has idle workers draw tasks that take much longer than they should."""
+        """Has idle workers draw tasks that take much longer than they should; gives up folds."""
         if time.monotonic() - self._waited < STEP_S:
             return
         self._waited = time.monotonic()
-        flights = [one for one in self.flights if not (one.landed or one.parts)]
+        pending = [one for one in self.flights if not one.landed]
+        for one in pending:
+            if one.parts and self.crew.is_late(one):
+                self.crew.unfold(one)
+        flights = [one for one in pending if not one.parts]
         held = self.crew.holders()
         idle = sum(not keys for keys in held.values())
         for one in sorted(flights, key=lambda flight: flight.began):

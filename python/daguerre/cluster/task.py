@@ -10,13 +10,13 @@ from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from typing import Any
 
+import daguerre._core as _core
 from daguerre.errors import DaguerreError, MismatchError
 from daguerre.rendering.adaptive import Round
-from daguerre.rendering.columns import columns_of
 from daguerre.rendering.identity import build
 from daguerre.rendering.session import Session
 
-from .answers import Failed, Needs, Sums, answer_of
+from .answers import Failed, Needs, Sums, answer_of, packed_sums
 from .store import Store
 
 #: One task draws at a time, by all threads of the worker.
@@ -92,7 +92,7 @@ def worker_build() -> str:
     return build()
 
 
-def _answered(task: Task, act: Callable[[Task], Sums]) -> bytes | memoryview:
+def _answered(task: Task, act: Callable[[Task], memoryview]) -> bytes | memoryview:
     """Answer of an act, whatever happens in it: nothing that a worker made is unpickled.
 
     Dask tells its client the type of a result before the client fetches it.
@@ -101,7 +101,7 @@ def _answered(task: Task, act: Callable[[Task], Sums]) -> bytes | memoryview:
         with _DRAWS:
             lacking = Store().lacks(task.values)
             if not lacking:
-                return memoryview(act(task).to_bytes())
+                return act(task)
             return Needs(_address(), lacking).to_bytes()
     except Exception as error:
         return Failed(_address(), _reason(error)).to_bytes()
@@ -114,32 +114,30 @@ def _reason(error: Exception) -> str:
     return str(error) if isinstance(error, DaguerreError | OSError) else repr(error)
 
 
-def _drawn(task: Task) -> Sums:
+def _drawn(task: Task) -> memoryview:
     began = time.monotonic()
     session = _session(task.scene, task.view, _threads())
     ready = time.monotonic()
-    _empty(session)
+    session.clear()
     if task.round is None:
         session.draw(task.begin, task.end)
     else:
         begin, count = Store().value(task.round)
         session.round = Round(begin, count, task.begin)
         session.draw_round(task.end)
-    drew = time.monotonic()
-    parts = columns_of(session.state())
     facts = {
-        "seconds": drew - ready,
+        "seconds": time.monotonic() - ready,
         "set_up_s": ready - began,
-        "pack_s": 2 * (time.monotonic() - drew),  # the bytes take as long as the columns
+        "pack_s": _pack_s,
         "rays": int(session.counters.rays),
         "tasks": 1,
-    } | _plan(session)
-    return Sums(_address(), session.key, parts, facts)
+    }
+    return _packed(session, facts)
 
 
-def _folded(task: Task, answers: tuple[memoryview, ...]) -> Sums:
+def _folded(task: Task, answers: tuple[memoryview, ...]) -> memoryview:
     session = _session(task.scene, task.view, _threads())
-    _empty(session)
+    session.clear()
     facts: dict[str, Any] = dict.fromkeys(_ADDED, 0)
     for data in answers:
         found = answer_of(data)
@@ -148,28 +146,23 @@ def _folded(task: Task, answers: tuple[memoryview, ...]) -> Sums:
         found.check_key(session.key)
         session.add(found.parts)
         facts = {name: value + found.facts[name] for name, value in facts.items()}
-    return Sums(_address(), session.key, columns_of(session.state()), facts | _plan(session))
+    return _packed(session, facts)
 
 
-def _plan(session: Session) -> dict[str, Any]:
-    """Result of the pilot render, which spares the client its own."""
-    return {"piloted": session.light_plan.piloted}
-
-
-def _empty(session: Session) -> None:
-    """Empties the film of a session, unless it is new."""
-    global _used
-    if session is _used:
-        session.clear()
-    _used = session
+def _packed(session: Session, facts: dict[str, Any]) -> memoryview:
+    """Sums of a session; with the result of the pilot render, which spares the client its own."""
+    global _pack_s
+    began = time.monotonic()
+    facts["piloted"] = session.light_plan.piloted
+    found = packed_sums(_address(), session.key, session.state(), facts)
+    _pack_s = time.monotonic() - began
+    return found
 
 
 #: Facts whose sum is that of several tasks.
 _ADDED = ("seconds", "set_up_s", "pack_s", "rays", "tasks")
-#: Session of the last task.
-_used: Session | None = None
-#: Scene of the core of the last session, which the next one can use if it shows the same scene.
-_built: Any = None
+#: Time that the last sums took to be packed, s.
+_pack_s = 0.0
 
 
 @lru_cache(maxsize=1)
@@ -177,15 +170,27 @@ def _scene(name: str) -> Any:
     return Store().value(name)
 
 
-@lru_cache(maxsize=1)
 def _session(scene: str, view: str, threads: int) -> Session:
-    """Session of a picture; the newest is kept, with its scene in the form of the core."""
-    global _built
-    camera, settings, piloted = Store().value(view)
-    settings = replace(settings, threads=threads)
-    found = Session(_scene(scene), camera, settings=settings, built=_built, piloted=piloted)
-    _built = found.built
-    return found
+    """Session of a picture; the newest is kept.
+
+    The next one has its memory, and its scene in the form of the core, if it shows the same scene.
+    """
+    global _last, _kept
+    _kept = _kept or _core.KeptFilms()
+    if _last is None or _last[0] != (scene, view, threads):
+        built = None if _last is None else _last[1].built
+        _last = None  # its film ends here
+        camera, settings, piloted = Store().value(view)
+        settings = replace(settings, threads=threads)
+        made = Session(_scene(scene), camera, settings=settings, built=built, piloted=piloted)
+        _last = (scene, view, threads), made
+    return _last[1]
+
+
+#: The newest session and what it shows.
+_last: tuple[tuple[str, str, int], Session] | None = None
+#: Keeps the memory of films for the next ones.
+_kept: Any = None
 
 
 def _worker() -> Any:

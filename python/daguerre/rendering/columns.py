@@ -35,15 +35,29 @@ class Columns:
     words: Words
 
 
+def kept_of(part: str, words: Words) -> tuple[Words, int]:
+    """Columns of a part of ``Session.state`` that are kept, and the number of their words."""
+    if part == OBJECTS:
+        return np.empty(0, np.uint32), words.size
+    kept = _core.used_columns(words)
+    return kept, words.shape[0] * words.shape[1] * len(kept)
+
+
+def take(part: str, words: Words, kept: Words, to: Words) -> None:
+    """Writes the words of these columns to a flat array."""
+    if part == OBJECTS:
+        to[:] = words.reshape(-1)
+    else:
+        _core.take_columns(words, kept, to)
+
+
 def columns_of(state: Mapping[str, Words]) -> dict[str, Columns]:
     """Columns of ``Session.state``, by part."""
     found = {}
     for part, words in state.items():
-        if part == OBJECTS:
-            kept, left = np.empty(0, np.uint32), words.reshape(-1)
-        else:
-            kept, left = _core.word_columns(np.ascontiguousarray(words))
-        found[part] = Columns(words.shape, kept, left)
+        kept, count = kept_of(part, words)
+        found[part] = Columns(words.shape, kept, np.empty(count, np.uint32))
+        take(part, words, kept, found[part].words)
     return found
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import daguerre._core as _core
@@ -80,3 +82,13 @@ def _check(size: tuple[int, int], each: int, fixed: int, advice: str, free: int 
         f"px of {each} bytes: {shown(needed)}; draw it in parts of at most {most:,} pixels "
         f"(--crop) and join them (daguerre merge), {advice}, draw fewer pixels, or raise --memory"
     )
+
+
+@contextmanager
+def kept_films() -> Iterator[None]:
+    """Context in which a new film has the memory of the last one of its layout that ended."""
+    keep = _core.KeptFilms()
+    try:
+        yield
+    finally:
+        del keep

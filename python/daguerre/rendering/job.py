@@ -12,7 +12,7 @@ from daguerre.errors import DaguerreError, InputError
 from daguerre.scene.scene import Scene
 
 from .checkpoint import INTERVAL_S, Checkpoint
-from .film_memory import check_denoised, check_picture
+from .film_memory import check_denoised, check_picture, kept_films
 from .loop import Loop
 from .picture import Picture
 from .reporter import Control, Finished, Reporter, Stopped
@@ -93,7 +93,10 @@ class Job:
         """
         for view in {picture.view.name: picture.view for picture in self.pictures}.values():
             view.camera(self.scene)  # an error comes before hours are spent, not after
-        began = time.monotonic() if since is None else since
+        with kept_films():
+            return self._run(resume, time.monotonic() if since is None else since)
+
+    def _run(self, resume: bool, began: float) -> bool:
         for i, picture in enumerate(self.pictures):
             if picture.words:
                 self.reporter.note(f"{picture.words} ({i + 1} of {len(self.pictures)})")

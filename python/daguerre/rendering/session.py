@@ -272,9 +272,7 @@ class Session:
 
     def clear(self) -> None:
         """Forgets all samples."""
-        self._torn = True
-        self._film = None  # type: ignore[assignment]  # before the new one takes as much memory
-        self._film = new_film(self.prepared, self.light_plan)
+        self._film.clear()
         self._torn, self.ranges, self.round = False, [], None
         self.counters = _core.RenderCounters()
 
