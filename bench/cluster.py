@@ -30,7 +30,6 @@ from typing import Any
 import daguerre as dg
 from daguerre.cli.demo import write_scene
 from daguerre.cluster import task as on_worker
-from daguerre.cluster import workers
 from daguerre.cluster.address import connected
 from daguerre.cluster.answers import Sums, answer_of, packed_sums
 from daguerre.cluster.crew import Crew
@@ -39,8 +38,8 @@ from daguerre.cluster.work import work_of
 from daguerre.rendering.session import Session
 
 LENS = "double-gauss-50mm-f2"
-#: Length of the tasks of fake workers, s; and time that a simulation lasts, s.
-TASK_S, LASTS_S = 15.0, 40.0
+#: Time in which fake workers draw a sample, s; and time that a simulation lasts, s.
+SAMPLE_S, LASTS_S = 1.0, 60.0
 
 
 def scene_and_camera() -> tuple[dg.Scene, dg.Camera]:
@@ -120,7 +119,10 @@ def recorded(size: tuple[int, int]) -> tuple[Session, bytes]:
     scene, camera = scene_and_camera()
     session = Session(scene, camera, resolution=size, spp=1 << 20)
     session.draw(0, 1)
-    facts = {"seconds": TASK_S, "set_up_s": 0.0, "pack_s": 0.0, "rays": 1, "tasks": 1}
+    facts = {"seconds": SAMPLE_S, "set_up_s": 0.0, "pack_s": 0.0, "rays": 1, "tasks": 1}
+    began = time.monotonic()
+    packed_sums("w", session.key, session.state(), facts)
+    facts["pack_s"] = time.monotonic() - began
     data = bytes(packed_sums("w", session.key, session.state(), facts))
     session.clear()
     return session, data
@@ -182,8 +184,9 @@ def own_processes() -> Iterator[str]:
 class FakeFuture:
     """Answer that is there after a while."""
 
-    def __init__(self, data: bytes, ready: float) -> None:
+    def __init__(self, data: bytes, ready: float, tasks: int, seconds: float) -> None:
         self._data, self._ready, self.key = data, ready, str(id(self))
+        self.tasks, self.seconds = tasks, seconds
 
     @property
     def status(self) -> str:
@@ -193,12 +196,16 @@ class FakeFuture:
     type = memoryview  # of the answer
 
     def result(self) -> memoryview:
-        """The answer."""
-        return memoryview(self._data)
+        """The answer, of as many tasks as were folded; copied, as if it had come by a network."""
+        head, words = self._data.split(b"\n", 1)
+        facts = json.loads(head)["facts"] | {"tasks": self.tasks, "seconds": self.seconds}
+        facts["pack_s"] *= self.tasks
+        line = json.dumps(json.loads(head) | {"facts": facts}).encode()
+        return memoryview(line + b" " * (-(len(line) + 1) % 8) + b"\n" + words)
 
 
 class FakeClient:
-    """Client of Dask with many workers, each of which draws a task in TASK_S."""
+    """Client of Dask with many workers, each of which draws a sample in SAMPLE_S."""
 
     scheduler = SimpleNamespace(address="fake")
     security = None
@@ -209,12 +216,20 @@ class FakeClient:
         self._data = data
         # Workers begin at different times, as they do after a while.
         now = time.monotonic()
-        self._free = deque(now + TASK_S * (k + 1) / count for k in range(count))
+        self._free = deque(now + 15 * SAMPLE_S * k / count for k in range(count))
         self.answers = self.folds = 0
 
     def nthreads(self) -> dict[str, int]:
         """All workers."""
         return self._names
+
+    def sync(self, function: Any) -> list[str]:
+        """Workers that the client reaches: all."""
+        return list(self._names)
+
+    def gather(self, future: FakeFuture, direct: bool) -> memoryview:
+        """The answer."""
+        return future.result()
 
     def run(self, function: Any, *given: Any, workers: Any, **how: Any) -> dict[str, Any]:
         """Result of a short function on workers."""
@@ -224,19 +239,14 @@ class FakeClient:
         """A task: drawn by the worker that is free next; folds take a second."""
         if function is on_worker.fold:
             self.folds += 1
-            found = answer_of(self._data)
-            assert isinstance(found, Sums)
-            tasks = sum(answer_of(one.result()).facts["tasks"]
-                        for one in given)  # fmt: skip
-            facts = found.facts | {"tasks": tasks, "seconds": tasks * TASK_S}
-            head, words = self._data.split(b"\n", 1)
-            line = json.dumps(json.loads(head) | {"facts": facts}).encode()
-            data = line + b" " * (-(len(line) + 1) % 8) + b"\n" + words
-            return FakeFuture(data, time.monotonic() + 1.0)
+            tasks, seconds = sum(one.tasks for one in given), sum(one.seconds for one in given)
+            return FakeFuture(self._data, time.monotonic() + 1.0, tasks, seconds)
         self.answers += 1
-        ready = max(time.monotonic(), self._free.popleft())
-        self._free.append(ready + TASK_S)
-        return FakeFuture(self._data, ready)
+        task = json.loads(text)
+        seconds = SAMPLE_S * (task["end"] - task["begin"])
+        ready = max(time.monotonic(), self._free.popleft()) + seconds
+        self._free.append(ready)
+        return FakeFuture(self._data, ready, 1, seconds)
 
     def processing(self) -> dict[str, list[str]]:
         """No worker is idle."""
@@ -252,7 +262,7 @@ def simulated(size: tuple[int, int], count: int) -> dict[str, float]:
     fake = FakeClient(count, data)
     crew = Crew(fake)
     crew.workers.wait()
-    crew.per_second = 1 / TASK_S  # a sample for each task
+    crew.per_second = 1 / SAMPLE_S
     work: Any = work_of(crew)(session, (0, 1 << 20), None, None)
     began, cpu, taken = time.monotonic(), time.process_time(), 0
     late = 0
@@ -267,19 +277,20 @@ def simulated(size: tuple[int, int], count: int) -> dict[str, float]:
         "width": size[0],
         "mb_per_answer": len(data) / 1e6,
         "cpu_share": (time.process_time() - cpu) / wall,
-        "answers_drawn": sum(b - a for a, b in session.ranges),
-        "answers_taken": taken,
+        "answers": fake.answers,
+        "samples_added": sum(b - a for a, b in session.ranges),
+        "taken": taken,
         "folds": fake.folds,
         "waiting_at_most": late,
         "rss_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
     }
 
 
-def scale() -> list[dict[str, float]]:
-    """Table over sizes and numbers of workers."""
-    workers.LOOK_S = 0.5
-    sizes = [(960, 540), (3840, 2160)]
-    return [simulated(size, count) for size in sizes for count in (10, 100, 1000)]
+def scale() -> Iterator[dict[str, float]]:
+    """Rows over sizes and numbers of workers."""
+    for size in ((960, 540), (3840, 2160)):
+        for count in (10, 100, 1000):
+            yield simulated(size, count)
 
 
 BENCHES = {one.__name__: one for one in (start, client, local, sequence, scale)}
@@ -293,9 +304,10 @@ def main() -> None:
     options = parser.parse_args()
     found: dict[str, Any] = {}
     for name in options.only:
-        found[name] = BENCHES[name]()
-        rows = found[name] if isinstance(found[name], list) else [found[name]]
-        for row in rows:
+        made = BENCHES[name]()
+        found[name] = []
+        for row in [made] if isinstance(made, dict) else made:
+            found[name].append(row)
             print(name, *(f"{key}={value:.4g}" for key, value in row.items()), flush=True)
     if options.json:
         options.json.write_text(json.dumps(found, indent=2) + "\n")
