@@ -42,6 +42,7 @@ class FakeSession:
         *,
         settings: RenderSettings | None = None,
         built: object = None,
+        piloted: object = None,
         **keywords: Any,
     ) -> None:
         self.built = built or self
