@@ -31,7 +31,7 @@ import daguerre as dg
 from daguerre.cli.demo import write_scene
 from daguerre.cluster import task as on_worker
 from daguerre.cluster.address import connected
-from daguerre.cluster.answers import Sums, answer_of, packed_sums
+from daguerre.cluster.answers import Sums, answer_of, head_line, packed_sums
 from daguerre.cluster.crew import Crew
 from daguerre.cluster.opened import opened
 from daguerre.cluster.work import work_of
@@ -148,11 +148,11 @@ def client(rounds: int = 20) -> dict[str, float]:
     with own_processes() as address, Client(address) as real:
         futures = [real.submit(random_view, len(data), pure=False) for _ in range(rounds)]
         wait(futures)
-        futures[0].result()
+        real.gather(futures[0], direct=True)
         fetches = []
         for future in futures[1:]:
             began = time.process_time()
-            future.result()
+            real.gather(future, direct=True)
             fetches.append(1e3 * (time.process_time() - began))
     fetch, add = statistics.median(fetches), statistics.median(costs)
     return {"mb": len(data) / 1e6, "fetch_ms": fetch, "add_ms": add, "sum_ms": fetch + add}
@@ -198,10 +198,10 @@ class FakeFuture:
     def result(self) -> memoryview:
         """The answer, of as many tasks as were folded; copied, as if it had come by a network."""
         head, words = self._data.split(b"\n", 1)
-        facts = json.loads(head)["facts"] | {"tasks": self.tasks, "seconds": self.seconds}
-        facts["pack_s"] *= self.tasks
-        line = json.dumps(json.loads(head) | {"facts": facts}).encode()
-        return memoryview(line + b" " * (-(len(line) + 1) % 8) + b"\n" + words)
+        told = json.loads(head)
+        told["facts"] |= {"tasks": self.tasks, "seconds": self.seconds}
+        told["facts"]["pack_s"] *= self.tasks
+        return memoryview(head_line(**told) + words)
 
 
 class FakeClient:

@@ -231,7 +231,8 @@ void bind_film(nb::module_& m) {
             f.clear();
         }, "Takes all samples away.");
     nb::class_<KeptFilms>(m, "KeptFilms", "While one lives, the next film of the same layout has the memory of the last.")
-        .def(nb::init<>());
+        .def(nb::init<>())
+        .def_static("bytes", &KeptFilms::bytes, "Memory that waits for the next film.");
     m.def("used_columns", &used_of, "words"_a, "Columns of the last axis of (H, W, words) that are not 0 everywhere.");
     m.def("take_columns", &take_to, "words"_a, "columns"_a, "to"_a,
           "Writes the words of these columns, pixel by pixel, to a flat array.");

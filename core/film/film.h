@@ -76,6 +76,8 @@ struct Ranked {
 /// objects and 16 for each of those in the pixel, 96 with catchers, 16 with each band, 16 with each channel, as much again
 /// if there are splats or flare, and twice if there are catchers.
 class Film {
+    friend class KeptFilms;
+
   public:
     /// Bytes of the sums of one pixel, in which there are two objects, if objects are kept.
     static std::size_t pixel_bytes(const FilmLayout& layout);
@@ -273,8 +275,11 @@ class Film {
     template <typename Self, typename Act>
     static void with_part(Self& film, const std::string& part, const Act& act);
 
-    /// Film of this layout whose memory is kept; null: there is none.
+    /// Film of this layout whose memory is kept; null: there is none. Memory of another layout is given up first, unless
+    /// this film is small beside it.
     static std::unique_ptr<Film> take_kept(const FilmLayout& layout);
+    /// Bytes of all parts of the state.
+    std::size_t state_bytes() const;
 
     FilmLayout layout_;
     std::array<Vec3f, 3> rgb_from_xyz_;  // rows
@@ -294,9 +299,11 @@ class Film {
 };
 
 /// While one lives, the memory of a film that ends waits for the next film of the same layout, as new memory costs time:
-/// the system clears it page by page.
+/// the system clears it page by page. A film of about its size, or larger, of another layout ends the wait.
 class KeptFilms {
   public:
+    /// Memory that waits.
+    static std::size_t bytes();
     KeptFilms();
     ~KeptFilms();
     KeptFilms(const KeptFilms&) = delete;

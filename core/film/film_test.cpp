@@ -409,7 +409,7 @@ TEST_CASE("a film in the memory of another one is empty") {
         Film film(all);
         draw(film);
         place = memory(film);
-    }   // `another` ends last, and is kept in place of the first
+    }   // `another` ends last, and is smaller than what is kept
     {
         Film film(all);
         CHECK(whole_state(film) == whole_state(fresh));
@@ -422,6 +422,31 @@ TEST_CASE("a film in the memory of another one is empty") {
     Film drawn(std::move(film));
     draw(drawn);
     CHECK(memory(drawn) == place);
+}
+
+TEST_CASE("a small film leaves kept memory alone, and another large one ends it") {
+    const FilmLayout large{64, 64}, small{4, 4}, other{64, 65};
+    CHECK(KeptFilms::bytes() == 0);
+    {
+        const KeptFilms keep;
+        const std::byte* place = nullptr;
+        {
+            const Film film(large);
+            place = film.state("sums").data();
+        }
+        const std::size_t bytes = 64 * 64 * Film::kSumBytes;
+        CHECK(KeptFilms::bytes() == bytes);
+        { const Film pilot(small); CHECK(KeptFilms::bytes() == bytes); }
+        CHECK(KeptFilms::bytes() == bytes);
+        {
+            const Film film(large);
+            CHECK(film.state("sums").data() == place);
+            CHECK(KeptFilms::bytes() == 0);
+        }
+        const Film film(other);
+        CHECK(KeptFilms::bytes() == 0);
+    }
+    CHECK(KeptFilms::bytes() == 0);
 }
 
 TEST_CASE("columns of zeros stay away") {

@@ -35,19 +35,37 @@ KeptFilms::~KeptFilms() {
     if (--keepers == 0) last.reset(std::exchange(kept, nullptr));
 }
 
-std::unique_ptr<Film> Film::take_kept(const FilmLayout& layout) {
+std::size_t KeptFilms::bytes() {
     const std::lock_guard lock(guard);
-    if (!kept || kept->layout_ != layout) return nullptr;
-    return std::unique_ptr<Film>(std::exchange(kept, nullptr));
+    return kept ? kept->state_bytes() : 0;
+}
+
+std::size_t Film::state_bytes() const {
+    std::size_t all = 0;
+    for (const std::string& part : state_parts()) all += state(part).size();
+    return all;
+}
+
+std::unique_ptr<Film> Film::take_kept(const FilmLayout& layout) {
+    constexpr std::size_t kSmall = 16;   // so many films of a pilot render, or more, fit in the memory that is kept
+    std::unique_ptr<Film> found;
+    const std::lock_guard lock(guard);
+    if (!kept) return nullptr;
+    const std::size_t needed = pixel_bytes(layout) * std::size_t(layout.width) * std::size_t(layout.height);
+    if (kept->layout_ == layout || needed * kSmall >= kept->state_bytes()) found.reset(std::exchange(kept, nullptr));
+    if (found && found->layout_ == layout) return found;
+    if (found) found->pixels_ = {};   // so that it is not kept again
+    return nullptr;
 }
 
 Film::~Film() {
-    if (pixels_.empty()) return;   // moved from
+    if (pixels_.empty()) return;   // moved from, or given up
     std::unique_ptr<Film> before;  // destroyed after the lock, when another one is kept
     const std::lock_guard lock(guard);
-    if (keepers == 0 || (kept && kept->layout_ == layout_)) return;
+    if (keepers == 0 || (kept && kept->state_bytes() >= state_bytes())) return;
     before.reset(std::exchange(kept, new Film(std::move(*this))));
     if (before) before->pixels_ = {};   // so that it is not kept in turn
+    if (kept->objects_) kept->objects_ = std::make_unique<CoverLists>(kept->pixels_.size());
 }
 
 void Film::clear() {

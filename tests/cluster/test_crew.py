@@ -14,7 +14,7 @@ import pytest
 import daguerre as dg
 from daguerre.cluster import sharing, store, workers
 from daguerre.cluster import task as on_worker
-from daguerre.cluster.answers import Failed, Needs, Sums, answer_of
+from daguerre.cluster.answers import Failed, Needs, Sums, answer_of, head_line
 from daguerre.cluster.crew import Crew
 from daguerre.cluster.spread import Spread
 from daguerre.cluster.work import work_of
@@ -198,10 +198,9 @@ def test_wrong_sums_refuse_their_worker() -> None:
         found = answer_of(data)
         if worker == "liar" and isinstance(found, Sums):
             head, words = bytes(data).split(b"\n", 1)
-            key = found.key | {"scene": "x" * len(found.key["scene"])}
-            facts = json.loads(head) | {"key": key, "worker": worker}
-            lie = json.dumps(facts, separators=(",", ":")).encode()
-            return memoryview(lie.ljust(len(head)) + b"\n" + words)
+            key = found.key | {"scene": "another"}
+            lie = json.loads(head) | {"key": key, "worker": worker}
+            return memoryview(head_line(**lie) + words)
         return data
 
     told: list[str] = []

@@ -77,3 +77,15 @@ def test_denoising_counts() -> None:
     film_memory.check_denoised((1000, 1000), free=1_400_000_000)
     with pytest.raises(InputError, match="leave out --denoise"):
         film_memory.check_denoised((1000, 1000), free=1_399_000_000)
+
+
+def test_memory_of_the_last_film_is_left_for_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
+    layout = _core.FilmLayout(width=400, height=300)
+    each = film_memory.pixel_bytes(layout)
+    kept = 400 * 300 * _core.Film.pixel_bytes(layout)
+    monkeypatch.setattr(memory, "left_bytes", lambda: 400 * 300 * each - kept)
+    with film_memory.kept_films():
+        _core.Film(layout)  # ends at once
+        film_memory.check_film(layout)
+    with pytest.raises(InputError, match="memory: wanted at most"):
+        film_memory.check_film(layout)

@@ -32,7 +32,7 @@ class Needs:
 
     def to_bytes(self) -> bytes:
         """Packs the wish."""
-        return _line(needs=self.names, worker=self.worker)
+        return head_line(needs=self.names, worker=self.worker)
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Failed:
 
     def to_bytes(self) -> bytes:
         """Packs the failure."""
-        return _line(failed=self.reason, worker=self.worker)
+        return head_line(failed=self.reason, worker=self.worker)
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ def packed_sums(
     """
     kept = {part: kept_of(part, words) for part, words in state.items()}
     sizes = [[part, state[part].shape, len(own), count] for part, (own, count) in kept.items()]
-    line = np.frombuffer(_line(parts=sizes, worker=worker, key=key, facts=facts), np.uint32)
+    line = np.frombuffer(head_line(parts=sizes, worker=worker, key=key, facts=facts), np.uint32)
     total = sum(len(own) + count for own, count in kept.values())
     data = np.empty(len(line) + total + 1, np.uint32)
     data[: len(line)] = line
@@ -139,7 +139,7 @@ def answer_of(data: bytes | memoryview) -> Answer:
         raise InputError(f"damaged answer: {error}") from None
 
 
-def _line(**head: Any) -> bytes:
+def head_line(**head: Any) -> bytes:
     """Line of JSON, filled up so that the words after it lie aligned."""
     text = json.dumps(head, separators=(",", ":")).encode()
     return text + b" " * (-(len(text) + 1) % 8) + b"\n"

@@ -14,16 +14,18 @@ from typing import TYPE_CHECKING
 
 from daguerre.rendering.ranges import Range, missing_ranges
 
-from .crew import GivenUp
+from .crew import Crew, GivenUp
 from .task import Place, Task
 
 if TYPE_CHECKING:
+    from daguerre.camera.camera import Camera
     from daguerre.rendering.job import Job
     from daguerre.rendering.light_paths import Plan
     from daguerre.rendering.picture import Picture
     from daguerre.rendering.session import Session
+    from daguerre.rendering.settings import RenderSettings
+    from daguerre.scene.scene import Scene
 
-    from .crew import Crew
     from .sharing import Sharing
 
 #: Pictures of each worker beyond the one under way, whose sums may wait.
@@ -51,9 +53,8 @@ class Spread:
         if self.job is None:
             self.crew.drop_all()  # of a picture before that was stopped
             self._homes.clear()
-            keep, plan = self.crew.values.keep, session.light_plan
-            view = keep((session.camera, session.settings, plan.piloted))
-            self._places = {0: Place(keep(session.scene), view)}
+            shown = session.scene, session.camera, session.settings
+            self._places = {0: self._kept(*shown, session.light_plan.piloted)}
             return self._places[0]
         self._now = self.job.done
         for number in [one for one in self._places if one < self._now]:
@@ -155,9 +156,15 @@ class Spread:
         """Place of a picture; with its session, workers need no pilot render."""
         if number not in self._places:
             assert self.job is not None
-            picture, keep = self.job.pictures[number], self.crew.values.keep
-            scene, camera = self.job.scene_of(picture), self.job.camera_of(picture)
+            picture, job = self.job.pictures[number], self.job
+            shown = job.scene_of(picture), job.camera_of(picture), picture.settings
             piloted = None if session is None else session.light_plan.piloted
-            view = keep((camera, picture.settings, piloted))
-            self._places[number] = Place(keep(scene), view)
+            self._places[number] = self._kept(*shown, piloted)
         return self._places[number]
+
+    def _kept(
+        self, scene: Scene, camera: Camera, settings: RenderSettings, piloted: Plan | None
+    ) -> Place:
+        """Place of a picture whose values the crew keeps."""
+        keep = self.crew.values.keep
+        return Place(keep(scene), keep((camera, settings, piloted)))

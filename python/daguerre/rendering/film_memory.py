@@ -72,7 +72,8 @@ def check_denoised(size: tuple[int, int], *, free: int | None = None) -> None:
 
 
 def _check(size: tuple[int, int], each: int, fixed: int, advice: str, free: int | None) -> None:
-    free = memory.left_bytes() if free is None else free
+    if free is None and (left := memory.left_bytes()) is not None:
+        free = left + _core.KeptFilms.bytes()  # that the film takes over, or ends
     (width, height), shown = size, memory.shown
     if free is None or (needed := each * width * height + fixed) <= free:
         return
