@@ -1,0 +1,166 @@
+"""Values per corner as a surface of their own: seams are cut, and follow rules of their own."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .cut import BoolArray, Cut, classify, edge_sharpness, opened_level
+from .faces import Faces, Fans, fans
+from .level import CLOSED, DART, OPEN
+from .rules import INFINITE, FloatArray, IntArray, Rules
+
+
+def value_indices(vertices: IntArray, values: FloatArray) -> IntArray:
+    """Corner that stands for each corner: the first with the same vertex and an equal value.
+
+    Args:
+        vertices: Vertex of each corner, shape (C,).
+        values: Shape (C, K).
+    """
+    if not len(vertices):
+        return np.zeros(0, np.int64)
+    order = np.lexsort((*values.T, vertices))
+    sorted_values, sorted_vertices = values[order], vertices[order]
+    differs = np.ones(len(order), bool)
+    differs[1:] = (sorted_vertices[1:] != sorted_vertices[:-1]) | (
+        sorted_values[1:] != sorted_values[:-1]
+    ).any(axis=1)
+    group = np.cumsum(differs) - 1
+    leader = np.full(int(group[-1]) + 1, len(order))
+    np.minimum.at(leader, group, order)
+    chosen = np.empty(len(order), np.int64)
+    chosen[order] = leader[group]
+    return chosen
+
+
+def cut_values(faces: Faces, rules: Rules, values: IntArray) -> Cut:
+    """Cuts a mesh at its seams, besides its boundaries and infinitely sharp creases.
+
+    Args:
+        faces: The control mesh.
+        rules: Its rules.
+        values: Number of the value of each corner, shape (C,).
+    """
+    edges = edge_sharpness(faces, rules)
+    whole = np.where(edges[faces.edges[1]] >= INFINITE, -1, faces.twins)
+    corners = classify(faces, rules, edges, fans(faces, whole))
+    seam = _seams(faces, values)
+    twins = np.where(seam, -1, whole)
+    found = fans(faces, twins)
+    vertex, value = faces.vertices[found.heads], values[found.heads]
+    kinds = np.where(found.opened, OPEN, CLOSED).astype(np.uint8)
+    at_seam = _at(faces, seam)
+    slit = found.opened & _ends_meet(faces, found)
+    kinds[slit] = DART
+    infinite = edges >= INFINITE
+    inner = infinite & (np.bincount(faces.edges[1], minlength=len(edges)) > 1)
+    facts = _Facts(vertex, value, found.sizes, at_seam, _at(faces, inner[faces.edges[1]]))
+    sharp = facts.corners(rules.face_varying, _at(faces, faces.twins < 0)) & found.opened
+    sharpness = np.where(sharp, INFINITE, corners.sharpness[vertex])
+    return Cut(opened_level(faces, twins, found, kinds, edges, sharpness), value)
+
+
+def _seams(faces: Faces, values: IntArray) -> BoolArray:
+    """Whether the values at either end of a half-edge differ on both sides, shape (C,)."""
+    twin = np.where(faces.twins >= 0, faces.twins, 0)
+    differ = values != values[faces.after[twin]]
+    differ |= values[faces.after] != values[twin]
+    return differ & (faces.twins >= 0)
+
+
+def _at(faces: Faces, halves: BoolArray) -> BoolArray:
+    """Whether a vertex has one of some half-edges, shape (N,)."""
+    found = np.zeros(faces.count, bool)
+    found[faces.vertices[halves]] = True
+    found[faces.vertices[faces.after[halves]]] = True
+    return found
+
+
+def _ends_meet(faces: Faces, found: Fans) -> BoolArray:
+    """Whether a fan begins and ends at the same edge, shape (V,)."""
+    edge_of = faces.edges[1]
+    return np.asarray(edge_of[found.heads] == edge_of[faces.before[found.tails]])
+
+
+class _Facts:
+    """Fans at seams: which of them are corners.
+
+    Args:
+        vertex: Control vertex of each fan, shape (V,).
+        value: Value of each fan, shape (V,).
+        sizes: Faces of each fan, shape (V,).
+        seam: Whether a control vertex has a seam, shape (N,).
+        creased: Whether a control vertex has an infinitely sharp edge of two faces, shape (N,).
+    """
+
+    def __init__(
+        self,
+        vertex: IntArray,
+        value: IntArray,
+        sizes: IntArray,
+        seam: BoolArray,
+        creased: BoolArray,
+    ) -> None:
+        self._vertex, self._sizes = vertex, sizes
+        self._seam, self._creased = seam[vertex], creased[vertex]
+        pairs, self._pair = np.unique(
+            np.stack([vertex, value], axis=1).reshape(-1, 2), axis=0, return_inverse=True
+        )
+        self._pair = self._pair.reshape(-1)
+        self._values = np.bincount(pairs[:, 0], minlength=len(seam))[vertex]
+        self._parts = np.bincount(self._pair)[self._pair] if len(vertex) else self._values
+
+    def corners(self, rule: str, boundary: BoolArray) -> BoolArray:
+        """Whether each fan keeps its value, shape (V,).
+
+        Args:
+            rule: One of ``FACE_VARYING``, but "all".
+            boundary: Whether a control vertex has an edge without a pair, shape (N,).
+        """
+        outer = boundary[self._vertex]
+        if rule == "boundaries":
+            return self._seam | outer
+        # A value of several fans, apart or beside a crease, is no smooth curve.
+        found = self._seam & (self._parts > 1)
+        if rule == "none":
+            return found
+        found |= (self._sizes == 1) & (self._seam | outer)
+        if rule == "corners only":
+            return found
+        found |= self._values > 2
+        found |= (self._values == 2) & self._seam & self._creased
+        if rule == "corners plus2":
+            single = np.zeros(len(boundary), bool)
+            single[self._vertex[self._sizes == 1]] = True
+            found |= (self._values == 2) & self._seam & single[self._vertex]
+            found |= self._seam & (self._values == 1) & ~outer
+        return found
+
+
+def linear_corners(faces: Faces, quads: bool, levels: int, values: FloatArray) -> FloatArray:
+    """Values of refined corners, linear on each face.
+
+    Args:
+        faces: The control mesh.
+        quads: Whether faces become quadrangles; else they are triangles.
+        levels: Number of levels.
+        values: Value of each control corner, shape (C, K).
+    """
+    after, before = faces.after, faces.before
+    for level in range(levels):
+        half = (values + values[after]) / 2
+        if quads:
+            starts = faces.starts[:-1] if level == 0 else np.arange(0, len(values), 4)
+            sizes = faces.sizes if level == 0 else np.full(len(starts), 4)
+            middle = np.add.reduceat(values, starts, axis=0) / sizes[:, None]
+            middle = np.repeat(middle, sizes, axis=0)
+            parts = np.stack([values, half, middle, half[before]], axis=1)
+        else:
+            outer = np.stack([values, half, half[before]], axis=1).reshape(-1, 9, values.shape[1])
+            parts = np.concatenate([outer, half.reshape(-1, 3, values.shape[1])], axis=1)
+        values = parts.reshape(-1, values.shape[1])
+        size = 4 if quads else 3
+        corner = np.arange(len(values))
+        after = corner - corner % size + (corner + 1) % size
+        before = corner - corner % size + (corner + size - 1) % size
+    return values
