@@ -15,6 +15,7 @@ from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
 
 from .parts import Mesh
+from .subdivision.rules import Subdivision
 
 #: Number of components of each vertex attribute.
 COLUMNS = {"normals": 3, "uv": 2, "uv1": 2, "tangents": 4, "colors": 4}
@@ -28,6 +29,8 @@ class MeshKeywords(TypedDict, total=False):
     colors: ArrayLike | None
     steps: Dynamic | tuple[ArrayLike, ArrayLike] | None
     motion: Dynamic | None
+    sizes: ArrayLike | None
+    subdivision: Subdivision | str | None
     name: str
 
 
@@ -47,6 +50,17 @@ MESH = Table(
         in_python="All vertices over time, as :class:`daguerre.scene.motion.Vertices`; the arrays "
         "then are those of the scene's time.",
     ),
+    Parameter(
+        "sizes", "Corners of each polygon, shape (F,)", kind="value",
+        in_python="Corners of each polygon, shape (F,); ``indices`` then has shape (C,), C their "
+        "sum, and values may stand per corner, with C rows. Default: triangles.",
+    ),
+    Parameter(
+        "subdivision", "Subdivision surface of the polygons", kind="value",
+        in_python='Subdivision surface of the polygons: "catmull-clark", "loop", "bilinear", or '
+        "a :class:`daguerre.scene.subdivision.Subdivision` with level and rules. Values per vertex "
+        "follow it; without ``sizes`` each polygon has as many corners as ``indices`` has columns.",
+    ),
     Parameter("name", "For messages", default="", kind="text"),
 )
 # fmt: on
@@ -62,7 +76,7 @@ def mesh_of(
     """
     points = array(positions, where, "positions", 3)
     triangles = as_readonly(_triangles(indices, where, len(points)), np.uint32)
-    given = {**attributes, "colors": _with_alpha(attributes["colors"], where)}
+    given = {**attributes, "colors": with_alpha(attributes["colors"], where)}
     made = {
         key: optional_array(given[key], where, key, columns, len(points))
         for key, columns in COLUMNS.items()
@@ -87,8 +101,8 @@ def _triangles(indices: ArrayLike, where: str, count: int) -> NDArray[Any]:
     return triangles
 
 
-def _with_alpha(colors: ArrayLike | None, where: str) -> ArrayLike | None:
-    """Adds an opaque alpha to colours that have none."""
+def with_alpha(colors: ArrayLike | None, where: str) -> ArrayLike | None:
+    """Adds an opaque alpha to colors that have none."""
     if colors is None or np.shape(colors)[-1:] != (3,):
         return colors
     rgb = array(colors, where, "colors", 3)

@@ -35,6 +35,7 @@ from .mesh import MESH, MeshKeywords, mesh_of
 from .motion import SceneMotion
 from .parts import Environment, Instance, Mesh, Plate, Texture, vertices_of
 from .point_cache import PointCache, steps_of
+from .polygon_mesh import Over, mesh_of_polygons, polygons_of
 
 
 @guarded(arrays=False, but=("camera", "light", "material", "mesh", "shown", "steps"))
@@ -257,11 +258,11 @@ class Scene(Value):
         uv: ArrayLike | None = None,
         **keywords: Unpack[MeshKeywords],
     ) -> int:
-        """Adds triangles; returns the index of the mesh.
+        """Adds triangles or polygons; returns the index of the mesh.
 
         Args:
             positions: Positions of vertices, shape (N, 3), m; they may change over time.
-            indices: Triangles, shape (M, 3) or (3 M,).
+            indices: Triangles, shape (M, 3) or (3 M,); with ``sizes``: corners of polygons.
             normals: Unit normals, shape (N, 3); default: flat shading. Normals that do not change
                 belong to ``positions`` at the scene's time, and turn with the surface.
             uv: Texture coordinates, set 0, shape (N, 2); (0, 0) is the top left of an image.
@@ -272,11 +273,20 @@ class Scene(Value):
         """
         given = MESH.filled(keywords, "Scene.add_mesh")
         name, steps, motion = (given.pop(key) for key in ("name", "steps", "motion"))
+        sizes, subdivision = given.pop("sizes"), given.pop("subdivision")
         where = f"mesh {name or len(self.meshes)!r}"
         moving = _dynamic(positions) if steps is None else steps_of(steps, where)
         moving_normals = _dynamic(normals)
         given |= {"normals": self._now(normals), "uv": uv}
-        mesh = mesh_of(self._now(positions), indices, given, where, name)
+        if sizes is None and subdivision is None:
+            mesh = mesh_of(self._now(positions), indices, given, where, name)
+        else:
+            over = Over(moving, moving_normals, motion)
+            polygons = polygons_of(self._now(positions), indices, sizes, given, where)
+            mesh, over = mesh_of_polygons(polygons, over, subdivision, name)
+            moving, moving_normals, motion = over
+        if motion is not None and subdivision is not None:
+            mesh = replace(mesh, **vars(motion.at(self.time)))
         if moving is not None or moving_normals is not None:
             rest = vertices_of(mesh)
             path = moving or Composite(mesh.positions)

@@ -28,7 +28,7 @@ class Bilinear(Scheme):
 
     def smooth(self, valence: int) -> FloatArray:
         """Weights of a vertex: itself."""
-        return np.eye(1 + 2 * valence)[0]
+        return np.asarray(np.eye(1 + 2 * valence)[0])
 
     def smooth_limit(self, valence: int) -> FloatArray:
         """Position and tangents of a vertex, as ``limit`` gives them for all kinds."""

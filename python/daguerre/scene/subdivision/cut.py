@@ -135,7 +135,7 @@ def _are_corners(faces: Faces, found: Fans, infinite: IntArray) -> BoolArray:
     smooth = (infinite == 0) & (number == 1) & (opened == 0)
     dart = (infinite == 1) & (number == 1) & (slits == 1)
     crease = (infinite == 2) & (number == opened) & (slits == 0)
-    return (number > 0) & (tiny | ~(smooth | dart | crease))
+    return np.asarray((number > 0) & (tiny | ~(smooth | dart | crease)))
 
 
 def opened_level(

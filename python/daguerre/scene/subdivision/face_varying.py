@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from daguerre.scene.polygons import weld
+
 from .cut import BoolArray, Cut, classify, edge_sharpness, opened_level
 from .faces import Faces, Fans, fans
 from .level import CLOSED, DART, OPEN
@@ -17,20 +19,9 @@ def value_indices(vertices: IntArray, values: FloatArray) -> IntArray:
         vertices: Vertex of each corner, shape (C,).
         values: Shape (C, K).
     """
-    if not len(vertices):
-        return np.zeros(0, np.int64)
-    order = np.lexsort((*values.T, vertices))
-    sorted_values, sorted_vertices = values[order], vertices[order]
-    differs = np.ones(len(order), bool)
-    differs[1:] = (sorted_vertices[1:] != sorted_vertices[:-1]) | (
-        sorted_values[1:] != sorted_values[:-1]
-    ).any(axis=1)
-    group = np.cumsum(differs) - 1
-    leader = np.full(int(group[-1]) + 1, len(order))
-    np.minimum.at(leader, group, order)
-    chosen = np.empty(len(order), np.int64)
-    chosen[order] = leader[group]
-    return chosen
+    # Adding 0 makes -0 the same as 0.
+    leaders, index = weld(vertices, values + 0.0)
+    return leaders[index]
 
 
 def cut_values(faces: Faces, rules: Rules, values: IntArray) -> Cut:
@@ -65,7 +56,7 @@ def _seams(faces: Faces, values: IntArray) -> BoolArray:
     twin = np.where(faces.twins >= 0, faces.twins, 0)
     differ = values != values[faces.after[twin]]
     differ |= values[faces.after] != values[twin]
-    return differ & (faces.twins >= 0)
+    return np.asarray(differ & (faces.twins >= 0))
 
 
 def _at(faces: Faces, halves: BoolArray) -> BoolArray:

@@ -10,12 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 from daguerre.cached import cached_property
 from daguerre.checks import MAX_NUMBERS, whole
 from daguerre.errors import InputError
+from daguerre.files.value import Value
 
 from .rules import IntArray, integers
 
 
-@dataclass(frozen=True)
-class Faces:
+@dataclass(frozen=True, eq=False)
+class Faces(Value):
     """Faces of a control mesh.
 
     Attributes:
@@ -125,12 +126,12 @@ class Fans:
     @property
     def heads(self) -> IntArray:
         """First corner of each fan; the clockwise end if it has one."""
-        return self.rings[np.cumsum(self.sizes) - self.sizes]
+        return np.asarray(self.rings[np.cumsum(self.sizes) - self.sizes])
 
     @property
     def tails(self) -> IntArray:
         """Last corner of each fan."""
-        return self.rings[np.cumsum(self.sizes) - 1]
+        return np.asarray(self.rings[np.cumsum(self.sizes) - 1])
 
 
 def fans(faces: Faces, twins: IntArray) -> Fans:

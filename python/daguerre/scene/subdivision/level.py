@@ -140,7 +140,7 @@ class Level:
 
     def fan(self, vertices: IntArray, valence: int) -> IntArray:
         """Corners around vertices of one valence, shape (M, valence)."""
-        return self.rings[self.ring_starts[vertices][:, None] + np.arange(valence)]
+        return np.asarray(self.rings[self.ring_starts[vertices][:, None] + np.arange(valence)])
 
     def fan_sharpness(self, fan: IntArray, kind: int) -> FloatArray:
         """Sharpness of the spokes of fans; that of the crease at a dart is infinite.

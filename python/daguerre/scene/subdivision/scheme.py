@@ -162,5 +162,3 @@ def pulled_through(
     scale = np.abs(result[:, :, 1:]).max(axis=1, keepdims=True)
     result[:, :, 1:] /= np.where(scale > 0, scale, 1)
     return result
-
-

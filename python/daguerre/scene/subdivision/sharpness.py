@@ -1,7 +1,7 @@
 """Rules of a vertex whose sharpness, or that of its edges, ends after some levels.
 
-Source: DeRose, Kass and Truong 1998 (semi-sharp creases, uniform); the fraction of the last level is
-the mean over all that ends in it, as OpenSubdiv documents.
+Source: DeRose, Kass and Truong 1998 (semi-sharp creases, uniform); the fraction of the last level
+is the mean over all that ends in it, as OpenSubdiv documents.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ def open_weights(vertex: FloatArray) -> FloatArray:
         vertex: Sharpness of the vertices, shape (M,).
     """
     share = np.minimum(vertex, 1)[:, None]
-    return share * [1, 0, 0] + (1 - share) * [CREASE_VERTEX, CREASE_END, CREASE_END]
+    crease = np.array([CREASE_VERTEX, CREASE_END, CREASE_END])
+    return np.asarray(share * np.eye(3)[0] + (1 - share) * crease)
 
 
 def fan_weights(vertex: FloatArray, spokes: FloatArray, smooth: FloatArray) -> FloatArray:
@@ -46,7 +47,7 @@ def fan_weights(vertex: FloatArray, spokes: FloatArray, smooth: FloatArray) -> F
     share = np.minimum((ends * ending).sum(axis=1) / number, 1)
     share[(rule == later) | (rule == _SMOOTH)] = 1
     now, then = _weights(rule, spokes, smooth), _weights(later, later_spokes, smooth)
-    return share[:, None] * now + (1 - share[:, None]) * then
+    return np.asarray(share[:, None] * now + (1 - share[:, None]) * then)
 
 
 def _rule(vertex: FloatArray, spokes: FloatArray) -> NDArray[np.int64]:

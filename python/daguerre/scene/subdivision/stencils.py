@@ -52,7 +52,7 @@ class Group:
 
 def _interleaved(weights: FloatArray, columns: int) -> NDArray[np.float64]:
     """Matrix (P K, J K) that acts on P points with K columns each, row after row."""
-    return np.kron(weights, np.eye(columns))
+    return np.asarray(np.kron(weights, np.eye(columns)), np.float64)
 
 
 def sums(groups: list[Group], points: FloatArray, count: int, results: int = 1) -> FloatArray:

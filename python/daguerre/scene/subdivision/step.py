@@ -45,7 +45,7 @@ def smooth_step(level: Level, scheme: Scheme) -> Step:
     points = [
         _vertices(level, scheme, *group) for group in level.groups(scheme.regular) if len(group[3])
     ]
-    points += _inner_edges(level, scheme) + [_rim(level, len(level.second))]
+    points += [*_inner_edges(level, scheme), _rim(level, len(level.second))]
     return _step(level, scheme.quads, points)
 
 

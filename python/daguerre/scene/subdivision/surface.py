@@ -13,8 +13,8 @@ from .level import Level, Sharp
 from .limit import limit_groups
 from .rules import FloatArray, IntArray
 from .scheme import Scheme
-from .step import Step, linear_step, smooth_step
 from .stencils import Group, sums
+from .step import Step, linear_step, smooth_step
 
 _CHUNK = 1 << 16
 
@@ -68,7 +68,9 @@ class Surface:
 
     def limit(self, values: FloatArray) -> FloatArray:
         """Values (N, K) by the smooth rules at the limit; shape (V, K)."""
-        return sums(self._places, _through(self._smooth, values[self.source]), self.last.count)[:, 0]
+        return sums(self._places, _through(self._smooth, values[self.source]), self.last.count)[
+            :, 0
+        ]
 
     def positions_and_normals(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Limit of points (N, 3), and unit normals; each of shape (V, 3)."""

@@ -1,0 +1,187 @@
+"""Polygons as triangles, and values per corner as values per vertex."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from daguerre.errors import InputError
+
+from .ears import Effort, clipped, plane_of
+
+IntArray = NDArray[np.int64]
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+#: Quadrangles at a time, so that their points stay in the cache of the processor.
+_CHUNK = 1 << 14
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Polygons of one size: their numbers (B,) and corners (B, n)."""
+
+    faces: IntArray
+    corners: IntArray
+
+
+def triangulate(
+    sizes: ArrayLike, vertices: ArrayLike, points: ArrayLike | None = None
+) -> tuple[IntArray, IntArray]:
+    """Divides polygons into triangles of the same orientation.
+
+    Quadrangles get their shorter diagonal, and concave ones that inside of them. Larger polygons
+    become fans about their first corner where all triangles of it face the same side; others lose
+    one ear after the other. Polygons that cross themselves get some triangles. Without points all
+    polygons become fans.
+
+    Args:
+        sizes: Corners of each polygon, at least 3, shape (F,).
+        vertices: Vertex of each corner, shape (C,), C the sum of ``sizes``.
+        points: Positions of vertices, shape (N, 3).
+
+    Returns:
+        Corners of triangles, 0 .. C - 1, shape (T, 3), and the polygon of each, rising, shape (T,).
+
+    Raises:
+        InputError: Concave polygons with too many corners would take minutes.
+    """
+    each = np.asarray(sizes, np.int64)
+    flat = np.asarray(vertices, np.int64)
+    places = None if points is None else np.asarray(points, np.float64)
+    starts, effort = np.cumsum(each) - each, Effort()
+    if len(each) and (each == each[0]).all():
+        corners = np.arange(len(flat)).reshape(len(each), -1)
+        part = _Part(np.arange(len(each)), corners)
+        return _divided(part, flat, places, effort).reshape(-1, 3), np.repeat(part.faces, each - 2)
+    first = np.cumsum(each - 2) - (each - 2)
+    triangles = np.empty((int((each - 2).sum()), 3), np.int64)
+    for size in np.unique(each):
+        faces = np.flatnonzero(each == size)
+        part = _Part(faces, starts[faces][:, None] + np.arange(size))
+        rows = first[faces][:, None] + np.arange(size - 2)
+        triangles[rows] = _divided(part, flat, places, effort)
+    return triangles, np.repeat(np.arange(len(each)), each - 2)
+
+
+def _divided(
+    part: _Part, vertices: IntArray, points: FloatArray | None, effort: Effort
+) -> IntArray:
+    """Triangles of polygons of one size, shape (B, n - 2, 3)."""
+    corners, size = part.corners, part.corners.shape[1]
+    fan = np.stack(
+        [np.broadcast_to(corners[:, :1], corners[:, 2:].shape), corners[:, 1:-1], corners[:, 2:]],
+        axis=2,
+    )
+    if size == 3 or points is None:
+        return fan
+    if size == 4:
+        for begin in range(0, len(fan), _CHUNK):
+            some = slice(begin, begin + _CHUNK)
+            take = begin + np.flatnonzero(_takes_other(points[vertices[corners[some]]]))
+            fan[take] = corners[take][:, [[1, 2, 3], [1, 3, 0]]]
+        return fan
+    near = points[vertices[corners]]
+    flat = plane_of(near)
+    bad = np.flatnonzero(~_fans_fit(flat))
+    if len(bad):
+        order = clipped(flat[bad], effort)
+        fan[bad] = np.take_along_axis(corners[bad], order.reshape(len(bad), -1), axis=1).reshape(
+            order.shape
+        )
+    return fan
+
+
+def _takes_other(near: FloatArray) -> BoolArray:
+    """Whether quadrangles (B, 4, 3) are divided from corner 1 to 3, shape (B,)."""
+    a, b, c, d = np.ascontiguousarray(near.transpose(1, 2, 0))  # each (3, B), which sums fast
+    one, other = c - a, d - b
+    fits, fits_other = _same_side(b - a, one, d - a), _same_side(c - b, other, a - b)
+    shorter = _dot(other, other) < _dot(one, one)
+    return np.where(fits == fits_other, shorter, fits_other)
+
+
+def _same_side(before: FloatArray, diagonal: FloatArray, behind: FloatArray) -> BoolArray:
+    """Whether both triangles beside a diagonal face the same side; vectors (3, B)."""
+    # Lagrange's identity for (before x diagonal) . (diagonal x behind).
+    first = _dot(before, diagonal) * _dot(diagonal, behind)
+    return first > _dot(before, behind) * _dot(diagonal, diagonal)
+
+
+def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
+
+
+def _fans_fit(flat: FloatArray) -> BoolArray:
+    """Whether all triangles of the fans of polygons (B, n, 2) face the side of the polygon."""
+    rays = flat[:, 1:] - flat[:, :1]
+    cross = rays[:, :-1, 0] * rays[:, 1:, 1] - rays[:, :-1, 1] * rays[:, 1:, 0]
+    turns = np.arctan2(cross, (rays[:, :-1] * rays[:, 1:]).sum(axis=2))
+    return np.asarray((cross > 0).all(axis=1) & (turns.sum(axis=1) < 2 * np.pi))
+
+
+def weld(corner_vertices: ArrayLike, *corner_attributes: ArrayLike) -> tuple[IntArray, IntArray]:
+    """Makes corners with the same vertex and the same bits of all attributes one.
+
+    Args:
+        corner_vertices: Vertex of each corner, shape (C,).
+        *corner_attributes: Values of each corner, shape (C,) or (C, K), numbers.
+
+    Returns:
+        A corner for each different one, rising, shape (U,), and the number of each corner among
+        them, shape (C,).
+    """
+    columns = [np.asarray(corner_vertices, np.int64).view(np.uint64)]
+    for attribute in corner_attributes:
+        columns += _bits(np.asarray(attribute))
+    order = np.argsort(_mixed(columns))
+    new = np.ones(len(order), bool)
+    if len(order):
+        new[1:] = False
+        for column in columns:
+            bits = column[order]
+            new[1:] |= bits[1:] != bits[:-1]
+    starts = np.flatnonzero(new)
+    leader = np.minimum.reduceat(order, starts) if len(order) else order
+    number = np.empty(len(leader), np.int64)
+    ranks = np.argsort(leader)
+    number[ranks] = np.arange(len(leader))
+    index = np.empty(len(order), np.int64)
+    index[order] = number[np.cumsum(new) - 1]
+    return leader[ranks], index
+
+
+def _bits(values: NDArray[Any]) -> list[NDArray[np.uint64]]:
+    """Bits of each column."""
+    rows = values.reshape(len(values), -1) if len(values) else values.reshape(0, 1)
+    whole = np.ascontiguousarray(rows).view(f"u{values.dtype.itemsize}")
+    return [whole[:, k].astype(np.uint64) for k in range(whole.shape[1])]
+
+
+def _mixed(columns: list[NDArray[np.uint64]]) -> NDArray[np.uint64]:
+    """A number for each row, equal for equal rows; others rarely have the same.
+
+    Rows of one number that differ stay apart, at worst with copies that could be one.
+    """
+    total = np.zeros(len(columns[0]), np.uint64)
+    for column in columns:
+        total = (total ^ column) * np.uint64(0x9E3779B97F4A7C15)
+        total ^= total >> np.uint64(29)
+    return total
+
+
+def check_sizes(sizes: IntArray, corners: int, where: str) -> None:
+    """Checks that polygons have at least 3 corners each, and ``corners`` together.
+
+    Raises:
+        InputError: They have not.
+    """
+    if sizes.size and sizes.min() < 3:
+        face = int(np.argmin(sizes))
+        raise InputError(f"{where}: sizes[{face}]: wanted at least 3 corners, got {sizes[face]}")
+    if int(sizes.sum()) != corners:
+        raise InputError(
+            f"{where}: indices: wanted {int(sizes.sum())} corners (the sum of sizes), got {corners}"
+        )
