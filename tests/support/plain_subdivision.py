@@ -156,14 +156,20 @@ class Plain:
             mesh = mesh.refined().near(0)
         return mesh
 
-    def limit(self, v: int, levels: int = 40) -> Point:
+    def limit(self, v: int, levels: int = 25) -> Point:
         """Limit of a vertex."""
         return self.zoomed(v, levels).points[0]
 
-    def normals(self, v: int, levels: int = 16) -> list[Point]:
-        """Unit normals at a vertex, one for each side of what stays sharp."""
-        mesh = self.zoomed(v, levels)
-        return [mesh.plane(group) for group in mesh.groups()]
+    def sides(self, v: int, levels: int = 40) -> list[tuple[int, Point]]:
+        """Number of faces and unit normal of each side of what stays sharp at a vertex.
+
+        The mesh is doubled about the vertex at each level, so that no digits are lost.
+        """
+        mesh = self.near(v)
+        for _ in range(levels):
+            mesh = mesh.refined().near(0)
+            mesh.points = [2 * (point - mesh.points[0]) for point in mesh.points]
+        return [(len(group), mesh.plane(group)) for group in mesh.groups()]
 
     def groups(self) -> list[list[int]]:
         """Faces at vertex 0 that no edge of endless sharpness parts."""
