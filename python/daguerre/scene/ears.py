@@ -16,7 +16,7 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 #: Maximum number of corners that are compared with triangles, about 10 s; and what a step costs
 #: besides.
-MAX_WORK, _STEP = 1 << 28, 5000
+MAX_WORK, _STEP = 1 << 27, 5000
 
 
 class Effort:
