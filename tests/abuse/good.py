@@ -182,6 +182,7 @@ ARGS: dict[str, Make] = {
         "indices": [(0, 1, 2)],
         "normals": [(0, 0, 1)] * 3,
         "uv": [(0, 0), (1, 0), (0, 1)],
+        "sizes": [3],
     },
     "dg.Scene.add_node": lambda w: {"name": "node", "position": np.zeros(3)},
     "dg.Scene.add_texture": lambda w: {"pixels": np.zeros((2, 2, 3), np.float32)},

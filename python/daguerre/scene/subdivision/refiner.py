@@ -23,8 +23,8 @@ from .rules import MAX_LEVEL, SCHEMES, FloatArray, IntArray, Rules, choice, inte
 from .scheme import Scheme
 from .surface import Surface
 
-#: Maximum number of faces of a refined mesh.
-MAX_FACES = 1 << 23
+#: Maximum number of faces of a refined mesh; they take 2 GB while it is made.
+MAX_FACES = 1 << 22
 _MAKERS: dict[str, Scheme] = {
     "catmull-clark": CatmullClark(), "loop": Loop(), "bilinear": Bilinear()
 }  # fmt: skip
