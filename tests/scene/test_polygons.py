@@ -47,8 +47,9 @@ def test_triangles_cover_a_polygon_once(count: int) -> None:
         assert set(own.ravel().tolist()) == set(range(face * count, (face + 1) * count))
 
 
-def test_concave_quadrangles_are_divided_inside() -> None:
-    points = np.array([[0, 0, 0], [2, 1, 0], [4, 0, 0], [2, 3, 0]], float)
+@pytest.mark.parametrize("height", [3, 9])
+def test_concave_quadrangles_are_divided_inside(height: float) -> None:
+    points = np.array([[0, 0, 0], [2, 1, 0], [4, 0, 0], [2, height, 0]], float)
     for turn in range(4):
         triangles, _ = triangulate([4], np.roll(np.arange(4), turn), points)
         corners = np.roll(np.arange(4), turn)[triangles]
@@ -172,7 +173,7 @@ def test_a_surface_makes_a_mesh() -> None:
 @pytest.mark.parametrize("subdivision", [None, "catmull-clark", "bilinear"])
 @pytest.mark.parametrize("uv", [None, UV])
 def test_polygons_move(subdivision: str | None, uv: Any) -> None:
-    big = 2 * CUBE + [1, 0, 0]
+    big = CUBE * [2, 1, 3] + [1, 0, 0]
     over = dg.keys([(0, CUBE), (2, big)])
     scene = added(positions=over, sizes=[4] * 6, subdivision=subdivision, uv=uv)
     for when, points in ((0, CUBE), (2, big), (1, (CUBE + big) / 2)):

@@ -39,15 +39,17 @@ class Polygons:
     positions: NDArray[np.float32]
     sizes: IntArray
     vertices: IntArray
-    values: Mapping[str, Any]
+    values: Mapping[str, NDArray[Any] | None]
     where: str
 
-    def per_corner(self, name: str) -> bool:
-        """Whether a value is given per corner; per vertex wins where both fit."""
-        value = self.values[name]
-        rows = np.shape(value)[:1]
-        both = len(self.vertices) == len(self.positions)
-        return value is not None and not both and rows == (len(self.vertices),)
+    def corner_values(self) -> dict[str, NDArray[Any]]:
+        """Values that are given per corner; per vertex wins where both fit."""
+        corners, count = len(self.vertices), len(self.positions)
+        return {
+            key: value
+            for key, value in self.values.items()
+            if value is not None and value.shape[:1] == (corners,) and corners != count
+        }
 
 
 def polygons_of(
@@ -74,7 +76,13 @@ def polygons_of(
     else:
         each = integers(sizes, where, "sizes", 1 << 31).reshape(-1)
     check_sizes(each, vertices.size, where)
-    named = {**values, "colors": with_alpha(values["colors"], where)}
+    wanted = "shape (N, K), or (C, K) for C corners"
+    named = {
+        key: value if value is None else to_numbers(value, where, key, wanted)
+        for key, value in values.items()
+    }
+    colors = with_alpha(named["colors"], where)
+    named["colors"] = None if colors is None else np.asarray(colors)
     return Polygons(points, each, vertices.reshape(-1), named, where)
 
 
@@ -113,11 +121,10 @@ def _triangles_of(polygons: Polygons, over: Over, name: str) -> tuple[Mesh, Over
     """Makes a mesh of polygons; vertices become several where values per corner differ."""
     where, count = polygons.where, len(polygons.positions)
     corners, _ = triangulate(polygons.sizes, polygons.vertices, polygons.positions)
-    spread = [key for key in polygons.values if polygons.per_corner(key)]
-    if not spread:
+    given = polygons.corner_values()
+    if not given:
         triangles = polygons.vertices[corners]
         return mesh_of(polygons.positions, triangles, polygons.values, where, name), over
-    given = {key: to_numbers(polygons.values[key], where, key, "numbers") for key in spread}
     apart = "normals" in given and over.normals is not None  # equal now, not at other times
     every = [np.arange(len(polygons.vertices))] if apart else []
     leaders, index = weld(polygons.vertices, *given.values(), *every)
@@ -136,7 +143,9 @@ def _triangles_of(polygons: Polygons, over: Over, name: str) -> tuple[Mesh, Over
     return mesh, Over(positions, normals, None)
 
 
-def _rows(value: Any, rows: IntArray, polygons: Polygons, key: str) -> NDArray[Any] | None:
+def _rows(
+    value: NDArray[Any] | None, rows: IntArray, polygons: Polygons, key: str
+) -> NDArray[Any] | None:
     """Rows of values per vertex.
 
     Raises:
@@ -144,14 +153,13 @@ def _rows(value: Any, rows: IntArray, polygons: Polygons, key: str) -> NDArray[A
     """
     if value is None:
         return None
-    found = to_numbers(value, polygons.where, key, "numbers")
     count, corners = len(polygons.positions), len(polygons.vertices)
-    if found.ndim != 2 or len(found) != count:
+    if value.ndim != 2 or len(value) != count:
         raise InputError(
             f"{polygons.where}: {key}: wanted {count} elements (one a vertex) or {corners} (one a "
-            f"corner), got shape {found.shape}"
+            f"corner), got shape {value.shape}"
         )
-    return found[rows]
+    return value[rows]
 
 
 @dataclass(frozen=True, eq=False)
@@ -238,8 +246,9 @@ def _surface_of(
     )  # fmt: skip
     points, normals = refiner.surface(polygons.positions)
     corners, _ = triangulate(refiner.sizes, refiner.vertices, points)
-    per_corner = {k: _single(refiner.face_varying(polygons.values[k]))
-                  for k in ("uv", "uv1", "colors") if polygons.per_corner(k)}  # fmt: skip
+    per_corner = {
+        key: _single(refiner.face_varying(value)) for key, value in polygons.corner_values().items()
+    }
     rows, index = np.arange(refiner.count), refiner.vertices
     if per_corner:
         leaders, index = weld(refiner.vertices, *per_corner.values())

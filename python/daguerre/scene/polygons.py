@@ -118,8 +118,7 @@ def _fans_fit(flat: FloatArray) -> BoolArray:
     """Whether all triangles of the fans of polygons (B, n, 2) face the side of the polygon."""
     rays = flat[:, 1:] - flat[:, :1]
     cross = rays[:, :-1, 0] * rays[:, 1:, 1] - rays[:, :-1, 1] * rays[:, 1:, 0]
-    turns = np.arctan2(cross, (rays[:, :-1] * rays[:, 1:]).sum(axis=2))
-    return np.asarray((cross > 0).all(axis=1) & (turns.sum(axis=1) < 2 * np.pi))
+    return np.asarray((cross > 0).all(axis=1))
 
 
 def weld(corner_vertices: ArrayLike, *corner_attributes: ArrayLike) -> tuple[IntArray, IntArray]:
