@@ -217,11 +217,15 @@ BAD: list[tuple[str, dict[str, Any], str]] = [
     ("loop", {"subdivision": "loop", "indices": FACES}, "wanted triangles for loop"),
     ("uv", {"sizes": [4] * 6, "uv": UV[:9]}, "uv: wanted 8 elements"),
     ("uv, other", {"sizes": [4] * 6, "uv": UV, "uv1": UV[:9]}, r"uv1: wanted 8 elements \(one a"),
+    ("uv rows", {"sizes": [4] * 6, "uv": [[0], [1, 2]]}, "uv: wanted .* unequal length"),
+    ("color rows", {"sizes": [4] * 6, "colors": [[0], [1, 2]]}, "colors: .* unequal length"),
+    ("NaN", {"subdivision": "bilinear", "sizes": [4] * 6, "uv": UV * np.nan}, r"uv\[0\]: wanted f"),
+    ("rules", {"subdivision": Subdivision(rules=3), "indices": FACES}, "rules: wanted Rules, got 3"),
     ("level", {"subdivision": Subdivision(level=0), "indices": FACES}, "level: wanted 1 .. 10"),
     ("normals", {"subdivision": "loop", "indices": FACES, "normals": CUBE}, "normals: wanted"),
     ("ragged", {"subdivision": "bilinear", "indices": CORNERS[:22]}, r"indices: wanted shape \(F"),
     ("motion", {"sizes": [4] * 6, "motion": dg.keys([(0, 1)])}, "motion: wanted positions over"),
-    ("colors", {"sizes": [4] * 6, "subdivision": "bilinear", "colors": CUBE[1:]}, "values: w"),
+    ("colors", {"sizes": [4] * 6, "colors": CUBE[1:]}, "colors: wanted 8 elements"),
 ]  # fmt: skip
 
 

@@ -14,7 +14,7 @@ from daguerre.errors import InputError
 from daguerre.files.value import Value
 from daguerre.motion.values import Dynamic
 
-from .mesh import mesh_of, with_alpha
+from .mesh import COLUMNS, mesh_of, with_alpha
 from .motion import Vertices
 from .parts import Mesh, vertices_of
 from .polygons import check_sizes, triangulate, weld
@@ -76,14 +76,31 @@ def polygons_of(
     else:
         each = integers(sizes, where, "sizes", 1 << 31).reshape(-1)
     check_sizes(each, vertices.size, where)
-    wanted = "shape (N, K), or (C, K) for C corners"
     named = {
-        key: value if value is None else to_numbers(value, where, key, wanted)
+        key: _checked(value, key, (len(points), vertices.size), where)
         for key, value in values.items()
     }
-    colors = with_alpha(named["colors"], where)
-    named["colors"] = None if colors is None else np.asarray(colors)
     return Polygons(points, each, vertices.reshape(-1), named, where)
+
+
+def _checked(
+    value: Any, key: str, counts: tuple[int, int], where: str
+) -> NDArray[np.float32] | None:
+    """Checks values per vertex or per corner; None stays None.
+
+    Raises:
+        InputError: A shape or a number is wrong.
+    """
+    given = with_alpha(value, where) if key == "colors" else value
+    if given is None:
+        return None
+    found = array(given, where, key, COLUMNS[key])
+    if len(found) not in counts:
+        raise InputError(
+            f"{where}: {key}: wanted {counts[0]} elements (one a vertex) or {counts[1]} (one a "
+            f"corner), got {len(found)}"
+        )
+    return found
 
 
 class Over(NamedTuple):
@@ -130,7 +147,7 @@ def _triangles_of(polygons: Polygons, over: Over, name: str) -> tuple[Mesh, Over
     leaders, index = weld(polygons.vertices, *given.values(), *every)
     source = polygons.vertices[leaders]
     values = {
-        key: given[key][leaders] if key in given else _rows(value, source, polygons, key)
+        key: None if value is None else value[leaders if key in given else source]
         for key, value in polygons.values.items()
     }
     mesh = mesh_of(polygons.positions[source], index[corners], values, where, name)
@@ -141,25 +158,6 @@ def _triangles_of(polygons: Polygons, over: Over, name: str) -> tuple[Mesh, Over
         of = len(polygons.vertices) if per_corner else count
         normals = Picked(normals, leaders if per_corner else source, of, where)
     return mesh, Over(positions, normals, None)
-
-
-def _rows(
-    value: NDArray[Any] | None, rows: IntArray, polygons: Polygons, key: str
-) -> NDArray[Any] | None:
-    """Rows of values per vertex.
-
-    Raises:
-        InputError: There are not as many values as vertices.
-    """
-    if value is None:
-        return None
-    count, corners = len(polygons.positions), len(polygons.vertices)
-    if value.ndim != 2 or len(value) != count:
-        raise InputError(
-            f"{polygons.where}: {key}: wanted {count} elements (one a vertex) or {corners} (one a "
-            f"corner), got shape {value.shape}"
-        )
-    return value[rows]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from daguerre.cached import cached_property
-from daguerre.checks import to_numbers, whole
+from daguerre.checks import short, to_numbers, whole
 from daguerre.errors import InputError
 from daguerre.files.value import Value
 
@@ -65,6 +65,8 @@ class Refiner(Value):
         self.scheme = choice(scheme, SCHEMES, f"{where}: scheme")
         self.level = _level(level, where)
         self._faces = checked_faces(count, sizes, vertices, where)
+        if rules is not None and not isinstance(rules, Rules):
+            raise InputError(f"{where}: rules: wanted Rules, got {short(rules)}")
         self.rules = (rules or Rules()).checked(count, len(self._faces.sizes), where)
         _refuse_too_many(self._faces, self.scheme, self.level, where)
 
