@@ -299,10 +299,11 @@ def test_everything_is_linear_in_the_values() -> None:
     np.testing.assert_allclose(made.vertex(points), made.surface(points)[0], atol=1e-12)
 
 
-def test_values_without_a_seam_follow_the_vertices() -> None:
-    points, faces = meshes.cube()
-    rules = rules_of({(0, 1): 10, (1, 3): 10, (5, 7): 1.4}, {6: 2.2}, SMOOTH)
-    made = refiner(8, faces, level=3, **rules)
+@pytest.mark.parametrize(("mesh", "scheme"), [(meshes.cube(), CC), (meshes.icosahedron(), LOOP)])
+def test_values_without_a_seam_follow_the_vertices(mesh: Mesh, scheme: str) -> None:
+    points, faces = mesh
+    edges = {(0, 1): 10.0, (1, 5): 10.0, (1, 7): 1.4, (4, 5): 0.6}
+    made = refiner(len(points), faces, scheme, 3, **rules_of(edges, {6: 2.2}, SMOOTH))
     vertices = [v for face in faces for v in face]
     expected = made.vertex(points)[made.vertices]
     np.testing.assert_allclose(made.face_varying(points, vertices), expected, atol=1e-12)
