@@ -170,6 +170,26 @@ struct Builder {
         return int(description.meshes.size()) - 1;
     }
 
+    /// Curves; `shape` is (basis is cubic, closed).
+    int add_curves(const std::string& name, const Vectors3& positions, const RowF& radii,
+                   const RowU& starts, const RowU& ends, std::pair<bool, bool> shape,
+                   std::optional<Rows2f> uv, std::optional<Rows4f> colors) {
+        Mesh mesh;
+        mesh.name = name;
+        if (const auto* steps = std::get_if<Steps3f>(&positions))
+            mesh.steps = std::uint32_t(steps->shape(0));
+        mesh.positions = all_steps<Vec3f>(positions);
+        mesh.curves.cubic = shape.first;
+        mesh.curves.closed = shape.second;
+        mesh.curves.radii = shared(radii);
+        mesh.curves.starts = shared(starts);
+        mesh.curves.ends = shared(ends);
+        if (uv) mesh.uv[0] = shared<Vec2f>(*uv);
+        if (colors) mesh.colors = shared<std::array<float, 4>>(*colors);
+        description.meshes.push_back(std::move(mesh));
+        return int(description.meshes.size()) - 1;
+    }
+
     int add_texture(const std::string& name, std::variant<Pixels8, PixelsF> pixels, bool srgb,
                     const std::string& wrap_u, const std::string& wrap_v,
                     const std::string& filter, const std::string& min_filter) {
@@ -284,6 +304,9 @@ void def_shapes(nb::class_<Builder>& c) {
     c.def("add_mesh", &Builder::add_mesh, "name"_a, "positions"_a, "triangles"_a,
              "normals"_a.none(), "uv0"_a.none(), "uv1"_a.none(), "tangents"_a.none(),
              "colors"_a.none())
+        .def("add_curves", &Builder::add_curves, "name"_a, "positions"_a, "radii"_a, "starts"_a,
+             "ends"_a, "shape"_a, "uv"_a.none(), "colors"_a.none(),
+             "shape: whether the segments are cubic, and whether the curves are closed.")
         .def("add_texture", &Builder::add_texture, "name"_a, "pixels"_a, "srgb"_a, "wrap_u"_a,
              "wrap_v"_a, "filter"_a, "min_filter"_a)
         .def("add_instance", &Builder::add_instance, "name"_a, "mesh"_a, "material"_a, "matrix"_a,

@@ -2,12 +2,13 @@
 // embree_*.cpp beside it the only code that includes Embree.
 //
 // One top-level scene. Geometry `i` in it is instance `i`, either as triangles in world
-// space (flattened) or as a user geometry that traces the mesh's own scene; geometry
+// space (flattened) or as a user geometry that traces the mesh's own scene, as curves always are; geometry
 // `instances.size()` holds the sphere lights. So Embree's ids are ours, and no table
 // stands between them. Where there are catchers, a second one holds them and the lights
 // alone: the same geometries under the same ids.
 #include <cstring>
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <map>
 #include <span>
@@ -15,6 +16,7 @@
 
 #include "geometry/embree_moving.h"
 #include "geometry/embree_placed.h"
+#include "geometry/embree_rounds.h"
 #include "geometry/embree_spheres.h"
 #include "geometry/embree_triangles.h"
 #include "geometry/intersector.h"
@@ -41,14 +43,23 @@ class EmbreeIntersector final : public Intersector {
 
   private:
     SceneOwner new_scene(std::size_t triangles);
+    static bool has_shadow_filter(const InstanceGeometry& instance) {
+        return instance.cutout || instance.clear != Clear::no;
+    }
     void set_filters(RTCGeometry geometry, const InstanceGeometry& instance);
     void attach(RTCScene scene, GeometryOwner geometry, unsigned id);
     void attach_to_top(GeometryOwner geometry, unsigned id, bool of_set);
     RTCScene top_of(const Ray& ray) const { return ray.of_set && set_ ? set_.get() : top_.get(); }
     void attach_instance(unsigned id, const InstanceGeometry& instance, const Mesh& mesh);
     RTCScene mesh_scene(const InstanceGeometry& instance, const Mesh& mesh);
+    void attach_curves(RTCScene scene, const InstanceGeometry& instance, const Mesh& mesh);
+    const TracedCurves* curves_of(const InstanceGeometry& instance) const {
+        const auto found = curves_.find(instance.mesh);
+        return found == curves_.end() ? nullptr : &found->second;
+    }
     const Hull& hull_of(std::uint32_t index, const Mesh& mesh);
     RawHit raw_hit(float t, const RTCHit& hit) const;
+    RawHit raw_hit_inside(const RTCFilterFunctionNArguments* arguments) const;
     static void filter(const RTCFilterFunctionNArguments* arguments);
     static void filter_shadow(const RTCFilterFunctionNArguments* arguments);
 
@@ -59,8 +70,11 @@ class EmbreeIntersector final : public Intersector {
     std::vector<Clear> clear_;
     std::deque<PlacedMesh> placed_;  // by address: Embree keeps pointers
     std::deque<MovingMesh> moving_;
+    std::deque<RoundSegments> rounds_;
     std::map<std::tuple<std::uint32_t, bool, bool>, SceneOwner>
         mesh_scenes_;  // by mesh, and whether it is cut out, and clear
+    std::map<std::uint32_t, TracedCurves> curves_;  // by mesh
+    std::vector<const TracedCurves*> traced_;       // by instance; null: triangles
     std::map<std::uint32_t, Hull> hulls_;  // of meshes that move; for building only
     SceneOwner top_;
     SceneOwner set_;   // of catchers; null: there are none
@@ -84,11 +98,14 @@ EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
       sphere_geometry_(static_cast<unsigned>(instances.size())),
       name_(device_.version()) {
     if (std::ranges::any_of(instances, &InstanceGeometry::catcher)) set_ = new_scene(0);
+    for (const InstanceGeometry& i : instances)
+        if (const Mesh& mesh = meshes[i.mesh]; !mesh.curves.empty()) curves_.try_emplace(i.mesh, mesh);
     for (unsigned i = 0; i < instances.size(); ++i) {
         const Mesh& mesh = meshes[instances[i].mesh];
         has_cutout_.push_back(instances[i].cutout);
         clear_.push_back(instances[i].clear);
-        if (!mesh.triangles.empty()) attach_instance(i, instances[i], mesh);
+        traced_.push_back(curves_of(instances[i]));
+        if (!mesh.empty()) attach_instance(i, instances[i], mesh);
     }
     if (!spheres_.empty())
         attach_to_top(geometry_of_spheres(device_, spheres_), sphere_geometry_, true);
@@ -112,7 +129,7 @@ void EmbreeIntersector::set_filters(RTCGeometry geometry,
     rtcSetGeometryUserData(geometry, this);
     if (instance.cutout)
         rtcSetGeometryIntersectFilterFunction(geometry, &EmbreeIntersector::filter);
-    if (instance.cutout || instance.clear != Clear::no)
+    if (has_shadow_filter(instance))
         rtcSetGeometryOccludedFilterFunction(geometry, &EmbreeIntersector::filter_shadow);
 }
 
@@ -133,19 +150,42 @@ RTCScene EmbreeIntersector::mesh_scene(const InstanceGeometry& instance,
         mesh_scenes_[{instance.mesh, instance.cutout, instance.clear != Clear::no}];
     if (scene) return scene.get();
     scene = new_scene(mesh.triangles.size());
-    GeometryOwner geometry = triangles_of(device_, mesh);
-    set_filters(geometry.get(), instance);
-    attach(scene.get(), std::move(geometry), 0);
+    if (mesh.curves.empty()) {
+        GeometryOwner geometry = triangles_of(device_, mesh);
+        set_filters(geometry.get(), instance);
+        attach(scene.get(), std::move(geometry), 0);
+    } else {
+        attach_curves(scene.get(), instance, mesh);
+    }
     rtcCommitScene(scene.get());
     device_.check("building the acceleration structure of mesh '" + mesh.name + "'");
     return scene.get();
 }
 
+void EmbreeIntersector::attach_curves(RTCScene scene, const InstanceGeometry& instance,
+                                      const Mesh& mesh) {
+    TracedCurves& curves = curves_.at(instance.mesh);
+    if (!curves.cubic()) {
+        RoundSegments& rounds = rounds_.emplace_back(RoundSegments{&mesh, this});
+        if (instance.cutout) rounds.on_hit = &EmbreeIntersector::filter;
+        if (has_shadow_filter(instance)) rounds.on_shadow = &EmbreeIntersector::filter_shadow;
+        attach(scene, geometry_of(device_, rounds), 0);
+        return;
+    }
+    unsigned id = 0;
+    for (GeometryOwner& geometry : std::array{curves.segments(device_), curves.caps(device_)}) {
+        if (!geometry) continue;
+        set_filters(geometry.get(), instance);
+        attach(scene, std::move(geometry), id++);
+    }
+}
+
 const Hull& EmbreeIntersector::hull_of(std::uint32_t index, const Mesh& mesh) {
     const auto known = hulls_.find(index);
     if (known != hulls_.end()) return known->second;
-    return hulls_.try_emplace(index, std::span(mesh.positions.begin(), mesh.positions.end()))
-        .first->second;
+    const Hull hull(std::span(mesh.positions.begin(), mesh.positions.end()));
+    const float around = mesh.curves.largest_radius();
+    return hulls_.try_emplace(index, around > 0 ? hull.grown(around) : hull).first->second;
 }
 
 void EmbreeIntersector::attach_instance(unsigned id, const InstanceGeometry& instance,
@@ -160,12 +200,13 @@ void EmbreeIntersector::attach_instance(unsigned id, const InstanceGeometry& ins
     RTCScene local_scene = mesh_scene(instance, mesh);
     if (!instance.still()) {
         moving_.emplace_back(local_scene, id, hull_of(instance.mesh, mesh), instance);
+        moving_.back().curves = traced_[id];
         attach_to_top(geometry_of(device_, moving_.back()), id, instance.catcher);
         return;
     }
     const Affine3f local = to_float(inverse(to_double(instance.world_from_local)));
     placed_.push_back({local_scene, id, local,
-                       world_bounds(mesh, instance.world_from_local)});
+                       world_bounds(mesh, instance.world_from_local), traced_[id]});
     attach_to_top(geometry_of(device_, placed_.back()), id, instance.catcher);
 }
 
@@ -177,14 +218,20 @@ RawHit EmbreeIntersector::raw_hit(float t, const RTCHit& hit) const {
     return result;
 }
 
+/// Only single rays are traced, so N is 1 and the packets are plain structures.
+RawHit EmbreeIntersector::raw_hit_inside(const RTCFilterFunctionNArguments* arguments) const {
+    const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
+    RTCHit hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+    const std::uint32_t instance = hit.instID[0];
+    if (instance != RTC_INVALID_GEOMETRY_ID && traced_[instance]) traced_[instance]->set_place(ray, hit);
+    return raw_hit(ray.tfar, hit);
+}
+
 void EmbreeIntersector::filter(const RTCFilterFunctionNArguments* arguments) {
     if (arguments->valid[0] == 0) return;
     const auto& self = *static_cast<const EmbreeIntersector*>(arguments->geometryUserPtr);
     const auto& context = *reinterpret_cast<const Context*>(arguments->context);
-    // Only single rays are traced, so N is 1 and the packets are plain structures.
-    const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
-    const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
-    if (self.cutout_(*context.ray, self.raw_hit(ray.tfar, hit))) arguments->valid[0] = 0;
+    if (self.cutout_(*context.ray, self.raw_hit_inside(arguments))) arguments->valid[0] = 0;
 }
 
 /// Any hit will do for a shadow, so what may be passed is passed here.
@@ -192,9 +239,7 @@ void EmbreeIntersector::filter_shadow(const RTCFilterFunctionNArguments* argumen
     if (arguments->valid[0] == 0) return;
     const auto& self = *static_cast<const EmbreeIntersector*>(arguments->geometryUserPtr);
     const auto& context = *reinterpret_cast<const Context*>(arguments->context);
-    const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
-    const RawHit hit =
-        self.raw_hit(ray.tfar, *reinterpret_cast<const RTCHit*>(arguments->hit));
+    const RawHit hit = self.raw_hit_inside(arguments);
     const bool passed =
         (self.has_cutout_[hit.instance] && self.cutout_(*context.ray, hit)) ||
         (context.crossings && context.crossings->add(self.clear_[hit.instance], hit));

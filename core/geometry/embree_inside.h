@@ -2,7 +2,7 @@
 #pragma once
 #include <limits>
 
-#include "geometry/embree_device.h"
+#include "geometry/embree_curves.h"
 
 namespace dg::embree {
 
@@ -39,8 +39,8 @@ inline Context inside(std::uint32_t id, const void* outer) {
     return context;
 }
 
-// The rest is for a `Placed` with: RTCScene scene; std::uint32_t id; bool near(const RTCRay&);
-// RTCRay to_local(const RTCRay&); void bounds(unsigned step, RTCBounds&); unsigned steps().
+// The rest is for a `Placed` with: RTCScene scene; std::uint32_t id; const TracedCurves* curves;
+// bool near(const RTCRay&); RTCRay to_local(const RTCRay&); void bounds(unsigned step, RTCBounds&); unsigned steps().
 // Only single rays are traced, so N is 1 and the packets are plain structures.
 
 template <typename Placed>
@@ -57,9 +57,11 @@ void intersect_inside(const RTCIntersectFunctionNArguments* a) {
     Context context = inside(placed.id, a->context);
     RTCRayHit local;
     local.ray = placed.to_local(world.ray);
+    if (placed.curves) placed.curves->scale(local.ray);
     local.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query(placed.scene, context.embree, local);
     if (local.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
+    if (placed.curves) placed.curves->set_place(local.ray, local.hit);
     world.ray.tfar = local.ray.tfar;
     world.hit = local.hit;
     world.hit.instID[0] = placed.id;
@@ -73,6 +75,7 @@ void occlude_inside(const RTCOccludedFunctionNArguments* a) {
     if (!placed.near(world)) return;
     Context context = inside(placed.id, a->context);
     RTCRay local = placed.to_local(world);
+    if (placed.curves) placed.curves->scale(local);
     query(placed.scene, context.embree, local);
     if (local.tfar < 0) world.tfar = local.tfar;
 }

@@ -18,7 +18,8 @@ WorldBounds world_bounds(const Mesh& mesh, const Affine3f& world_from_local) {
         }
     }
     const float slack = 16 * 0x1p-24f * largest;
-    const Vec3f grow{slack, slack, slack};
+    const Vec3f around = reach_around(mesh, world_from_local);
+    const Vec3f grow{slack + around.x, slack + around.y, slack + around.z};
     b.min = b.min - grow;
     b.max = b.max + grow;
     b.center = (b.min + b.max) * 0.5f;
@@ -26,7 +27,7 @@ WorldBounds world_bounds(const Mesh& mesh, const Affine3f& world_from_local) {
         const float r2 = length_squared(world_from_local.point(p) - b.center);
         b.radius_squared = std::max(b.radius_squared, r2);
     }
-    const float radius = 1.0001f * std::sqrt(b.radius_squared) + 4 * slack;
+    const float radius = 1.0001f * std::sqrt(b.radius_squared) + 4 * slack + length(around);
     b.radius_squared = radius * radius;
     return b;
 }

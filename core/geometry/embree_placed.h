@@ -4,6 +4,7 @@
 // transformed box of the mesh, up to three times the surface of the true one for a turned
 // ball: rays enter many instances for nothing.
 #pragma once
+#include "geometry/embree_curves.h"
 #include "geometry/embree_inside.h"
 #include "geometry/mesh.h"
 
@@ -33,6 +34,7 @@ struct PlacedMesh {
     std::uint32_t id;  // of the instance
     Affine3f local_from_world;
     WorldBounds world;
+    const TracedCurves* curves = nullptr;  // of the mesh; null: it has triangles
 
     bool near(const RTCRay& ray) const {
         return comes_near(ray, world.center, world.radius_squared);

@@ -22,7 +22,7 @@ std::vector<bool> choose_flattened(const std::vector<Mesh>& meshes,
         const bool copied_large = meshes[m].triangles.size() > kCompactLimit &&
                                   !is_identity(instances[i].world_from_local);
         const bool fits = uses[m] == 1 ? !copied_large : shared <= limit;
-        flattened[i] = fits && instances[i].still();
+        flattened[i] = fits && instances[i].still() && meshes[m].curves.empty();
     }
     return flattened;
 }

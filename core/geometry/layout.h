@@ -30,7 +30,7 @@ inline bool is_identity(const Affine3f& m) {
 }
 
 /// One flag per instance: true where its triangles go into the top level in world space.
-/// Only what stands still. Meshes used once do, unless they are large and their vertices would have to be copied; shared
+/// Only triangles that stand still. Meshes used once do, unless they are large and their vertices would have to be copied; shared
 /// ones if all their instances together stay within `limit`.
 std::vector<bool> choose_flattened(const std::vector<Mesh>& meshes,
                                    const std::vector<InstanceGeometry>& instances,

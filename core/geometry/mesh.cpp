@@ -49,6 +49,17 @@ void check_array(const std::string& where, const char* what, const SharedArray<T
     }
 }
 
+/// Values of curves are one per position, or one per curve.
+void check_curve_values(const std::string& where, const Mesh& mesh) {
+    const auto wanted = [&](std::size_t given) {
+        return given == mesh.curves.ends.size() ? given : mesh.vertex_count();
+    };
+    if (!mesh.uv[0].empty())
+        check_array(where, "texture coordinates 0", mesh.uv[0], wanted(mesh.uv[0].size()));
+    if (!mesh.colors.empty())
+        check_array(where, "colours", mesh.colors, wanted(mesh.colors.size()));
+}
+
 }  // namespace
 
 void Mesh::validate() const {
@@ -58,6 +69,11 @@ void Mesh::validate() const {
                           std::to_string(steps));
     const std::size_t n = vertex_count();
     check_array(where, "positions", positions, n, steps);
+    if (!curves.empty()) {
+        curves.validate(*this);
+        check_curve_values(where, *this);
+        return;
+    }
     if (!normals.empty()) check_array(where, "normals", normals, n, steps);
     for (int set = 0; set < 2; ++set) {
         const char* what = set == 0 ? "texture coordinates 0" : "texture coordinates 1";
@@ -74,6 +90,14 @@ void Mesh::validate() const {
             }
         }
     }
+}
+
+/// A ball becomes an ellipsoid, whose reach along an axis is the length of that row of the matrix.
+Vec3f reach_around(const Mesh& mesh, const Affine3f& m) {
+    if (mesh.curves.empty()) return {0, 0, 0};
+    const float r = 1.0001f * mesh.curves.largest_radius();
+    const auto row = [&](int k) { return r * length(Vec3f{m.x[k], m.y[k], m.z[k]}); };
+    return {row(0), row(1), row(2)};
 }
 
 }  // namespace dg

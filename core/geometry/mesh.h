@@ -1,10 +1,14 @@
-// mesh.h -- triangle meshes as arrays, in their own space (m).
+// mesh.h -- triangle meshes, and curves, as arrays in their own space (m).
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 
+#include "geometry/curves.h"
 #include "math/shared_array.h"
+#include "math/transform.h"
 #include "math/vec.h"
 
 namespace dg {
@@ -22,7 +26,11 @@ struct Mesh {
     SharedArray<std::array<float, 4>> tangents;  // xyz, w = handedness
     SharedArray<std::array<float, 4>> colors;    // linear RGBA
 
+    Curves curves;  // in the place of triangles
+
     std::size_t vertex_count() const { return positions.size() / steps; }
+    std::size_t primitive_count() const { return triangles.size() + curves.starts.size(); }
+    bool empty() const { return triangles.empty() && curves.empty(); }
 
     /// Throws Error naming mesh and element: index out of range, NaN or Inf, wrong array
     /// length.
@@ -30,6 +38,22 @@ struct Mesh {
 };
 
 inline constexpr std::uint32_t kMostMeshSteps = 129;  // of Embree
+
+/// How far the surface reaches beyond the positions along each axis of the world, at most; 0 for triangles.
+Vec3f reach_around(const Mesh& mesh, const Affine3f& world_from_local);
+
+/// A time step, and the share of the next.
+struct MeshStep {
+    std::uint32_t index;
+    float share;
+};
+/// The step of a time (0 to 1) among `steps`; in single precision, as the ray tracer finds it.
+inline MeshStep step_at(std::uint32_t steps, float time) {
+    if (steps == 1) return {0, 0};
+    const float along = time * float(steps - 1);
+    const float step = std::clamp(std::floor(along), 0.f, float(steps - 2));
+    return {std::uint32_t(step), along - step};
+}
 
 /// A sphere light that rays can hit.
 struct Sphere {

@@ -42,6 +42,17 @@ Hull::Hull(std::span<const Vec3f> points) {
     }
 }
 
+Hull Hull::grown(double radius) const {
+    Hull all = *this;
+    for (int k = 0; k < 3; ++k) all.box_.min[k] -= radius, all.box_.max[k] += radius;
+    all.radius_ += radius;
+    for (int face = 0; face < 6; ++face)
+        for (int i = 0; i <= kCells; ++i)
+            for (int j = 0; j <= kCells; ++j)
+                all.reach_[face][i][j] += float(1.000001 * radius * length(node(face, i, j)));
+    return all;
+}
+
 double Hull::reach(Vec3d d) const {
     int axis = 0;
     for (int k = 1; k < 3; ++k)

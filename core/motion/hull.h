@@ -24,6 +24,8 @@ struct Box {
 class Hull {
   public:
     explicit Hull(std::span<const Vec3f> points);
+    /// Hull of balls of this radius about all points.
+    Hull grown(double radius) const;
 
     double reach(Vec3d d) const;
     const Box& box() const { return box_; }

@@ -46,7 +46,8 @@ Scene::Bounds Scene::bounds_of(std::uint32_t i) const {
         const Vec3f p = instance.world_from_local.point(local);
         widen(b.min, b.max, p, p);
     }
-    return b;
+    const Vec3f around = reach_around(description_.meshes[instance.mesh], instance.world_from_local);
+    return {b.min - around, b.max + around};
 }
 
 EmissionReach Scene::emission_reach() const {
@@ -62,7 +63,7 @@ EmissionReach Scene::emission_reach() const {
     std::vector<Sphere> balls;
     for (std::uint32_t i = 0; i < description_.instances.size(); ++i) {
         const Instance& instance = description_.instances[i];
-        if (description_.meshes[instance.mesh].triangles.empty()) continue;
+        if (description_.meshes[instance.mesh].empty()) continue;
         if (!std::ranges::any_of(keys_of(instance.material), makes_caustics)) continue;
         const Bounds b = bounds_of(i);
         const Sphere ball = ball_around(b.min, b.max);

@@ -1,6 +1,8 @@
 // footprint.cpp -- a circle across the ray, laid on the surface and taken to uv.
 #include "scene/footprint.h"
 
+#include "scene/curve_surface.h"
+
 namespace dg {
 namespace {
 
@@ -13,17 +15,28 @@ Vec3f world_edge(const InstanceRecord& r, const Placement& place, std::uint32_t 
     return to_float(place.world_from_local.vector(edge));
 }
 
+TexturedPatch triangle_patch(const InstanceRecord& r, const Placement& place, std::uint32_t primitive) {
+    const auto& t = r.triangles[primitive];
+    TexturedPatch patch{{world_edge(r, place, t[0], t[1]), world_edge(r, place, t[0], t[2])}, {}};
+    for (int set = 0; set < 2; ++set) {
+        if (!r.uv[set]) continue;
+        patch.uv[set] = {r.uv[set][t[1]] - r.uv[set][t[0]], r.uv[set][t[2]] - r.uv[set][t[0]]};
+    }
+    return patch;
+}
+
 }  // namespace
 
 // The cone meets the plane in an ellipse: as wide as the cone across the plane of incidence,
-// 1 / cos longer along it. Each axis is resolved into the triangle's edges, whose uv are
+// 1 / cos longer along it. Each axis is resolved into the edges, whose uv are
 // known. Source: Akenine-Moller et al. 2021, Improved Shader and Texture Level of Detail
 // Using Ray Cones, JCGT 10(1).
 void set_footprint(const InstanceRecord& r, const Placement& place, float width,
                    SurfaceHit& hit) {
-    if (!r.uv[0] && !r.uv[1]) return;
-    const auto& t = r.triangles[hit.primitive];
-    const Vec3f e1 = world_edge(r, place, t[0], t[1]), e2 = world_edge(r, place, t[0], t[2]);
+    if (r.curves ? !r.textured : !r.uv[0] && !r.uv[1]) return;
+    const TexturedPatch patch = r.curves ? curve_patch(r, place, hit.primitive, hit)
+                                         : triangle_patch(r, place, hit.primitive);
+    const Vec3f e1 = patch.edge[0], e2 = patch.edge[1];
     const float area = dot(cross(e1, e2), hit.ng);
     if (!(std::abs(area) > 0)) return;
     const float cosine = dot(hit.ng, hit.wo);
@@ -33,9 +46,8 @@ void set_footprint(const InstanceRecord& r, const Placement& place, float width,
     const Vec3f along = forward * (width / std::max(std::abs(cosine), kSmallestCosine));
     const Vec3f across = cross(hit.ng, forward) * width;
     for (int set = 0; set < 2; ++set) {
-        if (!r.uv[set]) continue;
-        const Vec2f d1 = r.uv[set][t[1]] - r.uv[set][t[0]];
-        const Vec2f d2 = r.uv[set][t[2]] - r.uv[set][t[0]];
+        if (!r.curves && !r.uv[set]) continue;
+        const auto [d1, d2] = patch.uv[set];
         const auto in_uv = [&](Vec3f axis) {
             const float u = dot(cross(axis, e2), hit.ng), v = dot(cross(e1, axis), hit.ng);
             return (d1 * u + d2 * v) * (1 / area);
@@ -47,6 +59,7 @@ void set_footprint(const InstanceRecord& r, const Placement& place, float width,
 // On a sphere of radius R the normals at two points differ by their distance / R, along the
 // line between them.
 float mean_curvature(const InstanceRecord& r, const Placement& place, std::uint32_t primitive) {
+    if (r.curves) return curve_curvature(r, place, primitive);
     if (!r.normals) return 0;
     const auto& t = r.triangles[primitive];
     float bend = 0, lengths = 0;

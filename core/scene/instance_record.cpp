@@ -2,6 +2,8 @@
 // attributes.
 #include "scene/instance_record.h"
 
+#include "scene/curve_surface.h"
+
 namespace dg {
 namespace {
 
@@ -149,11 +151,9 @@ Placement InstanceRecord::where(float time) const {
 
 void InstanceRecord::set_step(Placement& p, float time) const {
     if (steps == 1) return;
-    // In single precision, as the ray tracer finds its step.
-    const float along = time * float(steps - 1);
-    const float step = std::clamp(std::floor(along), 0.f, float(steps - 2));
-    p.first_vertex = std::size_t(step) * vertex_count;
-    p.step_share = along - step;
+    const MeshStep step = step_at(steps, time);
+    p.first_vertex = std::size_t(step.index) * vertex_count;
+    p.step_share = step.share;
 }
 
 InstanceRecord make_record(const Mesh& mesh, const Material& material,
@@ -162,6 +162,7 @@ InstanceRecord make_record(const Mesh& mesh, const Material& material,
     const auto* gltf = std::get_if<GltfMaterial>(&material.kind);
     const bool textured = gltf && uses_textures(*gltf);
     InstanceRecord r{};
+    r.curves = mesh.curves.empty() ? nullptr : &mesh;
     r.positions = mesh.positions.data();
     r.steps = mesh.steps;
     r.vertex_count = mesh.vertex_count();
@@ -172,6 +173,7 @@ InstanceRecord make_record(const Mesh& mesh, const Material& material,
     }
     const int set = gltf ? tangent_set(*gltf) : -1;
     r.needs_frame = set >= 0;
+    r.textured = textured;
     if (r.needs_frame) {
         r.tangents = mesh.tangents.empty() ? nullptr : mesh.tangents.data();
         r.tangent_uv = mesh.uv[set].empty() ? nullptr : mesh.uv[set].data();
@@ -194,6 +196,7 @@ std::array<Vec3f, 3> corners_at(const InstanceRecord& r, const Placement& place,
 }
 
 Vec3d point_at(const InstanceRecord& r, std::uint32_t primitive, float u, float v, float time) {
+    if (r.curves) return curve_point_at(r, primitive, {u, v}, time);
     const Corners t = corners_of(r, primitive);
     PlacementRoom made;
     const Placement& place = r.placement(time, made);
@@ -204,6 +207,7 @@ Vec3d point_at(const InstanceRecord& r, std::uint32_t primitive, float u, float 
 
 void interpolate_attributes(const InstanceRecord& r, std::uint32_t primitive, float u,
                             float v, SurfaceHit& hit) {
+    if (r.curves) return interpolate_curve(r, primitive, {u, v}, hit);
     const Corners t = corners_of(r, primitive);
     const float w = 1 - u - v;
     for (int set = 0; set < 2; ++set) {
@@ -218,6 +222,7 @@ void interpolate_attributes(const InstanceRecord& r, std::uint32_t primitive, fl
 
 void surface_at(const InstanceRecord& r, const Placement& place, std::uint32_t primitive, float u,
                 float v, SurfaceHit& hit) {
+    if (r.curves) return curve_surface_at(r, place, primitive, {u, v}, hit);
     const Corners t = corners_of(r, primitive);
     const Vec3d a = r.position(place, t.a), b = r.position(place, t.b), c = r.position(place, t.c);
     const Vec3d e1 = b - a, e2 = c - a;

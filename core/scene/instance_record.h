@@ -29,6 +29,7 @@ struct PlacementRoom {
 };
 
 struct InstanceRecord {
+    const Mesh* curves;  // of an instance of curves (curve_surface.h); null: triangles
     const Vec3f* positions;
     const std::array<std::uint32_t, 3>* triangles;
     // Null where the mesh has none, or where its material does not look at them.
@@ -41,6 +42,7 @@ struct InstanceRecord {
     std::uint32_t steps;               // of the mesh
     std::size_t vertex_count;
     bool needs_frame;  // a normal map or anisotropy wants a tangent
+    bool textured;     // the material looks at textures
     Placement still;   // of what neither moves nor deforms
     const Motion* motion = nullptr;  // over the scene's interval; null: stands still
     const Shown* shown = nullptr;    // null: always
@@ -80,14 +82,14 @@ InstanceRecord make_record(const Mesh& mesh, const Material& material,
 std::array<Vec3f, 3> corners_at(const InstanceRecord& record, const Placement& placement,
                                 std::uint32_t primitive);
 
-/// A point of a triangle in the world, in double.
+/// A point of a triangle, or of a curve, in the world, in double.
 Vec3d point_at(const InstanceRecord& record, std::uint32_t primitive, float u, float v, float time);
 
-/// Texture coordinates and colour at barycentrics (u, v) of a triangle.
+/// Texture coordinates and colour at barycentrics (u, v) of a triangle, or a place of a curve.
 void interpolate_attributes(const InstanceRecord& record, std::uint32_t primitive,
                             float u, float v, SurfaceHit& hit);
 
-/// Everything of the hit but wo, t, time, instance and front.
+/// Everything of the hit but wo, t, time, instance and front; of curves, `hit.time` is read.
 void surface_at(const InstanceRecord& record, const Placement& placement,
                 std::uint32_t primitive, float u, float v, SurfaceHit& hit);
 

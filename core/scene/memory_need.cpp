@@ -24,7 +24,10 @@ std::string gigabytes(std::uint64_t bytes) {
 }  // namespace
 
 MemoryNeed::MemoryNeed(const SceneDescription& d) {
-    for (const Mesh& mesh : d.meshes) triangles += mesh.triangles.size();
+    for (const Mesh& mesh : d.meshes) {
+        triangles += mesh.triangles.size();
+        segments += mesh.curves.starts.size() * mesh.steps;
+    }
     for (const Instance& instance : d.instances)
         if (ever_emits(d, instance.material)) lamps += d.meshes[instance.mesh].triangles.size();
 }
@@ -32,8 +35,12 @@ MemoryNeed::MemoryNeed(const SceneDescription& d) {
 void check_memory(const SceneDescription& d) {
     const MemoryNeed need(d);
     if (d.free_memory == 0 || need.bytes() <= d.free_memory) return;
+    const std::string curves = need.segments == 0 ? ""
+                                                  : ", " + std::to_string(need.segments) + " segments of curves of " +
+                                                        std::to_string(MemoryNeed::kSegment);
     const std::string counted = std::to_string(need.triangles) + " triangles of " +
-                                std::to_string(MemoryNeed::kTriangle) + " bytes and " + std::to_string(need.lamps) +
+                                std::to_string(MemoryNeed::kTriangle) + " bytes" + curves + " and " +
+                                std::to_string(need.lamps) +
                                 " emissive ones of " + std::to_string(MemoryNeed::kLamp);
     throw input_error("memory", counted, "at most the " + gigabytes(d.free_memory) + " that are left",
                       gigabytes(need.bytes()));

@@ -7,12 +7,13 @@ namespace dg {
 /// Numbers that a scene's memory goes by.
 struct MemoryNeed {
     std::uint64_t triangles = 0;   // of the meshes, each once
+    std::uint64_t segments = 0;    // of curves, each once
     std::uint64_t lamps = 0;       // emissive triangles of all instances
     // Bytes of one at the peak, beside the arrays that the scene was given (bench/scale.py: triangles, lamps).
-    static constexpr std::uint64_t kTriangle = 50, kLamp = 400;
+    static constexpr std::uint64_t kTriangle = 50, kSegment = 400, kLamp = 400;
 
     explicit MemoryNeed(const SceneDescription& description);
-    std::uint64_t bytes() const { return triangles * kTriangle + lamps * kLamp; }
+    std::uint64_t bytes() const { return triangles * kTriangle + segments * kSegment + lamps * kLamp; }
 };
 
 /// Throws Error that names the memory that is needed, and what there is, where a scene cannot be built in it. The

@@ -31,8 +31,8 @@ bool may_be_transparent(const Material& material, const Mesh& mesh,
 }
 
 /// Uniform in [0,1), the same for the same ray and triangle whatever the order of
-/// traversal.
-float cutout_random(const Ray& ray, const RawHit& hit) {
+/// traversal. A ray may meet a segment of a curve twice: `place` tells where.
+float cutout_random(const Ray& ray, const RawHit& hit, std::uint32_t place) {
     auto pair = [](float a, float b) {
         return std::uint64_t(std::bit_cast<std::uint32_t>(a)) << 32 |
                std::bit_cast<std::uint32_t>(b);
@@ -40,7 +40,7 @@ float cutout_random(const Ray& ray, const RawHit& hit) {
     const std::uint64_t h =
         hash64(pair(ray.origin.x, ray.origin.y), pair(ray.origin.z, ray.direction.x),
                pair(ray.direction.y, ray.direction.z),
-               std::uint64_t(hit.instance) << 32 | hit.primitive);
+               std::uint64_t(hit.instance) << 32 | (hit.primitive ^ place));
     return static_cast<float>(h >> 40) * 0x1p-24f;
 }
 
@@ -75,6 +75,7 @@ std::shared_ptr<const Scene> Scene::build(SceneDescription description) {
     for (Instance& instance : description.instances) place_in(instance, description.interval);
     validate(description);
     check_memory(description);
+    for (Mesh& mesh : description.meshes) mesh.curves.complete(mesh);
     build_pyramids(description.textures, description.materials);
     Changes changes = take_changes(description);
     std::shared_ptr<Scene> scene(new Scene(std::move(description)));
@@ -153,13 +154,16 @@ void Scene::measure() {
         const Instance& instance = description_.instances[i];
         const Mesh& mesh = description_.meshes[instance.mesh];
         triangle_count_ += mesh.triangles.size();
-        if (instance.motion && mesh.triangles.empty()) continue;
+        if (instance.motion && mesh.empty()) continue;
         if (instance.motion) {
             const Box box = intersector_->bounds_of_moving(i);
             hold(box.min), hold(box.max);
             continue;
         }
         for (Vec3f local : mesh.positions) hold(to_double(instance.world_from_local.point(local)));
+        if (mesh.curves.empty()) continue;
+        const Bounds around = bounds_of(i);
+        hold(to_double(around.min)), hold(to_double(around.max));
     }
     if (!(bounds_.min.x <= bounds_.max.x)) bounds_ = {};
 }
@@ -173,7 +177,8 @@ bool Scene::passes(const Ray& ray, const RawHit& hit) const {
     const float alpha =
         opacity(material, description_.textures, surface.uv, surface.color[3]);
     if (alpha >= 1) return false;
-    return alpha <= 0 || cutout_random(ray, hit) >= alpha;
+    const std::uint32_t place = record.curves ? std::bit_cast<std::uint32_t>(hit.v) << 4 : 0;
+    return alpha <= 0 || cutout_random(ray, hit, place) >= alpha;
 }
 
 void Scene::find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const {

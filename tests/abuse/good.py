@@ -169,6 +169,11 @@ ARGS: dict[str, Make] = {
     "dg.RenderSettings.with_": constant(resolution=SIZE, max_depth=4),
     "dg.RollingShutter": constant(scan_order="top", line_time=1e-5),
     "dg.Scene.add_camera": lambda w: {"name": "second", "camera": w.camera},
+    "dg.Scene.add_curves": lambda w: {
+        "points": [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)],
+        "counts": [4],
+        "widths": 0.1,
+    },
     "dg.Scene.add_instance": lambda w: {"mesh": 0, "material": 0, "transform": moved(x=1)},
     "dg.Scene.add_instances": lambda w: {
         "mesh": 0,

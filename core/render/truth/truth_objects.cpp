@@ -72,9 +72,10 @@ class InstanceOutline {
         : view_(view), instance_(instance), middle_(centre_of(view.settings().sensor)) {
         const SceneDescription& d = view.scene().description();
         mesh_ = &d.meshes[d.instances[instance].mesh];
-        if (mesh_->triangles.empty() || !place(0, {0, 0}, view.time_at(middle_))) return;
+        if (mesh_->empty() || !place(0, {0, 0}, view.time_at(middle_))) return;
         corners_.resize(mesh_->vertex_count());
         for (std::uint32_t i = 0; i < mesh_->triangles.size(); ++i) add_triangle(i);
+        for (std::uint32_t i = 0; i < mesh_->curves.starts.size(); ++i) add_segment(i);
     }
     GroupOutline outline;
 
@@ -118,6 +119,33 @@ class InstanceOutline {
             const int n = (k + 1) % 3;
             add_edge(i, {kCorners[k], px[k]}, {kCorners[n], px[n]}, 0);
         }
+    }
+
+    /// Lines along a segment of a curve, as many as its thickness asks for, and the rings at its ends.
+    void add_segment(std::uint32_t i) {
+        const double first = mesh_->curves.cubic ? 0 : -1, last = mesh_->curves.cubic ? 1 : 2;
+        const int lines = lines_along(i);
+        for (int k = 0; k < lines; ++k) {
+            const double v = double(k) / lines, next = double(k + 1) / lines;
+            for (double u = first; u < last; ++u) add_line(i, {u, v}, {u + 1, v});
+            for (const double u : {0.0, 1.0}) add_line(i, {u, v}, {u, next});
+        }
+    }
+
+    /// So many that a circle of this size on the film is off by kStraight between two of them.
+    int lines_along(std::uint32_t i) const {
+        double radius = 0;
+        for (const double u : {0.0, 1.0})
+            for (const double v : {0.0, 0.25}) {
+                const auto a = px_of(i, {u, v}), b = px_of(i, {u, v + 0.5});
+                if (a && b) radius = std::max(radius, 0.5 * length(*a - *b));
+            }
+        return std::clamp(int(std::ceil(kPiD / std::sqrt(2 * kStraight / std::max(radius, 1e-3)))), 4, 128);
+    }
+
+    void add_line(std::uint32_t i, Vec2d from, Vec2d to) {
+        const End a{from, note(px_of(i, from))}, b{to, note(px_of(i, to))};
+        add_edge(i, a, b, 0);
     }
 
     std::optional<Vec2d> note(std::optional<Vec2d> px) {

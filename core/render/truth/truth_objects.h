@@ -29,7 +29,7 @@ struct GroupOutline {
     bool empty = true;  // none has a place
     bool open = false;  // some have none: behind the camera, or past the lens's field
 };
-/// Edges of triangles that the lens bends are followed, to 0.05 px or better.
+/// Edges of triangles and lines along curves that the lens bends are followed, to 0.05 px or better.
 std::vector<GroupOutline> outlines(const TruthFrame& frame, const RenderSettings& settings,
                               Groups groups, std::size_t count);
 

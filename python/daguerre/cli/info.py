@@ -151,6 +151,8 @@ def _scene_lines(content: dict[str, Any]) -> list[str]:
         "emissive": f"{content['emissive_instances']} instances",
         "environment": content["environment"] or "none",
     }
+    if content["curves"]:
+        rows["curves"] = f"{content['curves']}"
     if content["variants"]:
         rows["variants"] = ", ".join(content["variants"])
     if content["moves"]:

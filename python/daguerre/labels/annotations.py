@@ -23,7 +23,7 @@ from daguerre.rendering.session import Session
 from daguerre.rendering.truth import GroundTruth, Moment
 from daguerre.scene.scene import Scene
 
-from .boxes import Box3, box_of
+from .boxes import Balls, Box3, box_of
 from .categories import Categories, Category, Thing
 
 Box = tuple[float, float, float, float]
@@ -157,7 +157,7 @@ class _Seen:
         self.silhouettes = np.asarray(boxes, np.float64)
         with_none = np.concatenate([[NO_GROUP], groups]).astype(np.uint32)
         self.labels = (with_none[ids] + np.uint32(1)).astype(np.int32)  # 2^32 - 1 becomes 0
-        self._used: dict[int, NDArray[np.uint32]] = {}  # vertices of meshes
+        self._used: dict[int, Balls] = {}  # by mesh
         self.areas = np.bincount(self.labels.ravel(), minlength=count + 1)[1:]
         self.boxes = _boxes(self.labels, count)
 

@@ -9,9 +9,13 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.scene.curves import balls_along
+from daguerre.scene.parts import Curves, Mesh
 from daguerre.scene.scene import Scene
 
 FloatArray = NDArray[np.float64]
+#: Centres, shape (N, 3), and radii, shape (N, 1) or (1, 1), m.
+Balls = tuple[NDArray[np.floating], FloatArray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,15 +44,13 @@ class Box3:
         return Box3(center, self.size, turn.T @ self.rotation)
 
 
-def box_of(
-    scene: Scene, instances: Sequence[int], used: dict[int, NDArray[np.uint32]] | None = None
-) -> Box3:
-    """Computes the box around instances that have triangles, with the axes of the first.
+def box_of(scene: Scene, instances: Sequence[int], used: dict[int, Balls] | None = None) -> Box3:
+    """Computes the box around instances that have a surface, with the axes of the first.
 
     Args:
         scene: Scene, at whose time the vertices are taken.
         instances: Indices of instances, at least one.
-        used: Cache of the vertices in triangles, by index of the mesh.
+        used: Cache of what the meshes consist of, by index of the mesh.
     """
     used = {} if used is None else used
     axes = rotation_of(scene.instances[instances[0]].transform)
@@ -56,11 +58,22 @@ def box_of(
     for instance in (scene.instances[i] for i in instances):
         mesh, world = scene.meshes[instance.mesh], instance.transform
         if instance.mesh not in used:
-            used[instance.mesh] = np.unique(mesh.indices)
-        points = (mesh.positions[used[instance.mesh]] @ world[:3, :3].T + world[:3, 3]) @ axes
+            used[instance.mesh] = balls_of(mesh)
+        local, radii = used[instance.mesh]
+        points = (local @ world[:3, :3].T + world[:3, 3]) @ axes
         if len(points):
-            low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
+            # A ball reaches along an axis as far as the row of the transform there is long.
+            around = radii * np.linalg.norm(world[:3, :3].T @ axes, axis=0)
+            low = np.minimum(low, (points - around).min(axis=0))
+            high = np.maximum(high, (points + around).max(axis=0))
     return Box3(axes @ (0.5 * (low + high)), high - low, axes)
+
+
+def balls_of(mesh: Mesh) -> Balls:
+    """Finds the points of a mesh that have a surface around them, and its distance from each."""
+    if isinstance(mesh, Curves):
+        return balls_along(mesh)
+    return mesh.positions[np.unique(mesh.indices)], np.zeros((1, 1))
 
 
 def rotation_of(world: FloatArray) -> FloatArray:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from daguerre.camera.camera import Camera
 
+from .parts import reach_of
 from .scene import Scene
 
 FloatArray = NDArray[np.float64]
@@ -41,12 +42,13 @@ def bounds(scene: Scene) -> tuple[FloatArray, FloatArray] | None:
         return None
     boxes = {}
     for mesh in {instance.mesh for instance in filled}:
-        points = scene.meshes[mesh].positions
-        low, high = points.min(axis=0).astype(float), points.max(axis=0).astype(float)
+        points, reach = scene.meshes[mesh].positions, reach_of(scene.meshes[mesh])
+        low = points.min(axis=0).astype(float) - reach
+        high = points.max(axis=0).astype(float) + reach
         boxes[mesh] = (low + high) / 2, (high - low) / 2
     centers, halves = np.array([boxes[i.mesh] for i in filled]).swapaxes(0, 1)
     matrices = np.array([i.transform for i in filled])
     # A rotated box reaches along an axis by the sum of its projected half edges.
     middles = np.einsum("nij,nj->ni", matrices[:, :3, :3], centers) + matrices[:, :3, 3]
-    reach = np.einsum("nij,nj->ni", np.abs(matrices[:, :3, :3]), halves)
-    return (middles - reach).min(axis=0), (middles + reach).max(axis=0)
+    around = np.einsum("nij,nj->ni", np.abs(matrices[:, :3, :3]), halves)
+    return (middles - around).min(axis=0), (middles + around).max(axis=0)

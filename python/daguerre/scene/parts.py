@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,37 @@ class Mesh(FixedArrays):
         return (
             f"<Mesh {self.name!r}: {len(self.positions)} vertices, {len(self.indices)} triangles>"
         )
+
+
+@dataclass(frozen=True, eq=False)
+class Curves(Mesh):
+    """Round curves of one material, in local space (m): a mesh without triangles.
+
+    ``positions`` are the control points of segments, curve after curve: 3 n + 1 of n cubic Bezier
+    segments, or n + 1 of n straight ones. ``uv`` and ``colors`` have one row per position or one
+    per curve.
+
+    Attributes:
+        radii: Radius at each position, shape (P,), m.
+        starts: First position of each segment, shape (S,).
+        ends: One past the last segment of each curve, shape (C,).
+        cubic: Whether the segments are cubic.
+        closed: Whether each curve ends where it begins.
+    """
+
+    radii: NDArray[np.float32] = field(kw_only=True)
+    starts: NDArray[np.uint32] = field(kw_only=True)
+    ends: NDArray[np.uint32] = field(kw_only=True)
+    cubic: bool = field(default=True, kw_only=True)
+    closed: bool = field(default=False, kw_only=True)
+
+    def __repr__(self) -> str:
+        return f"<Curves {self.name!r}: {len(self.ends)} curves, {len(self.starts)} segments>"
+
+
+def reach_of(mesh: Mesh) -> float:
+    """How far the surface reaches beyond the positions, at most, m; 0 for triangles."""
+    return float(mesh.radii.max(initial=0)) if isinstance(mesh, Curves) else 0.0
 
 
 def vertices_of(mesh: Mesh) -> Vertices:

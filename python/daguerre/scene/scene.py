@@ -28,12 +28,13 @@ from daguerre.motion.values import Composite, Dynamic, at, is_dynamic, moves
 from daguerre.parameters.keywords import takes
 
 from .catcher import EFFECTS, check_effects
+from .curves import CURVES, CurveKeywords, curves_of, moving_curves
 from .illuminance import scale_for
 from .lights import Light, check_light
 from .materials import Diffuse, Kind, Material, check_material
 from .mesh import MESH, MeshKeywords, mesh_of
 from .motion import SceneMotion
-from .parts import Environment, Instance, Mesh, Plate, Texture, vertices_of
+from .parts import Curves, Environment, Instance, Mesh, Plate, Texture, vertices_of
 from .point_cache import PointCache, steps_of
 from .polygon_mesh import Over, mesh_of_polygons, polygons_of
 
@@ -91,6 +92,7 @@ class Scene(Value):
         triangles = [len(mesh.indices) for mesh in self.meshes]
         placed = sum(triangles[instance.mesh] for instance in self.instances)
         lights = Counter(type(light).__name__ for light, _ in self.lights)
+        curves = sum(len(mesh.ends) for mesh in self.meshes if isinstance(mesh, Curves))
         rows = {
             "meshes": f"{len(self.meshes)} ({sum(triangles)} triangles)",
             "instances": f"{len(self.instances)} ({placed} triangles)",
@@ -101,6 +103,7 @@ class Scene(Value):
             "cameras": ", ".join(self.cameras) or "none",
             "time": f"{self.time:g} s",
         }
+        rows |= {"curves": str(curves)} if curves else {}
         rows |= {"animation": f"{self.duration:g} s"} if self.duration else {}
         rows |= {"variants": ", ".join(self.variants)} if self.variants else {}
         rows |= {"warnings": "; ".join(self.warnings)} if self.warnings else {}
@@ -295,6 +298,41 @@ class Scene(Value):
         if motion is not None:
             self.motion.meshes[len(self.meshes)] = motion
         self.meshes.append(mesh)
+        return len(self.meshes) - 1
+
+    @takes(CURVES, CurveKeywords)
+    def add_curves(
+        self,
+        points: ArrayLike | Dynamic,
+        counts: ArrayLike,
+        widths: ArrayLike,
+        **keywords: Unpack[CurveKeywords],
+    ) -> int:
+        """Adds round curves, such as hair, grass or cables; returns the index of the mesh.
+
+        All curves of one call are one mesh for ``add_instance``. Cubic curves are swept by
+        a disc across them and end flat; linear ones are round at ends and corners. They shine by
+        their material, but light is not sampled from them.
+
+        Args:
+            points: Control points, curve after curve, shape (N, 3), m; they may change over time.
+            counts: Number of control points of each curve, shape (C,).
+            widths: Diameters, m: one, one per curve, or one per control point.
+            {keywords}
+
+        Raises:
+            InputError: A shape, a count or a number is wrong; the message names it.
+        """
+        given = CURVES.filled(keywords, "Scene.add_curves")
+        where = f"curves {given['name'] or len(self.meshes)!r}"
+        steps = given.pop("steps")
+        path = _dynamic(points) if steps is None else steps_of(steps, where)
+        curves, form, count = curves_of(self._now(points), counts, widths, given, where)
+        if path is not None:
+            motion = moving_curves(path, curves, form, count)
+            curves = replace(curves, **vars(motion.at(self.time)))
+            self.motion.meshes[len(self.meshes)] = motion
+        self.meshes.append(curves)
         return len(self.meshes) - 1
 
     def _now(self, value: Any) -> Any:

@@ -16,6 +16,7 @@ from daguerre.camera.ideal import WITHOUT_IRIS
 from daguerre.checks import DEFAULT_RESOLUTION
 from daguerre.motion.subdivision import some_breaks
 from daguerre.scene.framing import bounds
+from daguerre.scene.parts import Curves
 
 if TYPE_CHECKING:
     from daguerre.camera.camera import Camera
@@ -233,6 +234,7 @@ def scene_facts(scene: Scene) -> dict[str, Any]:
         "file": str(scene.path) if scene.path else None,
         "meshes": len(scene.meshes),
         "triangles": sum(triangles),
+        "curves": sum(len(mesh.ends) for mesh in scene.meshes if isinstance(mesh, Curves)),
         "instances": len(scene.instances),
         "triangles_placed": sum(triangles[i.mesh] for i in scene.instances),
         "bounds_m": [None, None] if corners is None else [c.tolist() for c in corners],

@@ -14,6 +14,8 @@ from daguerre.checks import as_readonly, short
 from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.motion.subdivision import samples
 from daguerre.scene.catcher import EFFECTS
+from daguerre.scene.motion import Vertices
+from daguerre.scene.parts import Curves
 from daguerre.scene.scene import Scene
 
 from .scene_motion import MovingParts
@@ -55,6 +57,9 @@ def _add_all(builder: _core.SceneBuilder, scene: Scene, moving: MovingParts) -> 
         builder.add_texture(texture.name, pixels, texture.srgb, *texture.wrap, *filters)
     for i, mesh in enumerate(scene.meshes):
         v = moving.vertices(i)
+        if isinstance(mesh, Curves):
+            _add_curves(builder, mesh, v)
+            continue
         optional = (v.normals, v.uv, v.uv1, v.tangents, v.colors)
         builder.add_mesh(
             mesh.name,
@@ -71,6 +76,17 @@ def _add_all(builder: _core.SceneBuilder, scene: Scene, moving: MovingParts) -> 
             builder.set_catcher(i, *(effect in instance.catcher for effect in EFFECTS))
     add_lights(builder, scene, moving.interval)
     add_environment(builder, scene, moving.interval)
+
+
+def _add_curves(builder: _core.SceneBuilder, curves: Curves, vertices: Vertices) -> None:
+    values = (vertices.uv, vertices.colors)
+    builder.add_curves(
+        curves.name,
+        as_readonly(vertices.positions),
+        *(as_readonly(numbers) for numbers in (curves.radii, curves.starts, curves.ends)),
+        (curves.cubic, curves.closed),
+        *(None if rows is None else as_readonly(rows) for rows in values),
+    )
 
 
 def content_hash(scene: Scene, interval: tuple[float, float] | None = None) -> str:

@@ -16,7 +16,7 @@ from daguerre.motion.resample import resample_shown, resample_transform
 from daguerre.motion.subdivision import MAX_BREAKS, MAX_KEYS
 from daguerre.motion.values import Dynamic, Keys, Spin
 from daguerre.scene.motion import Vertices
-from daguerre.scene.parts import Instance, Mesh, vertices_of
+from daguerre.scene.parts import Instance, Mesh, reach_of, vertices_of
 from daguerre.scene.scene import Scene
 
 from .vertices import MAX_STEPS, resample_vertices, same_array
@@ -138,7 +138,8 @@ def corners(mesh: Mesh) -> FloatArray:
     """Corners of the box around a mesh, shape (8, 3), m."""
     if not len(mesh.positions):
         return np.zeros((8, 3))
-    ends = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+    reach = reach_of(mesh)
+    ends = mesh.positions.min(axis=0) - reach, mesh.positions.max(axis=0) + reach
     return np.array([[ends[k[i]][i] for i in range(3)] for k in product((0, 1), repeat=3)], float)
 
 
