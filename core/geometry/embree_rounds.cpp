@@ -1,5 +1,6 @@
 #include "geometry/embree_rounds.h"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 
@@ -12,8 +13,22 @@ namespace {
 // Of the radius: surfaces of neighbours that go on in one another are not inside each other.
 constexpr double kInside = 1e-6;
 
-RoundCone cone_of(const CurveSegment& s) {
-    return {s.points[0], s.points[1], s.radii[0], s.radii[1]};
+RoundCone cone_at(const Mesh& mesh, std::uint32_t segment, float time) {
+    const std::size_t start = mesh.curves.starts[segment], n = mesh.vertex_count();
+    const MeshStep step = step_at(mesh.steps, time);
+    const auto point = [&](std::size_t i) {
+        const Vec3f* now = mesh.positions.data() + step.index * n + i;
+        if (step.share == 0) return to_double(*now);
+        return to_double(*now) * (1 - double(step.share)) + to_double(now[n]) * double(step.share);
+    };
+    return {point(start), point(start + 1), mesh.curves.radii[start], mesh.curves.radii[start + 1]};
+}
+
+/// Most rays that enter the box of a thin segment pass its axis by.
+bool comes_near(const RoundCone& cone, Vec3d origin, Vec3d way) {
+    const Vec3d across = cross(way, cone.b - cone.a);
+    const double off = dot(cone.a - origin, across), radius = std::max(cone.ra, cone.rb);
+    return off * off <= 1.0001 * radius * radius * dot(across, across) || dot(across, across) == 0;
 }
 
 std::optional<std::uint32_t> neighbour(const Curves& c, std::uint32_t segment, bool after) {
@@ -32,7 +47,7 @@ bool is_surface(const Mesh& mesh, std::uint32_t segment, const RoundConeCrossing
     if (x.along <= 0 && before) return false;
     for (const auto& other : {before, after}) {
         if (!other || *other == segment) continue;
-        const RoundCone cone = cone_of(segment_at(mesh, *other, time));
+        const RoundCone cone = cone_at(mesh, *other, time);
         if (cone.holds(x.point, kInside * std::max(cone.ra, cone.rb))) return false;
     }
     return true;
@@ -78,14 +93,16 @@ bool accepts(const Asked& asked, RTCRay& ray, RTCHit& hit) {
 /// The nearest surface within the ray; `ray` and `hit` are set to it.
 bool meet(const Asked& asked, RTCRay& ray, RTCHit& hit) {
     const Mesh& mesh = *asked.segments.mesh;
-    const CurveSegment s = segment_at(mesh, asked.segment, ray.time);
+    const RoundCone cone = cone_at(mesh, asked.segment, ray.time);
     const Vec3d origin{ray.org_x, ray.org_y, ray.org_z}, way{ray.dir_x, ray.dir_y, ray.dir_z};
-    const RoundConeCrossings met = cross_round_cone(cone_of(s), origin, way);
+    if (!comes_near(cone, origin, way)) return false;
+    const RoundConeCrossings met = cross_round_cone(cone, origin, way);
     const float far = ray.tfar;
     for (int i = 0; i < met.count; ++i) {
         const RoundConeCrossing& x = met.of[i];
         if (!(x.t > ray.tnear && x.t < far) || !is_surface(mesh, asked.segment, x, ray.time)) continue;
-        const CurvePlace place = place_of(s, x.along, x.normal);
+        const CurvePlace place =
+            place_of(segment_at(mesh, asked.segment, ray.time), x.along, x.normal);
         hit.u = place.along, hit.v = place.around;
         hit.primID = asked.segment;
         hit.geomID = asked.geometry;
