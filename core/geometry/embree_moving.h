@@ -16,7 +16,7 @@ class MovingMesh {
 
     RTCScene scene;    // of the mesh, in its own space
     std::uint32_t id;  // of the instance
-    const TracedCurves* curves = nullptr;  // as in PlacedMesh
+    const TracedCurves* curves = nullptr;  // see PlacedMesh
 
     bool near(const RTCRay& ray) const;
     /// Where the transform has no inverse at the time of the ray, a ray that meets nothing.

@@ -10,7 +10,7 @@
 namespace dg::embree {
 namespace {
 
-// Of the radius: surfaces of neighbours that go on in one another are not inside each other.
+// Share of the radius: surfaces of neighbours that go on in one another are not inside each other.
 constexpr double kInside = 1e-6;
 
 RoundCone cone_at(const Mesh& mesh, std::uint32_t segment, float time) {

@@ -9,7 +9,7 @@
 
 namespace dg::embree {
 
-/// What the callbacks see. Filters are called as Embree calls them; null: none.
+/// Data of the callbacks. Filters are called as Embree calls them; null: none.
 struct RoundSegments {
     const Mesh* mesh;
     void* owner = nullptr;  // user pointer of the filters

@@ -6,15 +6,15 @@
 
 namespace dg {
 
-/// As surface_at(), at hit.time.
+/// Does for a curve what surface_at() does for a triangle, at hit.time.
 void curve_surface_at(const InstanceRecord& record, const Placement& placement,
                       std::uint32_t segment, CurvePlace place, SurfaceHit& hit);
 
-/// As interpolate_attributes().
+/// Sets texture coordinates and colour.
 void interpolate_curve(const InstanceRecord& record, std::uint32_t segment, CurvePlace place,
                        SurfaceHit& hit);
 
-/// As point_at().
+/// A point of a curve in the world.
 Vec3d curve_point_at(const InstanceRecord& record, std::uint32_t segment, CurvePlace place,
                      float time);
 

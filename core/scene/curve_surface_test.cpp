@@ -55,7 +55,7 @@ struct Failures {
     int inward = 0, outward = 0, met = 0;
 };
 
-/// As in self_intersection_test.cpp. A straight curve is convex; on a bent one only what is met sooner
+/// Rays that leave a curve, see self_intersection_test.cpp. A straight curve is convex; on a bent one only what is met sooner
 /// than it can be is an error.
 Failures count_failures(const Mesh& mesh, const Affine3f& placed, bool moving, float shrink, int rays) {
     SceneDescription d = describe(mesh, GltfMaterial{});
@@ -155,4 +155,79 @@ TEST_CASE("no ray meets the curve that it leaves, at any scale and place") {
 TEST_CASE("the test of curves sees an error bound that is too small") {
     const Failures f = sum_of_failures(0, 500, false);
     CHECK(f.inward + f.outward > 100);
+}
+
+TEST_CASE("texture coordinates run along the whole curve and around it; colours are those of curve or place") {
+    const Points points{{0, 0, 0, 0.1f}, {1, 0, 0, 0.1f}, {2, 0, 0, 0.1f},
+                        {0, 5, 0, 0.1f}, {1, 5, 0, 0.1f}, {2, 5, 0, 0.1f}};
+    for (const bool per_curve : {true, false}) {
+        Mesh mesh = curves_mesh(false, points, {2, 4});
+        std::vector<std::array<float, 4>> colors;
+        std::vector<Vec2f> uv;
+        for (int i = 0; i < (per_curve ? 2 : 6); ++i) {
+            colors.push_back({float(i), 1, 0.5f, 1});
+            uv.push_back({float(10 * i), 7});
+        }
+        mesh.colors = colors, mesh.uv[0] = uv;
+        SceneDescription d = describe(mesh, GltfMaterial{});
+        use_textures(d);
+        const auto scene = Scene::build(d);
+        for (int i = 0; i < 200; ++i) {
+            const int curve = i % 2;
+            const float x = 0.01f + 1.98f * float(hash_uniform(41, i)), turn = float(2 * kPiD * hash_uniform(42, i));
+            const Vec3f out{0, std::cos(turn), std::sin(turn)}, on{x, 5.f * float(curve), 0};
+            const auto hit = scene->intersect(test_ray(on + out * 2, -out));
+            REQUIRE(hit.has_value());
+            const SurfaceHit& s = hit->surface;
+            CHECK(s.uv[1].x == doctest::Approx(x / 2).epsilon(1e-4));
+            CHECK(s.color[0] == doctest::Approx(per_curve ? float(curve) : x + 3.f * float(curve)).epsilon(1e-4));
+            CHECK(s.uv[0].x == doctest::Approx(10 * s.color[0]).epsilon(1e-4));
+            CHECK(s.uv[0].y == doctest::Approx(7));
+            CHECK(length(s.ns - out) < 1e-4f);
+            CHECK(std::abs(s.tangent.x) == doctest::Approx(1).epsilon(1e-4));
+            // A quarter turn on is a quarter of the way around.
+            const Vec3f next{0, -out.z, out.y};
+            const auto other = scene->intersect(test_ray(on + next * 2, -next));
+            REQUIRE(other.has_value());
+            float way = other->surface.uv[1].y - s.uv[1].y;
+            way -= std::floor(way);
+            CHECK(std::min(std::abs(way - 0.25f), std::abs(way - 0.75f)) < 1e-3f);
+            CHECK(scene->curvature(s) == doctest::Approx(5).epsilon(1e-4));
+        }
+    }
+}
+
+TEST_CASE("the footprint of a cone is what it covers of the way along and around") {
+    const float radius = 0.1f, width = 1e-3f;
+    const Mesh mesh = curves_mesh(true, bow(2, true, radius, 0, 0), {2});
+    SceneDescription d = describe(mesh, GltfMaterial{});
+    use_textures(d);
+    const auto scene = Scene::build(d);
+    for (const float tilt : {0.f, 0.5f}) {
+        Ray ray = test_ray({0.6f - tilt, 0, 1.1f}, {tilt, 0, -1});
+        ray.cone = {width, 0};
+        const auto hit = scene->intersect(ray);
+        REQUIRE(hit.has_value());
+        for (int set = 0; set < 2; ++set) {
+            const UvFootprint& f = hit->surface.footprint[set];
+            const float around = std::max(std::abs(f.across.y), std::abs(f.along.y));
+            const float along = std::max(std::abs(f.across.x), std::abs(f.along.x));
+            CHECK(around == doctest::Approx(width / (2 * kPi * radius)).epsilon(1e-3));
+            CHECK(along == doctest::Approx(width * std::sqrt(1 + tilt * tilt)).epsilon(1e-3));
+        }
+    }
+}
+
+TEST_CASE("mirroring a curve turns its bitangent, and not its normals") {
+    for (const float side : {1.f, -1.f}) {
+        SceneDescription d = describe(curves_mesh(true, bow(1, true, 0.1f, 0, 0), {1}), GltfMaterial{});
+        d.instances[0].world_from_local.z = {0, 0, side};
+        use_textures(d);
+        const auto scene = Scene::build(d);
+        const auto hit = scene->intersect(test_ray({0.5f, 0, 2}, {0, 0, -1}));
+        REQUIRE(hit.has_value());
+        CHECK(hit->surface.ns.z == doctest::Approx(1).epsilon(1e-4));
+        CHECK(hit->surface.tangent.x == doctest::Approx(1).epsilon(1e-4));
+        CHECK(hit->surface.tangent_sign == side);
+    }
 }

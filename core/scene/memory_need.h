@@ -7,10 +7,11 @@ namespace dg {
 /// Numbers that a scene's memory goes by.
 struct MemoryNeed {
     std::uint64_t triangles = 0;   // of the meshes, each once
-    std::uint64_t segments = 0;    // of curves, each once
+    std::uint64_t segments = 0;    // of curves, each once for each of its time steps
     std::uint64_t lamps = 0;       // emissive triangles of all instances
-    // Bytes of one at the peak, beside the arrays that the scene was given (bench/scale.py: triangles, lamps).
-    static constexpr std::uint64_t kTriangle = 50, kSegment = 400, kLamp = 400;
+    // Bytes of one at the peak, beside the arrays that the scene was given (bench/scale.py: triangles, lamps); segments:
+    // strands of one segment with both ends.
+    static constexpr std::uint64_t kTriangle = 50, kSegment = 260, kLamp = 400;
 
     explicit MemoryNeed(const SceneDescription& description);
     std::uint64_t bytes() const { return triangles * kTriangle + segments * kSegment + lamps * kLamp; }

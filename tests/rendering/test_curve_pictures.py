@@ -197,7 +197,7 @@ FIBRES: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("name", list(FIBRES))
 def test_glass_in_a_white_sky_is_not_seen(name: str) -> None:
-    """What goes in comes out: a boundary that is missed once leaves a factor of 1.5^2."""
+    """Light that goes in comes out: a boundary missed once leaves a factor of 1.5^2."""
     found = pictures(white_sky(FIBRES[name], dg.Dielectric(1.5, 0)), 64, max_depth=400)
     off = (found - pictures(white_sky(), 64)).mean(axis=(1, 2, 3))
     assert abs(off.mean()) < 4 * off.std(ddof=1) / math.sqrt(BATCHES) + 1e-5

@@ -2,8 +2,8 @@
 
 A cubic segment of control points p0 .. p3 is rewritten by a matrix; both forms are the same curve.
 Sources: Farin 2002, Curves and Surfaces for CAGD (B-splines); Catmull and Rom 1974, A class of
-local interpolating splines; OpenUSD, UsdGeomBasisCurves (which points a curve has, its wraps and the
-points that a pinned curve adds at its ends).
+local interpolating splines; OpenUSD, UsdGeomBasisCurves (which points a curve has, its wraps and
+the points that a pinned curve adds at its ends).
 """
 
 from __future__ import annotations

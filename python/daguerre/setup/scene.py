@@ -83,7 +83,9 @@ def _add_curves(builder: _core.SceneBuilder, curves: Curves, vertices: Vertices)
     builder.add_curves(
         curves.name,
         as_readonly(vertices.positions),
-        *(as_readonly(numbers) for numbers in (curves.radii, curves.starts, curves.ends)),
+        as_readonly(curves.radii),
+        as_readonly(curves.starts),
+        as_readonly(curves.ends),
         (curves.cubic, curves.closed),
         *(None if rows is None else as_readonly(rows) for rows in values),
     )
