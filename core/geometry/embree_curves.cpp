@@ -9,7 +9,7 @@ namespace dg::embree {
 namespace {
 
 constexpr unsigned kCapGeometry = 1;
-constexpr int kMostBits = 30;
+constexpr int kMostBits = 30, kMostShift = 40;
 
 /// The power of two that makes the largest radius 1 to 2, or less where coordinates would become too large.
 float scale_for(const Mesh& mesh) {
@@ -18,12 +18,22 @@ float scale_for(const Mesh& mesh) {
     for (const Vec3f p : mesh.positions)
         most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     if (!(radius > 0)) return 1;
-    return std::exp2(float(std::clamp(-std::ilogb(radius), -100, std::max(kMostBits - std::ilogb(most), -100))));
+    const int to_one = std::clamp(-std::ilogb(radius), -kMostShift, kMostShift);
+    return std::exp2(float(std::min(to_one, kMostBits - std::ilogb(most))));
 }
 
 struct Vertex {
     float x, y, z, radius;
 };
+
+/// Scaled. Embree squares distances: what is nothing beside the radius must not make them underflow.
+Vec3f place_in_units(Vec3f p, float scale) {
+    constexpr float kNothing = 0x1p-30f;
+    Vec3f q = p * scale;
+    for (int k = 0; k < 3; ++k)
+        if (std::abs(q[k]) < kNothing) q[k] = 0;
+    return q;
+}
 
 /// Outward. The derivative, as that goes straight between time steps, and a unit vector does not.
 Vec3f cap_normal(const CurveSegment& s, double u, float scale) {
@@ -64,7 +74,7 @@ void TracedCurves::set_vertices(Device& device, RTCGeometry geometry) const {
         auto* vertex = static_cast<Vertex*>(room);
         const Vec3f* points = mesh_->positions.data() + step * n;
         for (std::size_t i = 0; i < n; ++i) {
-            const Vec3f p = points[i] * scale_;
+            const Vec3f p = place_in_units(points[i], scale_);
             vertex[i] = {p.x, p.y, p.z, mesh_->curves.radii[i] * scale_};
         }
     }
@@ -87,7 +97,7 @@ GeometryOwner TracedCurves::caps(Device& device) {
         for (const Cap& cap : caps_) {
             const CurveSegment s = segment_at(*mesh_, cap.segment, time);
             const double u = cap.at_end ? 1 : 0;
-            const Vec3f p = to_float(s.center(u)) * scale_;
+            const Vec3f p = place_in_units(to_float(s.center(u)), scale_);
             *vertex++ = {p.x, p.y, p.z, float(s.radius(u)) * scale_};
             *normal++ = cap_normal(s, u, scale_);
         }

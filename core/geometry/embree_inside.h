@@ -57,7 +57,7 @@ void intersect_inside(const RTCIntersectFunctionNArguments* a) {
     Context context = inside(placed.id, a->context);
     RTCRayHit local;
     local.ray = placed.to_local(world.ray);
-    if (placed.curves) placed.curves->scale(local.ray);
+    if (placed.curves && !placed.curves->scale(local.ray)) return;
     local.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query(placed.scene, context.embree, local);
     if (local.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
@@ -75,7 +75,7 @@ void occlude_inside(const RTCOccludedFunctionNArguments* a) {
     if (!placed.near(world)) return;
     Context context = inside(placed.id, a->context);
     RTCRay local = placed.to_local(world);
-    if (placed.curves) placed.curves->scale(local);
+    if (placed.curves && !placed.curves->scale(local)) return;
     query(placed.scene, context.embree, local);
     if (local.tfar < 0) world.tfar = local.tfar;
 }

@@ -279,6 +279,26 @@ def test_a_basis_that_is_none_is_refused() -> None:
         dg.Scene().add_curves(POINTS, [7], 0.1, wrap="open")
 
 
+@pytest.mark.parametrize("basis", ["bspline", "linear"])
+@pytest.mark.parametrize("size", [1e-35, 1e-20, 1e-9, 1e-4, 1e6, 1e14, 1e25])
+def test_curves_of_any_size_are_met_or_not_and_end_nothing(size: float, basis: str) -> None:
+    scene = dg.Scene()
+    rod = scene.add_curves(
+        np.array([(-1, 0, 0), (1, 0, 0)]) * size, [2], 0.2 * size, basis=basis, wrap="pinned"
+    )
+    scene.add_instance(rod)
+    scene.add_instance(rod, transform=np.diag([1e8, 1e-8, 1e8, 1.0]))
+    hit = setup.build(scene).first_hit((0, 0, min(3 * size, 1e17)), (0, 0, -1))
+    if 1e-9 <= size <= 1e6:
+        assert hit is not None
+
+
+def test_points_that_are_nothing_beside_the_width_end_nothing() -> None:
+    scene = dg.Scene()
+    scene.add_instance(scene.add_curves(POINTS * 1e-30, [7], 1e19, basis="catmull-rom"))
+    setup.build(scene).first_hit((0, 0, 3), (0, 0, -1))
+
+
 def test_no_curves_and_points_at_one_place_are_nothing_to_see() -> None:
     scene = dg.Scene()
     scene.add_instance(scene.add_curves(np.zeros((0, 3)), np.zeros(0, int), 0.1))
