@@ -26,13 +26,14 @@ struct Vertex {
     float x, y, z, radius;
 };
 
-/// Scaled. Embree squares distances: what is nothing beside the radius must not make them underflow.
-Vec3f place_in_units(Vec3f p, float scale) {
-    constexpr float kNothing = 0x1p-30f;
-    Vec3f q = p * scale;
-    for (int k = 0; k < 3; ++k)
-        if (std::abs(q[k]) < kNothing) q[k] = 0;
-    return q;
+/// Scaled. Embree squares distances and divides by them: what is nothing beside the largest radius must
+/// not underflow.
+Vertex vertex_at(Vec3f p, float radius, float scale) {
+    const auto in_units = [scale](float v) {
+        constexpr float kNothing = 0x1p-30f;
+        return std::abs(v * scale) < kNothing ? 0 : v * scale;
+    };
+    return {in_units(p.x), in_units(p.y), in_units(p.z), in_units(radius)};
 }
 
 /// Outward. The derivative, as that goes straight between time steps, and a unit vector does not.
@@ -73,10 +74,8 @@ void TracedCurves::set_vertices(Device& device, RTCGeometry geometry) const {
         device.check("points of curves '" + mesh_->name + "'");
         auto* vertex = static_cast<Vertex*>(room);
         const Vec3f* points = mesh_->positions.data() + step * n;
-        for (std::size_t i = 0; i < n; ++i) {
-            const Vec3f p = place_in_units(points[i], scale_);
-            vertex[i] = {p.x, p.y, p.z, mesh_->curves.radii[i] * scale_};
-        }
+        for (std::size_t i = 0; i < n; ++i)
+            vertex[i] = vertex_at(points[i], mesh_->curves.radii[i], scale_);
     }
 }
 
@@ -97,8 +96,7 @@ GeometryOwner TracedCurves::caps(Device& device) {
         for (const Cap& cap : caps_) {
             const CurveSegment s = segment_at(*mesh_, cap.segment, time);
             const double u = cap.at_end ? 1 : 0;
-            const Vec3f p = place_in_units(to_float(s.center(u)), scale_);
-            *vertex++ = {p.x, p.y, p.z, float(s.radius(u)) * scale_};
+            *vertex++ = vertex_at(to_float(s.center(u)), float(s.radius(u)), scale_);
             *normal++ = cap_normal(s, u, scale_);
         }
     }
