@@ -22,6 +22,7 @@ namespace dg::bind {
 namespace {
 
 using Triple = std::array<float, 3>;
+Vec3f vec(const Triple& v) { return {v[0], v[1], v[2]}; }
 Rgb to_rgb(const Triple& c) { return {c[0], c[1], c[2]}; }
 
 template <typename Enum>
@@ -217,9 +218,12 @@ struct Builder {
         return int(description.textures.size()) - 1;
     }
 
+    /// Emission of a material: colour, whether the back emits too, and its profile.
+    using Emission = std::tuple<Triple, bool, int>;
     template <typename Kind>
-    int add_material(const std::string& name, Kind kind, const Triple& emission, bool two_sided) {
-        description.materials.push_back({name, std::move(kind), to_rgb(emission), two_sided});
+    int add_material(const std::string& name, Kind kind, const Emission& emission) {
+        const auto& [color, two_sided, profile] = emission;
+        description.materials.push_back({name, std::move(kind), to_rgb(color), two_sided, profile});
         return int(description.materials.size()) - 1;
     }
 
@@ -240,6 +244,11 @@ struct Builder {
     /// Makes an instance a part of the set.
     void set_catcher(std::uint32_t instance, bool shadow, bool reflection, bool gi) {
         description.instances.at(instance).catcher = CatcherEffects{shadow, reflection, gi};
+    }
+
+    int add_profile(std::shared_ptr<LightProfile> profile) {
+        description.profiles.push_back(std::move(profile));
+        return int(description.profiles.size()) - 1;
     }
 
     void add_light(Light light) { description.lights.push_back(std::move(light)); }
@@ -271,7 +280,6 @@ struct Builder {
     }
 };
 
-Vec3f vec(const Triple& v) { return {v[0], v[1], v[2]}; }
 
 std::optional<std::tuple<float, std::uint32_t>> first_hit(const Scene& scene, const Triple& origin,
                                                           const Triple& direction) {
@@ -319,35 +327,38 @@ void def_shapes(nb::class_<Builder>& c) {
 
 /// One maker for each kind of material.
 void def_materials(nb::class_<Builder>& c) {
+    using Emission = Builder::Emission;
     c.def("add_diffuse",
-             [](Builder& b, const std::string& name, const Triple& reflectance,
-                const Triple& emission, bool two_sided) {
-                 return b.add_material(name, DiffuseMaterial{to_rgb(reflectance)}, emission, two_sided);
+             [](Builder& b, const std::string& name, const Triple& reflectance, const Emission& emission) {
+                 return b.add_material(name, DiffuseMaterial{to_rgb(reflectance)}, emission);
              })
         .def("add_conductor",
              [](Builder& b, const std::string& name, const Triple& reflectance, float alpha,
-                const Triple& emission, bool two_sided) {
-                 return b.add_material(name, ConductorMaterial{to_rgb(reflectance), alpha}, emission,
-                                       two_sided);
+                const Emission& emission) {
+                 return b.add_material(name, ConductorMaterial{to_rgb(reflectance), alpha}, emission);
              })
         .def("add_dielectric",
              [](Builder& b, const std::string& name, float ior, float alpha, const Triple& tint,
-                float dispersion, const Triple& emission, bool two_sided) {
-                 return b.add_material(name, DielectricMaterial{ior, alpha, to_rgb(tint), dispersion},
-                                       emission, two_sided);
+                float dispersion, const Emission& emission) {
+                 return b.add_material(name, DielectricMaterial{ior, alpha, to_rgb(tint), dispersion}, emission);
              })
-        .def("add_gltf",
-             [](Builder& b, const std::string& name, const nb::dict& values,
-                const Triple& emission, bool two_sided) {
-                 return b.add_material(name, to_gltf(values), emission, two_sided);
-             });
+        .def("add_gltf", [](Builder& b, const std::string& name, const nb::dict& values,
+                            const Emission& emission) { return b.add_material(name, to_gltf(values), emission); });
+}
+
+/// Index of a profile, -1 without, and the axes of the lamp in the world.
+using Lamp = std::tuple<int, Triple, Triple, Triple>;
+LampShape to_lamp(const Lamp& lamp) {
+    const auto& [profile, x, y, z] = lamp;
+    return {profile, {to_double(vec(x)), to_double(vec(y)), to_double(vec(z)), {}}};
 }
 
 /// One maker for each kind of light that is no mesh.
 void def_lights(nb::class_<Builder>& c) {
-    c.def("add_point_light",
-             [](Builder& b, const Triple& position, const Triple& intensity, float range) {
-                 b.add_light(PointLight{vec(position), to_rgb(intensity), range});
+    c.def("add_profile", &Builder::add_profile, "profile"_a)
+        .def("add_point_light",
+             [](Builder& b, const Triple& position, const Triple& intensity, float range, const Lamp& lamp) {
+                 b.add_light(PointLight{vec(position), to_rgb(intensity), range, to_lamp(lamp)});
              })
         .def("add_spot_light",
              [](Builder& b, const Triple& position, const Triple& direction,
@@ -360,8 +371,8 @@ void def_lights(nb::class_<Builder>& c) {
                  b.add_light(DirectionalLight{normalize(vec(direction)), to_rgb(illuminance)});
              })
         .def("add_sphere_light",
-             [](Builder& b, const Triple& center, float radius, const Triple& luminance) {
-                 b.add_light(SphereLight{{vec(center), radius}, to_rgb(luminance)});
+             [](Builder& b, const Triple& center, float radius, const Triple& luminance, const Lamp& lamp) {
+                 b.add_light(SphereLight{{vec(center), radius}, to_rgb(luminance), to_lamp(lamp)});
              });
 }
 

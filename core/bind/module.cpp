@@ -18,6 +18,7 @@ void bind_optics(nb::module_& m);
 void bind_lens_fit(nb::module_& m);
 void bind_ghosts(nb::module_& m);
 void bind_scatter(nb::module_& m);
+void bind_light_profile(nb::module_& m);
 void bind_scene(nb::module_& m);
 void bind_projection(nb::module_& m);
 void bind_camera(nb::module_& m);
@@ -57,6 +58,7 @@ NB_MODULE(_core, m) {
     bind_lens_fit(m);
     bind_ghosts(m);
     bind_scatter(m);
+    bind_light_profile(m);
     bind_scene(m);
     bind_projection(m);
     bind_camera(m);

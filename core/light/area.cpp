@@ -26,6 +26,13 @@ VisibleDisc visible_disc(const Sphere& sphere, Vec3f position) {
 
 }  // namespace
 
+void narrow(LightBounds& bounds, const LampShape& lamp) {
+    if (!lamp.used() || lamp.spread >= kPi) return;
+    bounds.axis = normalize(lamp.axis());
+    bounds.spread = lamp.spread;
+    bounds.falloff = 0;
+}
+
 float triangle_area(const TriangleLight& light) {
     return TriangleSampler(light).area;
 }
@@ -50,6 +57,7 @@ LightBounds emitter_bounds(const SphereLight& light) {
     b.min = light.shape.center - Vec3f{r, r, r};
     b.max = light.shape.center + Vec3f{r, r, r};
     b.intensity = selection_weight(light.luminance) * kPi * r * r;
+    narrow(b, light.lamp);
     return b;
 }
 

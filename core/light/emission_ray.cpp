@@ -12,11 +12,20 @@ constexpr float kAimed = 0.5f;
 // Chances of lights follow their power by so much; the rest is even.
 constexpr double kByPower = 0.9;
 
+/// lm; of a lamp with a profile, whose bounds have the peak of it.
+double power_of(const LightProfile& profile, const Light& light, const LightBounds& b) {
+    const bool surface = std::holds_alternative<TriangleLight>(light);
+    const Rgb share = surface ? profile.facing_mean() : profile.mean();
+    const double all = surface ? (b.two_sided ? 2 : 1) * kPiD : 4 * kPiD;
+    return profile.peak() > 0 ? all * b.intensity * max_component(share) / profile.peak() : 0;
+}
+
 /// lm; the largest ever. Lights from infinity fall on the disc that the scene shows them.
 double power_of(const LightSet& lights, std::size_t light, float scene_radius) {
     const double disc = kPiD * double(scene_radius) * scene_radius;
     if (const float lux = lights.infinite_weight(light); lux > 0) return lux * disc;
     const LightBounds b = lights.bounds_of(light);
+    if (const LightProfile* profile = lights.profile_of(light)) return power_of(*profile, lights.lights()[light], b);
     if (b.spread >= kPi) return 4 * kPiD * b.intensity;
     if (b.falloff > 0) return (b.two_sided ? 2 : 1) * kPiD * b.intensity;   // cosine
     return 2 * kPiD * (1 - std::cos(double(b.spread))) * b.intensity;
@@ -70,8 +79,13 @@ SurfaceEmission surface(const EmissionAim& aim, const TriangleSampler& t, Vec3f 
 SurfaceEmission surface(const EmissionAim& aim, const SphereLight& s, Vec3f from) {
     return {aim, from, normalize(from - s.shape.center)};
 }
+/// 1 - cos, a little wider than the profile, so that nothing is lost at its edge by rounding.
+float spread_of(float angle) {
+    return float(std::min(2.0, 1 - std::cos(std::min(kPiD, angle + 1e-3))));
+}
 ConeEmission cone(const EmissionAim& aim, const PointLight& light) {
-    return {aim, light.position, {0, 0, 1}, 2};
+    if (!light.lamp.used() || light.lamp.spread >= kPi) return {aim, light.position, {0, 0, 1}, 2};
+    return {aim, light.position, normalize(light.lamp.axis()), spread_of(light.lamp.spread)};
 }
 ConeEmission cone(const EmissionAim& aim, const SpotLight& light) {
     return {aim, light.position, light.direction,
@@ -250,8 +264,10 @@ std::optional<EmissionRay> EmissionRays::sample(float u_light, Vec2f u_point, Ve
         if (std::holds_alternative<TriangleLight>(light)) {
             const auto now = lights_->triangle_at(chosen.index, time);
             if (!now || !from(*now)) return std::nullopt;
-        } else if (!std::visit(from, lights_->light_at(chosen.index, time))) {
-            return std::nullopt;
+        } else {
+            const Light now = lights_->light_at(chosen.index, time);
+            if (!std::visit(from, now)) return std::nullopt;
+            ray->value = ray->value * lights_->shaped(now, ray->direction);
         }
     }
     if (!ray || !(ray->pdf > 0)) return std::nullopt;

@@ -21,6 +21,9 @@ LightBounds emitter_bounds(const DirectionalLight& light);
 LightBounds emitter_bounds(const SphereLight& light);
 LightBounds emitter_bounds(const TriangleLight& light);
 
+/// Makes bounds as narrow as the spread of a lamp's profile; the intensity is still without it.
+void narrow(LightBounds& bounds, const LampShape& lamp);
+
 /// Sample like a LightSample, but the radiance is still an Rgb and the choice of the light is not
 /// in the pdf.
 struct EmitterSample {

@@ -252,7 +252,8 @@ Rgb EmitterPoints::delta_value(const EmitterPoint& from, Vec3f to, float time) c
     const auto at = std::visit(
         [&](const auto& kind) { return sample_emitter(kind, Vec2f{}, to); }, light);
     if (!at) return {0, 0, 0};
-    return from.at_infinity ? at->value : at->value * (at->distance * at->distance);
+    if (from.at_infinity) return at->value;
+    return at->value * lights_->shaped(light, -at->wi) * (at->distance * at->distance);
 }
 
 }  // namespace dg

@@ -42,16 +42,24 @@ LightBounds placeless(float intensity) {
 
 }  // namespace
 
+const LampShape* lamp_of(const Light& light) {
+    if (const auto* point = std::get_if<PointLight>(&light)) return &point->lamp;
+    if (const auto* sphere = std::get_if<SphereLight>(&light)) return &sphere->lamp;
+    return nullptr;
+}
+LampShape* lamp_of(Light& light) { return const_cast<LampShape*>(lamp_of(std::as_const(light))); }
+
 LightSet::LightSet() = default;
 LightSet::~LightSet() = default;
 LightSet::LightSet(LightSet&&) noexcept = default;
 LightSet& LightSet::operator=(LightSet&&) noexcept = default;
 
 LightSet::LightSet(std::vector<Light> lights, std::optional<Environment> environment,
-                   LightChoice choice, LightMotion motion)
+                   LightChoice choice, LightMotion motion, LightProfiles profiles)
     : lights_(std::move(lights)),
       environment_(std::move(environment)),
-      motion_(std::move(motion)) {
+      motion_(std::move(motion)),
+      profiles_(std::move(profiles)) {
     std::string where;   // one for all: a million of them take a while
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         where.assign("light ").append(std::to_string(i)).append(" (").append(kind_name(lights_[i])).append(")");
@@ -59,9 +67,25 @@ LightSet::LightSet(std::vector<Light> lights, std::optional<Environment> environ
         const auto keys = motion_.keys.find(std::uint32_t(i));
         if (keys != motion_.keys.end()) check_keys(keys->second.values, where);
     }
+    take_profiles();
     build_changes();
     build_groups(choice);
     build_lookup();
+}
+
+/// Lamps learn how far their profiles spread.
+void LightSet::take_profiles() {
+    const auto take = [&](Light& light, std::size_t index) {
+        LampShape* lamp = lamp_of(light);
+        if (!lamp || !lamp->used()) return;
+        if (std::size_t(lamp->profile) >= profiles_.list.size())
+            throw input_error("light " + std::to_string(index), "profile",
+                              "less than " + std::to_string(profiles_.list.size()), std::to_string(lamp->profile));
+        lamp->spread = profiles_.list[std::size_t(lamp->profile)]->spread();
+    };
+    for (std::size_t i = 0; i < lights_.size(); ++i) take(lights_[i], i);
+    for (auto& [index, keys] : motion_.keys)
+        for (Light& key : keys.values) take(key, index);
 }
 
 /// A light whose keys are of no other use is what its only key says.
@@ -84,8 +108,27 @@ float LightSet::infinite_weight(std::size_t light) const {
 LightBounds LightSet::bounds_of(std::size_t light) const {
     const auto moving = motion_.triangles.find(std::uint32_t(light));
     if (moving != motion_.triangles.end()) return moving->second;
-    if (const Keyed<Light>* keys = keys_of(light)) return bounds_over(*keys);
-    return std::visit([](const auto& l) { return emitter_bounds(l); }, lights_[light]);
+    const Keyed<Light>* keys = keys_of(light);
+    LightBounds b = keys ? bounds_over(*keys)
+                         : std::visit([](const auto& l) { return emitter_bounds(l); }, lights_[light]);
+    const LampShape* lamp = lamp_of(lights_[light]);
+    if (lamp && lamp->used()) b.intensity *= profiles_.list[std::size_t(lamp->profile)]->peak();
+    return b;
+}
+
+const LightProfile* LightSet::profile_of(std::size_t light) const {
+    if (profiles_.list.empty()) return nullptr;
+    std::int32_t profile = -1;
+    if (const LampShape* lamp = lamp_of(lights_[light])) profile = lamp->profile;
+    const auto* triangle = std::get_if<TriangleLight>(&lights_[light]);
+    if (triangle && !profiles_.of_instance.empty()) profile = profiles_.of_instance[triangle->instance];
+    return profile < 0 ? nullptr : profiles_.list[std::size_t(profile)].get();
+}
+
+Rgb LightSet::shaped(const Light& now, Vec3f away) const {
+    const LampShape* lamp = profiles_.list.empty() ? nullptr : lamp_of(now);
+    if (!lamp || !lamp->used()) return {1, 1, 1};
+    return profiles_.list[std::size_t(lamp->profile)]->at(lamp->local(away));
 }
 
 void LightSet::build_groups(LightChoice choice) {
@@ -215,13 +258,26 @@ std::int64_t LightSet::triangle_index(std::uint32_t instance, std::uint32_t prim
     return triangle.instance == instance && triangle.primitive == primitive ? light : -1;
 }
 
+/// Nothing where the profile leaves no light.
+std::optional<EmitterSample> LightSet::with_profile(const Light& now, std::optional<EmitterSample> sample) const {
+    if (profiles_.list.empty() || !sample) return sample;
+    const LampShape* lamp = lamp_of(now);
+    if (!lamp || !lamp->used()) return sample;
+    sample->value = sample->value * shaped(now, -sample->wi);
+    if (!(max_component(sample->value) > 0)) sample.reset();
+    return sample;
+}
+
 /// Samples a light that is no triangle, or changes.
 std::optional<EmitterSample> LightSet::sample_other(std::size_t light, Vec2f u,
                                                     Vec3f position, float time) const {
     const auto toward = [&](const auto& l) { return sample_emitter(l, u, position); };
-    if (const Keyed<Light>* keys = keys_of(light)) return std::visit(toward, keys->at(time));
+    if (const Keyed<Light>* keys = keys_of(light)) {
+        const Light now = keys->at(time);
+        return with_profile(now, std::visit(toward, now));
+    }
     if (!std::holds_alternative<TriangleLight>(lights_[light]))
-        return std::visit(toward, lights_[light]);
+        return with_profile(lights_[light], std::visit(toward, lights_[light]));
     const auto triangle = triangle_at(light, time);
     return triangle ? sample_emitter(*triangle, u, position) : std::nullopt;
 }
@@ -371,9 +427,11 @@ float LightSet::pdf_environment(Vec3f direction, Vec3f position, float time) con
            environment_->pdf(direction, time);
 }
 
-Spectrum LightSet::sphere_radiance(std::uint32_t sphere, float time,
+Spectrum LightSet::sphere_radiance(std::uint32_t sphere, Vec3f away, float time,
                                    const Wavelengths& wavelengths) const {
-    return wavelengths.emission(sphere_at(sphere, time).luminance);
+    const SphereLight now = sphere_at(sphere, time);
+    if (!now.lamp.used()) return wavelengths.emission(now.luminance);
+    return wavelengths.emission(now.luminance * shaped(now, away));
 }
 
 Spectrum LightSet::environment_radiance(Vec3f direction, float time,

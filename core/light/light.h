@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <variant>
@@ -13,6 +14,7 @@
 
 #include "geometry/mesh.h"
 #include "light/environment.h"
+#include "light/light_profile.h"
 #include "light/light_tree.h"
 #include "math/distribution.h"
 #include "math/transform.h"
@@ -26,6 +28,7 @@ struct PointLight {
     Rgb intensity;   // cd
     float range =
         std::numeric_limits<float>::infinity();  // m; glTF window (KHR_lights_punctual)
+    LampShape lamp{};
 };
 struct SpotLight {
     Vec3f position;                  // m
@@ -38,10 +41,11 @@ struct DirectionalLight {
     Vec3f direction;  // unit, where it shines
     Rgb illuminance;  // lux
 };
-/// A ball that shines evenly; rays can hit it (Intersector sphere `sphere`).
+/// A ball that shines evenly, or by a profile; rays can hit it (Intersector sphere `sphere`).
 struct SphereLight {
     Sphere shape;
     Rgb luminance;  // cd/m2
+    LampShape lamp{};
 };
 /// One emissive triangle, world space.
 struct TriangleLight {
@@ -58,6 +62,10 @@ struct TriangleLight {
 using Light =
     std::variant<PointLight, SpotLight, DirectionalLight, SphereLight, TriangleLight>;
 
+/// Of the kinds that may have a profile; null for the others.
+const LampShape* lamp_of(const Light& light);
+LampShape* lamp_of(Light& light);
+
 /// Motion of lights while the shutter is open (fractions of the scene's interval), by their index;
 /// those that are not named stay as they are. See light_keys.h.
 struct LightMotion {
@@ -66,6 +74,12 @@ struct LightMotion {
     std::map<std::uint32_t, LightBounds> triangles;
     /// Puts one of them where it is at a time; false while it is not there at all.
     std::function<bool(TriangleLight&, float time)> place;
+};
+
+/// Profiles that the lights of a scene refer to by index.
+struct LightProfiles {
+    std::vector<std::shared_ptr<const LightProfile>> list{};
+    std::vector<std::int32_t> of_instance{};   // of its triangle lights; -1: none. Empty: none at all
 };
 
 struct LightSample {
@@ -105,7 +119,7 @@ class LightSet {
     /// Throws Error naming light and value: not finite, negative colour, zero direction,
     /// radius or range not positive, angles of a spot out of order.
     LightSet(std::vector<Light> lights, std::optional<Environment> environment,
-             LightChoice choice = LightChoice::tree, LightMotion motion = {});
+             LightChoice choice = LightChoice::tree, LightMotion motion = {}, LightProfiles profiles = {});
 
     bool empty() const { return tree_.empty() && infinite_.empty(); }
     /// Radiance of triangle lights is mean_luminance here; LightSample::uneven tells the
@@ -131,8 +145,8 @@ class LightSet {
     float pdf_environment(Vec3f direction, Vec3f position, float time) const;
     /// LightSample::pdf, had sample() chosen this light (or kEnvironment) along `wi` at `distance`.
     float pdf(std::int32_t light, Vec3f position, Vec3f wi, float distance, float time) const;
-    /// Emission seen by a ray that hit sphere light `sphere` / left the scene.
-    Spectrum sphere_radiance(std::uint32_t sphere, float time,
+    /// Emission seen by a ray that hit sphere light `sphere`, whose light goes `away` / left the scene.
+    Spectrum sphere_radiance(std::uint32_t sphere, Vec3f away, float time,
                              const Wavelengths& wavelengths) const;
     Spectrum environment_radiance(Vec3f direction, float time,
                                   const Wavelengths& wavelengths) const;
@@ -157,6 +171,10 @@ class LightSet {
     std::optional<TriangleLight> triangle_at(std::size_t light, float time) const;
     /// Any other as it is at a time.
     Light light_at(std::size_t light, float time) const;
+    /// Factor on the light of one that is no triangle (a light as it is at a time) which goes `away` (unit).
+    Rgb shaped(const Light& now, Vec3f away) const;
+    /// Null: it shines as its kind does.
+    const LightProfile* profile_of(std::size_t light) const;
     /// Where a light ever is, and how bright it ever gets; intensity 0: never, or at infinity.
     LightBounds bounds_of(std::size_t light) const;
     /// How bright a light from infinity ever is on a surface that faces it, lux; 0 for the others.
@@ -165,6 +183,7 @@ class LightSet {
 
   private:
     static constexpr std::int32_t kNone = -2;
+    void take_profiles();
     void build_changes();
     void build_groups(LightChoice choice);
     void add_local(std::size_t light);
@@ -176,6 +195,7 @@ class LightSet {
     std::optional<LightSample> sample_infinite(float u_select, float p_infinite, Vec2f u,
                                                float time,
                                                const Wavelengths& wavelengths) const;
+    std::optional<EmitterSample> with_profile(const Light& now, std::optional<EmitterSample> sample) const;
     std::optional<EmitterSample> sample_other(std::size_t light, Vec2f u, Vec3f position,
                                               float time) const;
     const Keyed<Light>* keys_of(std::size_t light) const {
@@ -187,6 +207,7 @@ class LightSet {
     std::vector<Light> lights_;
     std::optional<Environment> environment_;
     LightMotion motion_;
+    LightProfiles profiles_;
     std::vector<const Keyed<Light>*> keys_;  // by light, into motion_; empty: none changes
     LightTree tree_;
     std::vector<TriangleSampler> triangles_;  // by tree index, and the number of any light there

@@ -27,9 +27,9 @@ Vec3f turn_toward(Vec3f a, Vec3f b, float share) {
 
 // The bindings name every field, so that a new one does not compile until it has its place here.
 PointLight between(const PointLight& a, const PointLight& b, float s) {
-    const auto& [position, intensity, range] = b;
+    const auto& [position, intensity, range, lamp] = b;
     return {on_the_way(a.position, position, s), on_the_way(a.intensity, intensity, s),
-            on_the_way(a.range, range, s)};
+            on_the_way(a.range, range, s), blend(a.lamp, lamp, s)};
 }
 SpotLight between(const SpotLight& a, const SpotLight& b, float s) {
     const auto& [position, direction, intensity, inner, outer, range] = b;
@@ -42,8 +42,8 @@ DirectionalLight between(const DirectionalLight& a, const DirectionalLight& b, f
     return {turn_toward(a.direction, direction, s), on_the_way(a.illuminance, illuminance, s)};
 }
 SphereLight between(const SphereLight& a, const SphereLight& b, float s) {
-    const auto& [shape, luminance] = b;
-    return {blend(a.shape, shape, s), on_the_way(a.luminance, luminance, s)};
+    const auto& [shape, luminance, lamp] = b;
+    return {blend(a.shape, shape, s), on_the_way(a.luminance, luminance, s), blend(a.lamp, lamp, s)};
 }
 TriangleLight between(const TriangleLight& a, const TriangleLight&, float) {
     return a;
@@ -68,8 +68,20 @@ void check_keys(std::span<const Light> keys, const std::string& where) {
             throw input_error(key, "kind", "that of the first key", "another");
         if (std::holds_alternative<TriangleLight>(light))
             throw input_error(key, "kind", "a light that is no triangle", "a triangle");
+        const LampShape *lamp = lamp_of(light), *first = lamp_of(keys[0]);
+        if (lamp && (lamp->profile != first->profile || lamp->mirrored != first->mirrored))
+            throw input_error(key, "profile", "that of the first key, not mirrored", "another");
         std::visit([&](const auto& l) { check_emitter(l, key); }, light);
     }
+}
+
+/// Whether the profile of a lamp turns.
+static bool turns(const Keyed<Light>& keys) {
+    const LampShape* first = lamp_of(keys.values[0]);
+    return first && first->used() && std::ranges::any_of(keys.values, [&](const Light& key) {
+        const Quaternionf a = first->rotation, b = lamp_of(key)->rotation;
+        return a.x != b.x || a.y != b.y || a.z != b.z || a.w != b.w;
+    });
 }
 
 LightBounds bounds_over(const Keyed<Light>& keys) {
@@ -86,6 +98,7 @@ LightBounds bounds_over(const Keyed<Light>& keys) {
         }
     }
     all.intensity = std::max(intensity, luminance * kPi * radius * radius);
+    if (turns(keys)) all.spread = kPi, all.falloff = kPi / 2;   // its axis may leave the cone around those of the keys
     return all;
 }
 

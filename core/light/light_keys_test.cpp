@@ -194,7 +194,7 @@ TEST_CASE("densities of a sphere that moves are those of its place at the time")
         const double ratio = set.pdf_sphere(0, p, time) / set.pdf_sphere(0, p, 0);
         const auto first = std::get<SphereLight>(c.lights[2]);
         CHECK(ratio == doctest::Approx(emitter_pdf(now, p) / emitter_pdf(first, p)).epsilon(1e-4));
-        CHECK(set.sphere_radiance(0, time, white())[0] == doctest::Approx(now.luminance.x));
+        CHECK(set.sphere_radiance(0, {0, 0, 1}, time, white())[0] == doctest::Approx(now.luminance.x));
     }
 }
 

@@ -202,7 +202,7 @@ TEST_CASE("sample().pdf is what the pdf functions say of the same direction") {
             ++kinds[1];
             const bool second = s->radiance[0] == 9;
             pdf = set.pdf_sphere(second, p, 0);
-            CHECK(set.sphere_radiance(second, 0, rgb_lanes())[0] == s->radiance[0]);
+            CHECK(set.sphere_radiance(second, -s->wi, 0, rgb_lanes())[0] == s->radiance[0]);
         } else if (!s->delta) {
             ++kinds[2];
             pdf = set.pdf_environment(s->wi, p, 0);

@@ -64,6 +64,7 @@ LightBounds emitter_bounds(const PointLight& light) {
     LightBounds b;
     b.min = b.max = light.position;
     b.intensity = selection_weight(light.intensity);
+    narrow(b, light.lamp);
     return b;
 }
 

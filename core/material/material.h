@@ -1,6 +1,7 @@
 // material.h -- what surfaces are made of. Adding a kind: a struct here, a bsdf_x.h/.cpp
 // with its BSDF, an alternative in both variants, and a line in material.cpp's shade().
 #pragma once
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <variant>
@@ -88,6 +89,7 @@ struct Material {
     /// Extra emission of any kind, cd/m2 (front side only, unless two_sided_emission).
     Rgb emission{0, 0, 0};
     bool two_sided_emission = false;
+    std::int32_t profile = -1;  // of all emission, by direction; index, -1: none
 };
 
 /// Throws Error naming the material and the field: a factor that is not finite or out of

@@ -85,10 +85,11 @@ struct Pairs {
 template <typename Number, typename Other>
 void each_pair(Material& a, const Material& b, Number number, Other other) {
     Pairs<Number, Other> pairs{number, other};
-    auto& [a_name, a_kind, a_emission, a_two_sided] = a;
-    const auto& [b_name, b_kind, b_emission, b_two_sided] = b;
+    auto& [a_name, a_kind, a_emission, a_two_sided, a_profile] = a;
+    const auto& [b_name, b_kind, b_emission, b_two_sided, b_profile] = b;
     pairs.visit(a_emission, b_emission);
     pairs.visit(a_two_sided, b_two_sided);
+    pairs.visit(a_profile, b_profile);
     std::visit(
         [&](auto& kind) {
             const auto* same = std::get_if<std::remove_cvref_t<decltype(kind)>>(&b.kind);
@@ -100,7 +101,7 @@ void each_pair(Material& a, const Material& b, Number number, Other other) {
 constexpr auto kNothing = [](auto&, const auto&) {};
 
 Material without_name(const Material& m) {
-    return {{}, m.kind, m.emission, m.two_sided_emission};
+    return {{}, m.kind, m.emission, m.two_sided_emission, m.profile};
 }
 
 /// Never beyond the ends, whose ranges have been checked.

@@ -119,17 +119,17 @@ Rgb emission_at(const InstanceRecord& record, const Material& material,
 void append_emissive_triangles(const InstanceRecord& record, std::uint32_t instance,
                                std::size_t triangle_count, const Material& material,
                                bool changes, const std::vector<Texture>& textures,
-                               std::vector<Light>& lights) {
-    if (!emits(material)) return;
+                               std::vector<Light>& lights, std::optional<float> peak) {
+    if (!emits(material) || peak == 0.f) return;
     for (std::uint32_t i = 0; i < triangle_count; ++i) {
         const auto [a, b, c] = corners_at(record, record.still, i);
         TriangleLight light{a, b, c, {}, instance, i, false, record.still.mirrored};
         if (!record.changes() && !(length(cross(b - a, c - a)) > 0)) continue;
         const Measured m = measure(record, material, changes, textures, i);
         if (!m.front && !m.back) continue;
-        light.mean_luminance = m.mean;
+        light.mean_luminance = m.mean * peak.value_or(1.f);
         light.two_sided = m.back;
-        light.even = m.even;
+        light.even = m.even && !peak;
         lights.push_back(light);
     }
 }

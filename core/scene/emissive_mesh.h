@@ -23,10 +23,11 @@ Rgb emission_at(const InstanceRecord& record, const Material& material,
 
 /// Appends a light for each triangle of the instance that has area and emits anywhere. Of a
 /// material that `changes`, `material` is its brightest: where that says nothing of a point
-/// (textures move), the light is kept all the same, and never taken for even.
+/// (textures move), the light is kept all the same, and never taken for even. `peak`: largest factor of
+/// its profile, if it has one; then it is never even either.
 void append_emissive_triangles(const InstanceRecord& record, std::uint32_t instance,
                                std::size_t triangle_count, const Material& material, bool changes,
                                const std::vector<Texture>& textures,
-                               std::vector<Light>& lights);
+                               std::vector<Light>& lights, std::optional<float> peak = {});
 
 }  // namespace dg

@@ -37,6 +37,7 @@ struct SceneDescription {
     std::vector<Material> materials;
     std::vector<Instance> instances;
     std::vector<Light> lights;  // punctual and sphere lights
+    std::vector<std::shared_ptr<const LightProfile>> profiles;   // of lights and materials
     std::optional<Environment> environment;
     LightChoice light_choice = LightChoice::tree;
     /// Exposed interval of the picture, s: the first moment of any row of the film to the last. Inside
@@ -117,6 +118,11 @@ class Scene {
                                             float time,
                                             const Wavelengths& wavelengths) const;
 
+    /// Factor of the material's profile on what the hit emits toward hit.wo.
+    Rgb shaping(const Material& material, const SurfaceHit& hit) const {
+        if (material.profile < 0) return {1, 1, 1};
+        return profile_at(material.profile, hit.instance, hit.time, hit.wo);
+    }
     void resolve(LightSample& sample, float time, const Wavelengths& wavelengths) const;
 
     /// Emission (cd/m2) of a point of an emitter `toward` (unit) where it is seen from, as a ray that hits it
@@ -156,6 +162,9 @@ class Scene {
     Bounds bounds_of(std::uint32_t instance) const;
     Rgb triangle_emission(std::size_t light, Vec2f barycentric, Vec3f toward, float time,
                           float width = 0) const;
+    Rgb profile_at(std::int32_t profile, std::uint32_t instance, float time, Vec3f away) const;
+    std::optional<float> peak_of(std::int32_t profile) const;
+    LightProfiles light_profiles() const;
     Spectrum transmission(const Ray& ray, float distance, bool delta, const Interior& medium,
                           const Wavelengths& wavelengths) const;
     Spectrum through_crossings(const Ray& ray, Crossings& crossings, Interior medium,

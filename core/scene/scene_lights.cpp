@@ -37,12 +37,32 @@ void Scene::build_lights() {
         append_emissive_triangles(
             records_[i], i, mesh.triangles.size(),
             change ? brightest(change->keys, change->range) : still, change != nullptr,
-            description_.textures, lights);
+            description_.textures, lights, peak_of(still.profile));
         if (records_[i].moves())
             bound_moving_triangles(records_[i], mesh, lights, first, motion);
     }
     lights_ = LightSet(std::move(lights), description_.environment,
-                       description_.light_choice, std::move(motion));
+                       description_.light_choice, std::move(motion), light_profiles());
+}
+
+/// Largest factor of a profile.
+std::optional<float> Scene::peak_of(std::int32_t profile) const {
+    if (profile < 0) return std::nullopt;
+    return description_.profiles[std::size_t(profile)]->peak();
+}
+
+LightProfiles Scene::light_profiles() const {
+    LightProfiles profiles{description_.profiles};
+    if (profiles.list.empty()) return profiles;
+    for (const InstanceRecord& record : records_)
+        profiles.of_instance.push_back(description_.materials[record.material].profile);
+    return profiles;
+}
+
+Rgb Scene::profile_at(std::int32_t profile, std::uint32_t instance, float time, Vec3f away) const {
+    const InstanceRecord& record = records_[instance];
+    const LampAxes axes(record.changes() ? record.where(time).world_from_local : record.still.world_from_local);
+    return description_.profiles[std::size_t(profile)]->at(axes.local(away));
 }
 
 std::optional<LightSample> Scene::sample_light(float u_select, Vec2f u, Vec3f position,
@@ -66,8 +86,10 @@ Rgb Scene::triangle_emission(std::size_t index, Vec2f barycentric, Vec3f toward,
     const Vec3f winding = cross(light.b - light.a, light.c - light.a);
     const bool front = (dot(winding, toward) > 0) != light.mirrored;
     const MaterialAt material = material_at(record.material, time);
-    return emission_at(record, material, description_.textures, {light.primitive, barycentric, front, time},
-                       toward, width);
+    const Rgb all = emission_at(record, material, description_.textures,
+                                {light.primitive, barycentric, front, time}, toward, width);
+    const std::int32_t profile = static_cast<const Material&>(material).profile;
+    return profile < 0 ? all : all * profile_at(profile, light.instance, time, toward);
 }
 
 bool Scene::is_uneven(const EmissionPoint& point) const {
@@ -82,7 +104,8 @@ Rgb Scene::emission(const EmissionPoint& point, Vec3f toward, float time, float 
     const auto* triangle = std::get_if<TriangleLight>(&lights_.lights()[point.light]);
     if (!triangle) {
         if (dot(point.normal, toward) <= 0) return {0, 0, 0};   // through the ball
-        return lights_.sphere_light_at(point.light, time).luminance;
+        const SphereLight now = lights_.sphere_light_at(point.light, time);
+        return now.luminance * lights_.shaped(now, toward);
     }
     if (!triangle->even || lights_.moves(point.light))
         return triangle_emission(point.light, point.barycentric, toward, time, width);

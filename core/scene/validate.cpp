@@ -45,6 +45,16 @@ void check_times(const std::string& where, const Keyed<T, double>& keys) {
     }
 }
 
+void check_profile(const std::string& where, std::int32_t profile, const SceneDescription& d) {
+    if (profile >= 0) check_index(where, "profile index", std::uint32_t(profile), d.profiles.size());
+}
+
+void check_profiles(const SceneDescription& d) {
+    for (const Material& m : d.materials) check_profile("material '" + m.name + "'", m.profile, d);
+    for (const auto& [i, keys] : d.material_keys)
+        for (const Material& m : keys.values) check_profile("keys of material " + std::to_string(i), m.profile, d);
+}
+
 void validate_keys(const SceneDescription& d) {
     for (const auto& [i, keys] : d.material_keys) {
         check_index("keys of material " + std::to_string(i), "index", i, d.materials.size());
@@ -74,6 +84,7 @@ void validate(const SceneDescription& d) {
         check_index(where, "material index", instance.material, d.materials.size());
         if (!instance.motion) check_transform(where, instance.world_from_local);
     }
+    check_profiles(d);
     validate_keys(d);
 }
 

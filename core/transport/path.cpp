@@ -580,7 +580,7 @@ Spectrum Path::sphere_light(std::uint32_t sphere, const SurfaceHit& hit) const {
     const float left =
         walk_.first ? walk_.first->share_of_sphere(lights, sphere, hit).value_or(1.f)
                     : bounced_share(lights.sphere_index(sphere), walk_.straight + hit.t, pdf);
-    return walk_.throughput * lights.sphere_radiance(sphere, hit.time, wavelengths_) *
+    return walk_.throughput * lights.sphere_radiance(sphere, hit.wo, hit.time, wavelengths_) *
            (left * emission_weight(pdf));
 }
 
@@ -590,7 +590,7 @@ Spectrum Path::surface_emission(const Material& material, const SurfaceHit& hit)
     // Light that light sampling and light paths could find too must be the same light: that of a point. Light paths
     // straight to the lens know the cone of the camera's sample, and see what it covers.
     if (!walk_.in_view) seen.footprint[0] = seen.footprint[1] = {};
-    const Rgb luminance = emitted(material, scene_.textures(), seen);
+    const Rgb luminance = emitted(material, scene_.textures(), seen) * scene_.shaping(material, hit);
     if (max_component(luminance) <= 0) return 0.f;
     const LightSet& lights = scene_.lights();
     const float distance = walk_.straight + hit.t;
