@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from .rendering.rig import render_rig, stereo_pair
     from .rendering.session import Session
     from .rendering.settings import RenderSettings
+    from .scene.light_profile import LightProfile
     from .scene.lights import DirectionalLight, PointLight, SphereLight, SpotLight
     from .scene.materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
     from .scene.scene import Scene
@@ -71,6 +72,7 @@ __all__ = [
     "InputError",
     "Keys",
     "LensScatter",
+    "LightProfile",
     "Material",
     "MismatchError",
     "OutputError",
@@ -137,6 +139,7 @@ _LAZY = {
     "Spin": "motion.values",
     "keys": "motion.values",
     "spin": "motion.values",
+    "LightProfile": "scene.light_profile",
     "DirectionalLight": "scene.lights",
     "PointLight": "scene.lights",
     "SphereLight": "scene.lights",

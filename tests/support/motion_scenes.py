@@ -477,6 +477,21 @@ def sphere_light() -> Case:
     return _lit((dg.SphereLight(dims, grows), path))
 
 
+def shaped_lamps() -> Case:
+    """A lamp and a card with profiles, which turn about an axis that is none of their own."""
+    theta, phi = np.arange(0, 91, 10.0), np.arange(0, 361, 30.0)
+    lobe = 1 + np.cos(np.radians(phi)) * np.sin(np.radians(theta))[:, None]
+    profile = dg.LightProfile.table(theta, lobe, phi) * dg.LightProfile.cone(50, 0.5)
+    down = turn(-60, (1, 0, 0))
+    turns = across(*(move(0, 1, -2) @ turn(a, (1, 2, 0.5)) @ down for a in (-30, 80)))
+    made = _lit((dg.PointLight((6.0, 6.0, 3.0), profile=profile), turns))
+    card = dg.Material(dg.Diffuse((0, 0, 0)), "", (30, 10, 20), True, profile)
+    points, faces = scenes.quad(0.2)
+    way = across(*(move(0.4, 0.9, -2.5) @ turn(a, (1, 0, 1)) @ down for a in (-40, 60)))
+    made.scene.add_instance(made.scene.add_mesh(points, faces), card, way)
+    return made
+
+
 def spot_light() -> Case:
     """A spot that swings and opens, and the sun going round."""
     opens = dg.keys([(0.75, 15.0), (1.25, 35.0)])
@@ -647,6 +662,7 @@ ALL: dict[str, Callable[[], Case]] = {
     "point light": point_light,
     "sphere light": sphere_light,
     "spot light": spot_light,
+    "shaped lamps": shaped_lamps,
     "turning sky": turning_sky,
     "paint": paint,
     "zoom": zoom,

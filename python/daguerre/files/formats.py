@@ -16,7 +16,7 @@ from typing import Any, Literal
 
 from daguerre.errors import InputError, UsageError, suggest
 
-Kind = Literal["scene", "frame", "picture", "raw", "environment"]
+Kind = Literal["scene", "frame", "picture", "raw", "environment", "profile"]
 #: A function, or "module:function", which is imported on first use.
 Function = str | Callable[..., Any]
 #: Suffix that matches every suffix without another row of the kind.
@@ -67,6 +67,7 @@ _FORMATS = [
     Format("a developed picture", "raw", (*_JPEG, *_PNG, *_TIFF, *_EXR), None,
            f"{_DEVELOPED}:as_picture", None),
     Format("an image", "environment", (ANY,), "daguerre.io.images:read_environment"),
+    Format("IES LM-63", "profile", (".ies",), "daguerre.io.ies:read"),
 ]  # fmt: skip
 
 

@@ -21,16 +21,24 @@ def statements(
         InputError: It is not an ordinary file, is too large, or cannot be read as UTF-8.
     """
     file = Path(path)
+    for number, line in enumerate(text_of(file).splitlines(), 1):
+        if words := line.split(comment)[0].split():
+            yield f"{file}: line {number}: {words[0][:20]}", words[0], words[1:]
+
+
+def text_of(file: Path, encoding: str = "utf-8", most: int = MAX_BYTES) -> str:
+    """Reads a text of at most ``most`` bytes.
+
+    Raises:
+        InputError: It is not an ordinary file, is too large, or cannot be read.
+    """
     try:
         if file.exists() and not file.is_file():  # a pipe or a device would never end
             raise InputError(f"{file}: wanted an ordinary file, got something else")
-        if (size := file.stat().st_size) > MAX_BYTES:
-            raise InputError(f"{file}: wanted at most {MAX_BYTES} bytes, got {size}")
-        text = file.read_text("utf-8")
+        if (size := file.stat().st_size) > most:
+            raise InputError(f"{file}: wanted at most {most} bytes, got {size}")
+        return file.read_text(encoding)
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:
         raise InputError(f"{file}: wanted UTF-8, got another byte at {error.start}") from None
-    for number, line in enumerate(text.splitlines(), 1):
-        if words := line.split(comment)[0].split():
-            yield f"{file}: line {number}: {words[0][:20]}", words[0], words[1:]

@@ -8,17 +8,23 @@ from dataclasses import dataclass
 from daguerre.checks import color, number, short, shown
 from daguerre.errors import InputError
 
+from .light_profile import LightProfile, check_profile
+
 Color = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class PointLight:
-    """Point light: intensity in cd; with a radius (m), a visible ball of the same intensity."""
+    """Point light: intensity in cd; with a radius (m), a visible ball of the same intensity.
+
+    A profile multiplies the intensity by direction.
+    """
 
     intensity: Color = (1.0, 1.0, 1.0)
     range: float = math.inf
     radius: float = 0.0
     name: str = ""
+    profile: LightProfile | None = None
 
 
 @dataclass(frozen=True)
@@ -42,11 +48,15 @@ class DirectionalLight:
 
 @dataclass(frozen=True)
 class SphereLight:
-    """Visible ball of uniform luminance (cd/m2); radius in m."""
+    """Visible ball of uniform luminance (cd/m2); radius in m.
+
+    A profile multiplies the luminance by the direction in which the light leaves.
+    """
 
     luminance: Color = (1.0, 1.0, 1.0)
     radius: float = 0.1
     name: str = ""
+    profile: LightProfile | None = None
 
 
 Light = PointLight | SpotLight | DirectionalLight | SphereLight
@@ -72,6 +82,8 @@ def check_light(light: Light) -> None:
             number(value, f"{where}: range", above=0, infinite=True, error=InputError)
         elif name == "radius":
             number(value, f"{where}: radius", 0, error=InputError)
+        elif name == "profile":
+            check_profile(value, where)
     if isinstance(light, SphereLight) and not light.radius > 0:
         raise InputError(f"{where}: radius: wanted a number above 0, got {light.radius}")
     if isinstance(light, SpotLight):

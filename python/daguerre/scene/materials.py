@@ -11,6 +11,8 @@ from daguerre.checks import color, number, numbers, short, shown, whole
 from daguerre.errors import InputError
 from daguerre.files.value import changed
 
+from .light_profile import LightProfile, check_profile
+
 Color = tuple[float, float, float]
 
 
@@ -144,12 +146,15 @@ class Material:
         kind: Diffuse, Conductor, Dielectric or Gltf.
         emission: Luminance that the front side emits, cd/m2.
         two_sided_emission: Whether the back emits too.
+        profile: Factor on all emission, also that of the kind, by its direction in the frame of the
+            instance, which shines along -z.
     """
 
     kind: Kind = field(default_factory=Diffuse)
     name: str = ""
     emission: Color = (0.0, 0.0, 0.0)
     two_sided_emission: bool = False
+    profile: LightProfile | None = None
 
 
 def check_material(material: Material, where: str) -> None:
@@ -169,6 +174,7 @@ def check_material(material: Material, where: str) -> None:
         raise InputError(f"material: name: wanted a text, got {shown(material.name)}")
     color(material.emission, f"{where}: emission")
     _check_flag(material.two_sided_emission, f"{where}: two_sided_emission")
+    check_profile(material.profile, where)
     for name, like in kind.__dataclass_fields__.items():
         value = getattr(kind, name)
         if isinstance(like.default, tuple):

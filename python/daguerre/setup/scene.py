@@ -19,7 +19,7 @@ from daguerre.scene.parts import Curves
 from daguerre.scene.scene import Scene
 
 from .scene_motion import MovingParts
-from .shading import add_environment, add_lights, add_materials
+from .shading import Profiles, add_environment, add_lights, add_materials
 
 
 def build(
@@ -67,14 +67,15 @@ def _add_all(builder: _core.SceneBuilder, scene: Scene, moving: MovingParts) -> 
             as_readonly(mesh.indices),
             *(None if values is None else as_readonly(values) for values in optional),
         )
-    add_materials(builder, scene, moving.interval)
+    profiles = Profiles(builder)
+    add_materials(builder, scene, moving.interval, profiles)
     for i, instance in enumerate(scene.instances):
         builder.add_instance(
             instance.name, instance.mesh, instance.material, moving.transform(i), moving.shown(i)
         )
         if instance.catcher is not None:
             builder.set_catcher(i, *(effect in instance.catcher for effect in EFFECTS))
-    add_lights(builder, scene, moving.interval)
+    add_lights(builder, scene, moving.interval, profiles)
     add_environment(builder, scene, moving.interval)
 
 

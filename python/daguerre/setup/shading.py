@@ -15,6 +15,7 @@ import daguerre._core as _core
 from daguerre.errors import InputError
 from daguerre.motion.resample import resample
 from daguerre.motion.values import Dynamic
+from daguerre.scene.light_profile import LightProfile
 from daguerre.scene.lights import (
     DirectionalLight,
     Light,
@@ -54,30 +55,50 @@ class _Seen:
         return self.dynamic.breaks(begin, end)
 
 
-def add_materials(builder: _core.SceneBuilder, scene: Scene, interval: Interval) -> None:
+class Profiles:
+    """Light profiles of a scene in the core's builder, each once."""
+
+    def __init__(self, builder: _core.SceneBuilder) -> None:
+        self._builder = builder
+        self._known: dict[LightProfile, int] = {}
+
+    def index(self, profile: LightProfile | None) -> int:
+        """Index of a profile in the builder; -1 without one."""
+        if profile is None:
+            return -1
+        if profile not in self._known:
+            self._known[profile] = self._builder.add_profile(profile.core)
+        return self._known[profile]
+
+
+def add_materials(
+    builder: _core.SceneBuilder, scene: Scene, interval: Interval, profiles: Profiles
+) -> None:
     """Adds all materials; those that change become keys."""
     for i, material in enumerate(scene.materials):
         dynamic = scene.motion.materials.get(i)
         if dynamic is None:
-            _add_material(builder, material)
+            _add_material(builder, material, profiles)
             continue
         times, values = resample(_Seen(dynamic, _checker(material, i)), *interval)
         for value in values:
-            _add_material(builder, value)
+            _add_material(builder, value, profiles)
         builder.fold_materials(times)
 
 
-def add_lights(builder: _core.SceneBuilder, scene: Scene, interval: Interval) -> None:
+def add_lights(
+    builder: _core.SceneBuilder, scene: Scene, interval: Interval, profiles: Profiles
+) -> None:
     """Adds all lights; those that change become keys."""
     for i, (light, transform) in enumerate(scene.lights):
         dynamic = scene.motion.lights.get(i)
         first = _core_light(light, transform)
         if dynamic is None:
-            _add_light(builder, first)
+            _add_light(builder, first, profiles)
             continue
         times, values = resample(_Seen(dynamic, _light_checker(first[0])), *interval)
         for value in values:
-            _add_light(builder, value)
+            _add_light(builder, value, profiles)
         builder.fold_lights(times)
 
 
@@ -143,15 +164,16 @@ def _slot(slot: TextureSlot | None) -> tuple[Any, ...] | None:
     return None if slot is None else (slot.texture, slot.uv_set, tuple(slot.transform))
 
 
-def _add_material(builder: _core.SceneBuilder, material: Material) -> None:
-    kind, rest = material.kind, (material.emission, material.two_sided_emission)
+def _add_material(builder: _core.SceneBuilder, material: Material, profiles: Profiles) -> None:
+    kind, profile = material.kind, profiles.index(material.profile)
+    emission = (material.emission, material.two_sided_emission, profile)
     if isinstance(kind, Diffuse):
-        builder.add_diffuse(material.name, kind.reflectance, *rest)
+        builder.add_diffuse(material.name, kind.reflectance, emission)
     elif isinstance(kind, Conductor):
-        builder.add_conductor(material.name, kind.reflectance, kind.alpha, *rest)
+        builder.add_conductor(material.name, kind.reflectance, kind.alpha, emission)
     elif isinstance(kind, Dielectric):
         builder.add_dielectric(
-            material.name, kind.ior, kind.alpha, kind.tint, kind.dispersion, *rest
+            material.name, kind.ior, kind.alpha, kind.tint, kind.dispersion, emission
         )
     elif isinstance(kind, Gltf):
         values = {f.name: getattr(kind, f.name) for f in dataclasses.fields(kind)}
@@ -159,7 +181,7 @@ def _add_material(builder: _core.SceneBuilder, material: Material) -> None:
             if name.endswith("_texture"):
                 values[name] = _slot(value)
         values["anisotropy_rotation"] = math.radians(kind.anisotropy_rotation)
-        builder.add_gltf(material.name, values, *rest)
+        builder.add_gltf(material.name, values, emission)
     else:
         raise InputError(
             f"material {material.name!r}: kind: wanted Diffuse, Conductor, Dielectric or Gltf, "
@@ -167,8 +189,11 @@ def _add_material(builder: _core.SceneBuilder, material: Material) -> None:
         )
 
 
-def _add_light(builder: _core.SceneBuilder, light: CoreLight) -> None:
+def _add_light(builder: _core.SceneBuilder, light: CoreLight, profiles: Profiles) -> None:
     kind, *values = light
+    if kind in ("point", "sphere"):
+        profile, *axes = values[-1]
+        values[-1] = (profiles.index(profile), *axes)
     getattr(builder, f"add_{kind}_light")(*values)
 
 
@@ -183,17 +208,23 @@ def _core_light(light: Light, transform: NDArray[np.float64]) -> CoreLight:
     if isinstance(light, PointLight) and light.radius > 0:
         # A ball of luminance L has the intensity L pi r^2 seen from afar.
         luminance = tuple(c / (math.pi * light.radius**2) for c in light.intensity)
-        return "sphere", position, light.radius, luminance
+        return "sphere", position, light.radius, luminance, _lamp(light, transform)
     if isinstance(light, PointLight):
-        return "point", position, light.intensity, light.range
+        return "point", position, light.intensity, light.range, _lamp(light, transform)
     if isinstance(light, SpotLight):
         cone = math.radians(light.inner_angle), math.radians(light.outer_angle)
         return "spot", position, direction, light.intensity, *cone, light.range
     if isinstance(light, DirectionalLight):
         return "directional", direction, light.illuminance
     if isinstance(light, SphereLight):
-        return "sphere", position, light.radius, light.luminance
+        return "sphere", position, light.radius, light.luminance, _lamp(light, transform)
     raise InputError(f"light: wanted a point, spot, directional or sphere light, got {light!r}")
+
+
+def _lamp(light: PointLight | SphereLight, transform: NDArray[np.float64]) -> tuple[Any, ...]:
+    """Profile and axes of a lamp; without a profile it may turn as it likes."""
+    turned = np.eye(3) if light.profile is None else transform[:3, :3]
+    return light.profile, *(tuple(float(x) for x in axis) for axis in turned.T)
 
 
 def _set_environment(builder: _core.SceneBuilder, environment: Environment) -> None:
