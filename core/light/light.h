@@ -62,7 +62,7 @@ struct TriangleLight {
 using Light =
     std::variant<PointLight, SpotLight, DirectionalLight, SphereLight, TriangleLight>;
 
-/// Of the kinds that may have a profile; null for the others.
+/// Shape of the kinds that may have a profile; null for the others.
 const LampShape* lamp_of(const Light& light);
 LampShape* lamp_of(Light& light);
 

@@ -123,6 +123,14 @@ ARGS: dict[str, Make] = {
     "dg.Frame.exposure_truth": constant(sensor="ideal", iso=200.0),
     "dg.Frame.save": lambda w: {"path": w.out / "a.exr"},
     "dg.Keys": constant(times=np.array([0.0, 1.0]), values=(1.0, 2.0), interpolation="linear"),
+    "dg.LightProfile": constant(scale=2.0),
+    "dg.LightProfile.cone": constant(angle=40.0, softness=0.2),
+    "dg.LightProfile.focus": constant(exponent=2.0, tint=(0.1, 0.2, 0.3)),
+    "dg.LightProfile.from_ies": lambda w: {"path": w.ies},
+    "dg.LightProfile.stretched": constant(angle_scale=0.5),
+    "dg.LightProfile.table": constant(
+        theta_deg=[0.0, 90.0], values=[[1.0, 1.0], [0.5, 0.0]], phi_deg=[0.0, 90.0]
+    ),
     "dg.PlateCamera": lambda w: {
         "plate": "photo.dng",
         "sha256": "00",
@@ -506,6 +514,7 @@ RECEIVERS: dict[str, Make] = {
     "dg.ClusterSession": lambda w: w.cluster_session,
     "dg.Frame": lambda w: w.frame,
     "dg.Keys": lambda w: dg.keys([(0.0, 1.0), (1.0, 2.0)]),
+    "dg.LightProfile": lambda w: dg.LightProfile.cone(40.0),
     "dg.PlateCamera": lambda w: w.plate_camera,
     "dg.Projection": lambda w: w.projection,
     "dg.Raw": lambda w: w.raw,

@@ -315,6 +315,11 @@ class World:
         return self._once("t.json", lambda p: tracked.nerfstudio(p, tracked.path(3)))
 
     @property
+    def ies(self) -> Path:
+        lines = "IESNA:LM-63-2002", "TILT=NONE", "1 -1 1 2 1 1 2 0 0 0 1 1 9", "0 90", "0", "9 1"
+        return self._once("lamp.ies", lambda p: p.write_text("\n".join(lines)))
+
+    @property
     def categories(self) -> Path:
         rules = {"thing*": "thing", "lamp": None}
         return self._once("categories.json", lambda p: p.write_text(json.dumps(rules)))
