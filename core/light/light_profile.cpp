@@ -14,6 +14,8 @@ constexpr double kTwoPiD = 2 * kPiD;
 constexpr const char* kWhere = "light profile";
 constexpr double kLongestStep = kPiD / 180;   // of the quadrature, rad
 constexpr int kMostSteps = 20000;             // however narrow the focus
+// Most knots of theta, least of phi, and most cells of the quadrature, however fine a table of a stranger is.
+constexpr std::size_t kMostThetas = 32768, kLeastPhis = 64, kMostCells = 1 << 20;
 // Gauss-Legendre points and weights of [-1, 1], three each way: exact to the fifth power.
 constexpr double kPoints[] = {-0.7745966692414834, 0, 0.7745966692414834};
 constexpr double kWeights[] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
@@ -97,6 +99,17 @@ std::vector<double> divided(const std::vector<double>& knots, double step) {
     return all;
 }
 
+/// Knots, or as many even steps as there may be at most.
+std::vector<double> thinned(std::vector<double> knots, std::size_t most) {
+    if (knots.size() <= most) return knots;
+    const double end = knots.back();
+    knots.resize(most);
+    for (std::size_t i = 0; i < most; ++i) knots[i] = end * double(i) / double(most - 1);
+    return knots;
+}
+
+float largest(const ProfileTable& t) { return *std::ranges::max_element(t.values); }
+
 }  // namespace
 
 float ProfileCone::at(float theta) const {
@@ -157,20 +170,28 @@ std::vector<double> LightProfile::theta_knots() const {
         step = std::min(step, std::max(0.2 / std::sqrt(f.exponent + 1.0), kPiD / kMostSteps));
     std::erase_if(knots, [](double k) { return k > kPiD; });
     sort_unique(knots);
-    return divided(knots, step);
+    return thinned(divided(knots, step), kMostThetas);
 }
 
-std::vector<double> LightProfile::phi_knots() const {
+std::vector<double> LightProfile::phi_knots(std::size_t thetas) const {
     std::vector<double> knots{0, kTwoPiD};
     for (const ProfileTable& t : parts_.tables) knots.insert(knots.end(), t.phi.begin(), t.phi.end());
     std::erase_if(knots, [](double k) { return k > kTwoPiD; });
     sort_unique(knots);
-    return knots;
+    return thinned(std::move(knots), std::max(kLeastPhis, kMostCells / thetas));
+}
+
+/// No factor is larger.
+float LightProfile::bound() const {
+    float most = parts_.scale;
+    for (const ProfileTable& table : parts_.tables) most *= largest(table);
+    for (const ProfileFocus& focus : parts_.focuses) most *= std::max(1.f, max_component(focus.tint));
+    return most;
 }
 
 /// Means by Gauss-Legendre quadrature between the knots, and the largest value at them.
 void LightProfile::measure() {
-    const std::vector<double> thetas = theta_knots(), phis = phi_knots();
+    const std::vector<double> thetas = theta_knots(), phis = phi_knots(thetas.size());
     Vec3d mean{}, facing{};
     for (std::size_t i = 0; i < thetas.size(); ++i) {
         for (const double phi : phis) peak_ = std::max(peak_, max_component(at(float(thetas[i]), float(phi))));
@@ -190,6 +211,8 @@ void LightProfile::measure() {
             facing += ring * (half * kWeights[a] * std::sin(theta) * std::max(0.0, std::cos(theta)));
         }
     }
+    if (thetas.size() == kMostThetas || phis.size() == std::max(kLeastPhis, kMostCells / thetas.size()))
+        peak_ = std::max(peak_, bound());   // the steps may have missed it
     mean_ = to_float(mean * (1 / (4 * kPiD)));
     facing_mean_ = to_float(facing * (1 / kPiD));
 }

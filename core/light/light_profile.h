@@ -56,7 +56,8 @@ class LightProfile {
     /// Factor on the light that leaves along `local` (unit, in the lamp's frame).
     Rgb at(Vec3f local) const;
 
-    float peak() const { return peak_; }       // of all channels and directions, at the angles of the parts
+    /// Largest factor of all channels and directions, at the angles of the parts; of huge tables an upper bound.
+    float peak() const { return peak_; }
     float spread() const { return spread_; }   // rad from the axis: beyond there is no light; pi: there may be
     Rgb mean() const { return mean_; }         // over all directions
     /// Power that is left of a surface that shines evenly and faces along -z.
@@ -65,7 +66,8 @@ class LightProfile {
   private:
     Rgb at(float theta, float phi) const;
     std::vector<double> theta_knots() const;
-    std::vector<double> phi_knots() const;
+    std::vector<double> phi_knots(std::size_t thetas) const;
+    float bound() const;
     void measure();
 
     ProfileParts parts_;

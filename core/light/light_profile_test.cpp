@@ -129,6 +129,21 @@ TEST_CASE("means of cones and powers have closed forms; those of products are wh
     }
 }
 
+TEST_CASE("tables as fine as a file may have them are measured in a second, and no peak is missed") {
+    const auto fine = [](std::size_t rows, std::size_t columns) {
+        ProfileTable t{{}, {}, std::vector<float>(rows * columns, 1.f)};
+        for (std::size_t i = 0; i < rows; ++i) t.theta.push_back(kPi * float(double(i) / double(rows - 1)));
+        for (std::size_t i = 0; i < columns; ++i) t.phi.push_back(2 * kPi * float(double(i) / double(columns - 1)));
+        t.values[columns * (rows / 3) + columns / 5] = 9;
+        return t;
+    };
+    for (const auto [rows, columns] : {std::pair{2, 500000}, {200000, 5}, {1000, 1000}}) {
+        const LightProfile p = profile_of({.focuses = {{2000, {0.5f, 0.5f, 0.5f}}}, .tables = {fine(rows, columns)}});
+        CHECK(p.mean().x == doctest::Approx(0.5 * (1 + 1 / 2001.0)).epsilon(1e-2));
+        CHECK(p.peak() >= 4.5f);
+    }
+}
+
 TEST_CASE("what is no profile is an error that names the part") {
     const auto bad = [](ProfileParts parts) { CHECK_THROWS_AS(LightProfile(std::move(parts)), Error); };
     bad({.scale = -1});

@@ -49,6 +49,7 @@ READERS = {
     "calibration": Reader("calibrations", "calibrated"),
     "json": Reader("recipes", "recipe"),
     "picture": Reader("pictures", "picture"),
+    "profile": Reader("profiles", "profile"),
 }
 
 

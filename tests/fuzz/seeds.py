@@ -156,3 +156,17 @@ def pictures(folder: Path) -> Iterator[Seed]:
         output.write_image(pixels)
         output.close()
         yield f"a.{ending}", (folder / f"a.{ending}").read_bytes()
+
+
+def profiles(folder: Path) -> Iterator[Seed]:
+    """Photometric files of three years, with symmetries and included tilts."""
+    facts = "1 1000 1 3 {} 1 2 0 0 0 1 1 60"
+    for head, tilt, phi in (
+        ("IESNA:LM-63-1995", "NONE", "0"),
+        ("IES:LM-63-2019", "NONE", "0 45 90"),
+        ("[TEST] none", "INCLUDE\n1\n2\n0 90\n1 0.8", "0 90 180 270 360"),
+    ):
+        columns = len(phi.split())
+        candelas = "\n".join(f"{900 + i} {400 + i} {50 + i}" for i in range(columns))
+        lines = head, f"TILT={tilt}", facts.format(columns), "0 45 90", phi, candelas
+        yield "lamp.ies", "\n".join(lines).encode()

@@ -37,6 +37,18 @@ def exr(path: Path) -> None:
     _all(lambda: formats.read("environment", path), lambda: formats.read("frame", path))
 
 
+def profile(path: Path) -> None:
+    """Lights a wall with a photometric file."""
+    wall = dg.Scene()
+    mesh = wall.add_mesh([[-9, -9, -3], [9, -9, -3], [0, 9, -3]], [[0, 1, 2]])
+    wall.add_instance(mesh)
+    read = dg.LightProfile.from_ies(path)
+    wall.add_light(
+        dg.PointLight(profile=read.stretched(0.7).normalized() * dg.LightProfile.focus(9))
+    )
+    dg.render(wall, dg.Camera(lens_model="pinhole"), **TINY)
+
+
 def samples(path: Path) -> None:
     dg.merge([path])
 
