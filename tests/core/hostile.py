@@ -191,7 +191,7 @@ def built(call: Callable[..., Any]) -> Callable[..., Any]:
 
     def run(*arguments: Any) -> Any:
         builder = _core.SceneBuilder()
-        builder.add_diffuse("grey", (0.5, 0.5, 0.5), (0, 0, 0), False)
+        builder.add_diffuse("grey", (0.5, 0.5, 0.5), DARK)
         builder.add_texture(
             "dots", np.ones((2, 2, 3), F32), False, *["repeat"] * 2, "linear", "linear"
         )
@@ -229,6 +229,7 @@ def calls() -> Iterator[tuple[str, Call]]:
         _of_films,
     ):
         yield from part().items()
+    yield from _of_profiles().items()
     yield from _of_scenes().items()
     yield from _of_renders().items()
 
@@ -768,6 +769,30 @@ def _of_films() -> dict[str, Call]:
     }
 
 
+AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+LAMP = (-1, *AXES)
+DARK = ((0.0, 0.0, 0.0), False, -1)
+
+
+def profile(*given: Any) -> Any:
+    """A light profile of the core, of a cone, a focus and a table."""
+    scale, angle, softness, exponent, tint, *table = given or _profile_parts()
+    cones, focuses = [(angle, softness)], [(exponent, tint)]
+    return _core.LightProfile.make(scale, cones, focuses, [tuple(table)])
+
+
+def _profile_parts() -> list[Any]:
+    theta, phi = np.array([0, 1, 2], F32), np.array([0, 1, 2 * np.float32(np.pi)], F32)
+    return [1.0, 1.5, 0.5, 2.0, (0.5, 0.5, 0.5), theta, phi, np.ones((3, 3), F32)]
+
+
+def _of_profiles() -> dict[str, Call]:
+    return {
+        "LightProfile.make": (profile, _profile_parts()),
+        "LightProfile.factors": (profile().factors, [np.ones((4, 3), F32)]),
+    }
+
+
 def _of_scenes() -> dict[str, Call]:
     c = _core
     positions, triangles = TRIANGLE
@@ -790,20 +815,34 @@ def _of_scenes() -> dict[str, Call]:
             np.eye(4),
         )
 
+    def emitting(kind: str) -> Callable[..., Any]:
+        def call(b: Any, *a: Any) -> Any:
+            b.add_profile(profile())
+            return made(kind)(b, *a[:-3], a[-3:])
+
+        return call
+
+    def lamp(kind: str) -> Callable[..., Any]:
+        def call(b: Any, *a: Any) -> Any:
+            b.add_profile(profile())
+            return getattr(b, kind)(*a[:-4], a[-4:])
+
+        return call
+
     def folded(b: Any, times: Any) -> Any:
         for _ in range(2):
-            b.add_diffuse("key", (0.5, 0.5, 0.5), (1, 1, 1), False)
+            b.add_diffuse("key", (0.5, 0.5, 0.5), ((1, 1, 1), False, -1))
         b.add_instance("more", 0, 1, np.eye(4))
         b.fold_materials(times)
 
     def folded_lights(b: Any, times: Any) -> Any:
         for _ in range(2):
-            b.add_point_light((0, 1, 2), (1, 1, 1), 5)
+            b.add_point_light((0, 1, 2), (1, 1, 1), 5, LAMP)
         b.fold_lights(times)
 
     def textured(b: Any, *a: Any) -> Any:
         b.add_texture("more", *a)
-        return made("add_gltf")(b, {**gltf, "base_color_texture": (1, *slot[1:])}, (0, 0, 0), False)
+        return made("add_gltf")(b, {**gltf, "base_color_texture": (1, *slot[1:])}, DARK)
 
     def caught(b: Any, *a: Any) -> Any:
         return b.set_catcher(*a)
@@ -829,11 +868,12 @@ def _of_scenes() -> dict[str, Call]:
             [0, 0, [(0.0, 1.0)]],
         ),
         "set_catcher": (caught, [0, True, True, True]),
-        "add_diffuse": (made("add_diffuse"), [rgb, rgb, True]),
-        "add_conductor": (made("add_conductor"), [rgb, 0.1, rgb, True]),
-        "add_dielectric": (made("add_dielectric"), [1.5, 0.1, rgb, 0.02, rgb, True]),
-        "add_gltf": (made("add_gltf"), [gltf, rgb, True]),
-        "add_point_light": (lambda b, *a: b.add_point_light(*a), [(0.0, 1.0, 2.0), rgb, 5.0]),
+        "add_diffuse": (emitting("add_diffuse"), [rgb, rgb, True, 0]),
+        "add_conductor": (emitting("add_conductor"), [rgb, 0.1, rgb, True, 0]),
+        "add_dielectric": (emitting("add_dielectric"), [1.5, 0.1, rgb, 0.02, rgb, True, 0]),
+        "add_gltf": (emitting("add_gltf"), [gltf, rgb, True, 0]),
+        "add_profile": (lambda b, p: b.add_profile(p), [profile()]),
+        "add_point_light": (lamp("add_point_light"), [(0.0, 1.0, 2.0), rgb, 5.0, 0, *AXES]),
         "add_spot_light": (
             lambda b, *a: b.add_spot_light(*a),
             [(0.0, 1.0, 2.0), (0.0, -1.0, 0.0), rgb, 0.2, 0.5, 5.0],
@@ -842,7 +882,7 @@ def _of_scenes() -> dict[str, Call]:
             lambda b, *a: b.add_directional_light(*a),
             [(0.0, -1.0, 0.0), rgb],
         ),
-        "add_sphere_light": (lambda b, *a: b.add_sphere_light(*a), [(0.0, 1.0, 2.0), 0.2, rgb]),
+        "add_sphere_light": (lamp("add_sphere_light"), [(0.0, 1.0, 2.0), 0.2, rgb, 0, *AXES]),
         "set_environment_image": (
             lambda b, *a: b.set_environment_image(*a),
             [np.ones((2, 4, 3), F32), 1.0, np.eye(4)],
