@@ -1,0 +1,1 @@
+"""Scenes of OpenUSD: .usd, .usda, .usdc and .usdz."""

@@ -1,0 +1,148 @@
+"""Reads attributes of USD as constants, or as keys over time.
+
+USD interpolates time samples linearly, or holds them if the type or the stage asks for it, and keeps
+the first and the last value outside of them: the law of :func:`daguerre.keys`. Splines are sampled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from pxr import Gf, Sdf, Usd
+
+from daguerre.errors import InputError
+from daguerre.motion.values import MAX_TIME, Keys, keys
+
+#: Samples of a spline for each time code.
+_PER_CODE = 4
+#: Maximum number of time samples of an attribute.
+_MAX_SAMPLES = 100_000
+_HELD = (bool, int, str)
+
+Convert = Callable[[Any], Any]
+
+
+def plain(value: Any) -> Any:
+    """Converts a value of USD: vectors to tuples, quaternions to (x, y, z, w), tokens to texts."""
+    if isinstance(value, Gf.Quatf | Gf.Quatd | Gf.Quath):
+        return (*(float(v) for v in value.GetImaginary()), float(value.GetReal()))
+    if isinstance(value, Gf.Matrix4d | Gf.Matrix4f):
+        return np.array(value, np.float64).T
+    if type(value).__module__ == "pxr.Gf" and hasattr(value, "__len__"):
+        return tuple(float(v) for v in value)
+    return value
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The time codes of a stage.
+
+    Attributes:
+        file: File, for messages.
+        rate: Time codes per second.
+        time: Scene time, s.
+        holds: Whether the stage holds values between samples.
+    """
+
+    file: str
+    rate: float
+    time: float
+    holds: bool = False
+
+    @property
+    def code(self) -> Usd.TimeCode:
+        """Time code of the scene's time."""
+        return Usd.TimeCode(self.time * self.rate)
+
+    def seconds(self, code: float) -> float:
+        """Scene time of a time code, s."""
+        return code / self.rate
+
+    def now(self, attribute: Usd.Attribute) -> Any:
+        """Value of an attribute at the scene's time, or None."""
+        return attribute.Get(self.code) if attribute else None
+
+    def codes(self, attribute: Usd.Attribute) -> list[float]:
+        """Time codes at which an attribute has samples; none if it does not change.
+
+        Raises:
+            InputError: There are too many, or one is not finite.
+        """
+        if not attribute or not attribute.ValueMightBeTimeVarying():
+            return []
+        found = list(attribute.GetTimeSamples()) or _spline_codes(attribute)
+        where = f"{self.file}: {attribute.GetPath()}: time samples"
+        if len(found) > _MAX_SAMPLES:
+            raise InputError(f"{where}: wanted at most {_MAX_SAMPLES}, got {len(found)}")
+        bad = [code for code in found if not abs(code) <= MAX_TIME * self.rate]
+        if bad:
+            raise InputError(f"{where}: wanted finite times, got {bad[0]:g}")
+        return found
+
+    def value(self, attribute: Usd.Attribute, convert: Convert = plain) -> Any:
+        """Value of an attribute: a constant, :class:`Keys` in seconds, or None if it has none.
+
+        Args:
+            attribute: The attribute.
+            convert: Converts a value; the result is a number, a tuple, an array, a flag or a name.
+        """
+        if not attribute:
+            return None
+        codes = self.codes(attribute)
+        pairs = [(code, attribute.Get(code)) for code in codes]
+        pairs = [(code, value) for code, value in pairs if value is not None]  # blocked
+        if len(pairs) < 2:
+            value = attribute.Get(self.code)
+            return None if value is None else convert(value)
+        held = self.holds or not _interpolates(attribute)
+        return self._keys([(code, convert(value)) for code, value in pairs], held)
+
+    def _keys(self, pairs: list[tuple[float, Any]], held: bool) -> Keys | Any:
+        first = pairs[0][1]
+        if all(np.array_equal(first, value) for _, value in pairs[1:]):
+            return first
+        named = isinstance(first, str | bool)
+        timed = [(self.seconds(code), value) for code, value in pairs]
+        if np.shape(first) == (4, 4):
+            return keys(_in_steps(timed) if held else timed, "linear")
+        return keys(timed, None if named else "step" if held else "linear")
+
+
+def _interpolates(attribute: Usd.Attribute) -> bool:
+    name = str(attribute.GetTypeName().scalarType.type.pythonClass or "")
+    value = attribute.Get(Usd.TimeCode.EarliestTime())
+    return not isinstance(value, _HELD) and "asset" not in name
+
+
+def _in_steps(pairs: list[tuple[float, Any]]) -> list[tuple[float, Any]]:
+    """Repeats each value just before the next key, as matrices cannot be held."""
+    out: list[tuple[float, Any]] = []
+    for i, (time, value) in enumerate(pairs):
+        if i:
+            out.append((float(np.nextafter(time, -np.inf)), pairs[i - 1][1]))
+        out.append((time, value))
+    return out
+
+
+def _spline_codes(attribute: Usd.Attribute) -> list[float]:
+    if not attribute.HasSpline():
+        return []
+    knots = sorted(attribute.GetSpline().GetKnots().keys())
+    if not knots or not all(map(np.isfinite, knots)):
+        return []
+    count = min((knots[-1] - knots[0]) * _PER_CODE, _MAX_SAMPLES / 2)
+    between = np.linspace(knots[0], knots[-1], int(count) + 2)
+    return sorted({*knots, *between.tolist()})
+
+
+def authored(attribute: Usd.Attribute) -> bool:
+    """Whether a stage has its own value of an attribute, in place of the schema's fallback."""
+    return bool(attribute) and attribute.HasAuthoredValue()
+
+
+def path_text(path: Sdf.Path | str) -> str:
+    """Path of a prim as a text for messages."""
+    return str(path)[:200]
