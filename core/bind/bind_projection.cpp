@@ -22,7 +22,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// In the order of ProjectionModel::Kind.
 constexpr const char* kNames[] = {"rectilinear", "equidistant",    "equisolid",     "stereographic", "orthographic",
                                   "equirectangular", "cube",       "opencv",        "kannala_brandt", "double_sphere",
-                                  "eucm",        "omni",           "fov",           "opencv_inverse"};
+                                  "eucm",        "omni",           "fov",           "opencv_inverse", "ftheta"};
 
 dg::ProjectionModel model_of(const std::string& name, const std::vector<double>& parameters) {
     const auto* found = std::find(std::begin(kNames), std::end(kNames), name);

@@ -31,7 +31,8 @@ inline std::vector<ModelCase> model_cases() {
             {"omni", ProjectionModel(Kind::omni, {1.2, -0.2, 0.05, 1e-3, -1e-3}), 1.6},
             {"ucm", ProjectionModel(Kind::omni, {0.8}), 1.9},
             {"fov", ProjectionModel(Kind::fov, {0.93}), 1.3},
-            {"opencv_inverse", ProjectionModel(Kind::opencv_inverse, {0.2, -0.03, 2e-3, -3e-3, 0.01, -0.05}), 0.8}};
+            {"opencv_inverse", ProjectionModel(Kind::opencv_inverse, {0.2, -0.03, 2e-3, -3e-3, 0.01, -0.05}), 0.8},
+            {"ftheta", ProjectionModel(Kind::ftheta, {0.01, -0.02, 0.004, 0.001}), 1.7}};
 }
 
 }  // namespace dg::test

@@ -37,6 +37,20 @@ double last_rising(Slope slope, double low, double high) {
     return low;
 }
 
+/// Where a function that grows with `x` up to `high` has a value, by Newton's method within a bracket.
+template <class Function, class Slope>
+double solved(Function function, Slope slope, double value, double high) {
+    double low = 0, x = std::min(value, high);
+    for (int i = 0; i < kNewton; ++i) {
+        const double miss = function(x) - value;
+        if (std::abs(miss) <= kExact * std::max(value, 1e-3)) break;
+        (miss > 0 ? high : low) = x;
+        const double next = x - miss / slope(x);
+        x = next > low && next < high ? next : 0.5 * (low + high);
+    }
+    return x;
+}
+
 using Matrix = std::array<double, 9>;
 
 Vec3d times(const Matrix& m, Vec3d v) {
@@ -179,6 +193,18 @@ void ProjectionModel::find_fold() {
         largest_radius_ = radius_of(largest_angle_);
         return;
     }
+    case Kind::ftheta: {
+        // Up to a full half turn, and no farther than the angle grows.
+        const auto seen = [&](double r) { return ftheta_slope(r) > 0 && ftheta_angle(r) <= kPiD ? 1.0 : -1.0; };
+        double before = 0, r = 0;
+        for (int i = 0; i <= 4 * kFoldSteps && seen(r) > 0; ++i) {
+            before = r;
+            r = std::exp(-6 + 12.0 * i / (4 * kFoldSteps));   // 0.0025 to 400 focal lengths
+        }
+        largest_radius_ = seen(r) > 0 ? r : last_rising(seen, before, r);
+        largest_angle_ = ftheta_angle(largest_radius_);
+        return;
+    }
     case Kind::opencv:
     case Kind::opencv_inverse:
     case Kind::omni: {
@@ -236,6 +262,9 @@ double ProjectionModel::radius_of(double angle) const {
     case Kind::stereographic: return 2 * std::tan(0.5 * angle);
     case Kind::orthographic: return std::sin(angle);
     case Kind::fov: return atan(2 * std::tan(angle) * std::tan(0.5 * k_[0])) / k_[0];
+    case Kind::ftheta:
+        return solved([&](double r) { return ftheta_angle(r); }, [&](double r) { return ftheta_slope(r); }, angle,
+                      largest_radius_);
     default: {
         const double t2 = angle * angle;
         return angle * (1 + t2 * (k_[0] + t2 * (k_[1] + t2 * (k_[2] + t2 * k_[3]))));
@@ -256,18 +285,21 @@ std::optional<double> ProjectionModel::angle_of(double r) const {
     default: break;
     }
     if (r > largest_radius_) return std::nullopt;
-    // Newton within a bracket: the radius grows with the angle up to the fold.
-    double low = 0, high = largest_angle_, t = std::min(r, high);
-    for (int i = 0; i < kNewton; ++i) {
-        const double miss = radius_of(t) - r;
-        if (std::abs(miss) <= kExact * std::max(r, 1e-3)) break;
-        (miss > 0 ? high : low) = t;
+    if (kind_ == Kind::ftheta) return ftheta_angle(r);
+    // The radius grows with the angle up to the fold.
+    const auto slope = [&](double t) {
         const double t2 = t * t;
-        const double slope = 1 + t2 * (3 * k_[0] + t2 * (5 * k_[1] + t2 * (7 * k_[2] + t2 * 9 * k_[3])));
-        const double next = t - miss / slope;
-        t = next > low && next < high ? next : 0.5 * (low + high);
-    }
-    return t;
+        return 1 + t2 * (3 * k_[0] + t2 * (5 * k_[1] + t2 * (7 * k_[2] + t2 * 9 * k_[3])));
+    };
+    return solved([&](double t) { return radius_of(t); }, slope, r, largest_angle_);
+}
+
+double ProjectionModel::ftheta_angle(double r) const {
+    return r * (1 + r * (k_[0] + r * (k_[1] + r * (k_[2] + r * k_[3]))));
+}
+
+double ProjectionModel::ftheta_slope(double r) const {
+    return 1 + r * (2 * k_[0] + r * (3 * k_[1] + r * (4 * k_[2] + r * 5 * k_[3])));
 }
 
 /// Radial, tangential and thin prism terms, wherever they lead, and how they change with x and with y.

@@ -6,7 +6,8 @@
 //
 // Sources: OpenCV 5, "Camera Calibration and 3D Reconstruction" (rational, thin prism, tilt) and "Fisheye";
 // Kannala and Brandt 2006; OpenLensIO 1.0.1 (the inverse: its Brown-Conrady D-U); Usenko, Demmel and Cremers 2018, The Double Sphere Camera Model (double sphere,
-// EUCM, UCM and their domains); Mei and Rives 2007 (omni); Devernay and Faugeras 2001 (FOV).
+// EUCM, UCM and their domains); Mei and Rives 2007 (omni); Devernay and Faugeras 2001 (FOV); NVIDIA, "Lens Distortion
+// Schemas" of OmniLensDistortionFthetaAPI (f-theta).
 #pragma once
 #include <array>
 #include <optional>
@@ -28,6 +29,7 @@ struct ProjectionModel {
         omni,              // xi k1 k2 p1 p2; Kalibr's omni with radtan
         fov,               // w (radians)
         opencv_inverse,    // k1 k2 p1 p2 k3 k4 k5 k6: points of the picture to ideal ones, by opencv's terms
+        ftheta,            // k2 k3 k4 k5: angle = r + k2 r^2 + k3 r^3 + k4 r^4 + k5 r^5, NVIDIA's f-theta
     };
     static constexpr int kMost = 14;
 
@@ -52,6 +54,8 @@ struct ProjectionModel {
 
   private:
     double radius_of(double angle) const;
+    double ftheta_angle(double radius) const;
+    double ftheta_slope(double radius) const;
     std::optional<double> angle_of(double radius) const;
     std::optional<Vec2d> distorted(Vec2d ideal) const;     // of opencv and omni
     std::optional<Vec2d> undistorted(Vec2d point) const;

@@ -129,6 +129,25 @@ TEST_CASE("beyond its fold, or behind it, a model sees nothing") {
     CHECK_FALSE(ProjectionModel(Kind::cube).unproject({3.2, 0}).has_value());
 }
 
+TEST_CASE("an f-theta model gives the angle of a radius by its polynomial, up to where it turns or looks behind") {
+    const ProjectionModel model(Kind::ftheta, {0.02, -0.1, 0.01, 0.002});
+    for (const double r : {0.2, 0.9, 1.3}) {
+        const double angle = r + 0.02 * r * r - 0.1 * r * r * r + 0.01 * r * r * r * r + 0.002 * std::pow(r, 5);
+        const Vec3d seen = *model.unproject({0.6 * r, -0.8 * r});
+        CHECK(length(seen - direction(angle, std::atan2(-0.8, 0.6))) < 1e-14);
+    }
+    const ProjectionModel turns(Kind::ftheta, {-0.25});   // slope 1 - r / 2
+    CHECK(turns.largest_radius() == doctest::Approx(2).epsilon(1e-12));
+    CHECK(turns.largest_angle() == doctest::Approx(1).epsilon(1e-12));
+    CHECK(turns.unproject({1.999, 0}).has_value());
+    CHECK_FALSE(turns.unproject({2.001, 0}).has_value());
+    CHECK_FALSE(turns.project(direction(1.001, 0)).has_value());
+    const ProjectionModel behind(Kind::ftheta, {0, 0.1});   // r + r^3 / 10 is pi there
+    const double last = behind.largest_radius();
+    CHECK(last + 0.1 * last * last * last == doctest::Approx(kPiD).epsilon(1e-12));
+    CHECK(ProjectionModel(Kind::ftheta, {-1e3}).largest_radius() == doctest::Approx(5e-4).epsilon(1e-9));
+}
+
 TEST_CASE("where tangential terms or a tilted sensor fold the picture, points have one direction or none") {
     const ProjectionModel tangential(Kind::opencv, {0, 0, 0.3, -0.2});
     const ProjectionModel tilted(Kind::opencv, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.9, -0.4});

@@ -57,7 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace dg;
     FuzzInput in(data, size);
     try {
-        const auto kind = ProjectionModel::Kind(in.below(int(ProjectionModel::Kind::opencv_inverse) + 1));
+        const auto kind = ProjectionModel::Kind(in.below(int(ProjectionModel::Kind::ftheta) + 1));
         std::array<double, ProjectionModel::kMost> parameters;
         for (double& p : parameters) p = parameter(in);
         const ProjectionModel model(kind, parameters);

@@ -38,7 +38,7 @@ LensKind any_lens(FuzzInput& in) {
         default: {
             std::array<double, ProjectionModel::kMost> parameters{};
             for (int i = 0; i < 5; ++i) parameters[i] = in.flag() ? 0.2 * double(in.number()) : 0;
-            const auto kind = ProjectionModel::Kind(in.below(int(ProjectionModel::Kind::opencv_inverse) + 1));
+            const auto kind = ProjectionModel::Kind(in.below(int(ProjectionModel::Kind::ftheta) + 1));
             return Projection{.model = ProjectionModel(kind, parameters),
                               .focal_mm = {20, 20},
                               .aperture_radius_mm = 4 * tame(in)};

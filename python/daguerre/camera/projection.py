@@ -43,6 +43,7 @@ MODELS: dict[str, tuple[str, ...]] = {
     "omni": ("xi", "k1", "k2", "p1", "p2"),
     "fov": ("w",),
     "opencv_inverse": ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"),
+    "ftheta": ("k2", "k3", "k4", "k5"),
 }
 #: Number of parameters that must be given, for models that do not project with all of them 0.
 NEEDED = {"double_sphere": 2, "eucm": 2, "omni": 1, "fov": 1}
