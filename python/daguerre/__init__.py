@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from .exposure import metering
     from .frame.frame import Frame
     from .frame.raw import Raw
+    from .io.export_camera import export_camera
     from .io.exr.read import load_frame
     from .io.load import load
     from .labels.annotations import annotate
@@ -100,6 +101,7 @@ __all__ = [
     "composite",
     "development",
     "distortion",
+    "export_camera",
     "exposure",
     "iter_render",
     "keys",
@@ -157,6 +159,7 @@ _LAZY = {
     "calibrate_all": "analysis.calibrate",
     "Diffraction": "rendering.diffraction",
     "load": "io.load",
+    "export_camera": "io.export_camera",
     "load_frame": "io.exr.read",
     "Frame": "frame.frame",
     "Raw": "frame.raw",

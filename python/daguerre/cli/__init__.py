@@ -51,6 +51,7 @@ COMMANDS = {
     "stocks": Command(".stocks", "List the film stocks of the library."),
     "chart": Command(".chart", "Write a test chart as a scene."),
     "calibrate": Command(".calibrate", "Fit a projection to a lens."),
+    "export-camera": Command(".export_camera", "Write cameras as a USD stage."),
     "match-plate": Command(".match_plate", "Find the camera settings of a photograph."),
     "light-probe": Command(".light_probe", "Build an environment from photographs of a probe."),
     "composite": Command(".composite", "Put rendered objects into a photograph."),

@@ -15,6 +15,7 @@ EXTRAS = {
     "distributed": ("distributed", "cluster"),
     "matplotlib": ("matplotlib", "plot"),
     "mitsuba_oidn": ("mitsuba-oidn", "denoise"),
+    "pxr": ("usd-core", "usd"),
     "rawpy": ("rawpy", "raw"),
     "simplejpeg": ("simplejpeg", "view"),
     "tifffile": ("tifffile", "raw"),

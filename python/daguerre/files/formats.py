@@ -17,6 +17,9 @@ from typing import Any, Literal
 from daguerre.errors import InputError, UsageError, suggest
 
 Kind = Literal["scene", "frame", "picture", "raw", "environment", "profile"]
+from . import extras
+
+Kind = Literal["scene", "frame", "picture", "raw", "environment", "camera"]
 #: A function, or "module:function", which is imported on first use.
 Function = str | Callable[..., Any]
 #: Suffix that matches every suffix without another row of the kind.
@@ -66,6 +69,9 @@ _FORMATS = [
     Format("DNG", "raw", (".dng",), None, f"{_DEVELOPED}:as_dng", None),
     Format("a developed picture", "raw", (*_JPEG, *_PNG, *_TIFF, *_EXR), None,
            f"{_DEVELOPED}:as_picture", None),
+    Format("OpenUSD", "camera", (".usda", ".usdc", ".usd"), None,
+           "daguerre.io.usd.camera_writer:write_cameras", ("times",),
+           ("pxr", extras.hint("pxr"))),
     Format("an image", "environment", (ANY,), "daguerre.io.images:read_environment"),
     Format("IES LM-63", "profile", (".ies",), "daguerre.io.ies:read"),
 ]  # fmt: skip

@@ -1,7 +1,8 @@
 """Reads attributes of USD as constants, or as keys over time.
 
-USD interpolates time samples linearly, or holds them if the type or the stage asks for it, and keeps
-the first and the last value outside of them: the law of :func:`daguerre.keys`. Splines are sampled.
+USD interpolates time samples linearly, or holds them if the type or the stage asks for it, and
+keeps the first and the last value outside of them: the law of :func:`daguerre.keys`. Splines are
+sampled.
 """
 
 from __future__ import annotations

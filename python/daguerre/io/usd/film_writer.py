@@ -1,0 +1,86 @@
+"""Writes lens, film and focus of a camera by UsdGeomCamera's attributes."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+
+from daguerre.camera.camera import Camera
+from daguerre.camera.ideal import IDEAL, WITHOUT_IRIS
+from daguerre.camera.parameters import CAMERA
+from daguerre.lenses import Lens, load
+
+from .omni_writer import write_projection
+from .stage_writer import Output
+
+#: Camera lengths of a stage in metres, mm.
+_TENTH = 100.0
+#: Infinity as others take it, m.
+_FAR = 1e6
+_LENS = ("focal_length", "zoom", "projection", "sensor_size")
+
+
+def write_film(output: Output) -> None:
+    """Writes focal length, apertures, offsets, f-stop and focus; with a calibration, that too."""
+    output.follow("focalLength", "float", lambda c: _focal(c) / _TENTH, *_LENS)
+    film = ("sensor_size", "projection")
+    output.follow("horizontalAperture", "float", lambda c: c.sensor_size[0] / _TENTH, *film)
+    output.follow("verticalAperture", "float", lambda c: _height(c) / _TENTH, *film)
+    for i, side in enumerate(("horizontal", "vertical")):
+        output.follow(
+            f"{side}ApertureOffset",
+            "float",
+            partial(_offset, i),
+            *("shift", *film),
+        )
+    by_diameter = output.camera.aperture_diameter is not None
+    stops = ("aperture_diameter", *_LENS) if by_diameter else ("f_stop",)
+    output.follow("fStop", "float", _stop, *stops)
+    output.follow("focusDistance", "float", _focus, "focus_distance")
+    if output.camera.projection is not None:
+        write_projection(output)
+
+
+def _focal(camera: Camera) -> float:
+    """Focal length, mm; of a prescription the one that it has."""
+    if camera.projection is not None:
+        pair = camera.projection.film(camera.sensor_size[0])["focal_mm"]
+        return float(sum(pair) / 2)
+    if camera.lens is None or camera.lens in IDEAL:
+        usual = CAMERA["focal_length"].usual
+        return float(usual if camera.focal_length is None else camera.focal_length)
+    lens: Lens = load(camera.lens)
+    if camera.zoom is not None:
+        lens = lens.at_zoom(camera.zoom)
+    return float(lens.first_order().efl)
+
+
+def _height(camera: Camera) -> float:
+    """Height of the film, mm; with a calibration that of its picture."""
+    if camera.projection is None:
+        return float(camera.sensor_size[1])
+    width, height = camera.projection.size
+    return float(camera.sensor_size[0] * height / width)
+
+
+def _offset(axis: int, camera: Camera) -> float:
+    """Offset of the film, right or up; with a calibration that of its principal point."""
+    if camera.projection is None:
+        return float(camera.shift[axis] / _TENTH)
+    return float(-camera.projection.film(camera.sensor_size[0])["principal_mm"][axis] / _TENTH)
+
+
+def _stop(camera: Camera) -> float | None:
+    """F-stop; 0 without an iris; None: the default."""
+    hole = camera.lens in WITHOUT_IRIS or camera.lens_model in WITHOUT_IRIS
+    if hole or (camera.projection is not None and camera.f_stop is None):
+        return 0.0
+    if camera.aperture_diameter is not None:
+        return _focal(camera) / camera.aperture_diameter
+    return camera.t_stop if camera.f_stop is None else camera.f_stop
+
+
+def _focus(camera: Camera) -> float | None:
+    """Focus distance, m; None: autofocus."""
+    focus = camera.focus_distance
+    return focus if focus is None or math.isfinite(focus) else _FAR
