@@ -18,6 +18,8 @@ from pxr import Usd
 
 from daguerre.camera.camera import Camera
 from daguerre.camera.ideal import IDEAL
+from daguerre.camera.parameters import CAMERA
+from daguerre.camera.shutter import check as check_shutter
 from daguerre.errors import InputError, UsageError
 from daguerre.files.notes import Notes
 from daguerre.motion.values import Dynamic, Keys, is_dynamic, keys
@@ -28,6 +30,7 @@ from .exposure import never_opens, read_exposure, read_shutter
 from .omni import read_distortion
 from .rolling import OMNI, read_rolling
 from .stage_facts import StageFacts
+from .values import path_text
 
 #: F-stop of a moment that has none, within keys of a camera that has one at another: sharp.
 _SHARP = 1e9
@@ -69,10 +72,23 @@ def read_camera(
     values = _completed(values, ours, notes)
     _doubt(values, notes)
     _unread(read)
+    return _made(transform, values, read)
+
+
+def _made(transform: Any, values: dict[str, Any], read: Checked) -> Camera:
+    """Makes the camera, and checks that its values go together."""
     try:
-        return Camera(transform=transform, **values)  # type: ignore[arg-type]
+        made = Camera(transform=transform, **values)
+        check_shutter(made)
+        CAMERA.refuse_rivals(_given(made), "camera")
     except UsageError as error:
-        raise InputError(f"{stage.file}: {prim.GetPath()}: {error}") from None
+        place = f"{read.stage.file}: {path_text(read.prim.GetPath())}"
+        raise InputError(f"{place}: {str(error).removeprefix('camera: ')}") from None
+    return made
+
+
+def _given(made: Camera) -> set[str]:
+    return {row.name for row in CAMERA if getattr(made, row.name) is not None}
 
 
 def _film(read: Checked) -> dict[str, Any]:

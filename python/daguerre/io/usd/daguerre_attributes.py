@@ -221,7 +221,8 @@ def _projection(read: Checked) -> Any:
         try:
             return Projection(str(model), size, focal, center, terms or ())  # type: ignore[arg-type]
         except UsageError as error:
-            raise InputError(f"{read.place(stem + 'model')}: {error}") from None
+            said = str(error).removeprefix("projection: model: ").removeprefix("projection: ")
+            raise InputError(f"{read.place(stem + 'model')}: {said}") from None
 
     if not times:
         return made(0.0)

@@ -108,7 +108,8 @@ class _Distortion:
         try:
             return Projection(name, (width, height), pair, (x, y), _trimmed(values))
         except (UsageError, InputError) as error:
-            raise InputError(f"{self.read.place(self.model.terms[0])}: {error}") from None
+            place = self.read.place(MODEL if self.model.schema else PROJECTION_TYPE)
+            raise InputError(f"{place}: {str(error).removeprefix('projection: ')}") from None
 
     def _named(
         self, terms: list[float], width: int, code: Usd.TimeCode

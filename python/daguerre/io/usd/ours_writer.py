@@ -9,12 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from daguerre import lenses, sensors
+from daguerre import sensors
 from daguerre.camera.ideal import IDEAL
 from daguerre.camera.lens_scatter import LensScatter
 from daguerre.camera.parameters import CAMERA
 from daguerre.checks import short
 from daguerre.errors import UsageError
+from daguerre.lenses import Lens
+from daguerre.lenses import library as lenses
 
 from .daguerre_attributes import (
     ARRAYS,
@@ -79,15 +81,10 @@ def _named(output: Output, name: str, value: Any, known: Any, load: Any) -> tupl
     place = f"{PREFIX}{name}:name"
     if value is None:
         return place, "string", None
+    if not isinstance(value, str | Path):
+        value = _found(value, name, load)
     if str(value) in known:
         return place, "string", str(value)
-    if not isinstance(value, str | Path):
-        if value.name in known and load(value.name) == value:
-            return place, "string", value.name
-        raise UsageError(
-            f"camera: {name}: wanted a name of the library or a file, got {short(value)}, which "
-            "is in memory"
-        )
     path = Path(value).resolve()
     if not path.is_relative_to(output.folder):
         raise UsageError(
@@ -95,6 +92,21 @@ def _named(output: Output, name: str, value: Any, known: Any, load: Any) -> tupl
             f"stage reads others; got {path}"
         )
     return f"{PREFIX}{name}:file", "asset", f"./{path.relative_to(output.folder).as_posix()}"
+
+
+def _found(value: Lens | sensors.Sensor, name: str, load: Any) -> str:
+    """Name in the library of a lens or a sensor that is in memory."""
+    if isinstance(value, Lens):
+        near = [entry.name for entry in lenses.entries() if entry.title == value.name]
+    else:
+        near = sensors.names()
+    found = next((one for one in near if load(one) == value), None)
+    if found is None:
+        raise UsageError(
+            f"camera: {name}: wanted a name of the library or a file, got {short(value.name)} in "
+            "memory"
+        )
+    return found
 
 
 def _write_picture(output: Output, name: str, pixels: Any) -> None:

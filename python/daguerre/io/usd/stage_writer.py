@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Sdf, Usd
+from pxr import Gf, Sdf, Usd
 
 from daguerre.camera.camera import Camera
 from daguerre.camera.projection import MODELS, Projection
@@ -19,6 +19,7 @@ from daguerre.scene.transforms import without_scale
 
 from .over_time import miss_of_numbers, sample_times
 
+_PAIRS = {"int2": Gf.Vec2i, "float2": Gf.Vec2f, "double2": Gf.Vec2d}
 #: Most parameters of a projection.
 _TERMS = max(map(len, MODELS.values()))
 
@@ -105,7 +106,7 @@ def _given(kind: str, value: Any) -> Any:
         return [tuple(v) if isinstance(v, tuple | list) else v for v in value]
     if kind in ("float", "double"):
         return float(value)
-    return tuple(value) if isinstance(value, tuple | list | np.ndarray) else value
+    return _PAIRS[kind](*value) if kind in _PAIRS else value
 
 
 @dataclass(frozen=True)

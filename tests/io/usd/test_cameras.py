@@ -1,0 +1,348 @@
+"""Cameras of USD: numbers against USD's own, units, and what a stage leaves out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import daguerre as dg
+
+pytest.importorskip("pxr")
+
+from pxr import Usd, UsdGeom
+
+from .stage import FILE, PATH, camera_prim, noted, read
+
+WIDE = """
+    float focalLength = 35
+    float horizontalAperture = 36
+    float verticalAperture = 24
+    float horizontalApertureOffset = {right}
+    float verticalApertureOffset = {up}
+"""
+
+
+@pytest.mark.parametrize(("right", "up"), [(0, 0), (5, 0), (0, -3), (-4.5, 6.25)])
+@pytest.mark.parametrize("metres", [0.01, 0.001, 1.0])
+def test_rays_are_those_of_usds_own_frustum(right: float, up: float, metres: float) -> None:
+    """Field of view and the direction of offsets, at every unit of a stage."""
+    prim = camera_prim(WIDE.format(right=right, up=up))
+    camera = read(prim, metres=metres)
+    window = UsdGeom.Camera(prim).GetCamera(0).frustum.window  # at distance 1
+    low, high = window.GetMin(), window.GetMax()
+    columns, rows = 36, 24
+    x = low[0] + (np.arange(columns) + 0.5) / columns * (high[0] - low[0])
+    y = high[1] - (np.arange(rows) + 0.5) / rows * (high[1] - low[1])
+    seen = dg.raymap(camera, (columns, rows)).direction
+    np.testing.assert_allclose(seen[..., 0] / seen[..., 2], np.tile(x, (rows, 1)), atol=1e-6)
+    np.testing.assert_allclose(-seen[..., 1] / seen[..., 2], np.tile(y, (columns, 1)).T, atol=1e-6)
+
+
+def test_camera_lengths_are_tenths_of_a_unit_and_focus_is_in_units() -> None:
+    lines = """
+        float focalLength = 0.25
+        float horizontalAperture = 0.36
+        float focusDistance = 2.5
+        float fStop = 2.8
+    """
+    camera = read(camera_prim(lines), metres=1.0)
+    assert camera.focal_length == pytest.approx(25)
+    assert camera.sensor_size[0] == pytest.approx(36)
+    assert camera.focus_distance == pytest.approx(2.5)
+    assert camera.f_stop == 2.8
+    inches = read(camera_prim(lines), metres=0.0254)
+    assert inches.focal_length == pytest.approx(0.25 * 2.54)
+    assert inches.focus_distance == pytest.approx(2.5 * 0.0254)
+
+
+def test_a_unit_that_is_probably_wrong_is_noted_and_millimetres_help() -> None:
+    lines = "float focalLength = 24\nfloat horizontalAperture = 36"
+    _, notes = noted(camera_prim(lines), metres=1.0)
+    assert "a lens of 2.4 m; metersPerUnit is probably wrong: --camera-units mm" in notes[0]
+    assert "a sensor 3.6 m wide" in notes[1]
+    camera, notes = noted(camera_prim(lines), metres=1.0, camera_millimetres=1.0)
+    assert notes == []
+    assert camera is not None
+    assert (camera.focal_length, camera.sensor_size[0]) == (24, 36)
+
+
+def test_what_a_stage_leaves_out_keeps_daguerres_default() -> None:
+    camera = read(camera_prim())
+    usual = dg.Camera()
+    for name in (
+        *("f_stop", "focus_distance", "shutter_time", "shutter_offset", "exposure_time"),
+        *("exposure_f_stop", "iso", "responsivity", "exposure_compensation", "lens"),
+    ):
+        assert getattr(camera, name) == getattr(usual, name), name
+    assert camera.focal_length == 50
+    assert camera.sensor_size == pytest.approx((20.955, 15.2908))  # the schema's
+
+
+def test_an_f_stop_of_0_is_a_pinhole_and_a_focus_of_0_is_unset() -> None:
+    camera = read(camera_prim("float fStop = 0\nfloat focusDistance = 0"))
+    assert (camera.lens, camera.f_stop, camera.focus_distance) == ("pinhole", None, None)
+
+
+@pytest.mark.parametrize(
+    ("opens", "closes", "time", "offset"),
+    [(0, 0, 0.0, 0.0), (-0.25, 0.25, 0.5 / 24, -0.25), (0, 0.5, 0.5 / 24, 0.0)],
+)
+def test_shutters_are_in_frames(opens: float, closes: float, time: float, offset: float) -> None:
+    lines = f"double shutter:open = {opens}\ndouble shutter:close = {closes}"
+    camera = read(camera_prim(lines))
+    assert (camera.shutter_time, camera.shutter_offset) == pytest.approx((time, offset))
+    assert camera.fps == 24
+    # Time codes of another rate than the frames.
+    camera = read(camera_prim(lines), fps=12.0)
+    assert camera.shutter_time == pytest.approx(time)
+    assert camera.shutter_offset == pytest.approx(offset / 2)
+
+
+def test_a_shutter_that_never_opens_and_parallel_rays_make_no_camera() -> None:
+    camera, notes = noted(camera_prim("double shutter:open = 0.5\ndouble shutter:close = 0.25"))
+    assert camera is None
+    assert notes == [
+        "a camera whose shutter closes before it opens is left out: it sees nothing (1 use)"
+    ]
+    camera, notes = noted(camera_prim('token projection = "orthographic"'))
+    assert camera is None
+    assert notes == ["an orthographic camera is left out: no lens makes parallel rays (1 use)"]
+
+
+EXPOSED = """
+    float fStop = 4
+    float exposure = {ev}
+    float exposure:iso = {iso}
+    float exposure:time = {time}
+    float exposure:fStop = {stop}
+    float exposure:responsivity = {factor}
+"""
+EXPOSURES: list[dict[str, float]] = [
+    {"ev": 0, "iso": 100, "time": 0.02, "stop": 4, "factor": 1},
+    {"ev": 1, "iso": 100, "time": 0.02, "stop": 4, "factor": 1},
+    {"ev": -0.5, "iso": 320, "time": 0.01, "stop": 5.6, "factor": 1.5},
+    {"ev": 0.25, "iso": 50, "time": 0.03, "stop": 2.8, "factor": 0.8},
+]
+
+
+def scale_of(camera: dg.Camera) -> float:
+    """USD's scale of brightness, by Daguerre's parameters."""
+    assert camera.exposure_time is not None
+    assert camera.exposure_f_stop is not None
+    gain = camera.iso / 100 * camera.responsivity * 2**camera.exposure_compensation
+    return camera.exposure_time * gain / camera.exposure_f_stop**2
+
+
+@pytest.mark.parametrize("values", EXPOSURES)
+def test_exposure_is_usds_own_scale(values: dict[str, float]) -> None:
+    prim = camera_prim(EXPOSED.format(**values))
+    wanted = UsdGeom.Camera(prim).ComputeLinearExposureScale(Usd.TimeCode.Default())
+    assert scale_of(read(prim)) == pytest.approx(wanted, rel=1e-6)
+
+
+def test_developed_pictures_are_as_bright_as_usds_scale_says() -> None:
+    """Through a whole photograph: two cameras differ by the ratio of their scales."""
+    scene = dg.Scene()
+    scene.set_environment(color=(20.0, 20.0, 20.0))
+    got, wanted = [], []
+    for values in EXPOSURES:
+        prim = camera_prim(EXPOSED.format(**values) + "double shutter:close = 0.1")
+        wanted.append(UsdGeom.Camera(prim).ComputeLinearExposureScale(Usd.TimeCode.Default()))
+        frame = dg.render(scene, read(prim), resolution=(8, 6), spp=4)
+        got.append(dg.development.develop(frame, look="neutral").linear().mean())
+    np.testing.assert_allclose(np.array(got) / got[0], np.array(wanted) / wanted[0], rtol=1e-4)
+
+
+def test_only_what_is_authored_splits_light_from_blur() -> None:
+    camera = read(camera_prim("float exposure:iso = 800"))
+    assert (camera.iso, camera.exposure_time, camera.exposure_f_stop) == (800, None, None)
+    camera = read(camera_prim("float exposure:time = 1"))
+    assert camera.exposure_time == 1  # as the fallback, but authored
+
+
+MOVING = """
+    float focalLength.timeSamples = {0: 24, 48: 70}
+    float horizontalAperture.timeSamples = {0: 36, 24: 30}
+    float horizontalApertureOffset.timeSamples = {0: 0, 24: 5}
+    float fStop.timeSamples = {0: 2.8, 24: 5.6}
+    float focusDistance.timeSamples = {0: 100, 12: 300}
+"""
+
+
+@pytest.mark.parametrize("code", [-3.0, 0.0, 7.0, 12.0, 30.0, 60.0])
+def test_what_changes_over_time_is_what_usd_has_at_that_time(code: float) -> None:
+    prim = camera_prim(MOVING)
+    camera = read(prim).evaluated_at(code / 24)
+    usd = UsdGeom.Camera(prim).GetCamera(Usd.TimeCode(code))
+    assert camera.focal_length == pytest.approx(usd.focalLength, rel=1e-6)
+    assert camera.sensor_size[0] == pytest.approx(usd.horizontalAperture, rel=1e-6)
+    assert camera.shift[0] == pytest.approx(usd.horizontalApertureOffset, rel=1e-6, abs=1e-9)
+    assert camera.f_stop == pytest.approx(usd.fStop, rel=1e-6)
+    assert camera.focus_distance == pytest.approx(usd.focusDistance / 100, rel=1e-6)
+    assert set(camera.motion) == {
+        "focal_length", "sensor_size", "shift", "f_stop", "focus_distance"
+    }  # fmt: skip
+
+
+def test_a_stop_of_0_and_a_focus_of_0_among_keys() -> None:
+    lines = (
+        "float fStop.timeSamples = {0: 0, 24: 4}\nfloat focusDistance.timeSamples = {0: 0, 24: 300}"
+    )
+    camera, notes = noted(camera_prim(lines))
+    assert camera is not None
+    assert camera.evaluated_at(0).f_stop > 1e8
+    assert camera.evaluated_at(1).f_stop == 4
+    assert camera.focus_distance == pytest.approx(3)
+    assert len(notes) == 1
+
+
+def test_values_that_cannot_move_are_noted() -> None:
+    camera, notes = noted(camera_prim("float exposure:iso.timeSamples = {0: 100, 24: 400}"))
+    assert camera is not None
+    assert camera.iso == 100
+    assert notes == [
+        "exposure:iso of a camera changes over time; its value at the start is kept (1 use)"
+    ]
+
+
+def test_what_is_not_drawn_is_noted_once() -> None:
+    lines = """
+        float4[] clippingPlanes = [(0, 0, 1, 2)]
+        float2 clippingRange = (50, 1e6)
+        uniform token stereoRole = "left"
+    """
+    _, notes = noted(camera_prim(lines))
+    assert [note.split(" of a camera")[0][:22] for note in notes] == [
+        "clipping planes", "stereoRole left", "a near clipping plane ",
+    ]  # fmt: skip
+    _, notes = noted(camera_prim("float2 clippingRange = (0.1, 100)"))
+    assert notes == []
+
+
+OURS = """
+    string daguerre:lens:name = "double-gauss-50mm-f2"
+    token daguerre:lens:model = "thick"
+    double daguerre:lens:tStop = 2.4
+    double2 daguerre:tilt = (3, -1)
+    int daguerre:aperture:blades = 7
+    double daguerre:aperture:rotation = 12.5
+    double daguerre:aperture:curvature.timeSamples = {0: 0.1, 24: 0.3}
+    double daguerre:sensor:whiteBalance = 5600
+    token daguerre:shutter:type = "rotary"
+    double2[] daguerre:shutter:curve = [(0, 0), (0.2, 1), (0.8, 1), (1, 0)]
+    token daguerre:rollingShutter:scanOrder = "left"
+    double daguerre:rollingShutter:lineOffset = 1.5e-5
+    double2 daguerre:rollingShutter:lineExposure = (1, 100)
+    double daguerre:focus:distance = inf
+    token daguerre:sensor:fit = "vertical"
+    float fStop = 2.8
+    float focusDistance = 200
+"""
+
+
+def test_attributes_of_our_own_take_precedence() -> None:
+    camera = read(camera_prim(OURS))
+    wanted: dict[str, Any] = {
+        "lens": "double-gauss-50mm-f2", "lens_model": "thick", "t_stop": 2.4, "f_stop": None,
+        "tilt": (3, -1), "blades": 7, "blade_rotation": 12.5, "white_balance": 5600,
+        "shutter_type": "rotary", "shutter_curve": [(0, 0), (0.2, 1), (0.8, 1), (1, 0)],
+        "rolling_shutter": dg.RollingShutter("left", line_time=1.5e-5), "shutter_time": 0.01,
+        "focus_distance": np.inf, "sensor_fit": "vertical", "focal_length": None,
+    }  # fmt: skip
+    assert {name: getattr(camera, name) for name in wanted} == wanted
+    assert camera.evaluated_at(0.5).blade_curvature == pytest.approx(0.2)
+
+
+def test_files_are_found_by_the_stage_alone(tmp_path: Path) -> None:
+    asked = []
+
+    def resolve(place: str, asset: str) -> Path:
+        asked.append((place, asset))
+        return tmp_path / asset
+
+    prim = camera_prim("asset daguerre:lens:file = @lenses/my.json@")
+    camera = read(prim, resolve=resolve)
+    assert camera.lens == str(tmp_path / "lenses/my.json")
+    assert asked == [(f"{FILE}: {PATH}.daguerre:lens:file", "lenses/my.json")]
+    with pytest.raises(dg.InputError, match="refused"):
+        read(prim)
+
+
+def test_a_library_name_may_stand_in_an_asset() -> None:
+    prim = camera_prim("asset daguerre:lens:file = @double-gauss-50mm-f2@")
+    assert read(prim).lens == "double-gauss-50mm-f2"
+
+
+BAD = {
+    "focalLength": ("float focalLength = 0", "at least 0.001"),
+    "focalLength ": ("float focalLength = nan", "finite"),
+    "focalLength  ": ("float focalLength.timeSamples = {0: 10, 1: -1}", "at least"),
+    "horizontalAperture": ("float horizontalAperture = -36", "at least"),
+    "verticalAperture": ("float verticalAperture = inf", "finite"),
+    "verticalApertureOffset": ("float verticalApertureOffset = 1e30", "at most"),
+    "fStop": ("float fStop = -2", "at least"),
+    "focusDistance": ("float focusDistance = -1", "at least"),
+    "shutter:open": ("double shutter:open = nan", "finite"),
+    "shutter:close": ("double shutter:close = 1e30", "at most"),
+    "exposure:iso": ("float exposure:iso = 0", "above 0"),
+    "exposure:time": ("float exposure:time = -1", "above 0"),
+    "exposure:fStop": ("float exposure:fStop = inf", "finite"),
+    "exposure": ("float exposure = 1000", "at most"),
+    "clippingRange": ("float2 clippingRange = (nan, 1)", "finite"),
+    "daguerre:lens:name": ('string daguerre:lens:name = "nonsense"', "of the library"),
+    "daguerre:lens:model": ('token daguerre:lens:model = "quantum"', "exact"),
+    "daguerre:aperture:blades": ("int daguerre:aperture:blades = -7", "3 .. 64"),
+    "daguerre:aperture:curvature": ("double daguerre:aperture:curvature = 3", "at most 1"),
+    "daguerre:tilt": ("double3 daguerre:tilt = (1, 2, 3)", "angles"),
+    "daguerre:shutter:type": ('token daguerre:shutter:type = "guillotine"', "rotary"),
+    "daguerre:shutter:curve ": ("double2[] daguerre:shutter:curve = [(1, 1), (0, 1)]", "rise"),
+    "daguerre:shutter:efficiency": ("double daguerre:shutter:efficiency = 0.1", "0.5"),
+    "daguerre:lens:decenter": ("double[] daguerre:lens:decenter = [1, 2, 3]", "groups of 6"),
+    "daguerre:lens:ripple": ("double[] daguerre:lens:ripple = [1]", "2 or 3 numbers"),
+    "daguerre:aperture:imageSize": (
+        "float[] daguerre:aperture:image = [1, 1]\nint2 daguerre:aperture:imageSize = (3, 1)",
+        "width and height",
+    ),
+    "daguerre:projection:model": ('token daguerre:projection:model = "round"', "rectilinear"),
+    "daguerre:sensor:pixelPitch": ("double daguerre:sensor:pixelPitch = 0", "above 0"),
+    "daguerre:rollingShutter:scanOrder": (
+        'token daguerre:rollingShutter:scanOrder = "spiral"', "topToBottom"),
+    "daguerre:rollingShutter:lineOffset": (
+        'token daguerre:rollingShutter:scanOrder = "top"', "one line to the next"),
+    "omni:rtx:rollingShutter:lineOffset": (
+        'token omni:rtx:rollingShutter:scanOrder = "topToBottom"\n'
+        "double2 omni:rtx:rollingShutter:lineOffset = (1, 0)", "denominator"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_values_are_one_error_that_names_the_attribute(name: str) -> None:
+    lines, words = BAD[name]
+    with pytest.raises(dg.InputError) as caught:
+        noted(camera_prim(lines))
+    said = str(caught.value)
+    assert said.startswith(f"{FILE}: {PATH}.{name.strip()}: wanted "), said
+    assert words in said, said
+    assert "got " in said, said
+    assert "\n" not in said
+
+
+def test_a_wrong_type_is_an_error_too() -> None:
+    for lines in (
+        *('string daguerre:aperture:blades = "many"', "double daguerre:lens:model = 3"),
+        *('string daguerre:sensor:whiteBalance = "warm"', "int daguerre:lens:name = 3"),
+    ):
+        with pytest.raises(dg.InputError, match=r"shot.usda: /World/Cam.daguerre.*wanted"):
+            noted(camera_prim(lines))
+
+
+def test_values_that_exclude_each_other_are_one_error() -> None:
+    both = "double daguerre:lens:tStop = 2\ndouble daguerre:lens:apertureDiameter = 20"
+    with pytest.raises(dg.InputError, match=r"^shot.usda: /World/Cam: wanted either t_stop or"):
+        noted(camera_prim(both))
+    shut = "double2[] daguerre:shutter:curve = [(0, 1), (0, 1)]"
+    with pytest.raises(dg.InputError, match=r"^shot.usda: /World/Cam: .*wanted"):
+        noted(camera_prim(shut))
