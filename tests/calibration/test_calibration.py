@@ -559,3 +559,28 @@ def test_a_render_by_the_command_line(tmp_path: Path, chain: Path) -> None:
     assert main([*base, "--pixel-pitch", "6"]) == 2
     assert main([*base, "--calibration", f"{chain}:cam7"]) == 2
     assert main([*base, "--calibration", str(tmp_path / "no.yaml")]) == 3
+
+
+def test_what_we_write_for_nvidia_says_the_same(tmp_path: Path) -> None:
+    """A rig of USD cameras, by the names that Isaac Sim reads."""
+    usd = pytest.importorskip("pxr.Usd")
+    pose = dg.look_at((0.1, 0.02, -0.03), (0.2, 0.1, -3))
+    rig = [
+        Calibration(MADE["rational"], "left", pixel_pitch=3.45),
+        Calibration(MADE["kannala_brandt"], rig_from_camera=pose, pixel_pitch=3.45),
+    ]
+    calibration.write(tmp_path / "rig.usda", rig, "usd")
+    stage = usd.Stage.Open(str(tmp_path / "rig.usda"))
+    left, right = (stage.GetPrimAtPath(f"/World/{name}") for name in ("left", "cam1"))
+    stem = "omni:lensdistortion:opencvPinhole:"
+    got = [
+        left.GetAttribute(stem + k).Get() for k in ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6")
+    ]
+    np.testing.assert_allclose(got, RATIONAL, rtol=1e-6)
+    # NVIDIA counts pixels from the corner of the picture.
+    assert left.GetAttribute(stem + "cx").Get() == pytest.approx(K[0, 2] + 0.5)
+    assert left.GetAttribute("horizontalAperture").Get() == pytest.approx(640 * 3.45e-3 / 100)
+    assert right.GetAttribute("omni:lensdistortion:model").Get() == "opencvFisheye"
+    np.testing.assert_allclose(right.GetAttribute("xformOp:translate").Get(), pose[:3, 3])
+    with pytest.raises(UsageError, match=r"\.usda"):
+        calibration.write(tmp_path / "rig.yaml", rig, "usd")

@@ -79,7 +79,7 @@ def test_there_and_back_is_where_one_was(model: str) -> None:
     parameters: dict[str, tuple[float, ...]] = {
         "opencv": RATIONAL, "kannala_brandt": FISHEYE, "double_sphere": (-0.2, 0.58),
         "eucm": (0.6, 1.1), "omni": (0.9, -0.1), "fov": (0.9,),
-        "opencv_inverse": (0.1, -0.02, 2e-3, -3e-3, 0.0, 0.05),
+        "opencv_inverse": (0.1, -0.02, 2e-3, -3e-3, 0.0, 0.05), "ftheta": (0.02, -0.05, 0.01),
     }  # fmt: skip
     made = Projection(model, SIZE, (400.0, 402.0), PRINCIPAL, parameters.get(model, ()))
     seen = made.unproject(pixels(40))

@@ -7,11 +7,13 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from daguerre.camera.camera import Camera
 from daguerre.checks import short
 from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.files.numbered import has_place
 from daguerre.files.source import Source
+from daguerre.io.export_camera import export_camera
 
 from . import colmap, kalibr, opencv, opentrackio, ros, stereo, track, transforms
 from .calibration import Calibration
@@ -19,7 +21,7 @@ from .source import load
 from .take import Take, take_of
 
 FORMATS = ("opencv", "ros", "kalibr", "opentrackio", "colmap", "transforms")
-WRITTEN = FORMATS[:4]
+WRITTEN = (*FORMATS[:4], "usd")
 
 
 def format_of(source: Source) -> str:
@@ -151,7 +153,7 @@ def write(path: str | Path, calibration: Calibration | Sequence[Calibration], fo
 
     Args:
         path: The file.
-        calibration: One calibration; for Kalibr's chains also several, in order.
+        calibration: One calibration; for Kalibr's chains and USD also several, in order.
         format: One of ``WRITTEN``.
 
     Raises:
@@ -164,6 +166,9 @@ def write(path: str | Path, calibration: Calibration | Sequence[Calibration], fo
     several = [calibration] if isinstance(calibration, Calibration) else list(calibration)
     if any(isinstance(one, Take) for one in several):
         raise UsageError(f"calibration: {kind}: wanted a single calibration, got a take")
+    if kind == "usd":
+        export_camera(_named(several), path)
+        return
     if kind == "kalibr":
         text = kalibr.write_kalibr(several)
     elif len(several) != 1:
@@ -176,6 +181,11 @@ def write(path: str | Path, calibration: Calibration | Sequence[Calibration], fo
         }
         text = texts[kind](several[0])
     write_bytes(path, text.encode())
+
+
+def _named(several: Sequence[Calibration]) -> dict[str, Camera]:
+    """Cameras by name, at their places in the rig."""
+    return {one.name or f"cam{i}": one.camera() for i, one in enumerate(several)}
 
 
 def _format(name: str, known: tuple[str, ...]) -> str:

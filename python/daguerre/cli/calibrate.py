@@ -23,7 +23,7 @@ from .flags.map import MapFlags
 if TYPE_CHECKING:
     from daguerre.analysis.calibrate import ProjectionFit
 
-FORMATS = ("opencv", "ros", "kalibr", "opentrackio")
+FORMATS = ("opencv", "ros", "kalibr", "opentrackio", "usd")
 PICTURES = (".png", ".svg", ".pdf")
 ALL = "all"
 WELL = 1.0  # px; larger errors give a note
@@ -48,7 +48,7 @@ def calibrate(
         str | None,
         option(
             "--format",
-            metavar="opencv|ros|kalibr|opentrackio",
+            metavar="opencv|ros|kalibr|opentrackio|usd",
             help="Format of the calibration file [opencv].",
         ),
     ] = None,
