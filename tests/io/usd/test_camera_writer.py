@@ -216,7 +216,7 @@ def moved(draw: random.Random, low: float, high: float) -> dg.Keys:
 
 MOVING: dict[str, Any] = {
     "pose": lambda d: {"transform": dg.keys([(t, any_pose(d)) for t in (0.0, 0.7, 1.0)])},
-    "twist": lambda d: {"transform": dg.keys([(0.0, any_pose(d)), (1.0, any_pose(d))], "twist")},
+    "slerp": lambda d: {"transform": dg.keys([(t, any_pose(d)) for t in (0.0, 0.5)], "slerp")},
     "film": lambda d: {
         "focal_length": moved(d, 20, 90), "sensor_size": (moved(d, 10, 40), 24.0),
         "shift": (0.0, moved(d, -4, 4)), "f_stop": moved(d, 2, 9), "focus_distance": moved(d, 1, 9),
@@ -244,25 +244,20 @@ def test_values_over_time_come_back_at_every_time(kind: str, tmp_path: Path) -> 
     times = tuple(
         t for t in np.linspace(-0.1, 1.2, 53) if abs(t - 0.5) > 1e-6 and abs(t - 1) > 1e-6
     )
-    if kind == "twist":  # along a helix, by steps that are not seen
-        for t in times:
-            np.testing.assert_allclose(
-                made.evaluated_at(t).transform, camera.evaluated_at(t).transform, atol=3e-5
-            )
-        return
     same(camera, made, times)
 
 
 def test_a_spin_needs_times_and_gets_them(tmp_path: Path) -> None:
     pose = dg.look_at((0, 1, 4), (0, 1, 0))
-    camera = dg.Camera(transform=dg.spin((0, 1, 0), 0.5, transform=pose))
+    around = dg.spin((0, 1, 0), 0.5, center=(0, 0, -4), transform=pose)  # in orbit
+    camera = dg.Camera(transform=around)
     with pytest.raises(dg.UsageError, match="times"):
         dg.export_camera(camera, tmp_path / "a.usda")
     assert list(tmp_path.iterdir()) == []
     made = round_trip(camera, tmp_path, times=(0.0, 2.0))
     for t in np.linspace(0, 2, 37):
         np.testing.assert_allclose(
-            made.evaluated_at(t).transform, camera.evaluated_at(t).transform, atol=1e-5
+            made.evaluated_at(t).transform, camera.evaluated_at(t).transform, atol=2e-5
         )
 
 

@@ -62,7 +62,11 @@ def test_a_unit_that_is_probably_wrong_is_noted_and_millimetres_help() -> None:
     lines = "float focalLength = 24\nfloat horizontalAperture = 36"
     _, notes = noted(camera_prim(lines), metres=1.0)
     assert "a lens of 2.4 m; metersPerUnit is probably wrong: --camera-units mm" in notes[0]
-    assert "a sensor 3.6 m wide" in notes[1]
+    assert len(notes) == 1
+    _, notes = noted(camera_prim("float horizontalAperture = 3.6"))
+    assert notes == []
+    _, notes = noted(camera_prim("float horizontalAperture = 0.36"))
+    assert notes[0].startswith("this file says a sensor 0.36 mm wide")
     camera, notes = noted(camera_prim(lines), metres=1.0, camera_millimetres=1.0)
     assert notes == []
     assert camera is not None

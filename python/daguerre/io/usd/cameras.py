@@ -210,14 +210,18 @@ def _start(value: Any) -> Any:
 
 
 def _doubt(values: dict[str, Any], notes: Notes) -> None:
-    """Notes implausible lengths: the stage's unit is probably not what it says."""
-    advice = "; metersPerUnit is probably wrong: --camera-units mm reads it in millimetres"
-    focal = _start(values.get("focal_length"))
+    """Notes an implausible length: the stage's unit is probably not what it says."""
+    focal, width = _start(values.get("focal_length")), _start(values["sensor_size"][0])
+    said = ""
     if focal is not None and not 1 <= focal <= 2000:
-        notes.add(f"this file says a lens of {_shown(focal)}{advice}")
-    width = _start(values["sensor_size"][0])
-    if not 0.5 <= width <= 200:
-        notes.add(f"this file says a sensor {_shown(width)} wide{advice}")
+        said = f"a lens of {_shown(focal)}"
+    elif not 0.5 <= width <= 200:
+        said = f"a sensor {_shown(width)} wide"
+    if said:
+        notes.add(
+            f"this file says {said}; metersPerUnit is probably wrong: --camera-units mm reads it "
+            "in millimetres"
+        )
 
 
 def _shown(mm: float) -> str:
@@ -226,15 +230,15 @@ def _shown(mm: float) -> str:
 
 def _unread(read: Checked) -> None:
     """Notes what of a camera is not drawn."""
-    if read.numbers("clippingPlanes"):
+    if read.now("clippingPlanes"):
         read.notes.add("clipping planes of a camera are left out")
     role = read.text("stereoRole")
     if role not in (None, "mono"):
         read.notes.add(f"stereoRole {role} of a camera is not read: it stands where its prim does")
-    near = read.numbers("clippingRange") if read.is_authored("clippingRange") else None
-    if near and len(near) == 2 and near[0] * read.stage.metres > NEAR_M:
+    near = read.now("clippingRange") if read.is_authored("clippingRange") else None
+    if near is not None and not all(map(math.isfinite, near)):
+        read.fail("clippingRange", "finite numbers", near)
+    if near is not None and near[0] * read.stage.metres > NEAR_M:
         read.notes.add(
             f"a near clipping plane beyond {NEAR_M:g} m is not applied: a lens sees what is nearer"
         )
-    if near and not all(map(math.isfinite, near)):
-        read.fail("clippingRange", "finite numbers", near)

@@ -20,7 +20,7 @@ from daguerre.motion.values import MAX_TIME, Dynamic, Spin
 #: Error of an interpolated value that is worth another sample, relative to values above 1.
 _WORTH = 1e-6
 #: Halvings of the time between two breaks.
-_DEEPEST = 9
+_DEEPEST = 12
 #: Time samples of a value.
 _MOST = 50_000
 
