@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import daguerre as dg
 
 pytest.importorskip("pxr")
+
+from pxr import Usd, UsdGeom
 
 from .stage import FILE, PATH, camera_prim, noted, read
 
@@ -256,6 +260,23 @@ def test_bad_values_are_one_error_that_names_the_attribute(name: str) -> None:
     with pytest.raises(dg.InputError) as caught:
         noted(camera_prim(BAD[name]))
     assert str(caught.value).startswith(f"{FILE}: {PATH}.{name}: wanted "), str(caught.value)
+
+
+def test_the_example_of_the_docs_says_what_the_page_says() -> None:
+    text = (Path(__file__).parents[3] / "docs" / "usd.md").read_text()
+    layer = text.split("```\n#usda 1.0\n")[1].split("```")[0]
+    stage = Usd.Stage.CreateInMemory()
+    assert stage.GetRootLayer().ImportFromString("#usda 1.0\n" + layer)
+    metres = UsdGeom.GetStageMetersPerUnit(stage)
+    camera, notes = noted(stage.GetPrimAtPath("/front"), metres=metres)
+    assert notes == []
+    assert camera is not None
+    assert camera.projection is not None
+    assert camera.projection.parameters == (-0.1,)
+    assert camera.sensor_size[0] / 1920 == pytest.approx(3e-3)
+    assert (camera.f_stop, camera.focus_distance, camera.blades) == (1.8, 2, 7)
+    assert camera.shutter_time == 0.01
+    assert camera.rolling_shutter == dg.RollingShutter("top", line_time=1 / 64000)
 
 
 def test_numbers_that_make_no_model_are_one_error() -> None:
