@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,8 @@ import daguerre as dg
 pytest.importorskip("pxr")
 
 from pxr import Usd, UsdGeom
+
+from daguerre.io.usd.values import Clock
 
 from .stage import FILE, PATH, camera_prim, noted, read
 
@@ -208,7 +211,7 @@ def test_values_that_cannot_move_are_noted() -> None:
     assert camera is not None
     assert camera.iso == 100
     assert notes == [
-        "exposure:iso of a camera changes over time; its value at the start is kept (1 use)"
+        "exposure:iso of a camera changes over time; its value at one time is kept (1 use)"
     ]
 
 
@@ -350,3 +353,16 @@ def test_values_that_exclude_each_other_are_one_error() -> None:
     shut = "double2[] daguerre:shutter:curve = [(0, 1), (0, 1)]"
     with pytest.raises(dg.InputError, match=r"^shot.usda: /World/Cam: .*wanted"):
         noted(camera_prim(shut))
+
+
+def test_cameras_of_one_prim_are_equal_and_travel() -> None:
+    prim = camera_prim(OURS + MOVING.split("float fStop")[0])
+    first, again = read(prim), read(prim)
+    assert first == again
+    assert pickle.loads(pickle.dumps(first)) == first
+
+
+def test_a_scene_time_chooses_the_value_of_what_cannot_move() -> None:
+    prim = camera_prim("float exposure:iso.timeSamples = {0: 100, 24: 400}")
+    assert read(prim, clock=Clock(FILE, 24.0, 1.0)).iso == 400
+    assert read(prim, clock=Clock(FILE, 24.0, 0.5)).iso == 250

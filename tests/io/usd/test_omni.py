@@ -134,7 +134,7 @@ def test_models_without_a_focal_length_take_that_of_the_film() -> None:
 
 
 def test_older_names_of_opencv() -> None:
-    """As Isaac Lab's importers of calibrations write them."""
+    """Names that Isaac Lab's importers of calibrations write."""
     lines = """
         token cameraProjectionType = "pinholeOpenCV"
         float fthetaWidth = 1920

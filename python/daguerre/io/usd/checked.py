@@ -62,7 +62,7 @@ class Checked:
     def fixed(self, name: str) -> Any:
         """Value of something that cannot move, at the scene's time; a note tells if it does."""
         if self.stage.clock.codes(self.prim.GetAttribute(name)):
-            self.notes.add(f"{name} of a camera changes over time; its value at the start is kept")
+            self.notes.add(f"{name} of a camera changes over time; its value at one time is kept")
         return self.now(name)
 
     def number(self, name: str, low: float = -math.inf, above: float | None = None) -> float | None:
