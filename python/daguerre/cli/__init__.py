@@ -39,7 +39,7 @@ class Command(NamedTuple):
 #: In the order of the help. Modules are loaded when their command is called.
 COMMANDS = {
     "render": Command(".render.command", "Render a scene to pictures or a sequence."),
-    "view": Command(".view", "Show the picture in a browser, with the camera's rings to turn."),
+    "view": Command(".view", "Show the picture in a browser, with rings to turn."),
     "merge": Command(".merge", "Add passes of one picture into one file."),
     "post": Command(".post", "Add effects of a lens to any picture, or remove them."),
     "develop": Command(".develop", "Develop photographs from a frame or a raw file."),
