@@ -1,1 +1,2 @@
 """Scenes of OpenUSD: .usd, .usda, .usdc and .usdz."""
+"""Reads USD stages."""

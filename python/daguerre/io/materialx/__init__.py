@@ -1,0 +1,1 @@
+"""MaterialX documents: reads ``.mtlx`` text to a graph of shading nodes."""

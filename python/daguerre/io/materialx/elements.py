@@ -1,0 +1,100 @@
+"""Elements of an XML text with their lines, for documents that keep values in attributes.
+
+Document types are refused, and with them entities, through which a small file can grow without
+bounds or read other files.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from xml.parsers import expat
+
+from daguerre.errors import InputError
+
+MAX_DEPTH = 64
+MAX_ELEMENTS = 1_000_000
+MAX_BYTES = 64 << 20
+
+
+@dataclass(eq=False)
+class Element:
+    """An element, its attributes and its children; ``line`` is for messages."""
+
+    tag: str
+    attributes: dict[str, str]
+    line: int
+    parent: Element | None = None
+    children: list[Element] = field(default_factory=list)
+
+    def get(self, name: str) -> str:
+        """Value of an attribute; empty if there is none."""
+        return self.attributes.get(name, "")
+
+    def inherited(self, name: str) -> str:
+        """Value of an attribute of the element or of the nearest around it that has one."""
+        element: Element | None = self
+        while element is not None:
+            if name in element.attributes:
+                return element.attributes[name]
+            element = element.parent
+        return ""
+
+
+def parse(data: bytes, file: str) -> Element:
+    """Parses the bytes of a file.
+
+    Raises:
+        InputError: They are not XML, too large or too deep, or have a document type.
+    """
+    if len(data) > MAX_BYTES:
+        raise InputError(f"{file}: XML: wanted at most {MAX_BYTES} bytes, got {len(data)}")
+    reader = _Reader(file)
+    try:
+        reader.parser.Parse(data, True)
+    except expat.ExpatError as error:
+        place = f"line {error.lineno}, column {error.offset + 1}"
+        reason = expat.ErrorString(error.code)
+        raise InputError(f"{file}: XML: {place}: {reason}") from None
+    except InputError:
+        raise
+    except (LookupError, ValueError) as error:  # an encoding that nobody knows
+        raise InputError(f"{file}: XML: {error}") from None
+    assert reader.root is not None  # expat refuses a text without an element
+    return reader.root
+
+
+class _Reader:
+    """Builds a tree from the events of expat."""
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+        self.root: Element | None = None
+        self.open: list[Element] = []
+        self.count = 0
+        self.parser = expat.ParserCreate()
+        self.parser.StartElementHandler = self._start
+        self.parser.EndElementHandler = self._end
+        self.parser.StartDoctypeDeclHandler = self._refuse_type
+
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
+        parent = self.open[-1] if self.open else None
+        element = Element(tag, attributes, self.parser.CurrentLineNumber, parent)
+        self.count += 1
+        if len(self.open) >= MAX_DEPTH:
+            self._fail(f"wanted at most {MAX_DEPTH} elements inside each other, got more")
+        if self.count > MAX_ELEMENTS:
+            self._fail(f"wanted at most {MAX_ELEMENTS} elements, got more")
+        if parent is None:
+            self.root = element
+        else:
+            parent.children.append(element)
+        self.open.append(element)
+
+    def _end(self, tag: str) -> None:
+        self.open.pop()
+
+    def _refuse_type(self, *about: object) -> None:
+        self._fail("wanted no document type and no entities, got <!DOCTYPE>")
+
+    def _fail(self, what: str) -> None:
+        raise InputError(f"{self.file}: XML: line {self.parser.CurrentLineNumber}: {what}")

@@ -1,0 +1,287 @@
+"""Pictures of a stage: each is found, decoded and added once, however many materials use it.
+
+Names are paths of files, ``package.usdz[name]`` inside a package, or ``name.<UDIM>.ext``.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+import zipfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre import memory
+from daguerre.checks import freeze_in_place
+from daguerre.errors import InputError
+from daguerre.files.json_item import short
+from daguerre.files.notes import Notes
+from daguerre.io import images
+from daguerre.scene.scene import Scene
+
+from .shading import udim
+from .shading.channels import IDENTITY, Plane, Six
+
+#: Finds the file of an asset path: ``resolve(place, path)``. The file need not exist; a path that
+#: leaves the folders that a stage may read is an ``InputError`` at ``place``.
+Resolve = Callable[[str, str], Path]
+#: Limit of all decoded pictures of a stage; at most that share of free memory.
+_MAX_TOTAL_BYTES = 8 << 30
+_SHARE = 0.6
+_PACKAGED = re.compile(r"(?P<package>[^\[\]]*)\[(?P<name>[^\[\]]+)\]\Z")
+_DECODED = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"RIFF", b"\xabKTX")
+_MISSING = "a texture whose file is missing shows its fallback value"
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A decoded picture.
+
+    Attributes:
+        pixels: Shape (H, W, 1..4), uint8 or float32, row 0 on top.
+        name: Name of its file.
+        transform: Transform from texture coordinates to those of the picture, for UDIM.
+        tiled: Whether it was stitched from tiles.
+    """
+
+    pixels: NDArray[Any]
+    name: str
+    transform: Six = IDENTITY
+    tiled: bool = False
+
+    def planes(self, *, srgb: bool) -> tuple[Plane, Plane, Plane, Plane | None]:
+        """Red, green, blue and opacity; ``srgb``: the colours are encoded by sRGB's curve."""
+        count = self.pixels.shape[2]
+        colors = (0, 1, 2) if count > 2 else (0, 0, 0)
+        r, g, b = (self._plane(index, srgb) for index in colors)
+        return r, g, b, self._plane(count - 1, False) if count in (2, 4) else None
+
+    def _plane(self, index: int, srgb: bool) -> Plane:
+        return Plane(self.pixels[:, :, index], srgb, self.pixels, index, self.name)
+
+
+class Images:
+    """The pictures of a stage.
+
+    Args:
+        scene: Receives textures.
+        resolve: Finds the files of asset paths; see ``Resolve``.
+        notes: Receives notes on missing files.
+    """
+
+    def __init__(self, scene: Scene, resolve: Resolve, notes: Notes) -> None:
+        self._scene = scene
+        self.resolve = resolve
+        self._notes = notes
+        self._pictures: dict[str, Picture | None] = {}
+        self._textures: dict[Any, int] = {}
+        self._kept: list[Any] = []  # arrays whose identity is a key
+        self._left = _most_bytes()
+
+    def picture(self, place: str, path: str) -> Picture | None:
+        """Decodes the picture of an asset path; None, and a note: there is no such file.
+
+        Raises:
+            InputError: The path leaves the stage's folders, or the picture cannot be decoded.
+        """
+        if path not in self._pictures:
+            tiled = udim.MARK in path
+            self._pictures[path] = self._tiles(place, path) if tiled else self._one(place, path)
+        if self._pictures[path] is None:
+            self._notes.add(_MISSING)
+        return self._pictures[path]
+
+    def add(
+        self,
+        place: str,
+        path: str,
+        *,
+        srgb: bool,
+        wrap: tuple[str, str] = ("repeat", "repeat"),
+        filter: str = "linear",
+    ) -> int | None:
+        """Adds the picture of an asset path to the scene; None, and a note: it is missing.
+
+        Raises:
+            InputError: As for ``picture``.
+        """
+        found = self.picture(place, path)
+        if found is None:
+            return None
+        return self.texture(found.pixels, srgb=srgb, wrap=wrap, filter=filter, name=found.name)
+
+    def texture(
+        self,
+        pixels: NDArray[Any],
+        *,
+        srgb: bool,
+        wrap: tuple[str, str],
+        filter: str,
+        name: str,
+        key: Any = None,
+    ) -> int:
+        """Adds pixels to the scene once; ``key`` stands for their content if they are new."""
+        known = (id(pixels) if key is None else key, srgb, wrap, filter)
+        if known not in self._textures:
+            self._kept.append(pixels)
+            self._textures[known] = self._scene.add_texture(
+                freeze_in_place(pixels), srgb=srgb, wrap=wrap, filter=filter, name=name
+            )
+        return self._textures[known]
+
+    def known(self, key: Any, srgb: bool, wrap: tuple[str, str], filter: str) -> int | None:
+        """Index of a texture that was added with this key."""
+        return self._textures.get((key, srgb, wrap, filter))
+
+    def keep(self, value: Any) -> None:
+        """Keeps an array alive, so that its identity stays a key."""
+        self._kept.append(value)
+
+    def _one(self, place: str, path: str) -> Picture | None:
+        packaged = _PACKAGED.match(path)
+        package = packaged["package"] if packaged else path
+        file = self.resolve(place, package)
+        if not _is_file(file):
+            return None
+        where = f"{place}: {path}"
+        if packaged is None:
+            return self._counted(place, decoded(_bytes(file, where), file.name, where), file.name)
+        with _package(file, where) as archive:
+            if packaged["name"] not in archive.namelist():
+                return None
+            data = _member(archive, packaged["name"], where)
+        name = packaged["name"].rsplit("/", 1)[-1]
+        return self._counted(place, decoded(data, name, where), name)
+
+    def _tiles(self, place: str, path: str) -> Picture | None:
+        """Stitches the tiles of a UDIM pattern."""
+        packaged = _PACKAGED.match(path)
+        if packaged:
+            file = self.resolve(place, packaged["package"])
+            if not _is_file(file):
+                return None
+            with _package(file, place) as archive:
+                found = udim.tile_numbers(archive.namelist(), packaged["name"])
+            paths = {n: f"{packaged['package']}[{name}]" for n, name in found.items()}
+        else:
+            folder, _, pattern = path.replace("\\", "/").rpartition("/")
+            if udim.MARK in folder:
+                return None
+            inside = self.resolve(place, path).parent
+            names = _names(inside)
+            found = udim.tile_numbers(names, pattern)
+            paths = {n: f"{folder}/{name}" if folder else name for n, name in found.items()}
+        tiles = {n: one for n, name in paths.items() if (one := self._one(place, name))}
+        if not tiles:
+            return None
+        pixels, grid, halved = udim.stitched({n: one.pixels for n, one in tiles.items()})
+        if halved:
+            self._notes.add("UDIM tiles are halved, as all of them are too large")
+        name = path.rsplit("/", 1)[-1]
+        return self._counted(place, pixels, name, grid.transform)
+
+    def _counted(
+        self, place: str, pixels: NDArray[Any], name: str, transform: Six | None = None
+    ) -> Picture:
+        self._left -= pixels.nbytes
+        if self._left < 0:
+            most = memory.shown(_most_bytes())
+            raise InputError(f"{place}: wanted at most {most} of decoded pictures, got more")
+        freeze_in_place(pixels)
+        if transform is None:
+            return Picture(pixels, name)
+        return Picture(pixels, name, transform, tiled=True)
+
+
+def decoded(data: bytes, name: str, where: str) -> NDArray[Any]:
+    """Decodes a picture: those of glTF, and every other that OpenImageIO and OpenEXR read.
+
+    Args:
+        data: Bytes of the file.
+        name: Name of the file; its suffix chooses between formats without a mark.
+        where: Place and path, for messages.
+
+    Returns:
+        Shape (H, W, 1..4), uint8 or float32.
+
+    Raises:
+        InputError: It is no picture, or is damaged or too large.
+    """
+    if data.startswith(_DECODED):
+        return images.decode(data, where)
+    descriptor, temporary = tempfile.mkstemp(suffix=Path(name).suffix[:16], prefix="daguerre-")
+    try:
+        with os.fdopen(descriptor, "wb") as stream:
+            stream.write(data)
+        return _other(Path(temporary))
+    except InputError as error:
+        raise InputError(str(error).replace(temporary, where)) from None
+    finally:
+        Path(temporary).unlink(missing_ok=True)
+
+
+def _other(file: Path) -> NDArray[Any]:
+    """Decodes a format that glTF does not have: light as it is, integers to 0 .. 1."""
+    if file.suffix.lower() in (".exr", ".hdr"):
+        return images.read_environment(file)
+    pixels, _ = images.read_file(file)
+    pixels = pixels[:, :, :4]
+    if pixels.dtype == np.uint8:
+        return np.ascontiguousarray(pixels)
+    if np.issubdtype(pixels.dtype, np.integer):
+        return (pixels / np.float64(np.iinfo(pixels.dtype).max)).astype(np.float32)
+    return np.nan_to_num(pixels.astype(np.float32), posinf=0.0, neginf=0.0)
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # a name too long for any file
+        return False
+
+
+def _names(folder: Path) -> list[str]:
+    try:
+        return [file.name for file in folder.iterdir()]
+    except OSError:
+        return []
+
+
+def _bytes(file: Path, where: str) -> bytes:
+    try:
+        if file.stat().st_size > images.MAX_BYTES:
+            raise InputError(f"{where}: wanted at most {memory.shown(images.MAX_BYTES)}, got more")
+        return file.read_bytes()
+    except OSError as error:
+        raise InputError(f"{where}: cannot be read: {error.strerror}") from None
+
+
+@contextmanager
+def _package(file: Path, where: str) -> Iterator[zipfile.ZipFile]:
+    """Opens a package; damaged ones are errors."""
+    try:
+        with zipfile.ZipFile(file) as archive:
+            yield archive
+    except (zipfile.BadZipFile, EOFError, NotImplementedError, OSError, RuntimeError) as error:
+        raise InputError(f"{where}: wanted a usdz package, got {short(str(error))}") from None
+
+
+def _member(archive: zipfile.ZipFile, name: str, where: str) -> bytes:
+    """Bytes of a file in a package, which stores them without compression (usdz specification)."""
+    info = archive.getinfo(name)
+    if info.compress_type != zipfile.ZIP_STORED or info.file_size > images.MAX_BYTES:
+        raise InputError(f"{where}: wanted a stored file in the package, got another")
+    return archive.read(name)
+
+
+def _most_bytes() -> int:
+    """Most bytes of decoded pictures."""
+    free = memory.left_bytes()
+    return _MAX_TOTAL_BYTES if free is None else min(_MAX_TOTAL_BYTES, int(_SHARE * free))

@@ -1,0 +1,136 @@
+"""Computes pictures from pictures, texel by texel, within a budget.
+
+Pictures that are combined must lie on the surface in the same way; then the result is exact up to
+the filter between texels. A smaller one is resampled to the size of the largest. Pictures that lie
+otherwise are replaced by their mean, with a note.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.checks import freeze_in_place
+from daguerre.files.notes import Notes
+
+from .channels import Channel, Coordinate, Mapping, Plane, Texel, UnsupportedError, VertexColor
+
+#: Limit on the bytes of all computed pictures of a stage, as a small graph could ask for many.
+MAX_BYTES = 4 << 30
+_OTHER_MAPPING = (
+    "pictures that lie on a surface in different ways are combined by the mean of the second"
+)
+_TOO_LARGE = "a picture computed from others is too large: their means are combined"
+
+
+class Baker:
+    """Computes channels, and counts their bytes.
+
+    Args:
+        notes: Receives notes on what is not exact.
+        limit: Most bytes of computed pictures.
+    """
+
+    def __init__(self, notes: Notes, limit: int = MAX_BYTES) -> None:
+        self.notes = notes
+        self._left = limit
+
+    def combined(self, function: Callable[..., Any], *channels: Channel) -> Channel:
+        """Applies a function of numbers to channels.
+
+        Args:
+            function: Function that takes numbers or arrays (H, W), one for each channel.
+            channels: Its arguments.
+
+        Raises:
+            UnsupportedError: A channel is no number and no picture.
+        """
+        for channel in channels:
+            if isinstance(channel, Coordinate):
+                raise UnsupportedError("arithmetic on texture coordinates that is not affine")
+            if isinstance(channel, VertexColor):
+                raise UnsupportedError("arithmetic on colours of vertices")
+        pictures = [channel for channel in channels if isinstance(channel, Texel)]
+        if not pictures:
+            return _number(
+                function, [channel for channel in channels if isinstance(channel, float)]
+            )
+        mapping = pictures[0].mapping
+        size = _largest([one for one in pictures if one.mapping == mapping])
+        if not self._affords(size):
+            return _number(function, [self._mean(channel, None) for channel in channels])
+        arguments = [self._values(channel, mapping, size) for channel in channels]
+        with np.errstate(all="ignore"):
+            found = np.asarray(function(*arguments), np.float32)
+        finite = np.nan_to_num(np.broadcast_to(found, size), nan=0.0, posinf=0.0, neginf=0.0)
+        name = pictures[0].plane.name
+        return Texel(Plane(freeze_in_place(np.ascontiguousarray(finite)), name=name), mapping)
+
+    def resampled(self, channel: Channel, mapping: Mapping, size: tuple[int, int]) -> Channel:
+        """Picture of a given size that lies on the surface in a given way; a number stays one."""
+        if not isinstance(channel, Texel) or channel.mapping != mapping:
+            return self._mean(channel, mapping)
+        if channel.plane.pixels.shape == size:
+            return channel
+        if not self._affords(size):
+            return channel.mean()
+        values = resized(channel.plane.linear(), size, mapping.wrap)
+        plane = Plane(freeze_in_place(values), name=channel.plane.name)
+        return Texel(plane, mapping, channel.scale, channel.bias)
+
+    def _values(self, channel: Channel, mapping: Mapping, size: tuple[int, int]) -> Any:
+        if isinstance(channel, Texel) and channel.mapping == mapping:
+            values = channel.values()
+            return values if values.shape == size else resized(values, size, mapping.wrap)
+        return np.float32(self._mean(channel, mapping))
+
+    def _mean(self, channel: Channel, mapping: Mapping | None) -> float:
+        if isinstance(channel, Texel):
+            self.notes.add(_OTHER_MAPPING if mapping is not None else _TOO_LARGE)
+            return channel.mean()
+        return channel if isinstance(channel, float) else 0.0
+
+    def _affords(self, size: tuple[int, int]) -> bool:
+        needed = size[0] * size[1] * 4
+        if needed > self._left:
+            self.notes.add(_TOO_LARGE)
+            return False
+        self._left -= needed
+        return True
+
+
+def resized(
+    values: NDArray[np.float32], size: tuple[int, int], wrap: tuple[str, str]
+) -> NDArray[np.float32]:
+    """Resamples a picture (H, W) to another size between texel centres, by bilinear filter."""
+    for axis, (count, how) in enumerate(zip(size, (wrap[1], wrap[0]), strict=True)):
+        had = values.shape[axis]
+        if had == count:
+            continue
+        at = (np.arange(count) + 0.5) * (had / count) - 0.5
+        first = np.floor(at).astype(np.int64)
+        share = (at - first).astype(np.float32)
+        share = share[:, None] if axis == 0 else share[None, :]
+        low, high = _index(first, had, how), _index(first + 1, had, how)
+        lower, upper = np.take(values, low, axis), np.take(values, high, axis)
+        values = lower + share * (upper - lower)
+    return np.ascontiguousarray(values, np.float32)
+
+
+def _index(index: NDArray[np.int64], count: int, wrap: str) -> NDArray[np.int64]:
+    """Texels at the borders: those of the other side, or the last ones."""
+    return index % count if wrap == "repeat" else np.clip(index, 0, count - 1)
+
+
+def _largest(pictures: list[Texel]) -> tuple[int, int]:
+    heights, widths = zip(*(one.plane.pixels.shape for one in pictures), strict=True)
+    return max(heights), max(widths)
+
+
+def _number(function: Callable[..., Any], numbers: list[float]) -> float:
+    with np.errstate(all="ignore"):
+        found = float(function(*(np.float64(number) for number in numbers)))
+    return found if np.isfinite(found) else 0.0
