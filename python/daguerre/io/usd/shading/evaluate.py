@@ -251,13 +251,16 @@ class _Lazy(Mapping[str, "Value | None"]):
 
 
 def names_before(graph: Graph, ignored: frozenset[str]) -> list[str]:
-    """Names of the nodes that the surface uses, nearest first, but not by the ignored inputs."""
+    """Names of the nodes that the surface uses, but not by the ignored inputs.
+
+    Those of the colour come first, then those of the other inputs in the order of their names.
+    """
     surface = graph.nodes.get(graph.surface)
     if surface is None:
         return []
     links = [
         one.node
-        for name, one in surface.inputs.items()
+        for name, one in sorted(surface.inputs.items(), key=_color_first)
         if isinstance(one, Link) and name not in ignored
     ]
     order: dict[str, None] = {}
@@ -271,6 +274,10 @@ def names_before(graph: Graph, ignored: frozenset[str]) -> list[str]:
         inner = [one.node for one in node.inputs.values() if isinstance(one, Link)]
         waiting += inner[::-1]
     return list(order)
+
+
+def _color_first(item: tuple[str, Constant | Link]) -> tuple[bool, str]:
+    return item[0] not in ("diffuseColor", "base_color"), item[0]
 
 
 def moving_nodes(graph: Graph) -> frozenset[str]:

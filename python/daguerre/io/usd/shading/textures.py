@@ -90,7 +90,9 @@ class Packer:
         if not isinstance(channel, Texel):
             number = float(channel) if isinstance(channel, float) else 0.0
             return min(max(number, 0.0), most), None
-        if channel.bias == 0.0 and 0.0 <= channel.scale <= most:
+        pixels = channel.plane.pixels
+        is_light = pixels.dtype == np.uint8 or float(pixels.min()) >= 0.0
+        if is_light and channel.bias == 0.0 and 0.0 <= channel.scale <= most:
             return channel.scale, channel.plane
         unit = 1.0 if most == 1.0 else np.inf
         made = self._baker.combined(lambda v: np.clip(v, 0, unit), channel)
