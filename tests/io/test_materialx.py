@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import colorsys
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -244,6 +245,8 @@ NODES: dict[str, Node] = {
         lambda a: np.array([a[2], a[1], 1.0]),
     ),
     "normalize": (in_("in", "A"), lambda a: a / np.linalg.norm(a)),
+    "rgbtohsv": (in_("in", "A"), lambda a: np.array(colorsys.rgb_to_hsv(*a))),
+    "hsvtorgb": (in_("in", "A"), lambda a: np.array(colorsys.hsv_to_rgb(*a))),
     "dotproduct": (in_("in1", "A") + in_("in2", text(B)), lambda a: np.full(3, a @ VECTOR)),
     "ifgreater": (
         in_("value1", "A") + in_("value2", "0.4,0.4,0.4") + in_("in1", text(B)),
@@ -620,6 +623,20 @@ def test_gltf_pbr_and_unlit(tmp_path: Path) -> None:
     kind = Read(surface(lamp, kind="surface_unlit"), tmp_path).kind
     assert kind.emissive == (3, 3, 0)
     assert (kind.base_color, kind.specular, kind.double_sided) == ((0, 0, 0), 0, True)
+
+
+def test_displacement_is_noted_where_it_moves_something() -> None:
+    for value, moves in (("0", False), ("0.1", True)):
+        shader = f"""<displacement name="D" type="displacementshader">
+          {in_("displacement", value, "float")}</displacement>"""
+        text_of = surface("").replace(
+            "</surfacematerial>",
+            '<input name="displacementshader" type="displacementshader" nodename="D"/>'
+            "</surfacematerial>",
+        )
+        found = document(shader + text_of).graph("M")
+        assert found is not None
+        assert found.displaced is moves
 
 
 def test_unknown_surfaces_are_grey_with_a_note(tmp_path: Path) -> None:

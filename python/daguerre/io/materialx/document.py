@@ -134,15 +134,21 @@ class _Walk:
 
     def graph(self, material: _Source) -> Graph:
         """Graph of the nodes that a material uses."""
-        inputs = {child.get("name"): child for child in material.element.children}
-        surface = ""
-        if "surfaceshader" in inputs:
-            found = self._resolved(_Source(inputs["surfaceshader"], material.scope))
-            surface = found.node if isinstance(found, Link) else ""
+        surface, displacement = (
+            self._shader(material, name) for name in ("surfaceshader", "displacementshader")
+        )
         while self._waiting:
             name, source = self._waiting.pop()
             self._nodes[name] = self._node(source)
-        return Graph(self._nodes, surface, "displacementshader" in inputs)
+        return Graph(self._nodes, surface, _displaces(self._nodes.get(displacement)))
+
+    def _shader(self, material: _Source, name: str) -> str:
+        """Name of the node of an input of a material; empty: there is none."""
+        for child in material.element.children:
+            if child.get("name") == name:
+                found = self._resolved(_Source(child, material.scope))
+                return found.node if isinstance(found, Link) else ""
+        return ""
 
     def _node(self, source: _Source) -> Node:
         element = source.element
@@ -260,6 +266,14 @@ class _Walk:
         if element is None:
             self._document._notes.add("MaterialX: a connection to no node is left out")
         return element
+
+
+def _displaces(node: Node | None) -> bool:
+    """Whether a node of displacement moves anything: it has a picture, or a number but 0."""
+    found = None if node is None else node.inputs.get("displacement")
+    if isinstance(found, Constant):
+        return isinstance(found.value, tuple) and any(found.value)
+    return found is not None
 
 
 def read(path: Path, notes: Notes) -> Document:

@@ -110,7 +110,7 @@ class Images:
         """Adds the picture of an asset path to the scene; None, and a note: it is missing.
 
         Raises:
-            InputError: As for ``picture``.
+            InputError: The path or the picture is wrong; see ``picture``.
         """
         found = self.picture(place, path)
         if found is None:

@@ -43,7 +43,7 @@ class Pictures(Protocol):
 
 @dataclass
 class Context:
-    """All that nodes need besides their inputs.
+    """State that nodes share besides their inputs.
 
     Attributes:
         images: Source of pictures.
@@ -165,7 +165,7 @@ class Evaluator:
     Args:
         graph: The graph.
         operations: Functions of the nodes, by kind.
-        context: What they need.
+        context: State that nodes share.
         kept: Values that earlier evaluations found, of nodes that do not change over time.
     """
 

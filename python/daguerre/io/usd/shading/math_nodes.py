@@ -7,6 +7,7 @@ Source: MaterialX specification 1.39, "Math Nodes", "Adjustment Nodes", "Composi
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -119,6 +120,44 @@ def saturate(given: Arguments) -> Value:
     arithmetic = given.context.math
     grey = arithmetic.dot(found[:3], given.value("lumacoeffs", _LUMA)) * 3
     return (*arithmetic.mix(grey, found[:3], given.value("amount", 1.0)), *found[3:])
+
+
+def of_three(function: Callable[..., Any]) -> Operation:
+    """Node that computes a colour from the three channels of another."""
+
+    def apply(given: Arguments) -> Value:
+        found = fit(given.value("in", (0.0, 0.0, 0.0)), given.size or 3)
+        combined = given.context.math.baker.combined
+        color = (combined(partial(_chosen, function, i), *found[:3]) for i in range(3))
+        return (*color, *found[3:])
+
+    return apply
+
+
+def hsv_from_rgb(r: Any, g: Any, b: Any) -> tuple[Any, Any, Any]:
+    """Hue in turns, saturation and value (Smith 1978, "Color gamut transform pairs")."""
+    high, low = np.maximum(np.maximum(r, g), b), np.minimum(np.minimum(r, g), b)
+    span = high - low
+    safe = np.where(span == 0, 1, span)
+    sixths = np.where(
+        high == r,
+        (g - b) / safe,
+        np.where(high == g, 2 + (b - r) / safe, 4 + (r - g) / safe),
+    )
+    return sixths / 6 % 1.0, np.where(high == 0, 0, span / np.where(high == 0, 1, high)), high
+
+
+def rgb_from_hsv(h: Any, s: Any, v: Any) -> tuple[Any, Any, Any]:
+    """Red, green and blue of hue (in turns), saturation and value; undoes ``hsv_from_rgb``."""
+    r, g, b = (
+        v * (1 - s * np.clip(np.minimum(k, 4 - k), 0, 1))
+        for k in ((start + 6 * h) % 6 for start in (5, 3, 1))
+    )
+    return r, g, b
+
+
+def _chosen(function: Callable[..., Any], index: int, *channels: Any) -> Any:
+    return function(*channels)[index]
 
 
 def dot_product(given: Arguments) -> Value:

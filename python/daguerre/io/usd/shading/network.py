@@ -84,7 +84,9 @@ class Networks:
             for one in nodes[name].inputs.values():
                 if isinstance(one, Link) and one.node not in nodes:
                     waiting.append(UsdShade.Shader(stage.GetPrimAtPath(one.node)))
-        displaced = self._terminal(material, "displacement") is not None
+        other = self._terminal(material, "displacement")
+        # A preview surface has an input for it, which its reader looks at.
+        displaced = other is not None and other.GetPath() != surface.GetPath()
         return Graph(nodes, str(surface.GetPath()), displaced)
 
     def _terminal(self, material: UsdShade.Material, name: str) -> UsdShade.Shader | None:

@@ -62,6 +62,8 @@ OPERATIONS: dict[str, Operation] = {
     "contrast": math_nodes.contrast,
     "luminance": math_nodes.luminance,
     "saturate": math_nodes.saturate,
+    "rgbtohsv": math_nodes.of_three(math_nodes.hsv_from_rgb),
+    "hsvtorgb": math_nodes.of_three(math_nodes.rgb_from_hsv),
     "dotproduct": math_nodes.dot_product,
     "magnitude": math_nodes.magnitude,
     "normalize": math_nodes.normalize,
