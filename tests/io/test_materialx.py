@@ -27,7 +27,8 @@ def document(text: str, head: str = 'version="1.39"') -> Document:
 
 
 def in_(name: str, value: str, kind: str = "color3") -> str:
-    how = "value" if value[0] in "-0123456789tf." or "," in value else "nodename"
+    """Input with a value, or with a link if the value is the name of a node."""
+    how = "value" if value[0] in "-0123456789" or value in ("true", "false") else "nodename"
     return f'<input name="{name}" type="{kind}" {how}="{value}"/>'
 
 
@@ -297,6 +298,41 @@ def test_channels_of_a_connection(tmp_path: Path) -> None:
     nodes = f'<constant name="A" type="color3">{in_("value", text(A))}</constant>'
     inputs = '<input name="specular_roughness" type="float" nodename="A" channels="b"/>'
     assert Read(surface(inputs, nodes), tmp_path).kind.roughness == 0.75
+
+
+def test_mixtures_of_pictures(tmp_path: Path) -> None:
+    """Two pictures by a third."""
+    rng = np.random.default_rng(9)
+    pictures = {name: rng.uniform(0, 1, (2, 2, 3)).astype(np.float32) for name in ("bg", "fg", "s")}
+    nodes = ""
+    for name, pixels in pictures.items():
+        write(tmp_path / f"{name}.exr", pixels)
+        nodes += f"""<image name="{name}" type="color3">
+          <input name="file" type="filename" value="{name}.exr"/></image>"""
+    nodes += f"""<extract name="share" type="float">{in_("in", "s")}</extract>
+      <mix name="N" type="color3">{in_("bg", "bg")}{in_("fg", "fg")}
+      {in_("mix", "share", "float")}</mix>"""
+    read = Read(shining(nodes), tmp_path)
+    for y in range(2):
+        for x in range(2):
+            background, foreground, s = (one[y, x] for one in pictures.values())
+            wanted = background + s[0] * (foreground - background)
+            found = color_at(read, "emissive", (x + 0.5) / 2, 1 - (y + 0.5) / 2)
+            assert found == pytest.approx(wanted, abs=1e-6)
+
+
+def test_limits_on_bytes(tmp_path: Path) -> None:
+    """A picture is computed only where a limit can be reached."""
+    write(tmp_path / "a.png", np.array([[[102] * 3, [204] * 3]], np.uint8))
+    for factor, wanted in (("2", (0.8, 1.0)), ("1", (0.4, 0.8))):
+        nodes = f"""<image name="A" type="color3"><input name="file" type="filename" value="a.png"/>
+          </image><multiply name="m" type="color3">{in_("in1", "A")}
+          {in_("in2", factor, "float")}</multiply>
+          <clamp name="N" type="color3">{in_("in", "m")}</clamp>"""
+        read = Read(shining(nodes), tmp_path)
+        found = [color_at(read, "emissive", s, 0.5)[0] for s in (0.25, 0.75)]
+        assert found == pytest.approx(wanted)
+        assert (read.scene.textures[0].pixels.dtype == np.uint8) == (factor == "1")
 
 
 def test_pictures_of_two_sizes_are_resampled(tmp_path: Path) -> None:
@@ -570,6 +606,19 @@ def test_stretched_highlights_keep_both_widths(kind: str, roughness: float, tmp_
     assert (along, across) == pytest.approx(wanted)
 
 
+def test_turns_dispersion_and_metal(tmp_path: Path) -> None:
+    brushed = in_("specular_anisotropy", "0.5", "float") + in_(
+        "specular_rotation", "0.125", "float"
+    )
+    # MaterialX's own translation to gltf_pbr turns by -2 pi.
+    assert Read(surface(brushed), tmp_path).kind.anisotropy_rotation == -45
+    glass = in_("transmission", "1", "float") + in_("transmission_dispersion", "40", "float")
+    assert Read(surface(glass), tmp_path).kind.dispersion == 0.5
+    metal = in_("base_color", "0.9, 0.6, 0.3") + in_("metalness", "1", "float")
+    metal += in_("subsurface", "1", "float") + in_("subsurface_color", "0, 0, 1")
+    assert Read(surface(metal), tmp_path).kind.base_color == (0.9, 0.6, 0.3)
+
+
 def test_open_pbr(tmp_path: Path) -> None:
     inputs = (
         in_("base_weight", "0.5", "float")
@@ -652,9 +701,34 @@ def test_normal_maps_stay_bytes(tmp_path: Path) -> None:
       </image><normalmap name="n" type="vector3">{in_("in", "i", "vector3")}
       {in_("scale", "0.5", "float")}</normalmap>"""
     read = Read(surface(in_("normal", "n", "vector3"), nodes), tmp_path)
-    assert np.array_equal(read.scene.textures[0].pixels, pixels)
-    assert not read.scene.textures[0].srgb
+    (texture,) = read.scene.textures
+    assert np.array_equal(texture.pixels, pixels)
+    assert not texture.srgb
     assert read.kind.normal_scale == 0.5
+
+
+def test_numbers_lie_in_the_channels_of_gltf(tmp_path: Path) -> None:
+    """Each in its channel, with a third one beside green, as two would be grey and opacity."""
+    write(tmp_path / "a.png", np.array([[[51]]], np.uint8))
+    nodes = (
+        '<image name="a" type="float"><input name="file" type="filename" value="a.png"/></image>'
+    )
+    for name, on, channel in (
+        ("coat_roughness", "coat", 1),
+        ("coat", "", 0),
+        ("sheen_roughness", "sheen", 3),
+        ("specular", "", 3),
+        ("transmission", "", 0),
+        ("subsurface", "thin_walled", 3),
+    ):
+        inputs = in_(name, "a", "float")
+        inputs += in_(on, "1", "float") if on not in ("", "thin_walled") else ""
+        inputs += in_(on, "true", "boolean") if on == "thin_walled" else ""
+        read = Read(surface(inputs, nodes), tmp_path)
+        pixels = read.scene.textures[-1].pixels
+        texel = pixels[0, 0].tolist()
+        assert len(texel) != 2, name
+        assert texel[channel] == 51, name
 
 
 def test_numbers_of_two_pictures_share_a_texture(tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ from pxr import Sdf, Usd, UsdShade
 
 from daguerre.io.usd.images import Images
 from daguerre.io.usd.materials import Materials
+from daguerre.io.usd.shading.udim import stitched
 
 ALL = ("st", "st1", "displayColor")
 
@@ -398,6 +399,36 @@ def test_pictures_in_packages(tmp_path: Path) -> None:
     assert notes.sentences() == []
 
 
+@pytest.mark.parametrize("name", ["gone.<UDIM>.png", "<UDIM>/a.png", "x.usdz[gone.png]", "a\udc80"])
+def test_names_of_nothing_are_noted(name: str, tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "x.usdz", "w") as archive:
+        archive.writestr("other.txt", "")
+    stage = Stage("", tmp_path)
+    assert stage.images.picture("/M", f"{tmp_path}/{name}") is None
+    assert len(stage.notes.sentences()) == 1
+
+
+@pytest.mark.parametrize("damage", ["compressed", "no package"])
+def test_damaged_packages_are_one_error(damage: str, tmp_path: Path) -> None:
+    """Packages store files as they are, so that none can grow beyond its bytes."""
+    write(tmp_path / "a.png", np.zeros((64, 64, 3), np.uint8))
+    with zipfile.ZipFile(tmp_path / "x.usdz", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.write(tmp_path / "a.png", "a.png")
+    if damage == "no package":
+        (tmp_path / "x.usdz").write_bytes(b"PK\3\4" + b"x" * 99)
+    with pytest.raises(dg.InputError, match=r"/M: .*x.usdz\[a.png\]: wanted a"):
+        Stage("", tmp_path).images.picture("/M", f"{tmp_path}/x.usdz[a.png]")
+
+
+def test_udim_tiles_are_halved_within_a_limit() -> None:
+    tiles = {1001: np.full((8, 8, 3), 100, np.uint8), 1099: np.full((8, 8, 3), 200, np.uint8)}
+    pixels, grid, halved = stitched(tiles, limit=9 * 10 * 16 * 3 - 1)
+    assert (grid.columns, grid.rows, halved) == (9, 10, True)
+    assert pixels.shape == (20, 18, 3)
+    assert pixels[-1, 0, 0] == 100
+    assert pixels[0, -1, 0] == 200
+
+
 def test_missing_files_show_the_fallback(tmp_path: Path) -> None:
     inputs = "float4 inputs:fallback = (0.1, 0.2, 0.3, 1)"
     found = Stage(preview(SHOWN, texture("T", inputs, "gone.png", st=ST) + READER), tmp_path).read()
@@ -450,6 +481,43 @@ def test_circles_and_depth_end(tmp_path: Path) -> None:
 def test_numbers_must_be_finite(value: str, tmp_path: Path) -> None:
     with pytest.raises(dg.InputError, match=r"/M/S: wanted finite numbers, got"):
         Stage(preview(f"float inputs:roughness = {value}"), tmp_path).read()
+
+
+def test_the_context_that_is_supported_is_read(tmp_path: Path) -> None:
+    text = preview(
+        "float inputs:roughness = 0.25",
+        """def Shader "Other" {
+      uniform token info:id = "ND_lama_surface"
+      token outputs:out }""",
+    )
+    text = text.replace(
+        "token outputs:surface.connect",
+        """
+      token outputs:mtlx:surface.connect = </M/Other.outputs:out>
+      token outputs:surface.connect""",
+        1,
+    )
+    found = Stage(text, tmp_path).read()
+    assert found.kind.roughness == 0.25
+    assert found.notes.sentences() == []
+
+
+def test_other_languages_are_noted_by_name(tmp_path: Path) -> None:
+    text = """def Material "M" { token outputs:mtlx:surface.connect = </M/S.outputs:out>
+      def Shader "S" { uniform token info:implementationSource = "sourceAsset"
+        uniform asset info:mdl:sourceAsset = @OmniPBR.mdl@
+        uniform token info:mdl:sourceAsset:subIdentifier = "OmniPBR"
+        token outputs:out } }"""
+    found = Stage(text, tmp_path).read()
+    assert found.notes.sentences() == ["surface 'OmniPBR' is not supported: it is grey (1 use)"]
+
+
+def test_exr_textures_keep_their_range(tmp_path: Path) -> None:
+    pixels = np.array([[[0.5, 2, 4, 0.25], [-1, 0, 1, 1]]], np.float32)
+    write(tmp_path / "a.exr", pixels)
+    found = Stage(preview(SHOWN, texture("T", "", "./a.exr", st=ST) + READER), tmp_path).read()
+    assert color_at(found, "emissive", 0.25, 0.5) == pytest.approx((0.5, 2, 4))
+    assert color_at(found, "emissive", 0.75, 0.5) == pytest.approx((0, 0, 1))
 
 
 def test_wrong_types_are_noted(tmp_path: Path) -> None:

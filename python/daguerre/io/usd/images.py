@@ -24,6 +24,7 @@ from daguerre.errors import InputError
 from daguerre.files.json_item import short
 from daguerre.files.notes import Notes
 from daguerre.io import images
+from daguerre.io.exr.reader import ExrReader, is_exr, light_names
 from daguerre.scene.scene import Scene
 
 from .shading import udim
@@ -216,7 +217,7 @@ def decoded(data: bytes, name: str, where: str) -> NDArray[Any]:
     """
     if data.startswith(_DECODED):
         return images.decode(data, where)
-    descriptor, temporary = tempfile.mkstemp(suffix=Path(name).suffix[:16], prefix="daguerre-")
+    descriptor, temporary = tempfile.mkstemp(suffix=_suffix(name), prefix="daguerre-")
     try:
         with os.fdopen(descriptor, "wb") as stream:
             stream.write(data)
@@ -227,9 +228,30 @@ def decoded(data: bytes, name: str, where: str) -> NDArray[Any]:
         Path(temporary).unlink(missing_ok=True)
 
 
+def _suffix(name: str) -> str:
+    """Suffix of a name, of letters and digits."""
+    return re.sub(r"[^.A-Za-z0-9]", "", Path(name).suffix)[:16]
+
+
+def _exr(file: Path) -> NDArray[np.float32]:
+    """Reads the data window of an OpenEXR; textures may be negative, but are finite."""
+    with ExrReader(file) as reader:
+        size = reader.width * reader.height * 16
+        if size > images.MAX_BYTES:
+            most = memory.shown(images.MAX_BYTES)
+            raise InputError(f"{file}: image size: wanted at most {most}, got more")
+        names = light_names(list(reader.channels), str(file))
+        names += [name for name in reader.channels if name == "A"]
+        planes = reader.rows(0, reader.height, list(dict.fromkeys(names)))
+    pixels = np.stack([planes[name] for name in names], axis=2).astype(np.float32)
+    return np.nan_to_num(pixels, nan=0.0, posinf=0.0, neginf=0.0)
+
+
 def _other(file: Path) -> NDArray[Any]:
     """Decodes a format that glTF does not have: light as it is, integers to 0 .. 1."""
-    if file.suffix.lower() in (".exr", ".hdr"):
+    if is_exr(file):
+        return _exr(file)
+    if file.suffix.lower() == ".hdr":
         return images.read_environment(file)
     pixels, _ = images.read_file(file)
     pixels = pixels[:, :, :4]
@@ -243,14 +265,14 @@ def _other(file: Path) -> NDArray[Any]:
 def _is_file(path: Path) -> bool:
     try:
         return path.is_file()
-    except OSError:  # a name too long for any file
+    except (OSError, ValueError):  # no name of a file
         return False
 
 
 def _names(folder: Path) -> list[str]:
     try:
         return [file.name for file in folder.iterdir()]
-    except OSError:
+    except (OSError, ValueError):  # no folder; no name of a folder
         return []
 
 

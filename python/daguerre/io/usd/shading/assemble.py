@@ -110,9 +110,9 @@ class Assembler:
             scale = x.scale / 2 if x.bias == y.bias and x.scale else 1.0
         slopes = self._math.multiply((x, y), (1 / scale,))
         encoded = self._math.multiply(self._math.add((*slopes, z), (1.0,)), (0.5,))
+        if any(isinstance(c, Texel) and (c.scale, c.bias) != (1.0, 0.0) for c in encoded):
+            encoded = self._math.each(lambda v: v + 0.0, encoded)  # a map takes no factors
         packed = self._packer.packed(encoded)
-        if packed.factors != (1.0, 1.0, 1.0):  # a map takes no factors
-            packed = self._packer.packed(self._math.each(lambda v: v + 0.0, encoded))
         if packed.slot is not None:
             fields[f"{key}_scale"], fields[f"{key}_texture"] = scale, packed.slot
 

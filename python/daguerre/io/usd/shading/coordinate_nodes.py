@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 
+from daguerre.files.json_item import short
 from daguerre.io.materialx.graph import SIZES
 
-from .channels import UnsupportedError, Value, VertexColor, broadcast, coordinates, fit
+from .channels import Value, VertexColor, broadcast, coordinates, fit
 from .evaluate import Arguments
 
 _COLORS = ("displayColor",)
@@ -108,7 +109,8 @@ def _primvar(given: Arguments, name: str, fallback: Value) -> Value:
         return fit(tuple(VertexColor(name, i) for i in range(3)), len(fallback))
     if name in _OPACITIES and len(fallback) == 1:
         return (VertexColor(name, 3),)
-    raise UnsupportedError(f"primvar {name[:40]!r} of {len(fallback)} numbers in a material")
+    given.context.notes.add(f"primvar {short(name)} in a material shows its fallback value")
+    return fallback
 
 
 _USD_SIZES = {

@@ -90,7 +90,11 @@ class Networks:
         return Graph(nodes, str(surface.GetPath()), displaced)
 
     def _terminal(self, material: UsdShade.Material, name: str) -> UsdShade.Shader | None:
-        """Shader of an output of a material, in the preferred render context that has one."""
+        """Shader of an output of a material.
+
+        It is that of the preferred render context, among those that are supported if there are.
+        """
+        first = None
         for context in _CONTEXTS:
             attribute = material.GetPrim().GetAttribute(
                 f"outputs:{context}:{name}" if context else f"outputs:{name}"
@@ -99,13 +103,14 @@ class Networks:
                 found = self._source(attribute)
                 if isinstance(found, Link):
                     prim = material.GetPrim().GetStage().GetPrimAtPath(found.node)
-                    return UsdShade.Shader(prim)
-        return None
+                    shader = UsdShade.Shader(prim)
+                    if self._kind_of(prim) in self._known:
+                        return shader
+                    first = first or shader
+        return first
 
     def _node(self, shader: UsdShade.Shader) -> Node:
         prim = shader.GetPrim()
-        identifier = prim.GetAttribute("info:id").Get()
-        kind = self._kind(str(identifier)) if identifier else ""
         outputs = shader.GetOutputs()
         kind_of = _TYPES.get(str(outputs[0].GetTypeName()), "") if outputs else ""
         inputs: dict[str, Constant | Link] = {}
@@ -113,7 +118,17 @@ class Networks:
             found = self._source(one.GetAttr())
             if found is not None:
                 inputs[str(one.GetBaseName())] = found
-        return Node(kind or "without an id", kind_of, inputs, str(prim.GetPath()))
+        return Node(self._kind_of(prim), kind_of, inputs, str(prim.GetPath()))
+
+    def _kind_of(self, prim: Usd.Prim) -> str:
+        """Kind of a shader; of one in another language, such as MDL, its name there."""
+        identifier = prim.GetAttribute("info:id").Get()
+        if identifier:
+            return self._kind(str(identifier))
+        for name in prim.GetAuthoredPropertyNames():
+            if name.startswith("info:") and name.endswith(":subIdentifier"):
+                return str(prim.GetAttribute(name).Get() or "")
+        return "without an id"
 
     def _kind(self, identifier: str) -> str:
         """Name of the node's definition: the longest known beginning of a MaterialX name."""
