@@ -200,6 +200,36 @@ def test_the_package_reads_the_same_values() -> None:
     assert compared == 7
 
 
+@pytest.mark.parametrize(
+    "kind", ["standard_surface", "open_pbr_surface", "gltf_pbr", "UsdPreviewSurface"]
+)
+def test_defaults_are_those_of_the_library(kind: str, tmp_path: Path) -> None:
+    """A surface with every input at its default is that without inputs, whatever is switched on.
+
+    Weights are set to 1 in both, so that the defaults of their parameters show.
+    """
+    mx = pytest.importorskip("MaterialX", reason="needs the package materialx")
+    library = mx.createDocument()
+    mx.loadLibraries(mx.getDefaultDataLibraryFolders(), mx.getDefaultDataSearchPath(), library)
+    definition = library.getNodeDef(f"ND_{kind}_surfaceshader")
+    inputs = {
+        one.getName(): (one.getType(), one.getValueString())
+        for one in definition.getActiveInputs()
+        if one.getValueString()
+    }
+    assert len(inputs) > 13
+    weights = ("coat", "sheen", "subsurface", "transmission", "emission", "specular_anisotropy")
+    weights += ("coat_weight", "fuzz_weight", "subsurface_weight", "transmission_weight")
+    weights += ("thin_film_weight", "thin_film_thickness", "emission_luminance", "clearcoat")
+    for weight in ("", *(name for name in weights if name in inputs)):
+        on = in_(weight, "1", "float") if weight else ""
+        rest = "".join(
+            in_(name, value, type_) for name, (type_, value) in inputs.items() if name != weight
+        )
+        plain = Read(surface(on, kind=kind), tmp_path)
+        assert Read(surface(on + rest, kind=kind), tmp_path).material == plain.material, weight
+
+
 # --- Nodes: numbers, and the same of every texel
 
 Node = tuple[str, Callable[[Any], Any]]
@@ -280,6 +310,14 @@ def test_nodes_of_pictures(kind: str, tmp_path: Path) -> None:
             found = color_at(read, "emissive", (x + 0.5) / 3, 1 - (y + 0.5) / 2)
             assert found == pytest.approx(wanted(pixels[y, x].astype(np.float64)), abs=2e-6)
     assert read.notes.sentences() == []
+
+
+@pytest.mark.parametrize("kind", ["rgbtohsv", "luminance", "saturate", "normalize", "separate3"])
+@pytest.mark.parametrize("type_", ["float", "vector2", "color4", "string", ""])
+def test_nodes_of_odd_types_end(kind: str, type_: str, tmp_path: Path) -> None:
+    nodes = f"""<constant name="A" type="float"><input name="value" type="float" value="0.5"/>
+      </constant><{kind} name="N" type="{type_}">{in_("in", "A", "float")}</{kind}>"""
+    assert len(Read(shining(nodes), tmp_path).kind.emissive) == 3
 
 
 def test_channels_are_taken_apart_and_joined(tmp_path: Path) -> None:

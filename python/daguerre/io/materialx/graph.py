@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from daguerre.motion.values import Keys
 
 #: Limit on the nodes of one material, as definitions inside definitions multiply.
-MAX_NODES = 200_000
+MAX_NODES = 120_000
 #: Number of components of each type; other types are texts.
 SIZES = {
     **{"float": 1, "integer": 1, "boolean": 1},

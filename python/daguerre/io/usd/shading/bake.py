@@ -19,7 +19,7 @@ from daguerre.files.notes import Notes
 from .channels import Channel, Coordinate, Mapping, Plane, Texel, UnsupportedError, VertexColor
 
 #: Limit on the bytes of all computed pictures of a stage, as a small graph could ask for many.
-MAX_BYTES = 4 << 30
+MAX_BYTES = 2 << 30
 _OTHER_MAPPING = (
     "pictures that lie on a surface in different ways are combined by the mean of the second"
 )

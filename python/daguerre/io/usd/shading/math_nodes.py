@@ -109,14 +109,14 @@ def contrast(given: Arguments) -> Value:
 
 def luminance(given: Arguments) -> Value:
     """Weighted sum of red, green and blue, in all channels."""
-    found = fit(given.value("in", (0.0, 0.0, 0.0)), given.size or 3)
+    found = _color(given)
     grey = given.context.math.dot(found[:3], given.value("lumacoeffs", _LUMA))
     return (*grey * 3, *found[3:])
 
 
 def saturate(given: Arguments) -> Value:
     """Interpolates between grey and a colour."""
-    found = fit(given.value("in", (0.0, 0.0, 0.0)), given.size or 3)
+    found = _color(given)
     arithmetic = given.context.math
     grey = arithmetic.dot(found[:3], given.value("lumacoeffs", _LUMA)) * 3
     return (*arithmetic.mix(grey, found[:3], given.value("amount", 1.0)), *found[3:])
@@ -126,7 +126,7 @@ def of_three(function: Callable[..., Any]) -> Operation:
     """Node that computes a colour from the three channels of another."""
 
     def apply(given: Arguments) -> Value:
-        found = fit(given.value("in", (0.0, 0.0, 0.0)), given.size or 3)
+        found = _color(given)
         combined = given.context.math.baker.combined
         color = (combined(partial(_chosen, function, i), *found[:3]) for i in range(3))
         return (*color, *found[3:])
@@ -237,6 +237,11 @@ def switch(given: Arguments) -> Value:
     """One of the inputs in1, in2, ... by its number."""
     index = int(min(max(given.number("which", 0.0), 0.0), 9.0))
     return _typed(given, given.value(f"in{index + 1}", 0.0))
+
+
+def _color(given: Arguments) -> Value:
+    """Input of a colour, with opacity if the node has it."""
+    return fit(given.value("in", (0.0, 0.0, 0.0)), 4 if given.size == 4 else 3)
 
 
 def _typed(given: Arguments, value: Value) -> Value:
