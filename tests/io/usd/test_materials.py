@@ -438,6 +438,13 @@ def test_missing_files_show_the_fallback(tmp_path: Path) -> None:
     ]
 
 
+def test_textures_without_a_file_show_the_fallback(tmp_path: Path) -> None:
+    inputs = "float4 inputs:fallback = (0.1, 0.2, 0.3, 1)"
+    found = Stage(preview(SHOWN, texture("T", inputs, "", st=ST) + READER), tmp_path).read()
+    assert found.kind.emissive == pytest.approx((0.1, 0.2, 0.3))
+    assert found.notes.sentences() == ["a texture without a file shows its fallback value (1 use)"]
+
+
 def test_paths_that_leave_the_folder_are_refused_by_their_owner(tmp_path: Path) -> None:
     def refused(place: str, path: str) -> Path:
         raise dg.InputError(f"{place}: leaves the folder")
@@ -518,6 +525,17 @@ def test_exr_textures_keep_their_range(tmp_path: Path) -> None:
     found = Stage(preview(SHOWN, texture("T", "", "./a.exr", st=ST) + READER), tmp_path).read()
     assert color_at(found, "emissive", 0.25, 0.5) == pytest.approx((0.5, 2, 4))
     assert color_at(found, "emissive", 0.75, 0.5) == pytest.approx((0, 0, 1))
+
+
+def test_values_that_are_none_of_a_surface_are_noted(tmp_path: Path) -> None:
+    uv = "color3f inputs:diffuseColor.connect = </M/P.outputs:result>"
+    found = Stage(preview(uv, READER), tmp_path).read()
+    assert found.kind.base_color == pytest.approx((0.18, 0.18, 0.18))
+    assert "texture coordinates" in found.notes.sentences()[0]
+    write(tmp_path / "a.png", RNG.integers(0, 256, (2, 2, 3), np.uint8))
+    switch = "int inputs:useSpecularWorkflow.connect = </M/T.outputs:r>"
+    found = Stage(preview(switch, texture("T", "", st=ST) + READER), tmp_path).read()
+    assert "a picture in 'useSpecularWorkflow' is not supported" in found.notes.sentences()[0]
 
 
 def test_wrong_types_are_noted(tmp_path: Path) -> None:

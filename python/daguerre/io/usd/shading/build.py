@@ -17,6 +17,7 @@ from daguerre.scene.materials import Gltf, Material
 from . import gltf_pbr, preview_surface
 from .assemble import Assembler
 from .bake import Baker
+from .channels import UnsupportedError
 from .evaluate import Arguments, Context, Evaluator, moving_nodes, names_before
 from .open_pbr import open_pbr_surface
 from .operations import OPERATIONS
@@ -73,7 +74,11 @@ class Builder:
         first = Evaluator(graph, OPERATIONS, context)
         packer = Packer(self._images, self._baker, uv_sets(graph))
         assembler = Assembler(packer, self._baker)
-        rest = assembler.material(self._surface(first, context), name, whole=bool(moving))
+        try:
+            rest = assembler.material(self._surface(first, context), name, whole=bool(moving))
+        except UnsupportedError as error:
+            context.notes.add(f"shading: {error} is not supported: the material is grey")
+            return assembler.material(replace(_GREY), name)
         if not moving:
             return rest
         kept = first.still(moving)
@@ -89,11 +94,11 @@ class Builder:
         given = evaluator.surface()
         if given is None:
             context.notes.add("a material without a surface is grey")
-            return _GREY
+            return replace(_GREY)
         reader = self._surfaces.get(given.node.kind)
         if reader is None:
             context.notes.add(f"surface {short(given.node.kind)} is not supported: it is grey")
-            return _GREY
+            return replace(_GREY)
         return reader(given)
 
 

@@ -24,7 +24,7 @@ from daguerre.io.materialx.graph import SIZES, Constant, Graph, Link, Node
 from daguerre.motion.values import Keys
 
 from .arithmetic import Arithmetic
-from .channels import UnsupportedError, Value, broadcast
+from .channels import Coordinate, UnsupportedError, Value, broadcast
 from .color_spaces import Encoding, encoding_of, rec709_from
 
 Outputs = Value | Mapping[str, Value] | None
@@ -186,6 +186,10 @@ class Evaluator:
         node = self._graph.nodes.get(self._graph.surface)
         return None if node is None else Arguments(node, self._context, _Lazy(self, node))
 
+    def note(self, sentence: str) -> None:
+        """Adds a note."""
+        self._context.notes.add(sentence)
+
     def still(self, moving: frozenset[str]) -> dict[str, Outputs]:
         """Values of nodes that are not among the moving ones."""
         return {name: found for name, found in self._done.items() if name not in moving}
@@ -241,7 +245,11 @@ class _Lazy(Mapping[str, "Value | None"]):
         self._links = {name: one for name, one in node.inputs.items() if isinstance(one, Link)}
 
     def __getitem__(self, name: str) -> Value | None:
-        return self._evaluator.linked(self._links[name])
+        found = self._evaluator.linked(self._links[name])
+        if found is None or not any(isinstance(channel, Coordinate) for channel in found):
+            return found
+        self._evaluator.note("texture coordinates as the value of a surface are not supported")
+        return None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._links)

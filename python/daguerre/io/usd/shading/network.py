@@ -182,6 +182,9 @@ class Networks:
 
     def _value(self, attribute: Usd.Attribute) -> Any:
         if attribute.ValueMightBeTimeVarying():
+            if str(attribute.GetTypeName()) not in _TYPES:
+                self._notes.add("a name or file of a material that changes keeps its first value")
+                return attribute.Get(Usd.TimeCode.EarliestTime())
             moving = self._clock.value(attribute)
             if not isinstance(moving, Keys) or isinstance(moving.values[0], float | int | tuple):
                 return moving
@@ -204,7 +207,7 @@ def _numbers(value: Any) -> tuple[float, ...] | None:
 
 def _anchored(attribute: Usd.Attribute, value: Sdf.AssetPath) -> str:
     """Path of an asset: resolved, or relative to the layer that names it (UDIM, missing files)."""
-    if value.resolvedPath:
+    if value.resolvedPath or not value.path:
         return str(value.resolvedPath)
     for spec in attribute.GetPropertyStack(Usd.TimeCode.EarliestTime()):
         if spec.HasInfo("default") or spec.HasInfo("timeSamples"):
