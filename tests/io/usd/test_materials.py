@@ -455,6 +455,16 @@ def test_paths_that_leave_the_folder_are_refused_by_their_owner(tmp_path: Path) 
         stage.read()
 
 
+def test_a_damaged_picture_among_others_is_one_error(tmp_path: Path) -> None:
+    """Pictures of a material are decoded in parallel."""
+    write(tmp_path / "a.png", RNG.integers(0, 256, (2, 2, 3), np.uint8))
+    (tmp_path / "b.png").write_bytes((tmp_path / "a.png").read_bytes()[:-20])
+    inputs = f"{SHOWN}\nfloat inputs:roughness.connect = </M/U.outputs:r>"
+    others = texture("T", "", st=ST) + texture("U", "", "./b.png", st=ST) + READER
+    with pytest.raises(dg.InputError, match=r"^/M/U: .*b.png: truncated PNG"):
+        Stage(preview(inputs, others), tmp_path).read()
+
+
 def test_images_are_added_once(tmp_path: Path) -> None:
     write(tmp_path / "a.png", RNG.integers(0, 256, (2, 2, 3), np.uint8))
     images = Stage("", tmp_path).images

@@ -9,7 +9,8 @@ import os
 import re
 import tempfile
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -94,10 +95,30 @@ class Images:
         """
         if path not in self._pictures:
             tiled = udim.MARK in path
-            self._pictures[path] = self._tiles(place, path) if tiled else self._one(place, path)
+            found = self._tiles(place, path) if tiled else self._one(place, path)
+            self._pictures[path] = self._counted(place, found)
         if self._pictures[path] is None:
             self._notes.add(_MISSING)
         return self._pictures[path]
+
+    def prefetch(self, places: Mapping[str, str]) -> None:
+        """Decodes the pictures of asset paths in parallel; ``places`` name each, for messages.
+
+        Raises:
+            InputError: A path or a picture is wrong; see ``picture``.
+        """
+        new = [path for path in places if path not in self._pictures and udim.MARK not in path]
+        if len(new) < 2:
+            return
+        # OpenImageIO releases the interpreter's lock while it decodes.
+        with ThreadPoolExecutor(min(8, os.cpu_count() or 1)) as pool:
+            futures = [pool.submit(self._one, places[path], path) for path in new]
+            try:
+                for path, future in zip(new, futures, strict=True):
+                    self._pictures[path] = self._counted(places[path], future.result())
+            finally:
+                for future in futures:
+                    future.cancel()
 
     def add(
         self,
@@ -153,13 +174,13 @@ class Images:
             return None
         where = f"{place}: {path}"
         if packaged is None:
-            return self._counted(place, decoded(_bytes(file, where), file.name, where), file.name)
+            return _picture(decoded(_bytes(file, where), file.name, where), file.name)
         with _package(file, where) as archive:
             if packaged["name"] not in archive.namelist():
                 return None
             data = _member(archive, packaged["name"], where)
         name = packaged["name"].rsplit("/", 1)[-1]
-        return self._counted(place, decoded(data, name, where), name)
+        return _picture(decoded(data, name, where), name)
 
     def _tiles(self, place: str, path: str) -> Picture | None:
         """Stitches the tiles of a UDIM pattern."""
@@ -186,19 +207,20 @@ class Images:
         if halved:
             self._notes.add("UDIM tiles are halved, as all of them are too large")
         name = path.rsplit("/", 1)[-1]
-        return self._counted(place, pixels, name, grid.transform)
+        return _picture(pixels, name, grid.transform)
 
-    def _counted(
-        self, place: str, pixels: NDArray[Any], name: str, transform: Six | None = None
-    ) -> Picture:
-        self._left -= pixels.nbytes
+    def _counted(self, place: str, picture: Picture | None) -> Picture | None:
+        """Charges a picture to the limit of all."""
+        self._left -= 0 if picture is None else picture.pixels.nbytes
         if self._left < 0:
             most = memory.shown(_most_bytes())
             raise InputError(f"{place}: wanted at most {most} of decoded pictures, got more")
-        freeze_in_place(pixels)
-        if transform is None:
-            return Picture(pixels, name)
-        return Picture(pixels, name, transform, tiled=True)
+        return picture
+
+
+def _picture(pixels: NDArray[Any], name: str, transform: Six | None = None) -> Picture:
+    freeze_in_place(pixels)
+    return Picture(pixels, name, transform or IDENTITY, tiled=transform is not None)
 
 
 def decoded(data: bytes, name: str, where: str) -> NDArray[Any]:

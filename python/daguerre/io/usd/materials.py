@@ -22,7 +22,7 @@ from daguerre.scene.scene import Scene
 from .images import Images
 from .shading.arithmetic import Arithmetic
 from .shading.bake import Baker
-from .shading.build import SURFACES, Builder, uv_sets, vertex_colors
+from .shading.build import SURFACES, Builder, picture_files, uv_sets, vertex_colors
 from .shading.evaluate import Context
 from .shading.mtlx_arcs import bound_path, material_in_document
 from .shading.network import Clock, Networks
@@ -89,6 +89,7 @@ class Materials:
             )
             if len(sets) > 2:
                 self._notes.add("a material that reads more than two sets of coordinates")
+            self._images.prefetch(picture_files(graph))
             made = self._builder.material(graph, str(path.name), context)
             self._indices[known] = self._scene.add_material(made)
         return self._indices[known]

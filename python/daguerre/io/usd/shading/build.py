@@ -23,6 +23,7 @@ from .open_pbr import open_pbr_surface
 from .operations import OPERATIONS
 from .standard_surface import standard_surface
 from .surface import Surface
+from .texture_nodes import file_of
 from .textures import Packer
 
 if TYPE_CHECKING:
@@ -120,6 +121,13 @@ def uv_sets(graph: Graph) -> tuple[str, ...]:
             if isinstance(read, Constant) and isinstance(read.value, str) and read.value:
                 found[read.value] = None
     return tuple(found)
+
+
+def picture_files(graph: Graph) -> dict[str, str]:
+    """Paths of the pictures that a material reads, each with the place that names it."""
+    nodes = [graph.nodes[name] for name in names_before(graph, preview_surface.IGNORED)]
+    found = {file_of(node): node.place for node in nodes if node.kind in _IMAGES}
+    return {path: place for path, place in found.items() if path is not None}
 
 
 def vertex_colors(graph: Graph) -> bool:

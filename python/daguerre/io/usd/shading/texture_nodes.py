@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import freeze_in_place
-from daguerre.io.materialx.graph import Constant
+from daguerre.io.materialx.graph import Constant, Node
 
 from .channels import (
     Channel,
@@ -45,6 +45,14 @@ _FILTERS = {"closest": "nearest", "linear": "linear", "cubic": "linear"}
 _SRGB = Encoding(srgb=True)
 #: Names under which USD's assets spell raw and sRGB.
 _USD_SPACES = {"raw": Encoding(), "srgb": _SRGB}
+
+
+def file_of(node: Node) -> str | None:
+    """Path of the picture of a node; None: it names none."""
+    file = node.inputs.get("file")
+    if not isinstance(file, Constant) or not isinstance(file.value, str) or not file.value:
+        return None
+    return _joined(file.base, file.value) if file.base else file.value
 
 
 def usd_texture(given: Arguments) -> Mapping[str, Value]:
@@ -147,11 +155,10 @@ def _sampled(
     outside: Value,
 ) -> Value | None:
     """Red, green, blue and opacity of the picture in ``file``; None: it is missing."""
-    context, file = given.context, given.node.inputs.get("file")
-    if not isinstance(file, Constant) or not isinstance(file.value, str) or not file.value:
+    context, path = given.context, file_of(given.node)
+    if path is None:
         context.notes.add("a texture without a file shows its fallback value")
         return None
-    path = file.value if not file.base else _joined(file.base, file.value)
     picture = context.images.picture(given.node.place, path)
     if picture is None:
         return None
