@@ -7,29 +7,23 @@ from __future__ import annotations
 
 import os
 import re
-import tempfile
-import zipfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from daguerre import memory
 from daguerre.checks import freeze_in_place
 from daguerre.errors import InputError
-from daguerre.files.json_item import short
 from daguerre.files.notes import Notes
-from daguerre.io import images
-from daguerre.io.exr.reader import ExrReader, is_exr, light_names
 from daguerre.scene.scene import Scene
 
 from .shading import udim
 from .shading.channels import IDENTITY, Plane, Six
+from .shading.picture_bytes import bytes_of, decoded, member, opened_package
 
 #: Finds the file of an asset path: ``resolve(place, path)``. The file need not exist; a path that
 #: leaves the folders that a stage may read is an ``InputError`` at ``place``.
@@ -38,7 +32,6 @@ Resolve = Callable[[str, str], Path]
 _MAX_TOTAL_BYTES = 8 << 30
 _SHARE = 0.6
 _PACKAGED = re.compile(r"(?P<package>[^\[\]]*)\[(?P<name>[^\[\]]+)\]\Z")
-_DECODED = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"RIFF", b"\xabKTX")
 _MISSING = "a texture whose file is missing shows its fallback value"
 
 
@@ -174,11 +167,11 @@ class Images:
             return None
         where = f"{place}: {path}"
         if packaged is None:
-            return _picture(decoded(_bytes(file, where), file.name, where), file.name)
-        with _package(file, where) as archive:
+            return _picture(decoded(bytes_of(file, where), file.name, where), file.name)
+        with opened_package(file, where) as archive:
             if packaged["name"] not in archive.namelist():
                 return None
-            data = _member(archive, packaged["name"], where)
+            data = member(archive, packaged["name"], where)
         name = packaged["name"].rsplit("/", 1)[-1]
         return _picture(decoded(data, name, where), name)
 
@@ -189,7 +182,7 @@ class Images:
             file = self.resolve(place, packaged["package"])
             if not _is_file(file):
                 return None
-            with _package(file, place) as archive:
+            with opened_package(file, place) as archive:
                 found = udim.tile_numbers(archive.namelist(), packaged["name"])
             paths = {n: f"{packaged['package']}[{name}]" for n, name in found.items()}
         else:
@@ -223,67 +216,6 @@ def _picture(pixels: NDArray[Any], name: str, transform: Six | None = None) -> P
     return Picture(pixels, name, transform or IDENTITY, tiled=transform is not None)
 
 
-def decoded(data: bytes, name: str, where: str) -> NDArray[Any]:
-    """Decodes a picture: those of glTF, and every other that OpenImageIO and OpenEXR read.
-
-    Args:
-        data: Bytes of the file.
-        name: Name of the file; its suffix chooses between formats without a mark.
-        where: Place and path, for messages.
-
-    Returns:
-        Shape (H, W, 1..4), uint8 or float32.
-
-    Raises:
-        InputError: It is no picture, or is damaged or too large.
-    """
-    if data.startswith(_DECODED):
-        return images.decode(data, where)
-    descriptor, temporary = tempfile.mkstemp(suffix=_suffix(name), prefix="daguerre-")
-    try:
-        with os.fdopen(descriptor, "wb") as stream:
-            stream.write(data)
-        return _other(Path(temporary))
-    except InputError as error:
-        raise InputError(str(error).replace(temporary, where)) from None
-    finally:
-        Path(temporary).unlink(missing_ok=True)
-
-
-def _suffix(name: str) -> str:
-    """Suffix of a name, of letters and digits."""
-    return re.sub(r"[^.A-Za-z0-9]", "", Path(name).suffix)[:16]
-
-
-def _exr(file: Path) -> NDArray[np.float32]:
-    """Reads the data window of an OpenEXR; textures may be negative, but are finite."""
-    with ExrReader(file) as reader:
-        size = reader.width * reader.height * 16
-        if size > images.MAX_BYTES:
-            most = memory.shown(images.MAX_BYTES)
-            raise InputError(f"{file}: image size: wanted at most {most}, got more")
-        names = light_names(list(reader.channels), str(file))
-        names += [name for name in reader.channels if name == "A"]
-        planes = reader.rows(0, reader.height, list(dict.fromkeys(names)))
-    pixels = np.stack([planes[name] for name in names], axis=2).astype(np.float32)
-    return np.nan_to_num(pixels, nan=0.0, posinf=0.0, neginf=0.0)
-
-
-def _other(file: Path) -> NDArray[Any]:
-    """Decodes a format that glTF does not have: light as it is, integers to 0 .. 1."""
-    if is_exr(file):
-        return _exr(file)
-    if file.suffix.lower() == ".hdr":
-        return images.read_environment(file)
-    pixels, _ = images.read_file(file)
-    pixels = pixels[:, :, :4]
-    if pixels.dtype == np.uint8:
-        return np.ascontiguousarray(pixels)
-    if np.issubdtype(pixels.dtype, np.integer):
-        return (pixels / np.float64(np.iinfo(pixels.dtype).max)).astype(np.float32)
-    return np.nan_to_num(pixels.astype(np.float32), posinf=0.0, neginf=0.0)
-
-
 def _is_file(path: Path) -> bool:
     try:
         return path.is_file()
@@ -296,33 +228,6 @@ def _names(folder: Path) -> list[str]:
         return [file.name for file in folder.iterdir()]
     except (OSError, ValueError):  # no folder; no name of a folder
         return []
-
-
-def _bytes(file: Path, where: str) -> bytes:
-    try:
-        if file.stat().st_size > images.MAX_BYTES:
-            raise InputError(f"{where}: wanted at most {memory.shown(images.MAX_BYTES)}, got more")
-        return file.read_bytes()
-    except OSError as error:
-        raise InputError(f"{where}: cannot be read: {error.strerror}") from None
-
-
-@contextmanager
-def _package(file: Path, where: str) -> Iterator[zipfile.ZipFile]:
-    """Opens a package; damaged ones are errors."""
-    try:
-        with zipfile.ZipFile(file) as archive:
-            yield archive
-    except (zipfile.BadZipFile, EOFError, NotImplementedError, OSError, RuntimeError) as error:
-        raise InputError(f"{where}: wanted a usdz package, got {short(str(error))}") from None
-
-
-def _member(archive: zipfile.ZipFile, name: str, where: str) -> bytes:
-    """Bytes of a file in a package, which stores them without compression (usdz specification)."""
-    info = archive.getinfo(name)
-    if info.compress_type != zipfile.ZIP_STORED or info.file_size > images.MAX_BYTES:
-        raise InputError(f"{where}: wanted a stored file in the package, got another")
-    return archive.read(name)
 
 
 def _most_bytes() -> int:

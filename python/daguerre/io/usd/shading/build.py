@@ -18,13 +18,14 @@ from . import gltf_pbr, preview_surface
 from .assemble import Assembler
 from .bake import Baker
 from .channels import UnsupportedError
-from .evaluate import Arguments, Context, Evaluator, moving_nodes, names_before
+from .evaluate import Arguments, Context, Evaluator
 from .open_pbr import open_pbr_surface
 from .operations import OPERATIONS
 from .standard_surface import standard_surface
 from .surface import Surface
 from .texture_nodes import file_of
 from .textures import Packer
+from .walks import moving_nodes, names_before
 
 if TYPE_CHECKING:
     from daguerre.io.usd.images import Images

@@ -1,0 +1,116 @@
+"""Bytes of pictures, from files and packages, and their pixels.
+
+Source: the usdz specification (https://openusd.org/release/spec_usdz.html).
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre import memory
+from daguerre.errors import InputError
+from daguerre.files.json_item import short
+from daguerre.io import images
+from daguerre.io.exr.reader import ExrReader, is_exr, light_names
+
+#: First bytes of the formats that glTF has, too.
+_DECODED = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"RIFF", b"\xabKTX")
+
+
+def decoded(data: bytes, name: str, where: str) -> NDArray[Any]:
+    """Decodes a picture: those of glTF, and every other that OpenImageIO and OpenEXR read.
+
+    Args:
+        data: Bytes of the file.
+        name: Name of the file; its suffix chooses between formats without a mark.
+        where: Place and path, for messages.
+
+    Returns:
+        Shape (H, W, 1..4), uint8 or float32.
+
+    Raises:
+        InputError: It is no picture, or is damaged or too large.
+    """
+    if data.startswith(_DECODED):
+        return images.decode(data, where)
+    descriptor, temporary = tempfile.mkstemp(suffix=_suffix(name), prefix="daguerre-")
+    try:
+        with os.fdopen(descriptor, "wb") as stream:
+            stream.write(data)
+        return _other(Path(temporary))
+    except InputError as error:
+        raise InputError(str(error).replace(temporary, where)) from None
+    finally:
+        Path(temporary).unlink(missing_ok=True)
+
+
+def _suffix(name: str) -> str:
+    """Suffix of a name, of letters and digits."""
+    return re.sub(r"[^.A-Za-z0-9]", "", Path(name).suffix)[:16]
+
+
+def _exr(file: Path) -> NDArray[np.float32]:
+    """Reads the data window of an OpenEXR; textures may be negative, but are finite."""
+    with ExrReader(file) as reader:
+        size = reader.width * reader.height * 16
+        if size > images.MAX_BYTES:
+            most = memory.shown(images.MAX_BYTES)
+            raise InputError(f"{file}: image size: wanted at most {most}, got more")
+        names = light_names(list(reader.channels), str(file))
+        names += [name for name in reader.channels if name == "A"]
+        planes = reader.rows(0, reader.height, list(dict.fromkeys(names)))
+    pixels = np.stack([planes[name] for name in names], axis=2).astype(np.float32)
+    return np.nan_to_num(pixels, nan=0.0, posinf=0.0, neginf=0.0)
+
+
+def _other(file: Path) -> NDArray[Any]:
+    """Decodes a format that glTF does not have: light as it is, integers to 0 .. 1."""
+    if is_exr(file):
+        return _exr(file)
+    if file.suffix.lower() == ".hdr":
+        return images.read_environment(file)
+    pixels, _ = images.read_file(file)
+    pixels = pixels[:, :, :4]
+    if pixels.dtype == np.uint8:
+        return np.ascontiguousarray(pixels)
+    if np.issubdtype(pixels.dtype, np.integer):
+        return (pixels / np.float64(np.iinfo(pixels.dtype).max)).astype(np.float32)
+    return np.nan_to_num(pixels.astype(np.float32), posinf=0.0, neginf=0.0)
+
+
+def bytes_of(file: Path, where: str) -> bytes:
+    """Bytes of a file, if there are not too many."""
+    try:
+        if file.stat().st_size > images.MAX_BYTES:
+            raise InputError(f"{where}: wanted at most {memory.shown(images.MAX_BYTES)}, got more")
+        return file.read_bytes()
+    except OSError as error:
+        raise InputError(f"{where}: cannot be read: {error.strerror}") from None
+
+
+@contextmanager
+def opened_package(file: Path, where: str) -> Iterator[zipfile.ZipFile]:
+    """Opens a package; damaged ones are errors."""
+    try:
+        with zipfile.ZipFile(file) as archive:
+            yield archive
+    except (zipfile.BadZipFile, EOFError, NotImplementedError, OSError, RuntimeError) as error:
+        raise InputError(f"{where}: wanted a usdz package, got {short(str(error))}") from None
+
+
+def member(archive: zipfile.ZipFile, name: str, where: str) -> bytes:
+    """Bytes of a file in a package, which stores them without compression (usdz specification)."""
+    info = archive.getinfo(name)
+    if info.compress_type != zipfile.ZIP_STORED or info.file_size > images.MAX_BYTES:
+        raise InputError(f"{where}: wanted a stored file in the package, got another")
+    return archive.read(name)
