@@ -11,7 +11,7 @@ namespace {
 
 std::mutex guard;
 int keepers = 0;
-Film* kept = nullptr;   // never destroyed at exit, when other statics may be gone
+Film* kept = nullptr;   // never destroyed at exit, when other globals may be gone
 
 template <class T>
 void reset(std::vector<T>& all) {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -80,6 +81,8 @@ def test_denoising_counts() -> None:
 
 
 def test_memory_of_the_last_film_is_left_for_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
+    if "daguerre.cluster.task" in sys.modules:  # a worker of another test keeps films
+        monkeypatch.setattr("daguerre.cluster.task._kept", None)
     layout = _core.FilmLayout(width=400, height=300)
     each = film_memory.pixel_bytes(layout)
     kept = 400 * 300 * _core.Film.pixel_bytes(layout)

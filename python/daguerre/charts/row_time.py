@@ -21,6 +21,7 @@ CONTRAST = 0.6  # of the usual one, that a line needs; less: squares of a board 
 NARROWEST, WIDTHS = 3.0, 2.5  # px, and standard deviations of the edge, that are looked at
 TIMES = 6  # that an edge is sought
 OUTLIER = 5.0  # median distances from the fit, above which a line is left out
+REST = 1e-9  # radians between pictures; less is rounding
 LEAST = 8  # lines that see the edge
 SURE = 3.0  # standard errors above which lines are told to be exposed in turn
 
@@ -101,7 +102,7 @@ def row_time(
         raise UsageError("row time: fps: wanted at least two pictures, got one")
     steps = np.column_stack([np.ones(len(shot)), shot.astype(np.float64)])
     (_, step, lean), (_, step_error, lean_error) = _fit(steps, lines, turned)
-    if abs(step) <= SURE * step_error:
+    if abs(step) <= max(SURE * step_error, REST):
         raise InputError("row time: wanted an edge that moves between pictures, got one at rest")
     time = lean / step * interval
     error = math.hypot(lean_error, lean / step * step_error) / abs(step) * interval

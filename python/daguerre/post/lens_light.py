@@ -101,16 +101,43 @@ class Surface:
 
     def __init__(self, nodes: NDArray[np.float32], width: int, height: int) -> None:
         """Takes nodes of shape (rows, columns, C)."""
-        self._down = _cubic_weights(height, nodes.shape[0])
-        self._across = _cubic_weights(width, nodes.shape[1])
+        self._down = _Taps(height, nodes.shape[0])
+        self._across = _Taps(width, nodes.shape[1])
         taller = _continued(nodes)
         self._nodes = _continued(taller.swapaxes(0, 1)).swapaxes(0, 1)
 
     def __call__(self, rows: Rows) -> NDArray[np.float32]:
         """Returns the values of rows, shape (rows, W, C); at least 0."""
-        lines = np.tensordot(self._down[rows.begin : rows.end], self._nodes, 1)
-        found = np.tensordot(lines, self._across, (1, 1)).swapaxes(1, 2)
+        lines = self._down.mixed(self._nodes, slice(rows.begin, rows.end))
+        found = self._across.mixed(lines.swapaxes(0, 1), slice(None)).swapaxes(0, 1)
         return np.asarray(np.maximum(found, 0))
+
+
+class _Taps:
+    """The four nodes near each pixel and their weights.
+
+    They are added one by one, as a product of matrices may round by the number of its rows.
+    """
+
+    def __init__(self, pixels: int, nodes: int) -> None:
+        at = np.linspace(0, nodes - 1, pixels)
+        # Nodes have one more on either side, so node k stands at k + 1.
+        self._first = np.clip(np.floor(at).astype(int), 0, max(nodes - 2, 0))
+        d = np.abs(at[:, None] - (self._first[:, None] + np.arange(-1, 3)))
+        near, far = (1.5 * d - 2.5) * d * d + 1, ((-0.5 * d + 2.5) * d - 4) * d + 2
+        self._weights = np.where(d < 1, near, np.where(d < 2, far, 0)).astype(np.float32)
+
+    def mixed(self, nodes: NDArray[np.float32], pixels: slice) -> NDArray[np.float32]:
+        """Interpolates nodes (N, ...) along their first axis at some pixels, (pixels, ...)."""
+        first, weights = self._first[pixels], self._weights[pixels]
+        last = len(nodes) - 1
+        total = np.zeros((len(first), *nodes.shape[1:]), np.float32)
+        for k in range(4):
+            total += (
+                weights[:, k].reshape(-1, *[1] * (nodes.ndim - 1))
+                * nodes[np.minimum(first + k, last)]
+            )
+        return total
 
 
 def _continued(values: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -118,11 +145,3 @@ def _continued(values: NDArray[np.float32]) -> NDArray[np.float32]:
     first = 3 * values[:1] - 3 * values[1:2] + values[2:3]
     last = 3 * values[-1:] - 3 * values[-2:-1] + values[-3:-2]
     return np.concatenate([first, values, last])
-
-
-def _cubic_weights(pixels: int, nodes: int) -> NDArray[np.float32]:
-    """Weights of the nodes, with one more on either side, for each pixel, (pixels, nodes + 2)."""
-    at = np.linspace(0, nodes - 1, pixels)
-    d = np.abs(at[:, None] - np.arange(-1, nodes + 1))
-    near, far = (1.5 * d - 2.5) * d * d + 1, ((-0.5 * d + 2.5) * d - 4) * d + 2
-    return np.where(d < 1, near, np.where(d < 2, far, 0)).astype(np.float32)
