@@ -10,6 +10,7 @@
 #include "geometry/curve_frames.h"
 #include "geometry/curves.h"
 #include "geometry/mesh.h"
+#include "math/portable.h"
 
 namespace dg {
 namespace {
@@ -90,7 +91,7 @@ CurvePoint on_disc(const CurveSegment& s, bool at_end, double out, double angle)
 
 /// Angle from the pole of the ball at an end to where the cone touches it.
 double cap_angle(const CurveSegment& s, bool at_end) {
-    return std::acos(at_end ? lean(s) : -lean(s));
+    return acos(at_end ? lean(s) : -lean(s));
 }
 
 CurvePoint on_ball(const CurveSegment& s, bool at_end, double out, double angle) {
@@ -106,7 +107,7 @@ CurvePoint on_ball(const CurveSegment& s, bool at_end, double out, double angle)
 
 double turn_of(const CurveSegment& s, double u, Vec3d direction) {
     const Vec3d along = s.tangent(u), x = s.zero_angle(u);
-    const double angle = std::atan2(dot(direction, cross(along, x)), dot(direction, x)) / kTurn;
+    const double angle = atan2(dot(direction, cross(along, x)), dot(direction, x)) / kTurn;
     return angle < 0 ? angle + 1 : angle;
 }
 
@@ -194,7 +195,7 @@ CurvePlace place_of(const CurveSegment& s, double u, Vec3d normal) {
     const bool at_end = u == 1;
     const Vec3d along = s.tangent(u) * (at_end ? 1.0 : -1.0);
     const double upright = dot(normal, along);
-    const double polar = std::atan2(length(normal - along * upright), upright);
+    const double polar = atan2(length(normal - along * upright), upright);
     const double most = cap_angle(s, at_end);
     const double out = most > 0 ? std::min(polar / most, 1.0) : 1;
     return {float(at_end ? 2 - out : out - 1), turn};

@@ -14,11 +14,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pxr import UsdGeom, UsdLux
 
 import daguerre as dg
 from daguerre.files import formats
 from daguerre.files.formats import Format, register
-from tests.support import motion_files, scenes
+from tests.support import motion_files, scenes, stages
 from tests.support.make_gltf import Builder
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -111,7 +112,62 @@ OBJ = Samples(
         "noise.obj": (b"v \xff\xfe\n", "UTF-8"),
     },
 )
-SAMPLES = {"glTF 2.0": GLTF, "Wavefront OBJ": OBJ}
+
+
+def _usd_card(folder: Path) -> Path:
+    stage = stages.new_stage(folder / "card.usda", metres=0.01, up="Z")
+    corners = [(100 * x, -100 * (z + 3), 100 * y) for x, y, z in CARD]  # the prim moves it back
+    stages.place(stages.mesh(stage, "/card", corners), at=(0, 300, 0))
+    stage.DefinePrim("/patch", "NurbsPatch")
+    return stages.save(stage)
+
+
+def _usd_moving(folder: Path) -> Path:
+    stage = stages.new_stage(folder / "moving.usda")
+    stage.SetStartTimeCode(0)
+    stage.SetEndTimeCode(48)
+    turn = UsdGeom.Xformable(stages.cube(stage, "/cube", "catmullClark")).AddRotateYOp()
+    turn.Set(0.0, 0)
+    turn.Set(170.0, 48)
+    points = stages.mesh(stage, "/card").GetPointsAttr()
+    points.Set(stages.vectors(stages.SQUARE), 0)
+    points.Set(stages.vectors(2 * np.array(stages.SQUARE)), 48)
+    lamp = UsdLux.SphereLight.Define(stage, "/lamp")
+    lamp.GetIntensityAttr().Set(1.0, 0)
+    lamp.GetIntensityAttr().Set(9.0, 48)
+    return stages.save(stage)
+
+
+def _usd(*lines: str) -> bytes:
+    return "\n".join(["#usda 1.0", *lines, ""]).encode()
+
+
+USD = Samples(
+    _usd_card,
+    {
+        "empty.usda": (b"", "usda"),
+        "half.usda": (_usd('def Xform "a" {'), "Expected"),
+        "noise.usdc": (bytes(range(256)), "usdc"),
+        "noise.usdz": (bytes(range(256)), "usdz"),
+        "no_unit.usda": (_usd("(", "    metersPerUnit = 0", ")"), "metersPerUnit"),
+        "no_time.usda": (_usd("(", "    timeCodesPerSecond = -1", ")"), "timeCodesPerSecond"),
+        "sideways.usda": (_usd("(", '    upAxis = "X"', ")"), "upAxis"),
+        "lies.usda": (
+            _usd(
+                'def Mesh "m" {',
+                "int[] faceVertexCounts = [3]",
+                "int[] faceVertexIndices = [0, 1, 7]",
+                "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]",
+                "}",
+            ),
+            "/m: faceVertexIndices",
+        ),
+        "outside.usda": (_usd("(", "    subLayers = [@../../x.usda@]", ")"), "leaves the stage"),
+        "web.usda": (_usd("(", "    subLayers = [@http://a.b/x.usda@]", ")"), "refused"),
+    },
+    _usd_moving,
+)
+SAMPLES = {"glTF 2.0": GLTF, "Wavefront OBJ": OBJ, "OpenUSD": USD}
 
 
 def _example() -> Format:
@@ -305,17 +361,17 @@ def test_a_suffix_belongs_to_one_format(row: Format) -> None:
 
 def test_an_unknown_suffix_names_those_that_are_known(tmp_path: Path) -> None:
     with pytest.raises(
-        dg.InputError, match=r"x\.stl: format: wanted \.glb, \.gltf or \.obj, got \.stl"
+        dg.InputError, match=r"x\.stl: format: wanted \.glb, .*\.usdz or \.obj, got \.stl"
     ):
         dg.load(tmp_path / "x.stl")
 
 
 def test_a_package_that_is_missing_is_named(tmp_path: Path) -> None:
-    how = ("no_such_package", 'pip install "daguerre[usd]"')
-    register(Format("USD", "scene", (".usd",), reads="no_such_package.reader:read", needs=how))
-    with pytest.raises(dg.UsageError, match="USD needs no_such_package: pip install"):
-        dg.load(tmp_path / "x.usd")
-    formats._FORMATS[:] = [row for row in formats._FORMATS if row.name != "USD"]
+    how = ("no_such_package", 'pip install "daguerre[abc]"')
+    register(Format("Alembic", "scene", (".abc",), reads="no_such_package.reader:read", needs=how))
+    with pytest.raises(dg.UsageError, match="Alembic needs no_such_package: pip install"):
+        dg.load(tmp_path / "x.abc")
+    formats._FORMATS[:] = [row for row in formats._FORMATS if row.name != "Alembic"]
 
 
 def test_every_function_of_the_table_is_there() -> None:
@@ -382,3 +438,15 @@ def test_readers_use_the_methods_of_a_scene() -> None:
 )
 def test_that_test_sees_what_it_is_for(line: str) -> None:
     assert list(_writes(ast.parse(line)))
+
+
+def test_a_strict_reader_refuses_what_it_would_leave_out(samples: Samples, tmp_path: Path) -> None:
+    path = samples.card(tmp_path)
+    with pytest.raises(dg.InputError, match=r"card\.\w+: strict: wanted no notes, got: .*1 use"):
+        dg.load(path, strict=True)
+
+
+def test_a_strict_reader_reads_what_it_understands(tmp_path: Path) -> None:
+    stage = stages.new_stage(tmp_path / "whole.usda")
+    stages.mesh(stage, "/card")
+    assert dg.load(stages.save(stage), strict=True).default_camera == "framing"

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 from daguerre.color.illuminants import white_xy
 
 from .parameters import LIGHT
+from .shutter import seconds
 
 if TYPE_CHECKING:
     from .camera import Camera
 
-
+#: Relative difference below which two numbers are one, as files hold single precision.
+_SINGLE = 1e-6
 PINHOLE_F_STOP: float = LIGHT["exposure_f_stop"].usual
 
 
@@ -59,15 +61,33 @@ def without_exposure(facts: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in facts.items() if name not in _EXPOSURE_FACTS}
 
 
+def describe_exposure(camera: Camera, f_stop: float | None, shutter_s: float) -> str:
+    """Describes what sets the brightness, such as ``1/48 s, f/2, ISO 800, +1 EV``.
+
+    Args:
+        camera: The camera.
+        f_stop: Stop of its lens; None: a pinhole.
+        shutter_s: Exposure time of its shutter, s.
+    """
+    time = shutter_s if camera.exposure_time is None else camera.exposure_time
+    stop = f_stop if camera.exposure_f_stop is None else camera.exposure_f_stop
+    parts = [seconds(time), *([] if stop is None else [f"f/{stop:.3g}"]), f"ISO {camera.iso:g}"]
+    if camera.responsivity != 1:
+        parts.append(f"responsivity {camera.responsivity:g}")
+    if camera.exposure_compensation:
+        parts.append(f"{camera.exposure_compensation:+g} EV")
+    return ", ".join(parts)
+
+
 def exposure_notes(camera: Camera, f_stop: float | None, shutter_s: float) -> list[str]:
     """Notes for exposures whose brightness and blur come from different shutters or stops."""
     notes = []
     time, stop, own = camera.exposure_time, camera.exposure_f_stop, f_stop
-    if time is not None and not math.isclose(time, shutter_s):
+    if time is not None and not math.isclose(time, shutter_s, rel_tol=_SINGLE):
         notes.append(
             f"exposure_time sets the brightness to that of {time:g} s; the shutter sets the blur"
         )
-    if stop is not None and own is not None and not math.isclose(stop, own):
+    if stop is not None and own is not None and not math.isclose(stop, own, rel_tol=_SINGLE):
         notes.append(
             f"exposure_f_stop sets the brightness to that of f/{stop:g}; the blur is that of "
             f"f/{own:.3g}"

@@ -206,13 +206,18 @@ def _points(curve: Any, where: str, wanted: str) -> _core.OpeningCurve:
         )
 
 
+def seconds(time: float) -> str:
+    """Time as photographers write it, such as ``1/48 s`` or ``2 s``."""
+    return f"1/{1 / time:.4g} s" if 0 < time < 0.5 else f"{time:.4g} s"
+
+
 def describe(camera: Camera, resolution: tuple[int, int]) -> str:
     """Describes the shutter in one line, such as ``1/48 s, 180 deg at 24 fps, box``."""
     time, kind = shutter_time(camera), type_of(camera)
     if time == 0:
         parts = ["0 s (frozen)"]
     else:
-        parts = [f"1/{1 / time:.4g} s" if time < 0.5 else f"{time:.4g} s"]
+        parts = [seconds(time)]
         if time * camera.fps <= 1:
             parts.append(f"{360 * time * camera.fps:.4g} deg at {camera.fps:.4g} fps")
     parts.append(kind)

@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     scene_flags=SceneFlags,
 )
 def info(
-    scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file, .glb or .gltf.")],
+    scene_path: Annotated[
+        Path, typer.Argument(metavar="SCENE", help="Scene file, .glb, .gltf or .usd.")
+    ],
     camera_flags: CameraFlags,
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,
@@ -125,6 +127,7 @@ def camera_rows(facts: Facts, resolution: tuple[int, int]) -> dict[str, str]:
             f"(circle of confusion {facts.coc_mm * 1000:.3g} um)"
         )
     rows["shutter"] = facts.shutter
+    rows["exposure"] = facts.exposure
     if facts.ev100 is not None:
         rows["EV100"] = f"{facts.ev100:.2f}"
     if facts.notes:

@@ -50,7 +50,9 @@ _OWN = {
     server_flags=ServerFlags,
 )
 def view(
-    scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file, .glb or .gltf.")],
+    scene_path: Annotated[
+        Path, typer.Argument(metavar="SCENE", help="Scene file, .glb, .gltf or .usd.")
+    ],
     camera_flags: CameraFlags,
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,

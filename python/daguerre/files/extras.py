@@ -15,10 +15,10 @@ EXTRAS = {
     "distributed": ("distributed", "cluster"),
     "matplotlib": ("matplotlib", "plot"),
     "mitsuba_oidn": ("mitsuba-oidn", "denoise"),
-    "pxr": ("usd-core", "usd"),
     "rawpy": ("rawpy", "raw"),
     "simplejpeg": ("simplejpeg", "view"),
     "tifffile": ("tifffile", "raw"),
+    "pxr": ("usd-core", "usd"),
     "websockets": ("websockets", "view"),
     "yaml": ("PyYAML", "calibration"),
 }

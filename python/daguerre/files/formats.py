@@ -16,10 +16,9 @@ from typing import Any, Literal
 
 from daguerre.errors import InputError, UsageError, suggest
 
-Kind = Literal["scene", "frame", "picture", "raw", "environment", "profile"]
 from . import extras
 
-Kind = Literal["scene", "frame", "picture", "raw", "environment", "camera"]
+Kind = Literal["scene", "frame", "picture", "raw", "environment", "camera", "profile"]
 #: A function, or "module:function", which is imported on first use.
 Function = str | Callable[..., Any]
 #: Suffix that matches every suffix without another row of the kind.
@@ -39,6 +38,8 @@ class Format:
         takes: Options of reader and writer, besides ``time`` (s) of scenes; None: they check their
             options themselves.
         needs: Package that it needs, and how to install it.
+        time_of: Converts a time code of a scene to s, called as ``time_of(path, code)``; None: the
+            format has no time codes.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Format:
     writes: Function | None = None
     takes: tuple[str, ...] | None = ()
     needs: tuple[str, str] | None = None
+    time_of: Function | None = None
 
 
 _GLTF, _FRAMES = "daguerre.io.gltf.reader", "daguerre.io.frame_files"
@@ -58,6 +60,10 @@ _SHOWN, _CODED = ("tone",), ("quality", "bits")
 _FORMATS = [
     Format("glTF 2.0", "scene", (".glb", ".gltf"), f"{_GLTF}:read",
            takes=("variant", "allow_dirs", "scene_index")),
+    Format("OpenUSD", "scene", (".usd", ".usda", ".usdc", ".usdz"), "daguerre.io.usd.reader:read",
+           takes=("variant", "allow_dirs", "purpose", "camera_units"),
+           needs=("pxr", extras.hint("pxr")),
+           time_of="daguerre.io.usd.stage:time_of_code"),
     Format("OpenEXR", "frame", _EXR, _READ_EXR, f"{_FRAMES}:as_exr", _SHOWN),
     Format("PNG", "frame", _PNG, None, f"{_FRAMES}:as_png", _SHOWN),
     Format("JPEG", "frame", _JPEG, None, f"{_FRAMES}:as_picture", _SHOWN),
@@ -120,6 +126,19 @@ def read(kind: Kind, path: str | os.PathLike[str], **options: Any) -> Any:
         known = _either([s for row in rows for s in row.suffixes])
         raise InputError(f"{path}: format: wanted {known}, got {suffix or 'no suffix'}")
     return _ready(row, row.reads, path, options)(path, **options)
+
+
+def time_of_code(path: str | os.PathLike[str], code: float) -> float:
+    """Converts a time code of a scene file to s.
+
+    Raises:
+        UsageError: The format has no time codes.
+        InputError: The file cannot be used.
+    """
+    row = _row(formats("scene"), Path(path).suffix.lower())
+    if row is None or row.time_of is None:
+        raise UsageError(f"{path}: --time-code: wanted a USD stage; --time takes seconds")
+    return float(_ready(row, row.time_of, path, {})(path, code))
 
 
 def write(kind: Kind, path: str | os.PathLike[str], value: Any, **options: Any) -> None:

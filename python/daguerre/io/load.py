@@ -8,6 +8,7 @@ from typing import Any
 
 from daguerre.checks import number
 from daguerre.doors import guarded
+from daguerre.errors import InputError
 from daguerre.files import formats
 from daguerre.scene.framing import frame_everything
 from daguerre.scene.scene import Scene
@@ -18,30 +19,39 @@ def load(
     path: str | Path,
     *,
     time: float = 0.0,
-    variant: str | None = None,
+    variant: str | Sequence[str] | None = None,
     allow_dirs: Sequence[str | Path] = (),
+    strict: bool = False,
     **options: Any,
 ) -> Scene:
-    """Reads a scene file (.glb, .gltf, or a registered format) at a time, s.
+    """Reads a scene file (.glb, .gltf, .usd, .usda, .usdc, .usdz, or a registered format).
 
     A file without a camera gets a camera named ``framing`` that has everything in view.
 
     Args:
         path: The file.
         time: Time at which animations are evaluated, s.
-        variant: Material variant, one of ``Scene.variants``; default: the materials as in the file.
+        variant: Material variant of glTF, one of ``Scene.variants``; or selections of USD's
+            variants, each as ``/prim:set=name``. Default: those of the file.
         allow_dirs: Folders, besides the file's own, from which it may read files.
-        **options: Options of a registered format (``docs/importers.md``); None and empty ones count
-            as absent.
+        strict: Whether content that would be left out, with a note, is an error.
+        **options: Options of the format; None and empty ones count as absent. USD has ``purpose``,
+            names of purposes to draw besides ``default`` (default: ``("render",)``), and
+            ``camera_units``, the unit of focal lengths and apertures in mm (default: a tenth of a
+            scene unit).
 
     Raises:
-        InputError: The file cannot be used; the message names the file and the place in it.
+        InputError: The file cannot be used; the message names the file and the place in it. Or
+            it is ``strict``, and something would be left out.
         UsageError: The file's format has no such option.
     """
     time = number(time, "time")
     options |= {"variant": variant, "allow_dirs": allow_dirs}
     given = {name: value for name, value in options.items() if value not in (None, (), [])}
     scene: Scene = formats.read("scene", path, time=time, **given)
+    if strict and scene.warnings:
+        more = f", and {len(scene.warnings) - 1} more" if len(scene.warnings) > 1 else ""
+        raise InputError(f"{path}: strict: wanted no notes, got: {scene.warnings[0]}{more}")
     if not scene.cameras and (camera := frame_everything(scene)) is not None:
         scene.add_camera("framing", camera)
         scene.note("no camera in the file; 'framing' has everything in view")

@@ -73,7 +73,7 @@ def clipped(flat: FloatArray, effort: Effort) -> IntArray:
 
 
 class _Rings:
-    """What is left of polygons, each with a corner that is looked at."""
+    """The rest of polygons, each with a corner that is looked at."""
 
     def __init__(self, flat: FloatArray) -> None:
         count, size = flat.shape[:2]

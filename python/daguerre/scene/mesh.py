@@ -106,8 +106,6 @@ def with_alpha(colors: ArrayLike | None, where: str) -> ArrayLike | None:
     if colors is None:
         return None
     if to_numbers(colors, where, "colors", "shape (N, 3) or (N, 4)").shape[-1:] != (3,):
-    """Adds an opaque alpha to colours that have none."""
-    if colors is None or np.shape(colors)[-1:] != (3,):
         return colors
     rgb = array(colors, where, "colors", 3)
     return freeze_in_place(np.concatenate([rgb, np.ones((len(rgb), 1), np.float32)], axis=1))

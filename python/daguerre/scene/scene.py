@@ -34,6 +34,7 @@ from .lights import Light, check_light
 from .materials import Diffuse, Kind, Material, check_material
 from .mesh import MESH, MeshKeywords, mesh_of
 from .motion import SceneMotion
+from .node_names import find_node
 from .parts import Curves, Environment, Instance, Mesh, Plate, Texture, vertices_of
 from .point_cache import PointCache, steps_of
 from .polygon_mesh import Over, mesh_of_polygons, polygons_of
@@ -159,8 +160,10 @@ class Scene(Value):
         Raises:
             UsageError: No such node, one without meshes, or an unknown effect.
         """
-        if node not in self.nodes:
+        named = find_node(node, self.nodes)
+        if named is None:
             raise UsageError(f"catcher: no node {node!r}{suggest(node, self.nodes, few=True)}")
+        node = named
         found = check_effects(effects, f"catcher {node!r}: effects")
         if not self.nodes[node]:
             raise UsageError(f"catcher: wanted a node with a mesh, got {node!r} without any")

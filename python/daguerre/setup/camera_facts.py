@@ -59,6 +59,7 @@ class Facts:
         pupil_diameter_mm: Diameter of the entrance pupil.
         shutter_s: Exposure time of a point of the film.
         shutter: Description of the shutter.
+        exposure: Description of what sets the brightness.
         ev100: Exposure value log2(N^2 / t) - log2(ISO / 100), ISO 2720.
     """
 
@@ -85,6 +86,7 @@ class Facts:
     pupil_diameter_mm: float | None
     shutter_s: float
     shutter: str
+    exposure: str
     ev100: float | None
 
 
@@ -118,6 +120,7 @@ def facts_of(
         time: Scene time, s.
         resolution: Width and height of the picture, px.
     """
+    from daguerre.camera.exposure import describe_exposure
     from daguerre.camera.shutter import describe, shutter_time
 
     lens, glass = setup.lens, setup.lens.glass
@@ -161,6 +164,7 @@ def facts_of(
         None if stop is None else focal / stop,
         shutter,
         describe(camera, resolution),
+        describe_exposure(camera, stop, shutter),
         ev100,
     )
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre.camera.camera import Camera
 from daguerre.errors import InputError, UsageError, suggest
+from daguerre.scene.node_names import find_node
 from daguerre.scene.scene import Scene
 
 _VERTICES_AT_ONCE = 1 << 18
@@ -111,11 +112,13 @@ class Focus:
     def _on_node(self, name: str) -> Sharp:
         """Depth of the visible surface at the middle of the node, else of its nearest vertex."""
         scene = self.scene
-        if name not in scene.node_positions and name not in scene.nodes:
-            known = set(scene.node_positions) | set(scene.nodes)
+        known = set(scene.node_positions) | set(scene.nodes)
+        found = find_node(name, known)
+        if found is None:
             raise InputError(
                 f"camera: focus_on: no node named {name!r}{suggest(name, known, few=True)}"
             )
+        name = found
         instances = [i for i in scene.nodes.get(name, []) if scene.instances[i].shown]
         eye, axis = self.world[:3, 3], -self.world[:3, 2]
         if not instances:

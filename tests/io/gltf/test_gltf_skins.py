@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from daguerre.errors import InputError
 from daguerre.io.gltf import reader as gltf
-from daguerre.io.gltf import skins as gltf_skins
+from daguerre.scene import skinning
 from tests.support.make_gltf import CORNERS, Builder
 
 HALF = math.sqrt(0.5)
@@ -287,7 +287,7 @@ def test_pieces_do_not_show(tmp_path, monkeypatch):
     b.node(translation=[1, 2, 3], scale=[-1, 1, 1])
     b.add("skins", {"joints": [1, 2]})
     whole = load(b, tmp_path).meshes[0]
-    monkeypatch.setattr(gltf_skins, "_CHUNK", 7)
+    monkeypatch.setattr(skinning, "_CHUNK", 7)
     pieces = load(b, tmp_path).meshes[0]
     for name in ("positions", "normals", "indices"):
         assert np.array_equal(getattr(whole, name), getattr(pieces, name))

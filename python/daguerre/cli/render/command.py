@@ -37,7 +37,9 @@ from .views import Cameras
     job_flags=JobFlags,
 )
 def render(
-    scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file, .glb or .gltf.")],
+    scene_path: Annotated[
+        Path, typer.Argument(metavar="SCENE", help="Scene file, .glb, .gltf or .usd.")
+    ],
     camera_flags: CameraFlags,
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,
@@ -58,7 +60,7 @@ def render(
     plate = read_plate(job_flags.like_plate)
     given = camera_flags.changes() | shutter_flags.changes()
     changes = over_plate(plate, given, calibrated=bool(calibration_flags.found))
-    start = scene_flags.start
+    start = scene_flags.start(scene_path)
     place = camera_flags.placement
     cameras = Cameras(camera_flags.camera, calibration_flags, changes, place, plate, start)
     plan = plan_of(job_flags, settings_flags, map_flags, cameras)

@@ -18,6 +18,7 @@ from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, clean
 from daguerre.files.notes import Notes
 from daguerre.scene.scene import Scene
+from daguerre.scene.skinning import Influences
 
 from . import draco as gltf_draco
 from .accessors import Accessors
@@ -34,7 +35,7 @@ from .morphs import (
 )
 from .nodes import MAX_SIZE
 from .over_time import PartOverTime
-from .skins import Influences, Skins, skin
+from .skins import Skins, skin
 from .triangles import triangles_of
 from .variants import Variants
 

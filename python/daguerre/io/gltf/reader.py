@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from daguerre.checks import short
 from daguerre.errors import InputError, UsageError
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item
@@ -73,6 +74,8 @@ def read(
     """
     if not math.isfinite(time):
         raise UsageError(f"time: wanted a finite number of seconds, got {time}")
+    if not isinstance(variant, str | None):
+        raise UsageError(f"{path}: variant: wanted one name, got {short(variant)}")
     file = Path(path)
     # Huge finite numbers may overflow in between; results are checked.
     with np.errstate(all="ignore"):

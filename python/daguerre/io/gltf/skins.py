@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from daguerre.files.json_item import Item
 from daguerre.files.notes import Notes
 from daguerre.files.value import Value
+from daguerre.scene.skinning import Influences, blended
 from daguerre.scene.transforms import affine
 
 from .accessors import Accessors
@@ -22,23 +23,8 @@ from .nodes import Tree
 from .poses import Poses
 
 FloatArray = NDArray[np.float32]
-# Vertices at a time, as their matrices need far more memory than their positions.
-_CHUNK = 1 << 15
 # Tolerance of sums of four or eight weights that were rounded to bytes.
 _SLACK = 0.01
-
-
-@dataclass(frozen=True, eq=False)
-class Influences(Value):
-    """Joints that move the vertices of a mesh, and their weights.
-
-    Attributes:
-        joints: Indices into the joints of the skin, one array (N, 4) for each set.
-        weights: Weights in the same shape; those of a vertex in all sets add to 1.
-    """
-
-    joints: list[NDArray[Any]]
-    weights: list[FloatArray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,14 +203,8 @@ def skin(
     """
     for name in {"POSITION", "NORMAL", "TANGENT"} & arrays.keys():
         arrays[name] = arrays[name].copy()
-    rows = matrices[:, :3].reshape(-1, 12)
     mirrored = np.zeros(len(arrays["POSITION"]), bool)
-    for start in range(0, len(mirrored), _CHUNK):
-        piece = slice(start, start + _CHUNK)
-        blend = sum(
-            np.einsum("nk,nkm->nm", weights[piece].astype(np.float64), rows[joints[piece]])
-            for joints, weights in zip(found.joints, found.weights, strict=True)
-        ).reshape(-1, 3, 4)
+    for piece, blend in blended(found, matrices, len(mirrored)):
         linear = blend[:, :, :3]
         cofactors = _cofactors(linear)
         mirrored[piece] = np.einsum("ni,ni->n", linear[:, 0], cofactors[:, 0]) < 0

@@ -1,2 +1,1 @@
 """Scenes of OpenUSD: .usd, .usda, .usdc and .usdz."""
-"""Reads USD stages."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -32,6 +32,8 @@ Resolve = Callable[[str, str], Path]
 _MAX_TOTAL_BYTES = 8 << 30
 _SHARE = 0.6
 _PACKAGED = re.compile(r"(?P<package>[^\[\]]*)\[(?P<name>[^\[\]]+)\]\Z")
+#: Most pictures that are decoded before anything asks for them.
+_MOST_BEGUN = 64
 _MISSING = "a texture whose file is missing shows its fallback value"
 
 
@@ -79,6 +81,8 @@ class Images:
         self._textures: dict[Any, int] = {}
         self._kept: list[Any] = []  # arrays whose identity is a key
         self._left = _most_bytes()
+        self._begun: dict[str, Future[Picture | None]] = {}
+        self._pool = ThreadPoolExecutor(min(8, os.cpu_count() or 1))
 
     def picture(self, place: str, path: str) -> Picture | None:
         """Decodes the picture of an asset path; None, and a note: there is no such file.
@@ -87,31 +91,33 @@ class Images:
             InputError: The path leaves the stage's folders, or the picture cannot be decoded.
         """
         if path not in self._pictures:
+            begun = self._begun.pop(path, None)
             tiled = udim.MARK in path
-            found = self._tiles(place, path) if tiled else self._one(place, path)
+            if begun is not None:
+                found = begun.result()
+            else:
+                found = self._tiles(place, path) if tiled else self._one(place, path)
             self._pictures[path] = self._counted(place, found)
         if self._pictures[path] is None:
             self._notes.add(_MISSING)
         return self._pictures[path]
 
     def prefetch(self, places: Mapping[str, str]) -> None:
-        """Decodes the pictures of asset paths in parallel; ``places`` name each, for messages.
+        """Begins to decode the pictures of asset paths; ``places`` name each, for messages.
 
-        Raises:
-            InputError: A path or a picture is wrong; see ``picture``.
+        Whatever is wrong with one is an error where ``picture`` asks for it. ``close`` ends what
+        is under way.
         """
-        new = [path for path in places if path not in self._pictures and udim.MARK not in path]
-        if len(new) < 2:
-            return
-        # OpenImageIO releases the interpreter's lock while it decodes.
-        with ThreadPoolExecutor(min(8, os.cpu_count() or 1)) as pool:
-            futures = [pool.submit(self._one, places[path], path) for path in new]
-            try:
-                for path, future in zip(new, futures, strict=True):
-                    self._pictures[path] = self._counted(places[path], future.result())
-            finally:
-                for future in futures:
-                    future.cancel()
+        for path, place in places.items():
+            if len(self._begun) >= _MOST_BEGUN:
+                return
+            if path not in self._pictures and path not in self._begun and udim.MARK not in path:
+                # OpenImageIO releases the interpreter's lock while it decodes.
+                self._begun[path] = self._pool.submit(self._one, place, path)
+
+    def close(self) -> None:
+        """Ends the threads that decode pictures."""
+        self._pool.shutdown(cancel_futures=True)
 
     def add(
         self,

@@ -123,6 +123,14 @@ class Materials:
         """Primvars of texture coordinates of the material at a path."""
         return uv_sets(self._graph(stage, path)[1])
 
+    def has(self, stage: Usd.Stage, path: Sdf.Path) -> bool:
+        """Whether there is a material at a path, of the stage or of a ``.mtlx`` file."""
+        return bool(stage.GetPrimAtPath(path)) or self._graph(stage, path)[1] is not _EMPTY
+
+    def prefetch(self, stage: Usd.Stage, path: Sdf.Path) -> None:
+        """Begins to decode the pictures of the material at a path."""
+        self._images.prefetch(picture_files(self._graph(stage, path)[1]))
+
     def reads_vertex_colors(self, stage: Usd.Stage, path: Sdf.Path) -> bool:
         """Whether a mesh with this material must have ``displayColor`` as its ``colors``.
 

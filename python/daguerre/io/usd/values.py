@@ -2,11 +2,12 @@
 
 USD interpolates time samples linearly, or holds them if the type or the stage asks for it, and
 keeps the first and the last value outside of them: the law of :func:`daguerre.keys`. Splines are
-sampled.
+sampled. Where a sample is blocked, USD has no value; here the one before goes on.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -21,7 +22,12 @@ from daguerre.motion.values import MAX_TIME, Keys, keys
 _PER_CODE = 4
 #: Maximum number of time samples of an attribute.
 _MAX_SAMPLES = 100_000
-_HELD = (bool, int, str)
+#: Times before a knot at which a spline may jump, time codes.
+_BEFORE = 1e-4
+#: Types that USD interpolates, also as arrays.
+_LINEAR = re.compile(
+    r"(VtArray<)?(\w+::half|float|double|GfTimeCode|GfMatrix\dd|Gf(Vec\d|Quat)[dfh])>?"
+)
 
 Convert = Callable[[Any], Any]
 
@@ -66,13 +72,17 @@ class Clock:
         """Value of an attribute at the scene's time, or None."""
         return attribute.Get(self.code) if attribute else None
 
-    def codes(self, attribute: Usd.Attribute) -> list[float]:
+    def codes(self, attribute: Usd.Attribute, *, single: bool = False) -> list[float]:
         """Time codes at which an attribute has samples; none if it does not change.
+
+        Args:
+            attribute: The attribute.
+            single: Whether a single sample counts, as one with a velocity does.
 
         Raises:
             InputError: There are too many, or one is not finite.
         """
-        if not attribute or not attribute.ValueMightBeTimeVarying():
+        if not attribute or not (single or attribute.ValueMightBeTimeVarying()):
             return []
         found = list(attribute.GetTimeSamples()) or _spline_codes(attribute)
         where = f"{self.file}: {attribute.GetPath()}: time samples"
@@ -93,13 +103,16 @@ class Clock:
         if not attribute:
             return None
         codes = self.codes(attribute)
-        pairs = [(code, attribute.Get(code)) for code in codes]
-        pairs = [(code, value) for code, value in pairs if value is not None]  # blocked
+        pairs = _filled([(code, attribute.Get(code)) for code in codes])
         if len(pairs) < 2:
             value = attribute.Get(self.code)
             return None if value is None else convert(value)
         held = self.holds or not _interpolates(attribute)
-        return self._keys([(code, convert(value)) for code, value in pairs], held)
+        try:
+            return self._keys([(code, convert(value)) for code, value in pairs], held)
+        except InputError as error:
+            text, where = str(error), f"{self.file}: {attribute.GetPath()}"
+            raise InputError(text if text.startswith(self.file) else f"{where}: {text}") from None
 
     def _keys(self, pairs: list[tuple[float, Any]], held: bool) -> Keys | Any:
         first = pairs[0][1]
@@ -112,10 +125,23 @@ class Clock:
         return keys(timed, None if named else "step" if held else "linear")
 
 
+def _filled(pairs: list[tuple[float, Any]]) -> list[tuple[float, Any]]:
+    """Gives blocked samples the value before them, which goes on until the next sample."""
+    made: list[tuple[float, Any]] = []
+    blocked = False
+    for code, value in pairs:
+        if blocked and made and value is not None:
+            made.append((float(np.nextafter(code, -np.inf)), made[-1][1]))
+        blocked = value is None
+        if not blocked:
+            made.append((code, value))
+        elif made:
+            made.append((code, made[-1][1]))
+    return made
+
+
 def _interpolates(attribute: Usd.Attribute) -> bool:
-    name = str(attribute.GetTypeName().scalarType.type.pythonClass or "")
-    value = attribute.Get(Usd.TimeCode.EarliestTime())
-    return not isinstance(value, _HELD) and "asset" not in name
+    return bool(_LINEAR.fullmatch(str(attribute.GetTypeName().type.typeName)))
 
 
 def _in_steps(pairs: list[tuple[float, Any]]) -> list[tuple[float, Any]]:
@@ -132,11 +158,14 @@ def _spline_codes(attribute: Usd.Attribute) -> list[float]:
     if not attribute.HasSpline():
         return []
     knots = sorted(attribute.GetSpline().GetKnots().keys())
-    if not knots or not all(map(np.isfinite, knots)):
+    if not knots or not np.isfinite(knots).all():
         return []
-    count = min((knots[-1] - knots[0]) * _PER_CODE, _MAX_SAMPLES / 2)
-    between = np.linspace(knots[0], knots[-1], int(count) + 2)
-    return sorted({*knots, *between.tolist()})
+    stage = attribute.GetStage()
+    ends = (stage.GetStartTimeCode(), stage.GetEndTimeCode())
+    begin, end = min(knots[0], ends[0]), max(knots[-1], ends[1])  # it may go on beyond its knots
+    count = int(min((end - begin) * _PER_CODE, _MAX_SAMPLES / 2))
+    between = np.linspace(begin, end, count + 2).tolist()
+    return sorted({*knots, *between, *(knot - _BEFORE for knot in knots)})
 
 
 def authored(attribute: Usd.Attribute) -> bool:

@@ -1,0 +1,154 @@
+"""Reads BasisCurves as round curves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Usd, UsdGeom
+
+from daguerre.errors import InputError
+from daguerre.files.notes import Notes
+from daguerre.motion.values import at as value_at
+from daguerre.scene.scene import Scene
+
+from .points import read_points
+from .primvars import Array, note_length, read_primvar
+from .spheres import read_widths
+from .values import Clock
+
+Counts = NDArray[np.int64]
+_BASES = {"bezier": "bezier", "bspline": "bspline", "catmullRom": "catmull-rom"}
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """How the points of a prim form its curves.
+
+    Attributes:
+        counts: Points of each curve, shape (C,).
+        basis: linear, bezier, bspline or catmull-rom.
+        wrap: nonperiodic, periodic or pinned.
+    """
+
+    counts: Counts
+    basis: str
+    wrap: str
+
+    def spread(self, values: Array, interpolation: str) -> Array | None:
+        """Values of a primvar as one for each curve or each point; None if they do not fit.
+
+        Varying values of cubic curves stand at the ends of segments, and are interpolated between.
+        """
+        curves, points = len(self.counts), int(self.counts.sum())
+        if interpolation == "constant" and len(values) == 1:
+            return np.repeat(values, curves, axis=0)
+        if interpolation == "uniform" and len(values) == curves:
+            return values
+        if interpolation in ("vertex", "varying") and len(values) == points:
+            return values
+        return self._between(values) if interpolation == "varying" else None
+
+    def _between(self, values: Array) -> Array | None:
+        knots = [self._knots(int(count)) for count in self.counts]
+        if sum(map(len, knots)) != len(values):
+            return None
+        made, start = [], 0
+        for count, at in zip(self.counts, knots, strict=True):
+            own = values[start : start + len(at)]
+            start += len(at)
+            each = np.arange(int(count))
+            made.append(np.stack([np.interp(each, at, own[:, k]) for k in range(own.shape[1])], 1))
+        return np.concatenate(made).astype(np.float32)
+
+    def _knots(self, count: int) -> Counts:
+        """Points, counted from 0, at which the segments of a curve begin and end."""
+        if self.basis == "linear" or self.wrap == "pinned":
+            return np.arange(count)
+        if self.basis == "bezier":
+            return np.arange(0, count + (self.wrap == "nonperiodic"), 3)
+        return np.arange(count) if self.wrap == "periodic" else np.arange(1, max(count - 1, 1))
+
+
+def read_curves(
+    prim: Usd.Prim, scene: Scene, clock: Clock, notes: Notes, *, colored: bool
+) -> int | None:
+    """Adds the curves of a prim; returns the index of the mesh, or None if there are none.
+
+    Args:
+        prim: The prim.
+        scene: Receives the curves.
+        clock: Time codes of the stage.
+        notes: Receives notes on unsupported content.
+        colored: Whether ``displayColor`` colours the curves.
+
+    Raises:
+        InputError: Counts, points or widths do not fit together.
+    """
+    schema = UsdGeom.BasisCurves(prim)
+    where = f"{clock.file}: {prim.GetPath()}"
+    points = read_points(schema, clock, notes)
+    now: Array = value_at(points, clock.time)
+    counts = np.asarray(schema.GetCurveVertexCountsAttr().Get(clock.code) or [], np.int64)
+    if not len(counts) or not len(now):
+        return None
+    if counts.min() < 0 or int(counts.sum()) != len(now):
+        raise InputError(
+            f"{where}.curveVertexCounts: wanted a sum of {len(now)}, the number of points, "
+            f"got {int(counts.sum())}"
+        )
+    layout = Layout(counts, _basis(schema, clock, notes), str(schema.GetWrapAttr().Get(clock.code)))
+    if schema.GetNormalsAttr().HasAuthoredValue():
+        notes.add("ribbons of curves are drawn as round curves")
+    given: dict[str, Any] = {
+        name: found
+        for name, found in (
+            ("uv", _values(prim, "st", 2, layout, clock, notes)),
+            ("colors", _values(prim, "displayColor", 3, layout, clock, notes)),
+        )
+        if found is not None and len(found) and (colored or name == "uv")
+    }
+    if "uv" in given:
+        given["uv"] = (given["uv"] * (1, -1) + (0, 1)).astype(np.float32)
+    widths = _widths(schema, layout, len(now), clock, notes)
+    try:
+        return scene.add_curves(
+            points, counts, widths, basis=layout.basis, wrap=layout.wrap, name=str(prim.GetPath()),
+            **given,
+        )  # fmt: skip
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _basis(schema: UsdGeom.BasisCurves, clock: Clock, notes: Notes) -> str:
+    if schema.GetTypeAttr().Get(clock.code) == "linear":
+        return "linear"
+    name = str(schema.GetBasisAttr().Get(clock.code))
+    if name not in _BASES:
+        notes.add(f"curves of basis {name[:40]!r} are drawn as linear ones")
+    return _BASES.get(name, "linear")
+
+
+def _widths(schema: Any, layout: Layout, count: int, clock: Clock, notes: Notes) -> Array:
+    found = read_widths(schema, count, clock, notes)
+    spread = None if found is None else layout.spread(found.flat, found.interpolation)
+    if spread is None:
+        if found is not None:
+            note_length("widths", notes)
+        notes.add("curves without widths have a width of 1")
+        return np.ones(1, np.float32)
+    return spread[:, 0]
+
+
+def _values(
+    prim: Usd.Prim, name: str, columns: int, layout: Layout, clock: Clock, notes: Notes
+) -> Array | None:
+    primvar = read_primvar(prim, name, columns, clock)
+    if primvar is None or len(primvar) == 1:  # one colour is that of the material
+        return None
+    found = layout.spread(primvar.flat, primvar.interpolation)
+    if found is None:
+        note_length(name, notes)
+    return found

@@ -1,0 +1,189 @@
+"""Reads point instancers: many copies of prototypes, at rest or moving."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Usd, UsdGeom
+
+from daguerre.errors import InputError
+from daguerre.files.notes import Notes
+
+from .crowds import Crowd
+from .quaternions import normalized, of_vectors, product
+from .values import Clock
+
+Array = NDArray[np.float64]
+#: Maximum number of copies in all samples of one instancer.
+_MAX_COPIES = 20_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Copies:
+    """Copies of one prototype.
+
+    Attributes:
+        prototype: Its prim.
+        transforms: Instancer from prototype's parent, shape (N, 4, 4).
+        moving: The same over time; None if they rest.
+    """
+
+    prototype: Usd.Prim
+    transforms: Array
+    moving: Crowd | None
+
+    def __len__(self) -> int:
+        return len(self.transforms)
+
+
+def read_copies(prim: Usd.Prim, clock: Clock, notes: Notes) -> list[Copies]:
+    """Reads the visible copies of an instancer, by prototype.
+
+    Raises:
+        InputError: Its arrays do not fit together, or a number is not finite.
+    """
+    instancer = UsdGeom.PointInstancer(prim)
+    where = f"{clock.file}: {prim.GetPath()}"
+    kinds = np.asarray(instancer.GetProtoIndicesAttr().Get(clock.code) or [], np.int64)
+    targets = instancer.GetPrototypesRel().GetForwardedTargets()
+    if not len(kinds):
+        return []
+    if not targets:
+        raise InputError(f"{where}.prototypes: wanted one or more, got none")
+    if kinds.min() < 0 or kinds.max() >= len(targets):
+        raise InputError(
+            f"{where}.protoIndices: wanted 0 .. {len(targets) - 1}, one of the prototypes, "
+            f"got {kinds.min() if kinds.min() < 0 else kinds.max()}"
+        )
+    crowd = _Reader(prim, len(kinds), clock, notes).crowd()
+    now = crowd.at(clock.time)
+    shown = np.asarray(instancer.ComputeMaskAtTime(clock.code) or [True] * len(kinds), bool)
+    if clock.codes(instancer.GetInvisibleIdsAttr()):
+        notes.add("copies of a point instancer that come and go: those of one moment are shown")
+    made = []
+    for i, path in enumerate(targets):
+        numbers = np.flatnonzero((kinds == i) & shown)
+        prototype = prim.GetStage().GetPrimAtPath(path)
+        if not prototype:
+            notes.add("a prototype of a point instancer is missing")
+        elif len(numbers):
+            made.append(Copies(prototype, now[numbers], crowd.of(numbers) if crowd.moves else None))
+    return made
+
+
+class _Reader:
+    """Reads the arrays of an instancer with ``count`` copies."""
+
+    def __init__(self, prim: Usd.Prim, count: int, clock: Clock, notes: Notes) -> None:
+        self._prim, self._count, self._clock, self._notes = prim, count, clock, notes
+        narrow, wide = (prim.GetAttribute(name) for name in ("orientations", "orientationsf"))
+        self._turns = wide if clock.now(wide) else narrow
+
+    def crowd(self) -> Crowd:
+        """The copies over time; those whose number changes keep the sample of one moment."""
+        places = self._attribute("positions")
+        starts, turning = self._samples(places), self._samples(self._turns)
+        flies = bool(starts) and starts == self._samples(self._attribute("velocities"))
+        spins = bool(turning) and turning == self._samples(self._attribute("angularVelocities"))
+        codes = sorted({*starts, *turning, *self._samples(self._attribute("scales"))})
+        codes = codes or [float(self._clock.code.GetValue())]
+        self._check(codes)
+        rows = [self._rows(places, _base(starts, c) if flies else c, 3) for c in codes]
+        if any(row is None or len(row) != self._count for row in rows):
+            now = float(self._clock.code.GetValue())
+            codes = [_base(starts, now) if starts else now]
+            if not flies:
+                codes = [now]
+                self._notes.add("copies whose number changes over time: those of one moment rest")
+        return self._made(codes, starts if flies else [], turning if spins else [])
+
+    def _made(self, codes: list[float], starts: list[float], turning: list[float]) -> Crowd:
+        flights = [self._flight(code, starts) for code in codes]
+        turns = [self._turn(code, turning) for code in codes]
+        scales = [self._each(self._attribute("scales"), code, 3, 1.0) for code in codes]
+        parts = [*zip(*flights, strict=True), *zip(*turns, strict=True), scales]
+        place, speed, change, turn, spin, scale = (
+            None if any(one is None for one in part) else np.stack(part) for part in parts
+        )
+        assert place is not None
+        assert turn is not None
+        assert scale is not None
+        times = np.array([self._clock.seconds(code) for code in codes])
+        return Crowd(times, place, turn, scale, speed, change, spin, self._clock.holds)
+
+    def _flight(self, code: float, starts: list[float]) -> tuple[Array, Any, Any]:
+        """Positions at a time code, and velocities and accelerations if they fly."""
+        places, base = self._attribute("positions"), _base(starts, code)
+        place = self._each(places, base, 3, None)
+        speed = self._optional("velocities", base) if starts else None
+        if speed is None:
+            return place, None, None
+        dt = self._clock.seconds(code - base)
+        changes = self._attribute("accelerations")
+        follows = self._samples(changes) == starts
+        change = self._optional("accelerations", base) if follows else None
+        if change is None:
+            return place + dt * speed, speed, None
+        return place + dt * (speed + 0.5 * dt * change), speed + dt * change, change
+
+    def _turn(self, code: float, turning: list[float]) -> tuple[Array, Any]:
+        """Quaternions at a time code, and angular velocities if they spin."""
+        base = _base(turning, code)
+        turn = normalized(self._each(self._turns, base, 4, (0, 0, 0, 1)))
+        spin = self._optional("angularVelocities", base) if turning else None
+        if spin is None:
+            return turn, None
+        spin = np.radians(spin)
+        return product(of_vectors(self._clock.seconds(code - base) * spin), turn), spin
+
+    def _attribute(self, name: str) -> Usd.Attribute:
+        return self._prim.GetAttribute(name)
+
+    def _samples(self, attribute: Usd.Attribute) -> list[float]:
+        return self._clock.codes(attribute, single=True)
+
+    def _check(self, codes: list[float]) -> None:
+        if len(codes) * self._count > _MAX_COPIES:
+            raise InputError(
+                f"{self._clock.file}: {self._prim.GetPath()}: wanted at most {_MAX_COPIES} copies "
+                f"in all time samples, got {len(codes) * self._count}"
+            )
+
+    def _rows(self, attribute: Usd.Attribute, code: float, columns: int) -> Array | None:
+        value = attribute.Get(Usd.TimeCode(code)) if attribute else None
+        if value is None or not len(value):
+            return None
+        rows = np.asarray(value, np.float64)
+        if rows.ndim != 2 or rows.shape[1] != columns or not np.isfinite(rows).all():
+            where = f"{self._clock.file}: {attribute.GetPath()}"
+            raise InputError(f"{where}: wanted finite numbers, got others")
+        return rows
+
+    def _each(self, attribute: Usd.Attribute, code: float, columns: int, default: Any) -> Array:
+        """A row for each copy; where there are none, a default, or an error."""
+        rows = self._rows(attribute, code, columns)
+        if rows is None and default is not None:
+            return np.broadcast_to(np.asarray(default, np.float64), (self._count, columns))
+        if rows is None or len(rows) != self._count:
+            raise InputError(
+                f"{self._clock.file}: {attribute.GetPath()}: wanted {self._count}, one for each of "
+                f"protoIndices, got {0 if rows is None else len(rows)}"
+            )
+        return rows
+
+    def _optional(self, name: str, code: float) -> Array | None:
+        """A row for each copy; None if there are none, or another number."""
+        rows = self._rows(self._attribute(name), code, 3)
+        if rows is not None and len(rows) != self._count:
+            self._notes.add(f"{name} of a point instancer of another number than its copies")
+            return None
+        return rows
+
+
+def _base(codes: list[float], code: float) -> float:
+    """The last of some time codes that is not after another one, or the first one; or that one."""
+    before = [one for one in codes if one <= code]
+    return before[-1] if before else codes[0] if codes else code

@@ -1,0 +1,246 @@
+"""Reads lights of UsdLux. An intensity of 1 is a luminance of 1 cd/m2.
+
+``luminance = intensity * 2^exposure * color * blackbody(temperature) / size``, where size is 1, or
+the area of the light in m2 if it is normalized; for a distant light see :func:`cone_size`.
+
+Source: OpenUSD, documentation of UsdLuxLightAPI; its pull requests 3182 (quantities) and 3587
+(areas in m2).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from pxr import Usd, UsdLux
+
+from daguerre.cached import cached_property
+from daguerre.errors import InputError
+from daguerre.files.notes import Notes
+from daguerre.files.value import Value
+from daguerre.motion.values import at as value_at
+from daguerre.motion.values import is_dynamic
+
+from .prims import Shown
+from .values import Clock, authored, plain
+
+Color = tuple[float, float, float]
+WHITE = (1.0, 1.0, 1.0)
+#: Largest luminance; its product with an area still fits into single precision.
+MOST = 1e30
+#: Most stops, either way; double precision holds the power of two.
+_STOPS = 1000.0
+_SHADOW = ("enable", "color", "distance", "falloff")
+
+
+@dataclass(frozen=True, eq=False)
+class Emission(Value):
+    """Colour and strength of a light, each constant or over time.
+
+    Attributes:
+        intensity: Factor.
+        exposure: Stops.
+        color: Linear Rec.709.
+        temperature: Colour temperature, K; None: no tint.
+        shown: Whether the light is on.
+        factor: Constant factor, such as one over the area.
+    """
+
+    intensity: Any = 1.0
+    exposure: Any = 0.0
+    color: Any = WHITE
+    temperature: Any = None
+    shown: bool | Shown = True
+    factor: float = 1.0
+
+    def at(self, time_s: float) -> Color:
+        """The colour at a time, s, each part from 0 to ``MOST``."""
+        if not value_at(self.shown, time_s):
+            return (0.0, 0.0, 0.0)
+        stops = min(max(value_at(self.exposure, time_s), -_STOPS), _STOPS)
+        strength = value_at(self.intensity, time_s) * 2.0**stops * self.factor
+        r, g, b = (bounded(strength * hue) for hue in self.hue(time_s))
+        return (r, g, b)
+
+    def hue(self, time_s: float) -> Color:
+        """The colour, tinted, without strength."""
+        kelvin = value_at(self.temperature, time_s)
+        tint = WHITE if kelvin is None else _blackbody(kelvin)
+        r, g, b = (c * t for c, t in zip(value_at(self.color, time_s), tint, strict=True))
+        return (r, g, b)
+
+    @property
+    def keeps_hue(self) -> bool:
+        """Whether only the strength changes over time."""
+        return not (is_dynamic(self.color) or is_dynamic(self.temperature))
+
+    def breaks(self, begin: float, end: float) -> list[float]:
+        """Times of all keys, s."""
+        moving = [part for part in self._parts if is_dynamic(part)]
+        return sorted({float(t) for part in moving for t in part.breaks(begin, end)})
+
+    @property
+    def _parts(self) -> tuple[Any, ...]:
+        return (self.intensity, self.exposure, self.color, self.temperature, self.shown)
+
+    def scaled(self, factor: float) -> Emission:
+        """The same light, times a factor."""
+        return replace(self, factor=self.factor * factor)
+
+    def now(self) -> Color | Emission:
+        """A constant colour, if no part changes."""
+        return self if any(map(is_dynamic, self._parts)) else self.at(0.0)
+
+
+def bounded(value: float) -> float:
+    """A luminance within 0 and ``MOST``; 0 for what is no number."""
+    return min(max(0.0, value), MOST)  # max keeps its first argument against a NaN
+
+
+def times(emission: Color | Emission, factor: float) -> Color | Emission:
+    """An emission, times a factor."""
+    if isinstance(emission, Emission):
+        return emission.scaled(factor)
+    r, g, b = (bounded(factor * c) for c in emission)
+    return (r, g, b)
+
+
+def _blackbody(kelvin: float) -> Color:
+    r, g, b = UsdLux.BlackbodyTemperatureAsRgb(kelvin)  # a NaN would end the process
+    return float(r), float(g), float(b)
+
+
+def cone_size(degrees: float) -> tuple[float, float]:
+    """Illuminance and divisor of a distant light of 1 cd/m2 with this angular diameter.
+
+    Returns:
+        Illuminance of a surface that faces it, lux, and what normalization divides by. A diameter
+        of 0 stands for a parallel beam of 1 lux.
+
+    Source: OpenUSD, documentation of UsdLuxLightAPI, normalize.
+    """
+    half = math.radians(min(max(degrees, 0.0), 360.0)) / 2
+    if half == 0:
+        return 1.0, 1.0
+    part = math.pi * math.sin(half) ** 2
+    return (part, part) if half <= math.pi / 2 else (math.pi, 2 * math.pi - part)
+
+
+def is_light(prim: Usd.Prim) -> bool:
+    """Whether a prim is a light."""
+    return bool(prim.HasAPI(UsdLux.LightAPI))
+
+
+class Lamp:
+    """Attributes of a light, checked.
+
+    Args:
+        prim: The light.
+        clock: Time codes of the stage.
+        notes: Receives notes on unsupported content.
+    """
+
+    def __init__(self, prim: Usd.Prim, clock: Clock, notes: Notes) -> None:
+        self.prim = prim
+        self._clock = clock
+        self._notes = notes
+        _note_the_rest(UsdLux.LightAPI(prim), notes)
+
+    def size(self, name: str) -> float:
+        """A length of the light at the scene's time, at least 0, in its own units."""
+        return abs(self.still(f"inputs:{name}"))
+
+    def still(self, name: str) -> float:
+        """A number that does not change over time, or that of the scene's time, with a note."""
+        attribute = self.prim.GetAttribute(name)
+        if self._clock.codes(attribute):
+            self._notes.add("a light whose size or shaping changes keeps that of one moment")
+        return self._number(name, self._clock.now(attribute))
+
+    def color(self, name: str, default: Color) -> Color:
+        """A colour at the scene's time; the default if the light has no such attribute."""
+        attribute = self.prim.GetAttribute(name)
+        return self._color(name, plain(self._clock.now(attribute))) if attribute else default
+
+    def flag(self, name: str) -> bool:
+        """A flag at the scene's time."""
+        return bool(self._clock.now(self.prim.GetAttribute(name)))
+
+    @cached_property
+    def normalized(self) -> bool:
+        """Whether the luminance is divided by the size of the light."""
+        return self.flag("inputs:normalize")
+
+    def emission(self, size: float, shown: bool | Shown) -> Color | Emission:
+        """Luminance of the light.
+
+        Args:
+            size: Divisor if it is normalized.
+            shown: Whether the light is on.
+        """
+        factor = 1.0 / size if self.normalized and size > 0 else 1.0
+        made = replace(self._bare, shown=shown, factor=factor)
+        if max(replace(made, shown=True).at(self._clock.time)) >= MOST:
+            self._notes.add(f"a light brighter than {MOST:g} cd/m2 is as bright as that")
+        return made.now()
+
+    @cached_property
+    def _bare(self) -> Emission:
+        """Emission of the light, always on and not normalized."""
+        tinted = self.flag("inputs:enableColorTemperature")
+        made = Emission(
+            self._over_time("inputs:intensity", self._number),
+            self._over_time("inputs:exposure", self._number),
+            self._over_time("inputs:color", self._color),
+            self._over_time("inputs:colorTemperature", self._number) if tinted else None,
+        )
+        if value_at(made.intensity, self._clock.time) < 0:
+            self._notes.add("a light of negative intensity is black")
+        if min(value_at(made.color, self._clock.time)) < 0:
+            self._notes.add("a negative part of the colour of a light is left out")
+        return made
+
+    def _over_time(self, name: str, check: Any) -> Any:
+        found = self._clock.value(
+            self.prim.GetAttribute(name), lambda value: check(name, plain(value))
+        )
+        return check(name, None) if found is None else found
+
+    def _number(self, name: str, value: Any) -> float:
+        if isinstance(value, int | float) and math.isfinite(value):
+            return float(value)
+        raise self._wrong(name, "a finite number", value)
+
+    def _color(self, name: str, value: Any) -> Color:
+        if isinstance(value, tuple) and len(value) == 3 and np.isfinite(value).all():
+            return value
+        raise self._wrong(name, "three finite numbers", value)
+
+    def _wrong(self, name: str, wanted: str, got: Any) -> InputError:
+        place = f"{self._clock.file}: {self.prim.GetPath()}.{name}"
+        return InputError(f"{place}: wanted {wanted}, got {str(got)[:60]}")
+
+
+def _note_the_rest(api: UsdLux.LightAPI, notes: Notes) -> None:
+    """Notes what a light has that is left out."""
+    prim = api.GetPrim()
+    if any(map(_is_selective, (api.GetLightLinkCollectionAPI(), api.GetShadowLinkCollectionAPI()))):
+        notes.add("a light that is linked to some prims shines on all")
+    if api.GetFiltersRel().HasAuthoredTargets():
+        notes.add("a light filter is left out")
+    for attribute in (api.GetDiffuseAttr(), api.GetSpecularAttr()):
+        if authored(attribute) and attribute.Get() != 1:
+            notes.add("a light's own factor for diffuse or specular reflection is left out")
+    if any(authored(prim.GetAttribute(f"inputs:shadow:{name}")) for name in _SHADOW):
+        notes.add("a light's own settings of its shadows are left out")
+
+
+def _is_selective(collection: Usd.CollectionAPI) -> bool:
+    """Whether a collection may lack some prims."""
+    return (
+        collection.GetIncludeRootAttr().Get() is False
+        or collection.GetExcludesRel().HasAuthoredTargets()
+        or authored(collection.GetMembershipExpressionAttr())
+    )

@@ -1,0 +1,257 @@
+"""Reads meshes: polygons and subdivision surfaces, whole or in subsets by material."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import UsdGeom
+
+from daguerre.checks import freeze_in_place
+from daguerre.errors import InputError
+from daguerre.files.notes import Notes
+from daguerre.motion.values import Composite, Dynamic, is_dynamic
+from daguerre.scene.motion import Vertices
+from daguerre.scene.point_cache import PointCache
+from daguerre.scene.polygons import triangulate, weld
+from daguerre.scene.scene import Scene
+
+from .deforming import LimitOverTime, PolygonsOverTime
+from .primvars import Array, Primvar, as_rows, note_length, read_primvar
+from .topology import Surface, read_faces, surface_of
+from .values import Clock
+
+#: Limit faces of all subdivision surfaces of a stage that decide the level of each.
+_DETAIL = 1_500_000
+#: Limit faces of one surface, and levels.
+_MOST_FACES, _MOST_LEVELS = 250_000, 4
+#: Names of texture coordinates where a material names none.
+USUAL_UV = ("st", "UVMap", "map1", "st0", "uv")
+_ATTRIBUTES = ("normals", "uv", "uv1", "colors")
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Faces and coordinates of a mesh that a material needs.
+
+    Attributes:
+        subset: Name of the subset of faces; empty for all.
+        uv_sets: Names of the primvars that are texture coordinates 0 and 1.
+        colored: Whether ``displayColor`` colours the vertices.
+    """
+
+    subset: str
+    uv_sets: tuple[str, ...]
+    colored: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A mesh of the file, before it is cut into parts.
+
+    Attributes:
+        prim: The prim.
+        points: Points, or points over time.
+        surface: Its polygons.
+        flipped: Whether it is left-handed.
+        now: Positions and normals of the surface's vertices at the scene's time.
+        rest: Points before a skin moved them, to which the normals of the file belong; or None.
+    """
+
+    prim: Any
+    points: Array | Dynamic
+    surface: Surface
+    flipped: bool
+    now: tuple[Array, Array | None]
+    rest: Array | None
+
+
+#: Points of a mesh, constant or over time, and the same before a skin moved them.
+Points = tuple["Array | Dynamic", "Array | Dynamic"]
+
+
+class Meshes:
+    """Meshes of a stage, each added to the scene once for each choice.
+
+    Args:
+        scene: Receives the meshes.
+        clock: Time codes of the stage.
+        count: Faces of all subdivision meshes of the stage.
+        notes: Receives notes on unsupported content.
+    """
+
+    def __init__(self, scene: Scene, clock: Clock, count: int, notes: Notes) -> None:
+        self._scene = scene
+        self._clock = clock
+        self._count = count
+        self._notes = notes
+        self._shapes: dict[str, Shape] = {}
+        self._made: dict[tuple[str, Choice], int | None] = {}
+
+    def index(
+        self,
+        source: str,
+        prim: Any,
+        read: Callable[[], Points],
+        choice: Choice,
+        faces: NDArray[np.int64] | None = None,
+    ) -> int | None:
+        """Index of the mesh of the scene; None if it has no faces.
+
+        Args:
+            source: Path of the prim that instances share.
+            prim: The prim.
+            read: Reads its points, constant or over time, and those before a skin moved them.
+            choice: Faces and coordinates.
+            faces: Faces of the subset; None for all.
+        """
+        key = (source, choice)
+        if key not in self._made:
+            if source not in self._shapes:
+                self._shapes[source] = self._shape(prim, *read())
+            self._made[key] = self._add(self._shapes[source], choice, faces)
+        return self._made[key]
+
+    def _shape(self, prim: Any, points: Array | Dynamic, before: Array | Dynamic) -> Shape:
+        mesh = UsdGeom.Mesh(prim)
+        here = np.asarray(_now(points, self._clock), np.float32)
+        faces = read_faces(mesh, len(here), self._clock, self._notes)
+        surface = surface_of(faces, mesh, self._level(len(faces.sizes)), self._clock, self._notes)
+        flipped = mesh.GetOrientationAttr().Get(self._clock.code) == "leftHanded"
+        for attribute in (mesh.GetFaceVertexIndicesAttr(), mesh.GetFaceVertexCountsAttr()):
+            if attribute.ValueMightBeTimeVarying():
+                self._notes.add("a mesh whose faces change over time keeps those of one moment")
+                break
+        rest = None if before is points else np.asarray(_now(before, self._clock), np.float32)
+        return Shape(prim, points, surface, flipped, surface.points(here), rest)
+
+    def _level(self, faces: int) -> int:
+        """Levels of subdivision for a mesh, so that all fit and each is smooth."""
+        share = min(_DETAIL / max(self._count, 1), _MOST_FACES / max(faces, 1))
+        return int(np.clip(np.log(max(share, 1)) / np.log(4), 1, _MOST_LEVELS))
+
+    def _add(self, shape: Shape, choice: Choice, faces: NDArray[np.int64] | None) -> int | None:
+        surface, (positions, normals) = shape.surface, shape.now
+        triangles, polygons = triangulate(surface.sizes, surface.vertices, positions)
+        if faces is not None:
+            triangles = triangles[np.isin(surface.face_ids[polygons], faces)]
+        if not len(triangles):
+            return None
+        values = self._attributes(shape, choice)
+        first, index = weld(surface.vertices, *values.values())
+        indices, used = _packed(index[triangles], len(first))
+        first = first[used]
+        if shape.flipped:
+            indices = indices[:, ::-1]
+        origins = surface.vertices[first]
+        given = {name: freeze_in_place(array[first]) for name, array in values.items()}
+        if normals is not None:
+            turned = -normals if shape.flipped else normals
+            given["normals"] = turned[origins]
+        made = Vertices(
+            np.ascontiguousarray(positions[origins]), **{n: given.get(n) for n in _ATTRIBUTES}
+        )
+        return self._store(shape, made, np.ascontiguousarray(indices), origins)
+
+    def _store(
+        self, shape: Shape, made: Vertices, indices: NDArray[Any], origins: NDArray[np.int64]
+    ) -> int:
+        name = str(shape.prim.GetPath())
+        given = {n: getattr(made, n) for n in _ATTRIBUTES}
+        points = made.positions
+        smooth, moves = shape.now[1] is not None, is_dynamic(shape.points)
+        moving: Any = shape.points
+        motion: Dynamic | None = None
+        steps: Dynamic | None = None
+        if moves and smooth:
+            motion = LimitOverTime(moving, shape.surface, origins, made, shape.flipped)
+        elif moves:
+            steps = PolygonsOverTime(moving, origins)
+        if shape.rest is not None and made.normals is not None and not smooth:
+            rest = replace(made, positions=np.ascontiguousarray(shape.rest[origins]))
+            if moves:
+                points = rest.positions
+            else:
+                posed = PointCache(Composite(points), None, rest, indices.astype(np.uint32), name)
+                given["normals"] = posed.at(self._clock.time).normals
+        try:
+            return self._scene.add_mesh(
+                points, indices, steps=steps, motion=motion, name=name, **given
+            )
+        except InputError as error:
+            raise InputError(f"{self._clock.file}: {name}: {error}") from None
+
+    def _attributes(self, shape: Shape, choice: Choice) -> Mapping[str, Array]:
+        """Values at the corners of the polygons, by attribute of a mesh."""
+        found: dict[str, Array | None] = {}
+        if shape.now[1] is None:
+            found["normals"] = self._normals(shape)
+        for attribute, name in zip(("uv", "uv1"), choice.uv_sets, strict=False):
+            found[attribute] = _flipped(self._corners(shape, name, 2))
+        if choice.colored:
+            found["colors"] = self._colors(shape)
+        return {name: array for name, array in found.items() if array is not None}
+
+    def _corners(self, shape: Shape, name: str, columns: int) -> Array | None:
+        primvar = read_primvar(shape.prim, name, columns, self._clock)
+        if primvar is None:
+            return None
+        found = shape.surface.corners(primvar)
+        if found is None:
+            note_length(name, self._notes)
+        return found
+
+    def _normals(self, shape: Shape) -> Array | None:
+        found = self._corners(shape, "normals", 3)
+        if found is None:
+            mesh = UsdGeom.Mesh(shape.prim)
+            rows = as_rows(mesh.GetNormalsAttr().Get(self._clock.code), 3)
+            if rows is None or not len(rows):
+                return None
+            found = shape.surface.corners(Primvar(rows, str(mesh.GetNormalsInterpolation())))
+            if found is None:
+                note_length("normals", self._notes)
+                return None
+        lengths = np.linalg.norm(found, axis=1, keepdims=True)
+        if (lengths <= 1e-20).any():
+            self._notes.add("normals of length 0: the mesh is flat")
+            return None
+        return np.asarray(found / lengths, np.float32)
+
+    def _colors(self, shape: Shape) -> Array | None:
+        color = self._corners(shape, "displayColor", 3)
+        opacity = self._corners(shape, "displayOpacity", 1)
+        if color is None:
+            return None
+        alpha = np.ones((len(color), 1), np.float32) if opacity is None else opacity
+        return np.asarray(np.clip(np.concatenate([color, alpha], axis=1), 0, None), np.float32)
+
+
+def _packed(indices: NDArray[Any], count: int) -> tuple[NDArray[Any], NDArray[np.int64]]:
+    """Numbers the vertices that are used from 0 on; returns the indices and those vertices."""
+    seen = np.zeros(count, bool)
+    seen[indices] = True
+    return (np.cumsum(seen) - 1)[indices], np.flatnonzero(seen)
+
+
+def _flipped(uv: Array | None) -> Array | None:
+    """Moves the origin of texture coordinates from the bottom left to the top left."""
+    if uv is not None:
+        uv = uv.copy()
+        np.subtract(1, uv[:, 1], out=uv[:, 1])
+    return uv
+
+
+def _now(points: Array | Dynamic, clock: Clock) -> Any:
+    return points.at(clock.time) if is_dynamic(points) else points  # type: ignore[union-attr]
+
+
+def uv_names(wanted: Sequence[str], prim: Any) -> tuple[str, ...]:
+    """Primvars of texture coordinates: those that a material reads, or a usual one."""
+    if wanted:
+        return tuple(wanted[:2])
+    api = UsdGeom.PrimvarsAPI(prim)
+    return tuple(name for name in USUAL_UV if api.HasPrimvar(name))[:1]

@@ -1,0 +1,133 @@
+"""Reads points that move: by time samples, or along velocities and accelerations.
+
+Source: OpenUSD, UsdGeomPointBased, "Applying Timesampled Velocities to Geometry".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Usd
+
+from daguerre.errors import InputError
+from daguerre.files.notes import Notes
+from daguerre.files.value import Value
+from daguerre.motion.values import Dynamic, keys
+
+from .primvars import Array, as_rows
+from .values import Clock
+
+#: Maximum number of coordinates in all time samples of an attribute.
+_MAX_NUMBERS = 1 << 30
+
+
+@dataclass(frozen=True, eq=False)
+class Ballistic(Value):
+    """Points that leave each time sample at a velocity.
+
+    Attributes:
+        times: Times of the samples, rising, shape (K,), s.
+        points: K arrays (N, 3).
+        velocities: K arrays (N, 3), per second.
+        accelerations: K arrays (N, 3), per second squared, or None.
+    """
+
+    times: NDArray[np.float64]
+    points: tuple[Array, ...]
+    velocities: tuple[Array, ...]
+    accelerations: tuple[Array, ...] | None
+
+    def at(self, time_s: float) -> Array:
+        """The points at a time, s, from the sample before it; or from the first one."""
+        i = max(int(np.searchsorted(self.times, time_s, side="right")) - 1, 0)
+        dt = np.float32(time_s - self.times[i])
+        moved = self.points[i] + dt * self.velocities[i]
+        if self.accelerations is not None:
+            moved = moved + np.float32(0.5) * dt * dt * self.accelerations[i]
+        return np.asarray(moved, np.float32)
+
+    def breaks(self, begin: float, end: float) -> list[float]:
+        """Times of the samples inside of (begin, end), s."""
+        return [float(t) for t in self.times if begin < t < end]
+
+
+def read_points(schema: Any, clock: Clock, notes: Notes) -> Array | Dynamic:
+    """Reads the points of a mesh, of curves or of points.
+
+    Args:
+        schema: ``UsdGeom.PointBased``, with points, velocities and accelerations.
+        clock: Time codes of the stage.
+        notes: Receives notes on points that cannot move as stated.
+
+    Returns:
+        Shape (N, 3), in the prim's space, or such points over time.
+
+    Raises:
+        InputError: They are not finite.
+    """
+    attribute = schema.GetPointsAttr()
+    now = _checked(attribute, attribute.Get(clock.code), clock)
+    ballistic = _ballistic(schema, clock)
+    if ballistic is not None:
+        return ballistic
+    codes = clock.codes(attribute)
+    if len(codes) < 2:
+        return now
+    samples = _samples(attribute, codes, clock)
+    if any(len(sample) != len(now) for sample in samples):
+        notes.add("points whose number changes over time: those of one moment are shown, at rest")
+        return now
+    if all(np.array_equal(sample, now) for sample in samples):
+        return now
+    pairs = zip(map(clock.seconds, codes), samples, strict=True)
+    return keys(pairs, "step" if clock.holds else "linear")
+
+
+def _ballistic(schema: Any, clock: Clock) -> Ballistic | None:
+    """Points along velocities, which count if their samples are those of the points."""
+    points, velocities = schema.GetPointsAttr(), schema.GetVelocitiesAttr()
+    codes = clock.codes(points, single=True)
+    if not codes or codes != clock.codes(velocities, single=True):
+        return None
+    places, speeds = _samples(points, codes, clock), _samples(velocities, codes, clock)
+    if not _fit(places, speeds):
+        return None
+    slower = schema.GetAccelerationsAttr()
+    changes = _samples(slower, codes, clock) if clock.codes(slower, single=True) == codes else None
+    times = np.array([clock.seconds(code) for code in codes])
+    if len({len(sample) for sample in places}) > 1:  # points come and go: those of one sample fly
+        i = max(int(np.searchsorted(times, clock.time, side="right")) - 1, 0)
+        one = slice(i, i + 1)
+        times, places, speeds = times[one], places[one], speeds[one]
+        changes = None if changes is None else changes[one]
+    if changes is not None and not _fit(places, changes):
+        changes = None
+    slowing = None if changes is None else tuple(changes)
+    return Ballistic(times, tuple(places), tuple(speeds), slowing)
+
+
+def _fit(a: list[Array], b: list[Array]) -> bool:
+    return all(len(x) == len(y) for x, y in zip(a, b, strict=True))
+
+
+def _samples(attribute: Usd.Attribute, codes: list[float], clock: Clock) -> list[Array]:
+    first = attribute.Get(Usd.TimeCode(codes[0]))
+    numbers = 3 * len(codes) * len(first if first is not None else ())
+    if numbers > _MAX_NUMBERS:
+        raise InputError(
+            f"{clock.file}: {attribute.GetPath()}: wanted at most {_MAX_NUMBERS} numbers in all "
+            f"time samples, got {numbers}"
+        )
+    return [_checked(attribute, attribute.Get(Usd.TimeCode(code)), clock) for code in codes]
+
+
+def _checked(attribute: Usd.Attribute, value: Any, clock: Clock) -> Array:
+    if value is None or not len(value):
+        return np.zeros((0, 3), np.float32)
+    rows = as_rows(value, 3)
+    if rows is None:
+        raise InputError(f"{clock.file}: {attribute.GetPath()}: wanted finite points, got others")
+    return rows

@@ -1,0 +1,85 @@
+"""Reads primvars: values of a surface, each with its interpolation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Usd, UsdGeom
+
+from daguerre.files.notes import Notes
+
+from .values import Clock
+
+Array = NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class Primvar:
+    """Values of a surface.
+
+    Attributes:
+        values: Shape (N, K).
+        interpolation: constant, uniform, vertex, varying or faceVarying.
+        indices: Index of the value of each element, shape (M,); None: values in order.
+    """
+
+    values: Array
+    interpolation: str
+    indices: NDArray[np.int64] | None = None
+
+    @property
+    def flat(self) -> Array:
+        """A value for each element, shape (M, K)."""
+        return self.values if self.indices is None else self.values[self.indices]
+
+    def __len__(self) -> int:
+        return len(self.values if self.indices is None else self.indices)
+
+
+def read_primvar(prim: Usd.Prim, name: str, columns: int, clock: Clock) -> Primvar | None:
+    """Reads a primvar of a prim, or one that it inherits, at the scene's time.
+
+    Args:
+        prim: The prim.
+        name: Name, without ``primvars:``.
+        columns: Number of components.
+        clock: Time codes of the stage.
+
+    Returns:
+        The primvar; None if there is none, or if it is of another type.
+    """
+    found = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance(name)
+    if not found or not found.HasValue():
+        return None
+    values = as_rows(found.Get(clock.code), columns)
+    if values is None:
+        return None
+    indices = None
+    if found.IsIndexed():
+        indices = np.asarray(found.GetIndices(clock.code), np.int64)
+        if indices.size and not (indices.min() >= 0 and indices.max() < len(values)):
+            return None
+    return Primvar(values, str(found.GetInterpolation()), indices)
+
+
+def as_rows(value: Any, columns: int) -> Array | None:
+    """Converts a value of USD to an array (N, columns) of finite numbers; None for others."""
+    try:
+        rows = np.asarray(value, np.float32)
+    except (TypeError, ValueError):
+        return None
+    if columns == 1 and rows.ndim < 2:
+        rows = rows.reshape(-1, 1)
+    elif rows.ndim == 1:
+        rows = rows.reshape(1, -1)
+    if rows.ndim != 2 or rows.shape[1] < columns or not np.isfinite(rows).all():
+        return None
+    return np.ascontiguousarray(rows[:, :columns])
+
+
+def note_length(name: str, notes: Notes) -> None:
+    """Notes a primvar whose number of values does not fit its mesh."""
+    notes.add(f"primvar {name[:40]!r} has another number of values than its mesh: it is left out")

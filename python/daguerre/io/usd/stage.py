@@ -1,0 +1,361 @@
+"""Opens a stage, confined to its folder, and reads its units, axes and time codes.
+
+USD itself follows every path that a layer names. Here each layer is checked before it is opened:
+it must lie in the stage's folder or in one of ``allow_dirs``, links followed.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Ar, Sdf, Tf, Usd, UsdGeom, UsdUtils
+
+from daguerre.checks import short
+from daguerre.errors import InputError, UsageError, suggest
+from daguerre.files.notes import Notes
+from daguerre.files.uris import Folder
+
+from .crates import check_crates
+from .values import Clock
+
+#: Maximum number of layers of a stage.
+_MAX_LAYERS = 100_000
+_Z_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], np.float64)
+_SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
+
+
+@dataclass(frozen=True)
+class Opened:
+    """An open stage.
+
+    Attributes:
+        file: File, for messages.
+        stage: The stage of USD.
+        clock: Its time codes.
+        metres: Length of a scene unit, m.
+        root: Scene (m, +y up) from stage, shape (4, 4).
+        assets: Files that the stage may read.
+        fps: Frames per second, if stated.
+    """
+
+    file: str
+    stage: Usd.Stage
+    clock: Clock
+    metres: float
+    root: NDArray[np.float64]
+    assets: Assets
+    fps: float | None
+
+
+class Assets:
+    """Files that a stage may read: those of its folder and of the allowed ones.
+
+    Args:
+        path: File of the stage.
+        allow_dirs: Further folders.
+    """
+
+    def __init__(self, path: Path, allow_dirs: Iterable[str | os.PathLike[str]]) -> None:
+        self._file = str(path)
+        self._folders = Folder(path, allow_dirs).allowed
+
+    def check(self, place: str, name: str) -> str:
+        """Returns the absolute path of an asset; of a file inside of a package, with brackets.
+
+        Args:
+            place: Prim or layer that names it, for messages.
+            name: Path of the asset, anchored to its layer.
+
+        Raises:
+            InputError: It leaves the folders.
+        """
+        if _SCHEME.match(name):
+            raise InputError(
+                f"{self._file}: {place}: refused: wanted a file, got {short(name, 200)}"
+            )
+        package = name.partition("[")[0] if Ar.IsPackageRelativePath(name) else name
+        if "\0" in package:
+            raise InputError(f"{self._file}: {place}: refused: wanted a file, got {short(name)}")
+        real = Path(os.path.realpath(package))
+        if not any(real.is_relative_to(folder) for folder in self._folders):
+            raise InputError(
+                f"{self._file}: {place}: leaves the stage's folder: wanted a file under "
+                f"{str(self._folders[0])!r} (--allow-dir widens), got {short(name, 200)}"
+            )
+        return str(real) + name[len(package) :]
+
+    def file_of(self, place: str, name: str) -> Path:
+        """Returns the file of an anchored asset path, which need not exist.
+
+        Raises:
+            InputError: It leaves the folders.
+        """
+        return Path(self.check(place, name))
+
+    def resolve(
+        self, place: str, asset: Sdf.AssetPath, attribute: Usd.Attribute | None = None
+    ) -> Path | None:
+        """Returns the file of an asset; None if there is no such file.
+
+        Args:
+            place: Prim and attribute, for messages.
+            asset: The asset.
+            attribute: Attribute whose layer a relative path starts from.
+
+        Raises:
+            InputError: It leaves the folders.
+        """
+        name = asset.resolvedPath
+        if not name and attribute is not None and asset.path:
+            specs = attribute.GetPropertyStack(Usd.TimeCode.Default())
+            name = _anchored(specs[0].layer, asset.path) if specs else ""
+        if not name:
+            return None
+        found = Path(self.check(place, name))
+        if Ar.IsPackageRelativePath(str(found)):
+            return found
+        return found if found.is_file() else None
+
+
+@contextmanager
+def usd_errors(file: str) -> Iterator[None]:
+    """Turns errors of USD into ``InputError``, and keeps its warnings from being printed."""
+    delegate = UsdUtils.CoalescingDiagnosticDelegate()
+    try:
+        yield
+    except (Tf.ErrorException, UnicodeDecodeError) as error:
+        raise InputError(f"{file}: {_without(_sentence(_text(error)), file)}") from None
+    finally:
+        del delegate
+
+
+@contextmanager
+def typed(file: str, place: str) -> Iterator[None]:
+    """Turns what a value of another type than its schema's leads to into ``InputError``."""
+    try:
+        yield
+    except (InputError, UsageError):  # these are values' errors, too
+        raise
+    except (TypeError, ValueError, AttributeError) as error:
+        raise InputError(
+            f"{file}: {place}: wanted values of its schema's types, got others ({short(error)})"
+        ) from None
+
+
+def _text(error: Exception) -> str:
+    try:
+        return str(error)
+    except UnicodeDecodeError as fault:  # it quotes bytes of the file
+        return fault.object.decode("utf-8", "replace")
+
+
+def _sentence(text: str) -> str:
+    """The message of an error of USD, without the place in USD's own source."""
+    quoted = re.search(r" : '(.*?)'\s*(\)?$|Error in ')", text, re.DOTALL)
+    words = (quoted[1] if quoted else text).split()
+    return short_text(" ".join(words))
+
+
+def _without(sentence: str, file: str) -> str:
+    """A sentence of USD without the name of the file, which the message begins with."""
+    for name in (os.path.realpath(file), file):
+        sentence = sentence.removeprefix(f"{name}:")
+    return sentence.strip()
+
+
+def short_text(text: str, limit: int = 300) -> str:
+    """Shortens a text for a message."""
+    return text if len(text) <= limit else text[: limit - 3] + "..."
+
+
+def open_stage(
+    path: Path,
+    time: float,
+    variants: Iterable[str],
+    allow_dirs: Iterable[str | os.PathLike[str]],
+    notes: Notes,
+) -> Opened:
+    """Opens a stage.
+
+    Args:
+        path: File.
+        time: Scene time, s.
+        variants: Selections of variants, each as ``/prim:set=name``.
+        allow_dirs: Folders, besides the stage's own, from which it may read.
+        notes: Receives notes on layers that are missing.
+
+    Raises:
+        InputError: A layer is damaged, or outside of the folders; or unit or time code is invalid.
+        UsageError: There is no such variant.
+    """
+    file = str(path)
+    if not path.is_file():
+        raise InputError(f"{file}: wanted a file, got none")
+    assets = Assets(path, allow_dirs)
+    layer = _layers(path, assets)
+    stage = Usd.Stage.Open(layer, Usd.Stage.LoadAll)
+    _select(stage, file, list(variants))
+    for used in stage.GetUsedLayers():  # those of value clips, too
+        if used.realPath:
+            assets.check("layer", used.realPath)
+    _note_missing(stage, notes)
+    metres, z_up = _units(stage, file, notes)
+    root = (_Z_UP if z_up else np.eye(4)) * np.array([metres, metres, metres, 1.0])[:, None]
+    clock = _clock(stage, file, time)
+    stated = stage.HasAuthoredMetadata("framesPerSecond")
+    fps = _rate(file, "framesPerSecond", stage.GetFramesPerSecond()) if stated else None
+    return Opened(file, stage, clock, metres, root, assets, fps)
+
+
+def _layers(path: Path, assets: Assets) -> Sdf.Layer:
+    """Opens the layers of a stage, after a check of each name; returns the root layer."""
+    check_crates(path, str(path))
+    first = _whole(Sdf.Layer.FindOrOpen(os.path.realpath(path)))
+    if first is None:
+        raise InputError(f"{path}: wanted a stage of USD, got a file that USD does not open")
+    seen, waiting = {first.identifier}, [first]
+    while waiting:
+        layer = waiting.pop()
+        for name in layer.GetCompositionAssetDependencies():
+            place = f"layer {layer.GetDisplayName()}"
+            anchored = _anchored(layer, name)
+            if not anchored or anchored in seen:
+                continue
+            seen.add(anchored)
+            if len(seen) > _MAX_LAYERS:
+                raise InputError(f"{path}: wanted at most {_MAX_LAYERS} layers, got more")
+            found = _opened(anchored, assets.check(place, anchored))
+            if found is not None:
+                waiting.append(found)
+    return first
+
+
+def _anchored(layer: Sdf.Layer, name: str) -> str:
+    """Absolute path of a layer that another names; empty for one without a file."""
+    plain, _ = Sdf.Layer.SplitIdentifier(name)
+    if not plain or Sdf.Layer.IsAnonymousLayerIdentifier(plain):
+        return ""
+    if _SCHEME.match(plain):
+        return str(plain)
+    found = Sdf.ComputeAssetPathRelativeToLayer(layer, plain)
+    # A name without ./ is searched for; where nothing is found it comes back as it is.
+    return str(found if Path(found).is_absolute() else Path(layer.realPath).parent / found)
+
+
+def _opened(name: str, real: str) -> Sdf.Layer | None:
+    """Opens a layer; None if there is none.
+
+    Args:
+        name: Its name for USD.
+        real: Its file, or a place inside of a package.
+    """
+    file = Path(real.partition("[")[0] if Ar.IsPackageRelativePath(real) else real)
+    if file.exists() and not file.is_file():  # a pipe or a device would never end
+        raise InputError(f"{file}: wanted an ordinary file, got another thing")
+    if not file.is_file() or Sdf.FileFormat.FindByExtension(name) is None:
+        return None
+    check_crates(file, str(file))
+    return _whole(Sdf.Layer.FindOrOpen(name)) if Ar.GetResolver().Resolve(name) else None
+
+
+def _whole(layer: Sdf.Layer | None) -> Sdf.Layer | None:
+    """Checks that each prim that a layer names is there, as USD ends the process if one is not."""
+    if layer is not None:
+        paths: list[Sdf.Path] = []
+        layer.Traverse(Sdf.Path.absoluteRootPath, paths.append)
+        for path in paths:
+            if path.isEmpty or (path.IsPrimPath() and not layer.GetPrimAtPath(path)):
+                raise InputError(
+                    f"{layer.realPath}: damaged layer: a prim that it names is missing"
+                )
+    return layer
+
+
+def _select(stage: Usd.Stage, file: str, variants: list[str]) -> None:
+    stage.SetEditTarget(stage.GetSessionLayer())
+    for text in variants:
+        path, _, choice = text.rpartition(":") if "=" in text else ("", "", "")
+        name, _, value = choice.partition("=")
+        valid = Sdf.Path.IsValidPathString(path)[0] and Sdf.Path(path).IsAbsoluteRootOrPrimPath()
+        if not valid or not path.startswith("/") or not name or not value:
+            raise UsageError(f"variant: wanted /prim:set=name, got {text!r}")
+        prim = stage.GetPrimAtPath(path)
+        if not prim:
+            raise UsageError(f"{file}: variant: no prim {path}")
+        if prim.IsInstanceProxy():
+            raise UsageError(f"{file}: variant: {path} is inside of an instance, which is shared")
+        sets = prim.GetVariantSets()
+        if name not in sets.GetNames():
+            hint = suggest(name, sets.GetNames(), few=True)
+            raise UsageError(f"{file}: {path}: no set of variants {name!r}{hint}")
+        known = sets.GetVariantSet(name).GetVariantNames()
+        if value not in known:
+            hint = suggest(value, known, few=True)
+            raise UsageError(f"{file}: {path}: {name}: no variant {value!r}{hint}")
+        sets.SetSelection(name, value)
+
+
+def _note_missing(stage: Usd.Stage, notes: Notes) -> None:
+    for error in stage.GetCompositionErrors():
+        kind = type(error).__name__.removeprefix("Error")
+        if kind.startswith("Invalid") and ("Asset" in kind or "Sublayer" in kind):
+            if re.search(r"asset @[^@]*\.mtlx@", str(error)):
+                continue  # the reader of materials finds these by itself
+            notes.add("a layer that the stage names cannot be opened; what it holds is left out")
+        else:
+            words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", kind).lower()
+            notes.add(f"a fault of composition, {words!r}: what it concerns is left out")
+
+
+def _units(stage: Usd.Stage, file: str, notes: Notes) -> tuple[float, bool]:
+    metres = float(UsdGeom.GetStageMetersPerUnit(stage))
+    if not (math.isfinite(metres) and 1e-12 <= metres <= 1e12):
+        raise InputError(f"{file}: metersPerUnit: wanted a number above 0, got {metres:g}")
+    if not UsdGeom.StageHasAuthoredMetersPerUnit(stage):
+        notes.add("metersPerUnit is not stated: a unit is 0.01 m, USD's default")
+    up = str(UsdGeom.GetStageUpAxis(stage))
+    if up not in ("Y", "Z"):
+        raise InputError(f"{file}: upAxis: wanted Y or Z, got {up[:40]!r}")
+    return metres, up == "Z"
+
+
+def _clock(stage: Usd.Stage, file: str, time: float) -> Clock:
+    rate = _rate(file, "timeCodesPerSecond", stage.GetTimeCodesPerSecond())
+    holds = stage.GetInterpolationType() == Usd.InterpolationTypeHeld
+    return Clock(file, rate, time, bool(holds))
+
+
+def _rate(file: str, name: str, value: float) -> float:
+    if not (math.isfinite(value) and 0 < value <= 1e9):
+        raise InputError(f"{file}: {name}: wanted a number above 0, got {value:g}")
+    return float(value)
+
+
+def duration(opened: Opened) -> float | None:
+    """Time of the last time code of a stage, s; None if it states none."""
+    stage: Any = opened.stage
+    if not stage.HasAuthoredTimeCodeRange():
+        return None
+    return max(0.0, opened.clock.seconds(float(stage.GetEndTimeCode())))
+
+
+def time_of_code(path: str | os.PathLike[str], code: float) -> float:
+    """Converts a time code of a stage to s.
+
+    Raises:
+        InputError: The file cannot be read, or states no valid rate.
+    """
+    with usd_errors(str(path)):
+        layer = Sdf.Layer.FindOrOpen(os.path.realpath(path))
+        if layer is None:
+            raise InputError(f"{path}: wanted a stage of USD, got a file that USD does not open")
+        return _clock(Usd.Stage.Open(layer, Usd.Stage.LoadNone), str(path), 0.0).seconds(code)
