@@ -3,9 +3,10 @@
 
     .venv/bin/python script/docs/gallery/make.py [--data FOLDER] [--only NAME] [--page]
 
-FOLDER holds the chess set (scenes/open_chess_set_512.glb) and the panorama
-(hdri/st_peters_square_night_1k.hdr) that the repository does not ship; without it those pictures
-stay as they are. --page writes the pages alone. What is shown is in pictures.py and words.py.
+FOLDER holds the chess sets (scenes/open_chess_set_512.glb, OpenChessSet/chess_set.usda) and the
+panorama (hdri/st_peters_square_night_1k.hdr) that the repository does not ship; without it those
+pictures stay as they are. --page writes the pages alone. What is shown is in pictures.py and
+words.py.
 """
 
 from __future__ import annotations
@@ -56,7 +57,8 @@ python scenes/lens_scenes.py
 
 `--denoise` needs the extra `denoise`, and the garden the extra `compression`
 ([install](../install.md#extras)). The pictures use `--tone soft`, which rolls off highlights.
-`DATA` stands for a folder with the chess set and the panorama, which the repository does not ship.
+`DATA` stands for a folder with the chess sets (as glTF, and `OpenChessSet` as USD) and the
+panorama, which the repository does not ship.
 """
 
 ABOUT_MOTION = """## Motion

@@ -105,6 +105,17 @@ PICTURES = [
     ),
 ]
 
+PICTURES += [
+    Picture(
+        "chess_shot",
+        "The Open Chess Set of USD, with MaterialX and subdivision surfaces, photographed as its "
+        "stage says: double Gauss at f/2.8, 1/60 s at ISO 400.",
+        "scenes/chess_shot.py",
+        "DATA/OpenChessSet/chess_set.usda DATA/hdri/st_peters_square_night_1k.hdr",
+        needs_data=True,
+    ),
+]
+
 EXTENSIONS = "out/extensions"
 SMALL = "--res 600x400 --spp 48 --denoise"
 PICTURES += [
