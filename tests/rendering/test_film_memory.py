@@ -82,7 +82,8 @@ def test_denoising_counts() -> None:
 
 def test_memory_of_the_last_film_is_left_for_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
     if "daguerre.cluster.task" in sys.modules:  # a worker of another test keeps films
-        monkeypatch.setattr("daguerre.cluster.task._kept", None)
+        # Set without monkeypatch, which would keep the object; the worker makes another one.
+        sys.modules["daguerre.cluster.task"]._kept = None  # type: ignore[attr-defined]
     layout = _core.FilmLayout(width=400, height=300)
     each = film_memory.pixel_bytes(layout)
     kept = 400 * 300 * _core.Film.pixel_bytes(layout)
