@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from pxr import Sdf, Usd, UsdGeom, UsdUtils
+from pxr import Sdf, Usd, UsdGeom, UsdShade, UsdUtils
 
 import daguerre as dg
 from daguerre.io.usd.crates import check_crates
@@ -456,3 +456,21 @@ def test_a_second_reading_is_equal_and_sees_changes(tmp_path: Path) -> None:
     stages.save(stage)
     del stage
     assert len(dg.load(path).instances) == len(first.instances) + 1
+
+
+@pytest.mark.parametrize("name", ["pictures/none.png", "./pictures/none.png", "none.<UDIM>.png"])
+def test_a_missing_picture_in_the_folder_is_a_note(tmp_path: Path, name: str) -> None:
+    stage = stages.new_stage(tmp_path / "x.usda")
+    card = stages.mesh(stage, "/card")
+    texture = UsdShade.Shader.Define(stage, "/M/texture")
+    texture.CreateIdAttr("UsdUVTexture")
+    texture.CreateInput("file", Sdf.ValueTypeNames.Asset).Set(name)
+    surface = UsdShade.Shader.Define(stage, "/M/surface")
+    surface.CreateIdAttr("UsdPreviewSurface")
+    color = texture.CreateOutput("rgb", Sdf.ValueTypeNames.Float3)
+    surface.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).ConnectToSource(color)
+    made = UsdShade.Material.Define(stage, "/M")
+    made.CreateSurfaceOutput().ConnectToSource(surface.ConnectableAPI(), "surface")
+    UsdShade.MaterialBindingAPI.Apply(card.GetPrim()).Bind(made)
+    notes = dg.load(stages.save(stage)).warnings
+    assert "a texture whose file is missing shows its fallback value (1 use)" in notes

@@ -24,13 +24,13 @@ from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files.notes import Notes
 from daguerre.files.uris import Folder
 
+from .anchored import SCHEME, anchored
 from .crates import check_crates
 from .values import Clock
 
 #: Maximum number of layers of a stage.
 _MAX_LAYERS = 100_000
 _Z_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], np.float64)
-_SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Assets:
         Raises:
             InputError: It leaves the folders.
         """
-        if _SCHEME.match(name):
+        if SCHEME.match(name):
             raise InputError(
                 f"{self._file}: {place}: refused: wanted a file, got {short(name, 200)}"
             )
@@ -117,7 +117,7 @@ class Assets:
         name = asset.resolvedPath
         if not name and attribute is not None and asset.path:
             specs = attribute.GetPropertyStack(Usd.TimeCode.Default())
-            name = _anchored(specs[0].layer, asset.path) if specs else ""
+            name = anchored(specs[0].layer, asset.path) if specs else ""
         if not name:
             return None
         found = Path(self.check(place, name))
@@ -227,28 +227,16 @@ def _layers(path: Path, assets: Assets) -> Sdf.Layer:
         layer = waiting.pop()
         for name in layer.GetCompositionAssetDependencies():
             place = f"layer {layer.GetDisplayName()}"
-            anchored = _anchored(layer, name)
-            if not anchored or anchored in seen:
+            absolute = anchored(layer, name)
+            if not absolute or absolute in seen:
                 continue
-            seen.add(anchored)
+            seen.add(absolute)
             if len(seen) > _MAX_LAYERS:
                 raise InputError(f"{path}: wanted at most {_MAX_LAYERS} layers, got more")
-            found = _opened(anchored, assets.check(place, anchored))
+            found = _opened(absolute, assets.check(place, absolute))
             if found is not None:
                 waiting.append(found)
     return first
-
-
-def _anchored(layer: Sdf.Layer, name: str) -> str:
-    """Absolute path of a layer that another names; empty for one without a file."""
-    plain, _ = Sdf.Layer.SplitIdentifier(name)
-    if not plain or Sdf.Layer.IsAnonymousLayerIdentifier(plain):
-        return ""
-    if _SCHEME.match(plain):
-        return str(plain)
-    found = Sdf.ComputeAssetPathRelativeToLayer(layer, plain)
-    # A name without ./ is searched for; where nothing is found it comes back as it is.
-    return str(found if Path(found).is_absolute() else Path(layer.realPath).parent / found)
 
 
 def _opened(name: str, real: str) -> Sdf.Layer | None:

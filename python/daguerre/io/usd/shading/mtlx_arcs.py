@@ -10,6 +10,8 @@ from collections.abc import Iterator
 
 from pxr import Sdf, Usd, UsdShade
 
+from daguerre.io.usd.anchored import anchored
+
 
 def material_in_document(stage: Usd.Stage, path: Sdf.Path) -> tuple[str, str] | None:
     """Path of the document that has the material of a prim, and its name there; None: no such.
@@ -24,7 +26,7 @@ def material_in_document(stage: Usd.Stage, path: Sdf.Path) -> tuple[str, str] | 
         for layer, reference in _references(prim) if prim else ():
             if reference.assetPath.lower().split(":SDF_FORMAT_ARGS:")[0].endswith(".mtlx"):
                 name = path.name if place != path else reference.primPath.name or path.name
-                return str(Sdf.ComputeAssetPathRelativeToLayer(layer, reference.assetPath)), name
+                return anchored(layer, reference.assetPath), name
         place = place.GetParentPath()
     return None
 

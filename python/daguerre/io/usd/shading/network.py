@@ -15,6 +15,7 @@ from daguerre.errors import InputError
 from daguerre.files.json_item import short
 from daguerre.files.notes import Notes
 from daguerre.io.materialx.graph import MAX_NODES, Constant, Graph, Link, Node
+from daguerre.io.usd.anchored import anchored
 from daguerre.motion.values import Keys
 
 #: Most connections that one input passes through node graphs.
@@ -168,7 +169,7 @@ class Networks:
             return None
         space = str(attribute.GetColorSpace()) if attribute.HasColorSpace() else ""
         if isinstance(value, Sdf.AssetPath):
-            return Constant(_anchored(attribute, value), space)
+            return Constant(_absolute(attribute, value), space)
         if isinstance(value, str):
             return Constant(value)
         if isinstance(value, Keys):
@@ -205,13 +206,13 @@ def _numbers(value: Any) -> tuple[float, ...] | None:
     return None
 
 
-def _anchored(attribute: Usd.Attribute, value: Sdf.AssetPath) -> str:
+def _absolute(attribute: Usd.Attribute, value: Sdf.AssetPath) -> str:
     """Path of an asset: resolved, or relative to the layer that names it (UDIM, missing files)."""
     if value.resolvedPath or not value.path:
         return str(value.resolvedPath)
     for spec in attribute.GetPropertyStack(Usd.TimeCode.EarliestTime()):
         if spec.HasInfo("default") or spec.HasInfo("timeSamples"):
-            return str(Sdf.ComputeAssetPathRelativeToLayer(spec.layer, value.path))
+            return anchored(spec.layer, value.path)
     return str(value.path)
 
 
