@@ -23,7 +23,9 @@ from .render.views import Cameras
     camera_flags=CameraFlags, calibration_flags=CalibrationFlags, shutter_flags=ShutterFlags
 )
 def export_camera(
-    scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file, .glb or .gltf.")],
+    scene_path: Annotated[
+        Path, typer.Argument(metavar="SCENE", help="Scene file, .glb, .gltf or .usd.")
+    ],
     camera_flags: CameraFlags,
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,
