@@ -11,6 +11,8 @@ in quotes.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 from xml.parsers import expat
 
@@ -24,16 +26,11 @@ _WORDS = re.compile(r'"[^"]*"|\S+')
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\Z|[-+]?\.(?:inf|nan)\Z", re.I)
 
 
-def parse(data: bytes, file: str) -> Item:
-    """Parses the bytes of a file.
-
-    Raises:
-        InputError: They are not XML, not OpenCV's, or have features that calibrations do not need.
-    """
-    reader = _Reader(file)
+@contextmanager
+def xml_errors(file: str) -> Iterator[None]:
+    """Turns errors of expat, and of values that are read meanwhile, into ``InputError``."""
     try:
-        reader.parser.Parse(data, True)
-        value = None if reader.root is None else reader.root.value()
+        yield
     except expat.ExpatError as error:
         place = f"line {error.lineno}, column {error.offset + 1}"
         reason = expat.ErrorString(error.code)
@@ -42,6 +39,18 @@ def parse(data: bytes, file: str) -> Item:
         raise
     except (LookupError, ValueError) as error:  # an encoding that nobody knows; huge numbers
         raise InputError(f"{file}: XML: {error}") from None
+
+
+def parse(data: bytes, file: str) -> Item:
+    """Parses the bytes of a file.
+
+    Raises:
+        InputError: They are not XML, not OpenCV's, or have features that calibrations do not need.
+    """
+    reader = _Reader(file)
+    with xml_errors(file):
+        reader.parser.Parse(data, True)
+        value = None if reader.root is None else reader.root.value()
     if reader.root is None or reader.root.name != ROOT:
         found = "nothing" if reader.root is None else f"<{reader.root.name}>"
         raise InputError(f"{file}: XML: wanted <{ROOT}>, as OpenCV writes it, got {found}")

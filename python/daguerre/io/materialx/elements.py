@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from xml.parsers import expat
 
 from daguerre.errors import InputError
+from daguerre.files.xml_text import xml_errors
 
 MAX_DEPTH = 64
 MAX_ELEMENTS = 1_000_000
@@ -49,16 +50,8 @@ def parse(data: bytes, file: str) -> Element:
     if len(data) > MAX_BYTES:
         raise InputError(f"{file}: XML: wanted at most {MAX_BYTES} bytes, got {len(data)}")
     reader = _Reader(file)
-    try:
+    with xml_errors(file):
         reader.parser.Parse(data, True)
-    except expat.ExpatError as error:
-        place = f"line {error.lineno}, column {error.offset + 1}"
-        reason = expat.ErrorString(error.code)
-        raise InputError(f"{file}: XML: {place}: {reason}") from None
-    except InputError:
-        raise
-    except (LookupError, ValueError) as error:  # an encoding that nobody knows
-        raise InputError(f"{file}: XML: {error}") from None
     assert reader.root is not None  # expat refuses a text without an element
     return reader.root
 

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.files.value import Value
-from daguerre.motion.values import Dynamic
 from daguerre.scene.transforms import compose
 
 from .quaternions import of_vectors, product, slerp
@@ -97,22 +96,3 @@ class Crowd(Value):
             for name, part in parts.items()
         }
         return replace(self, **some)
-
-
-@dataclass(frozen=True, eq=False)
-class Placed(Value):
-    """A product of transforms, constant or over time: world from instancer, copy, prototype."""
-
-    parts: tuple[Array | Dynamic, ...]
-
-    def at(self, time_s: float) -> Array:
-        """The matrix at a time, s, shape (4, 4)."""
-        made = np.eye(4)
-        for part in self.parts:
-            made = made @ (part if isinstance(part, np.ndarray) else part.at(time_s))
-        return made
-
-    def breaks(self, begin: float, end: float) -> list[float]:
-        """Breaks of all parts, s."""
-        moving = [part for part in self.parts if not isinstance(part, np.ndarray)]
-        return sorted({float(t) for part in moving for t in part.breaks(begin, end)})

@@ -16,7 +16,6 @@ from daguerre.motion.values import at as value_at
 from daguerre.scene.scene import Scene
 from daguerre.scene.transforms import ranks
 
-from .crowds import Placed
 from .instancers import Copies
 from .transforms import Matrix, Transform
 
@@ -65,7 +64,7 @@ def times(outer: Spots, copies: Copies, inner: Matrix | Transform, name: str, ti
         firsts = outer.moving if outer.moving is not None else outer.still
         crowd = copies.moving
         seconds = list(copies.transforms) if crowd is None else crowd.each()
-        moving = [Placed((first, second, inner)) for first in firsts for second in seconds]
+        moving = [Transform((first, second, inner)) for first in firsts for second in seconds]
     return Spots(still.reshape(-1, 4, 4), moving, name)
 
 

@@ -44,7 +44,7 @@ class Operation(Value):
     value: Any
     inverse: bool
 
-    def matrix(self, time_s: float) -> Matrix:
+    def at(self, time_s: float) -> Matrix:
         """The matrix at a time, s."""
         value = value_at(self.value, time_s)
         if self.kind == "transform":
@@ -56,24 +56,28 @@ class Operation(Value):
             made = _MAKERS[self.kind](numbers, self.axes)
         return np.asarray(np.linalg.inv(made), np.float64) if self.inverse else made
 
+    def breaks(self, begin: float, end: float) -> Sequence[float]:
+        """Times of the keys of its value, s."""
+        return self.value.breaks(begin, end) if is_dynamic(self.value) else []
+
 
 @dataclass(frozen=True, eq=False)
 class Transform(Value):
-    """World from local, over time: a product of matrices and operations, the outermost first."""
+    """A product of transforms, constant or over time, the outermost first."""
 
-    parts: tuple[Any, ...]
+    parts: tuple[Matrix | Dynamic, ...]
 
     def at(self, time_s: float) -> Matrix:
         """The matrix at a time, s."""
         made = np.eye(4)
         for part in self.parts:
-            made = made @ (part.matrix(time_s) if isinstance(part, Operation) else part)
+            made = made @ (part if isinstance(part, np.ndarray) else part.at(time_s))
         return made
 
     def breaks(self, begin: float, end: float) -> list[float]:
-        """Times of all keys, s."""
-        moving = [part.value for part in self.parts if isinstance(part, Operation)]
-        return sorted({t for value in moving for t in value.breaks(begin, end)})
+        """Breaks of all parts, s."""
+        moving = [part for part in self.parts if not isinstance(part, np.ndarray)]
+        return sorted({float(t) for part in moving for t in part.breaks(begin, end)})
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +115,7 @@ def joined(outer: Matrix | Transform, inner: Sequence[Any]) -> Matrix | Transfor
     """Multiplies a transform by matrices and operations; a matrix if none moves."""
     parts = [*(outer.parts if isinstance(outer, Transform) else [outer])]
     for part in inner:
-        still = part.matrix(0.0) if _is_still(part) else part
+        still = part.at(0.0) if _is_still(part) else part
         if isinstance(still, np.ndarray) and isinstance(parts[-1], np.ndarray):
             parts[-1] = parts[-1] @ still
         else:
@@ -166,7 +170,7 @@ def _check(made: Operation, where: str, time: float) -> None:
     if not np.isfinite(np.asarray(stated, np.float64)).all():
         raise InputError(f"{where}: wanted finite numbers, got others")
     try:
-        matrix = made.matrix(time)
+        matrix = made.at(time)
     except np.linalg.LinAlgError:
         raise InputError(f"{where}: wanted an operation with an inverse, got none") from None
     if not np.isfinite(matrix).all():
