@@ -4,6 +4,9 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <cstring>
+#include <vector>
+
 #include "bind/arrays.h"
 #include "bind/record.h"
 #include "bind/unlocked.h"
@@ -116,11 +119,15 @@ void take_to(const Words& words, const FlatWords& columns, const FlatWordsOut& t
                          {to.data(), to.size()});
 }
 
-void add_state(dg::Film& film, const std::string& part, const FlatWords& columns, const FlatWords& words) {
+using FlatBytes = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+void add_state(dg::Film& film, const std::string& part, const FlatWords& columns, const FlatBytes& words) {
     const dg::bind::Unlocked unlocked;
-    const std::span all(words.data(), words.size());
-    if (part == kObjects) film.add_object_words(all);
-    else film.add_state(part, {columns.data(), columns.size()}, all);
+    const std::span all = std::as_bytes(std::span(words.data(), words.size()));
+    if (part != kObjects) return film.add_state(part, {columns.data(), columns.size()}, all);
+    std::vector<std::uint32_t> lists(all.size() / 4);
+    if (!lists.empty()) std::memcpy(lists.data(), all.data(), 4 * lists.size());
+    film.add_object_words(lists);
 }
 
 using Ids = nb::ndarray<const std::uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
@@ -224,8 +231,8 @@ void bind_film(nb::module_& m) {
             f.set_state(part, std::as_bytes(std::span(words.data(), words.size())));
         })
         .def("add_state", &add_state, "part"_a, "columns"_a, "words"_a,
-             "Adds a part of the state of a film of the same layout: of its words those of these columns, as "
-             "take_columns takes them.")
+             "Adds a part of the state of a film of the same layout: of its words the bytes of those of these "
+             "columns, as take_columns takes them.")
         .def("clear", [](Film& f) {
             const dg::bind::Unlocked unlocked;
             f.clear();

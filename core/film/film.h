@@ -202,9 +202,9 @@ class Film {
     /// Throws Error for another number of bytes.
     void set_state(const std::string& part, std::span<const std::byte> bytes);
     /// Adds a part of the state of a film of the same layout, exactly as merge does. Of the words of each pixel only
-    /// those of these columns come, in rising order; the others are 0. Throws Error for another number of words.
-    void add_state(const std::string& part, std::span<const std::uint32_t> columns,
-                   std::span<const std::uint32_t> words);
+    /// those of these columns come, in rising order; the others are 0. Bytes of a network lie anywhere, so these need
+    /// not be aligned. Throws Error for another number of bytes.
+    void add_state(const std::string& part, std::span<const std::uint32_t> columns, std::span<const std::byte> words);
     void add_object_words(std::span<const std::uint32_t> words);
 
   private:

@@ -90,12 +90,15 @@ namespace {
 /// Adds to values that lie side by side in pixels, of whose words only some columns come.
 template <typename T>
 void add_columns(std::vector<T>& to, std::size_t pixels, std::span<const std::uint32_t> columns,
-                 const std::uint32_t* words) {
+                 const std::byte* words) {
     const std::size_t each = to.size() / pixels;
     std::vector<T> pixel(each);
     std::vector<std::uint32_t> all(each * sizeof(T) / 4);
     for (std::size_t p = 0; p < pixels; ++p) {
-        for (const std::uint32_t column : columns) all[column] = *words++;
+        for (const std::uint32_t column : columns) {
+            std::memcpy(&all[column], words, 4);
+            words += 4;
+        }
         std::memcpy(pixel.data(), all.data(), 4 * all.size());
         for (std::size_t k = 0; k < each; ++k) to[p * each + k].add(pixel[k]);
     }
@@ -104,13 +107,13 @@ void add_columns(std::vector<T>& to, std::size_t pixels, std::span<const std::ui
 }  // namespace
 
 void Film::add_state(const std::string& part, std::span<const std::uint32_t> columns,
-                     std::span<const std::uint32_t> words) {
+                     std::span<const std::byte> words) {
     const std::size_t pixels = pixels_.size(), each = state(part).size() / 4 / pixels;
     const bool rises = std::ranges::adjacent_find(columns, std::ranges::greater_equal()) == columns.end();
-    if (!rises || (!columns.empty() && columns.back() >= each) || words.size() != pixels * columns.size())
+    if (!rises || (!columns.empty() && columns.back() >= each) || words.size() != 4 * pixels * columns.size())
         throw input_error("film state", "words of " + part,
                           "at most " + std::to_string(each) + " columns of " + std::to_string(pixels),
-                          std::to_string(columns.size()) + " with " + std::to_string(words.size()) + " words");
+                          std::to_string(columns.size()) + " with " + std::to_string(words.size()) + " bytes");
     with_part(*this, part, [&](auto& to) { add_columns(to, pixels, columns, words.data()); });
 }
 

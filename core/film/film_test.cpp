@@ -375,10 +375,13 @@ TEST_CASE("sums that come as columns of words are added as a merge adds them") {
         const std::vector<std::uint32_t> columns = used_columns(words, each);
         std::vector<std::uint32_t> kept(6 * columns.size());
         take_columns(words, each, columns, kept);
-        added.add_state(part, columns, kept);
-        CHECK_THROWS_AS(added.add_state(part, columns, std::span(kept).subspan(1)), Error);
-        CHECK_THROWS_AS(added.add_state(part, std::vector{std::uint32_t(each)}, std::span(words).first(6)), Error);
-        CHECK_THROWS_AS(added.add_state(part, std::vector{1u, 1u}, std::span(words).first(12)), Error);
+        std::vector<std::byte> sent(4 * kept.size() + 1);   // not aligned, as from a network
+        std::memcpy(sent.data() + 1, kept.data(), 4 * kept.size());
+        const std::span odd = std::span(sent).subspan(1);
+        added.add_state(part, columns, odd);
+        CHECK_THROWS_AS(added.add_state(part, columns, odd.subspan(4)), Error);
+        CHECK_THROWS_AS(added.add_state(part, std::vector{std::uint32_t(each)}, bytes.first(24)), Error);
+        CHECK_THROWS_AS(added.add_state(part, std::vector{1u, 1u}, bytes.first(48)), Error);
     }
     CHECK(whole_state(merged) == whole_state(added));
     CHECK_THROWS_AS(added.add_state("nonsense", {}, {}), Error);

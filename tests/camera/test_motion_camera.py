@@ -51,7 +51,7 @@ def test_a_change_replaces_the_motion():
     assert focused.with_(focus_on="node").motion.keys() == camera.motion.keys()
 
 
-@pytest.mark.parametrize("name", ["lens", "iso", "focus_on", "shutter_time", "aperture_image"])
+@pytest.mark.parametrize("name", ["lens", "fps", "focus_on", "shutter_type", "aperture_image"])
 def test_what_stays(name):
     with pytest.raises(UsageError, match=f"camera: {name}: wanted a constant value"):
         dg.Camera(**{name: dg.keys([(0, 1), (1, 2)])})

@@ -158,9 +158,9 @@ def test_rivals_are_refused_wherever_they_are_given(rivals: tuple[str, ...]) -> 
 def test_only_movable_parameters_take_keys() -> None:
     over_time = dg.keys([(0.0, 1.0), (1.0, 2.0)])
     assert dg.Camera(f_stop=over_time).motion.keys() == {"f_stop"}
-    assert "iso" not in MOVABLE
-    with pytest.raises(UsageError, match="camera: iso: wanted a constant value"):
-        dg.Camera(iso=over_time)
+    assert "fps" not in MOVABLE
+    with pytest.raises(UsageError, match="camera: fps: wanted a constant value"):
+        dg.Camera(fps=over_time)
 
 
 def test_pages_that_explain_exist() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,10 @@ from daguerre.rendering import (
     View,
     in_order,
 )
+from daguerre.rendering.checkpoint import Checkpoint
+from daguerre.rendering.loop import Loop
+from daguerre.rendering.schedule import Range
+from daguerre.rendering.session import Session
 
 SMALL = RenderSettings.of(resolution=(12, 8), spp=6)
 
@@ -171,3 +176,33 @@ def test_libraries_load_nothing_of_the_command_line(module: str) -> None:
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "[]"
+
+
+class Waits(Range):
+    """Draws a sample, then waits for others that do not arrive, as those of a cluster."""
+
+    def __init__(self, session: Session, waits: int) -> None:
+        super().__init__(session, (0, 2))
+        self._waits = waits
+
+    def prepare(self, limit: float) -> float:
+        self._waits -= bool(self.session.ranges)
+        return 1e-9 if self.session.ranges and self._waits > 0 else super().prepare(1.0)
+
+    def draw(self, progress: Callable[[float], bool]) -> bool:
+        if self.session.ranges and self._waits > 0:
+            return True
+        return super().draw(progress)
+
+
+def test_a_checkpoint_is_not_written_again_while_nothing_arrives(tmp_path: Path) -> None:
+    told: list[float] = []
+
+    class Saves(Reporter):
+        def saved(self, path: Path, samples: float, *, rescued: bool) -> None:
+            told.append(samples)
+
+    session = Session(sky(), None, settings=RenderSettings.of(resolution=(12, 8), spp=2))
+    checkpoint = Checkpoint(tmp_path / "a.checkpoint.exr", interval_s=1e-6)
+    assert Loop(session, Waits(session, 20), checkpoint, Saves(), Control()).run()
+    assert told == [1.0]

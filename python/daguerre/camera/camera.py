@@ -48,6 +48,7 @@ class Camera(Value):
 
     Parameters in ``MOVABLE`` may be values over time (:func:`daguerre.keys`). ``motion`` keeps
     these, and the parameter itself holds the value at one moment, which ``evaluated_at`` chooses.
+    A picture has one brightness and one shutter, those of its time.
 
     Attributes:
         transform: World from camera, shape (4, 4), m; the camera looks along its -z, +y is up.

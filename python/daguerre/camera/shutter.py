@@ -18,6 +18,7 @@ from daguerre.errors import UsageError, core_errors, suggest
 
 from .parameters import CAMERA, SHUTTER
 from .rolling_shutter import RollingShutter
+from .settled import settled
 
 if TYPE_CHECKING:
     from .camera import Camera
@@ -64,8 +65,9 @@ def interval(camera: Camera, time: float, resolution: tuple[int, int]) -> tuple[
         UsageError: The shutter is wrong, see ``core_shutter``; or the time is no number, or too
             large for double precision to hold the exposure.
     """
+    camera = settled(camera, number(time, "scene: time"))
     duration = core_shutter(camera, resolution).duration_s
-    begin = number(time, "scene: time") - duration / 2
+    begin = time - duration / 2
     if camera.shutter_offset is not None:
         begin = time + camera.shutter_offset / camera.fps
     end = begin + duration

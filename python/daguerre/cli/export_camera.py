@@ -15,12 +15,16 @@ from . import console
 from .flags.calibration import CalibrationFlags
 from .flags.camera import CameraFlags
 from .flags.groups import option, with_flags
+from .flags.scene_file import SceneFileFlags
 from .flags.shutter import ShutterFlags
 from .render.views import Cameras
 
 
 @with_flags(
-    camera_flags=CameraFlags, calibration_flags=CalibrationFlags, shutter_flags=ShutterFlags
+    camera_flags=CameraFlags,
+    calibration_flags=CalibrationFlags,
+    shutter_flags=ShutterFlags,
+    file_flags=SceneFileFlags,
 )
 def export_camera(
     scene_path: Annotated[
@@ -29,6 +33,7 @@ def export_camera(
     camera_flags: CameraFlags,
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,
+    file_flags: SceneFileFlags,
     output: Annotated[
         Path | None,
         option("-o", "--output", metavar="FILE.usda|usdc|usd", help="Stage to write."),
@@ -39,14 +44,6 @@ def export_camera(
             "--times",
             metavar="BEGIN,END",
             help="Begin and end of motion, s [those of its keys].",
-        ),
-    ] = None,
-    allow_dir: Annotated[
-        list[Path] | None,
-        option(
-            "--allow-dir",
-            metavar="DIR",
-            help="Folder, besides its own, from which the scene may read files; repeatable.",
         ),
     ] = None,
 ) -> int:
@@ -71,7 +68,7 @@ def export_camera(
     flags = Cameras(camera_flags.camera, calibration_flags, changes, camera_flags.placement)
     views = flags.views(None)
     calibration_flags.check(changes)
-    scene = daguerre.load(scene_path, allow_dirs=tuple(allow_dir or ()))
+    scene = file_flags.read(scene_path)
     if camera_flags.camera is None and len(views) == 1:
         views = [replace(views[0], name=name, camera=name) for name in scene.cameras]
     cameras = {view.name: view.view(flags).camera(scene) for view in views}

@@ -154,6 +154,7 @@ def _parts(facts: Any, data: memoryview) -> Iterator[tuple[str, Columns]]:
             words = np.frombuffer(data[begin : begin + 4 * count], np.uint32)
             if len(words) != count:
                 raise ValueError("words are missing")
-            blocks.append(np.require(words, requirements="A"))
+            blocks.append(words)
             begin += 4 * count
-        yield str(name), Columns(tuple(shape), *blocks)
+        kept, words = blocks
+        yield str(name), Columns(tuple(shape), np.require(kept, requirements="A"), words)

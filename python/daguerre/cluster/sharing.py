@@ -22,7 +22,7 @@ AHEAD = 2
 #: Length of a task, s, once it is known how fast workers are; and at most, if its sums take long.
 TASK_S, LONG_S = 15.0, 120.0
 #: A task takes at least so many times as long as the work with its answer.
-WORTH = 20.0
+WORTH = 40.0
 #: Time that a step waits for results, s.
 STEP_S = 0.5
 #: Answers that a worker adds at once.

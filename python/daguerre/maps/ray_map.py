@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre.camera import shutter
 from daguerre.camera.overscan import NONE, Overscan
+from daguerre.camera.settled import settled
 from daguerre.distortion.overscan import overscan_of
 from daguerre.distortion.rectified import built
 from daguerre.doors import guarded
@@ -136,6 +137,7 @@ def rays_of(
     overscan: Overscan = NONE,
 ) -> RayMap:
     """Returns the rays like ``raymap``, for checked arguments."""
+    camera = settled(camera, scene.time)
     now = instants(camera, size)
     opens, _ = shutter.interval(camera, scene.time, size)
     begin = opens + GT_TIMES[gt_time] * shutter.shutter_time(camera)

@@ -67,7 +67,7 @@ class Parameter:
         explained: Pages of the docs with more, such as ``flare.md#the-body``.
         needs: Conditions that a camera must meet.
         rivals: Name of a group of parameters of which at most one may be given.
-        movable: Whether it may change while the shutter is open (``dg.keys``).
+        movable: Whether it may change over time (``dg.keys``).
     """
 
     name: str

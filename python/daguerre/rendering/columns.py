@@ -27,7 +27,7 @@ class Columns:
     Attributes:
         shape: Shape of all words, (H, W, words).
         kept: Columns of the last axis that are kept, rising; none for lists of objects.
-        words: Words of these, pixel by pixel, or all words of lists; flat.
+        words: Words of these, pixel by pixel, or all words of lists; flat, and not always aligned.
     """
 
     shape: tuple[int, ...]
@@ -71,4 +71,4 @@ def add_columns(film: Any, parts: Mapping[str, Columns], where: str) -> None:
     check_layout(film, {part: one.shape for part, one in parts.items()}, where)
     with core_errors(InputError, where):
         for part, one in parts.items():
-            film.add_state(part, one.kept, one.words)
+            film.add_state(part, one.kept, one.words.view(np.uint8))

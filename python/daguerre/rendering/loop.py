@@ -78,7 +78,7 @@ class Loop:
                 self.preview()
             interval = self.checkpoint.interval_s
             due = interval > 0 and time.monotonic() - saved_at >= interval
-            if due and self.work.done() < self.work.total():
+            if due and self._saved < self.work.done() < self.work.total():
                 self.save()
                 saved_at = time.monotonic()
 

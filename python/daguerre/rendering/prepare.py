@@ -10,6 +10,7 @@ from daguerre import sensors
 from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.overscan import Overscan, check_overscan
+from daguerre.camera.settled import settled
 from daguerre.checks import short
 from daguerre.distortion.overscan import note as overscan_note
 from daguerre.distortion.overscan import to_undistort
@@ -103,6 +104,7 @@ def prepare(
     if not isinstance(scene, Scene):
         raise UsageError(f"scene: wanted a Scene, got {short(scene)}")
     camera = camera if isinstance(camera, Camera) else scene.camera(camera)
+    camera = settled(camera, scene.time)
     size = settings.film.resolution
     interval = shutter.interval(camera, scene.time, size)
     if built is None or not built.shows(scene, interval):

@@ -17,6 +17,7 @@ import daguerre._core as _core
 from daguerre.camera import rolling_shutter, shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.overscan import NONE, Overscan
+from daguerre.camera.settled import settled
 from daguerre.errors import InputError, core_errors
 from daguerre.frame.aovs import MEANS_CHANNELS, TRUTH_CHANNELS, Aov, Source, made_by
 from daguerre.scene.scene import Scene
@@ -121,9 +122,10 @@ class GroundTruth:
 
     def moment(self, frames: int) -> Moment:
         """Builds scene and camera some frames later, for the moment of ground truth only."""
-        camera = instants(self.camera, self.resolution)
-        opens, _ = shutter.interval(self.camera, self.scene.time, self.resolution)
-        exposure = shutter.shutter_time(self.camera)
+        own = settled(self.camera, self.scene.time)
+        camera = instants(own, self.resolution)
+        opens, _ = shutter.interval(own, self.scene.time, self.resolution)
+        exposure = shutter.shutter_time(own)
         begin = opens + GT_TIMES[self.gt_time] * exposure + frames / self.camera.fps
         begin, end = begin, begin + shutter.core_shutter(camera, self.resolution).duration_s
         scene = self.scene.at(0.5 * (begin + end))

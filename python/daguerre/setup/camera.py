@@ -17,6 +17,7 @@ from daguerre.camera.exposure import exposure_notes
 from daguerre.camera.ideal import WITHOUT_IRIS
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.camera.projection import check_resolution
+from daguerre.camera.settled import settled
 from daguerre.checks import as_readonly, short
 from daguerre.errors import UsageError
 from daguerre.scene.scene import Scene
@@ -56,6 +57,7 @@ def set_up(
     """
     if not isinstance(camera, Camera):
         raise UsageError(f"camera: wanted a Camera, got {short(camera)}")
+    camera = settled(camera, scene.time)
     prescription, model = lens_and_model(camera)
     begin, end = shutter.interval(camera, scene.time, resolution)
     pose = pose_over(camera, begin, end)

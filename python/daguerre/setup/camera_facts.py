@@ -123,6 +123,7 @@ def facts_of(
     from daguerre.camera.exposure import describe_exposure
     from daguerre.camera.shutter import describe, shutter_time
 
+    camera = camera.evaluated_at(time)
     lens, glass = setup.lens, setup.lens.glass
     focal, stop, squeeze = float(lens.focal_length_mm), lens.f_stop, lens.squeeze
     focus = math.inf if lens.focus_distance_m is None else float(lens.focus_distance_m)

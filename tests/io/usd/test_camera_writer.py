@@ -380,3 +380,43 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert main(["export-camera", str(scene), "-o", str(tmp_path / "cam.obj")]) == 2
     assert main([*words, "--times", "2"]) == 2
     assert "Traceback" not in capsys.readouterr().err
+
+
+def test_cameras_of_a_stage_leave_as_its_flags_say(tmp_path: Path, capsys: Any) -> None:
+    stage = tmp_path / "shot.usda"
+    stage.write_text(
+        """#usda 1.0
+        ( metersPerUnit = 1
+          timeCodesPerSecond = 24 )
+        def Xform "Rig" ( variants = { string lens = "long" }
+                          prepend variantSets = "lens" ) {
+            variantSet "lens" = {
+                "long" {
+                    def Camera "Cam" { 
+                        float focalLength = 85
+                        float horizontalAperture = 36
+                    }
+                }
+                "wide" {
+                    def Camera "Cam" {
+                        float focalLength = 24
+                        float horizontalAperture = 36
+                        float exposure:iso.timeSamples = { 0: 100, 24: 400 }
+                        double daguerre:sensor:whiteBalance.timeSamples = { 0: 3200, 24: 5600 }
+                    }
+                }
+            }
+        }"""
+    )
+    out = tmp_path / "cam.usda"
+    words = ["export-camera", str(stage), "-o", str(out), "--camera-units", "mm"]
+    assert main([*words, "--variant", "/Rig:lens=wide", "--time-code", "24"]) == 0
+    (prim,) = opened(out)
+    made = again(prim, tmp_path)
+    assert made.focal_length == pytest.approx(24, rel=1e-6)
+    assert made.sensor_size[0] == pytest.approx(36, rel=1e-6)
+    assert made.evaluated_at(1.0).iso == 400
+    assert made.white_balance == 5600  # it takes no keys, which is a note
+    assert main([*words, "--variant", "/Rig:lens=wide", "--strict"]) == 3
+    assert main([*words, "--time", "1", "--time-code", "24"]) == 2
+    assert "Traceback" not in capsys.readouterr().err

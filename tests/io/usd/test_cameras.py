@@ -207,12 +207,46 @@ def test_a_stop_of_0_and_a_focus_of_0_among_keys() -> None:
 
 
 def test_values_that_cannot_move_are_noted() -> None:
-    camera, notes = noted(camera_prim("float exposure:iso.timeSamples = {0: 100, 24: 400}"))
+    white = "double daguerre:sensor:whiteBalance.timeSamples = {0: 3200, 24: 5600}"
+    camera, notes = noted(camera_prim(white))
     assert camera is not None
-    assert camera.iso == 100
+    assert camera.white_balance == 3200
     assert notes == [
-        "exposure:iso of a camera changes over time; its value at one time is kept (1 use)"
+        "daguerre:sensor:whiteBalance of a camera changes over time; its value at one time is "
+        "kept (1 use)"
     ]
+
+
+CHANGING = """
+    float exposure:iso.timeSamples = {0: 100, 24: 400}
+    float exposure:time.timeSamples = {0: 0.02, 12: 0.01}
+    float exposure:fStop.timeSamples = {0: 2, 24: 4}
+    float exposure:responsivity.timeSamples = {0: 1, 24: 2}
+    float exposure.timeSamples = {0: 0, 24: 3}
+    double shutter:open.timeSamples = {0: -0.25, 24: 0}
+    double shutter:close.timeSamples = {0: 0.25, 12: 0.75, 24: 0.5}
+"""
+
+
+@pytest.mark.parametrize("code", [0.0, 6.0, 12.0, 18.0, 30.0])
+def test_exposure_and_shutter_over_time_are_what_usd_has_at_that_time(code: float) -> None:
+    prim = camera_prim(CHANGING)
+    camera, notes = noted(prim)
+    assert camera is not None
+    assert notes == []
+    now, usd = camera.evaluated_at(code / 24), UsdGeom.Camera(prim)
+    linear = usd.ComputeLinearExposureScale(Usd.TimeCode(code))
+    ours = now.exposure_time * now.iso / 100 * 2**now.exposure_compensation * now.responsivity
+    assert ours / now.exposure_f_stop**2 == pytest.approx(linear, rel=1e-6)
+    opens, closes = usd.GetShutterOpenAttr().Get(code), usd.GetShutterCloseAttr().Get(code)
+    assert now.shutter_offset == pytest.approx(opens, abs=1e-9)
+    assert now.shutter_time == pytest.approx((closes - opens) / 24, rel=1e-9)
+
+
+def test_a_shutter_that_closes_before_it_opens_at_one_moment_makes_no_picture() -> None:
+    camera, notes = noted(camera_prim("double shutter:open.timeSamples = {0: 0, 24: 0.5}"))
+    assert camera is None
+    assert len(notes) == 1
 
 
 def test_what_is_not_drawn_is_noted_once() -> None:
@@ -363,6 +397,6 @@ def test_cameras_of_one_prim_are_equal_and_travel() -> None:
 
 
 def test_a_scene_time_chooses_the_value_of_what_cannot_move() -> None:
-    prim = camera_prim("float exposure:iso.timeSamples = {0: 100, 24: 400}")
-    assert read(prim, clock=Clock(FILE, 24.0, 1.0)).iso == 400
-    assert read(prim, clock=Clock(FILE, 24.0, 0.5)).iso == 250
+    prim = camera_prim("double daguerre:sensor:whiteBalance.timeSamples = {0: 3200, 24: 5600}")
+    assert read(prim, clock=Clock(FILE, 24.0, 1.0)).white_balance == 5600
+    assert read(prim, clock=Clock(FILE, 24.0, 0.5)).white_balance == 4400

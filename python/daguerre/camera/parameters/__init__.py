@@ -48,7 +48,8 @@ CAMERA_FLAGS = Table(
     CHOICE, PLACE, LENS, STOP, FOCUS, IRIS, GHOSTS, PARTS, SENSOR, STANDING, EXPOSURE
 )
 
-#: Names of those that may change while the shutter is open.
+#: Names of those that may change over time: optics while the shutter is open, brightness and
+#: shutter from one picture to the next.
 MOVABLE = tuple(row.name for row in CAMERA if row.movable)
 #: Smallest and largest values, far beyond any camera: what lies outside is a mistake, and single
 #: precision would overflow on the way.

@@ -24,6 +24,7 @@ EXPOSURE = (
         metavar="N",
         tells_default=True,
         more="No parameter of exposure changes the linear picture",
+        movable=True,
     ),
     _Row(
         "exposure_compensation",
@@ -35,6 +36,7 @@ EXPOSURE = (
         flags=("--ev",),
         metavar="EV",
         tells_default=True,
+        movable=True,
     ),
     _Row(
         "exposure_time",
@@ -45,6 +47,7 @@ EXPOSURE = (
         metavar="S",
         default_words="{shutter_time}",
         explained=("exposure.md",),
+        movable=True,
     ),
     _Row(
         "exposure_f_stop",
@@ -56,6 +59,7 @@ EXPOSURE = (
         usual=_PINHOLE,
         default_words=f"{{f_stop}}; for a pinhole {_PINHOLE:g}",
         explained=("exposure.md",),
+        movable=True,
     ),
     _Row(
         "responsivity",
@@ -65,6 +69,7 @@ EXPOSURE = (
         flags=("--responsivity",),
         metavar="X",
         tells_default=True,
+        movable=True,
     ),
     _Row(
         "white_balance",

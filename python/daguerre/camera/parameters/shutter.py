@@ -25,6 +25,7 @@ SHUTTER_ROWS = (
         "Default: from ``shutter_angle``.",
         explained=("motion.md#the-shutter",),
         rivals="shutter",
+        movable=True,
     ),
     _Row(
         "shutter_angle",
@@ -40,6 +41,7 @@ SHUTTER_ROWS = (
         f"{_ANGLE:g}. It equals 360 x ``fps`` x ``shutter_time``.",
         usual=_ANGLE,
         rivals="shutter",
+        movable=True,
     ),
     _Row(
         "fps",
@@ -66,6 +68,7 @@ SHUTTER_ROWS = (
         default_words="exposure centred on --time",
         in_python="Time at which the shutter opens, in frames from the scene's time; default: the "
         "exposure is centred on that time.",
+        movable=True,
     ),
     _Row(
         "shutter_type",

@@ -1,4 +1,4 @@
-"""Flags of the scene: time, environment, catchers, plate, folders.
+"""Flags of the scene: its file, environment, catchers, plate.
 
 Annotations must be real objects here (see ``groups.py``), so no ``annotations`` future.
 """
@@ -13,57 +13,15 @@ from daguerre.rendering.names import has_frame, numbered
 from daguerre.scene.catcher import EFFECTS
 
 from .groups import Text, option
+from .scene_file import SceneFileFlags
 
 _LIGHT = "Light and scene"
 
 
 @dataclass(frozen=True)
-class SceneFlags:
-    """Flags of the scene and its light."""
+class SceneFlags(SceneFileFlags):
+    """Flags of the scene, its light and its plate."""
 
-    time: Annotated[
-        Text,
-        option("--time", metavar="S", help="Time in the scene's animation, s [0].", panel=_LIGHT),
-    ] = None
-    time_code: Annotated[
-        float | None,
-        option(
-            "--time-code",
-            metavar="N",
-            help="Time code of a USD stage, instead of --time [0].",
-            panel=_LIGHT,
-        ),
-    ] = None
-    variant: Annotated[
-        list[str] | None,
-        option(
-            "--variant",
-            metavar="NAME",
-            help="Material variant of a glTF file by name, or /PRIM:SET=NAME of a USD stage; "
-            "repeatable.",
-            panel=_LIGHT,
-        ),
-    ] = None
-    purpose: Annotated[
-        str | None,
-        option(
-            "--purpose",
-            metavar="LIST",
-            help="Purposes of prims of a USD stage to draw besides default: render,proxy,guide "
-            "[render].",
-            panel=_LIGHT,
-        ),
-    ] = None
-    camera_units: Annotated[
-        Text,
-        option(
-            "--camera-units",
-            metavar="UNIT",
-            help="Unit of focal lengths and apertures in a USD stage, such as mm [a tenth of a "
-            "scene unit].",
-            panel=_LIGHT,
-        ),
-    ] = None
     env: Annotated[
         Path | None,
         option(
@@ -147,35 +105,6 @@ class SceneFlags:
             panel=_LIGHT,
         ),
     ] = None
-    allow_dir: Annotated[
-        list[Path] | None,
-        option(
-            "--allow-dir",
-            metavar="DIR",
-            help="Folder, besides its own, from which the scene may read files; repeatable.",
-            panel=_LIGHT,
-        ),
-    ] = None
-
-    strict: Annotated[
-        bool,
-        option(
-            "--strict",
-            help="Refuse a scene of which something would be left out with a note.",
-            panel=_LIGHT,
-        ),
-    ] = False
-
-    def start(self, path: Path) -> float:
-        """Scene time of frame 0, s."""
-        from daguerre.errors import UsageError
-        from daguerre.files import formats
-
-        if self.time_code is None:
-            return 0.0 if self.time is None else q.time_s("--time", self.time)
-        if self.time is not None:
-            raise UsageError("--time-code: wanted either --time or --time-code, got both")
-        return float(formats.time_of_code(path, self.time_code))
 
     def load(self, path: Path, taken: Any = None) -> Any:
         """Reads the scene and adds environment, catchers and plate.
@@ -184,10 +113,8 @@ class SceneFlags:
             path: Scene file.
             taken: Camera of ``--like-plate``, which took the plate; None: there is none.
         """
-        import daguerre
-
         lux, environment = self._lux(), self._environment()
-        scene = daguerre.load(path, time=self.start(path), **self._options)
+        scene = self.read(path)
         if environment:
             scene.set_environment(**environment)
         elif self.env_scale is not None or self.env_rotation is not None:
@@ -200,23 +127,6 @@ class SceneFlags:
         if not self.plate_moves:
             self.throw_plate(scene, taken)
         return scene
-
-    @property
-    def _options(self) -> dict[str, Any]:
-        """Options of the reader of the scene."""
-        units = self.camera_units
-        chosen = self.variant or []
-        options: dict[str, Any] = {
-            "variant": chosen[0] if len(chosen) == 1 else tuple(chosen) or None,
-            "allow_dirs": tuple(self.allow_dir or ()),
-        }
-        if self.strict:
-            options["strict"] = True
-        if self.purpose is not None:
-            options["purpose"] = tuple(self.purpose.split(","))
-        if units is not None:
-            options["camera_units"] = 1000 * q.unit_m("--camera-units", units)
-        return options
 
     @property
     def plate_moves(self) -> bool:

@@ -8,7 +8,10 @@ Source: OpenUSD, UsdGeomCamera, "Exposure" and "Shutter".
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
+
+from daguerre.motion.values import Keys, at, keys
 
 from .checked import Checked
 
@@ -27,14 +30,14 @@ def read_exposure(read: Checked) -> dict[str, Any]:
     found = {}
     for name, field in EXPOSURE.items():
         if read.is_authored(name):
-            found[field] = read.accepted(name, field, read.number(name))
+            found[field] = read.accepted(name, field, read.moving(name, lambda value: value))
     return found
 
 
 def never_opens(read: Checked) -> bool:
     """Whether the shutter closes before it opens: the picture is black."""
-    opens, closes = _shutter(read)
-    return closes < opens
+    shut = _shutter(read, lambda opens, closes: closes - opens)
+    return min(shut.values if isinstance(shut, Keys) else (shut,)) < 0
 
 
 def read_shutter(read: Checked) -> dict[str, Any]:
@@ -47,11 +50,21 @@ def read_shutter(read: Checked) -> dict[str, Any]:
     found: dict[str, Any] = {"fps": rate}
     if not (read.is_authored("shutter:open") or read.is_authored("shutter:close")):
         return found
-    opens, closes = (code / read.stage.clock.rate for code in _shutter(read))
-    time = read.accepted("shutter:close", "shutter_time", closes - opens)
-    offset = read.accepted("shutter:open", "shutter_offset", opens * rate)
-    return found | {"shutter_time": time, "shutter_offset": offset}
+    code_s = 1 / read.stage.clock.rate
+    time = _shutter(read, lambda opens, closes: (closes - opens) * code_s)
+    offset = _shutter(read, lambda opens, closes: opens * code_s * rate)
+    return found | {
+        "shutter_time": read.accepted("shutter:close", "shutter_time", time),
+        "shutter_offset": read.accepted("shutter:open", "shutter_offset", offset),
+    }
 
 
-def _shutter(read: Checked) -> tuple[float, float]:
-    return read.number("shutter:open") or 0.0, read.number("shutter:close") or 0.0
+def _shutter(read: Checked, combined: Callable[[float, float], float]) -> Any:
+    """Number of both ends of the shutter's opening, in time codes: a constant or keys."""
+    ends = [read.moving(f"shutter:{end}", lambda value: value) or 0.0 for end in ("open", "close")]
+    moving = [end for end in ends if isinstance(end, Keys)]
+    if not moving:
+        return combined(*ends)
+    times = sorted({time for end in moving for time in end.times.tolist()})
+    pairs = [(time, combined(*(at(end, time) for end in ends))) for time in times]
+    return keys(pairs, moving[0].interpolation)

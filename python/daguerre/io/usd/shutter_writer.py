@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from operator import attrgetter
 
 from daguerre.camera import shutter
+from daguerre.camera.camera import Camera
 from daguerre.camera.parameters import CAMERA
 
 from .daguerre_attributes import CENTERED, CURVE, EFFICIENCY, PREFIX
@@ -20,23 +22,28 @@ def write_exposure(output: Output) -> None:
     """Writes what differs from the defaults, as a stage's own values split light from blur."""
     camera = output.camera
     for name, field in EXPOSURE.items():
-        value = getattr(camera, field)
-        if value is not None and value != CAMERA[field].default:
-            output.set(name, "float", value)
+        if field in camera.motion or getattr(camera, field) != CAMERA[field].default:
+            output.follow(name, "float", attrgetter(field), field)
 
 
 def write_shutter(output: Output) -> None:
     """Writes the shutter's times, its curve, and how it scans."""
     camera = output.camera
-    time = shutter.shutter_time(camera)
-    offset = camera.shutter_offset
-    opens = -time / 2 if offset is None else offset / camera.fps
-    output.set("shutter:open", "double", opens * output.rate)
-    output.set("shutter:close", "double", (opens + time) * output.rate)
-    if offset is None:
+    rate = output.rate
+    moving = ("shutter_time", "shutter_angle", "shutter_offset")
+    output.follow("shutter:open", "double", lambda one: _ends(one)[0] * rate, *moving)
+    output.follow("shutter:close", "double", lambda one: _ends(one)[1] * rate, *moving)
+    if camera.shutter_offset is None:
         output.set(PREFIX + CENTERED, "bool", True)
     _write_curve(output)
-    _write_rolling(output, time)
+    _write_rolling(output, shutter.shutter_time(camera))
+
+
+def _ends(camera: Camera) -> tuple[float, float]:
+    """Begin and end of the exposure from the time of the picture, s."""
+    time, offset = shutter.shutter_time(camera), camera.shutter_offset
+    opens = -time / 2 if offset is None else offset / camera.fps
+    return opens, opens + time
 
 
 def _write_curve(output: Output) -> None:

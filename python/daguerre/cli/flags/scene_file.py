@@ -1,0 +1,114 @@
+"""Flags of the scene file: time, variants, units, folders.
+
+Annotations must be real objects here (see ``groups.py``), so no ``annotations`` future.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+from daguerre import units as q
+
+from .groups import Text, option
+
+_FILE = "Scene file"
+
+
+@dataclass(frozen=True)
+class SceneFileFlags:
+    """Flags with which a scene file is read."""
+
+    time: Annotated[
+        Text,
+        option("--time", metavar="S", help="Time in the scene's animation, s [0].", panel=_FILE),
+    ] = None
+    time_code: Annotated[
+        float | None,
+        option(
+            "--time-code",
+            metavar="N",
+            help="Time code of a USD stage, instead of --time [0].",
+            panel=_FILE,
+        ),
+    ] = None
+    variant: Annotated[
+        list[str] | None,
+        option(
+            "--variant",
+            metavar="NAME",
+            help="Material variant of a glTF file by name, or /PRIM:SET=NAME of a USD stage; "
+            "repeatable.",
+            panel=_FILE,
+        ),
+    ] = None
+    purpose: Annotated[
+        str | None,
+        option(
+            "--purpose",
+            metavar="LIST",
+            help="Purposes of prims of a USD stage to draw besides default: render,proxy,guide "
+            "[render].",
+            panel=_FILE,
+        ),
+    ] = None
+    camera_units: Annotated[
+        Text,
+        option(
+            "--camera-units",
+            metavar="UNIT",
+            help="Unit of focal lengths and apertures in a USD stage, such as mm [a tenth of a "
+            "scene unit].",
+            panel=_FILE,
+        ),
+    ] = None
+    allow_dir: Annotated[
+        list[Path] | None,
+        option(
+            "--allow-dir",
+            metavar="DIR",
+            help="Folder, besides its own, from which the scene may read files; repeatable.",
+            panel=_FILE,
+        ),
+    ] = None
+    strict: Annotated[
+        bool,
+        option(
+            "--strict",
+            help="Refuse a scene of which something would be left out with a note.",
+            panel=_FILE,
+        ),
+    ] = False
+
+    def start(self, path: Path) -> float:
+        """Scene time of frame 0, s."""
+        from daguerre.errors import UsageError
+        from daguerre.files import formats
+
+        if self.time_code is None:
+            return 0.0 if self.time is None else q.time_s("--time", self.time)
+        if self.time is not None:
+            raise UsageError("--time-code: wanted either --time or --time-code, got both")
+        return float(formats.time_of_code(path, self.time_code))
+
+    def read(self, path: Path) -> Any:
+        """Reads the scene."""
+        import daguerre
+
+        return daguerre.load(path, time=self.start(path), **self._options)
+
+    @property
+    def _options(self) -> dict[str, Any]:
+        """Options of the reader of the scene."""
+        units = self.camera_units
+        chosen = self.variant or []
+        options: dict[str, Any] = {
+            "variant": chosen[0] if len(chosen) == 1 else tuple(chosen) or None,
+            "allow_dirs": tuple(self.allow_dir or ()),
+        }
+        if self.strict:
+            options["strict"] = True
+        if self.purpose is not None:
+            options["purpose"] = tuple(self.purpose.split(","))
+        if units is not None:
+            options["camera_units"] = 1000 * q.unit_m("--camera-units", units)
+        return options
