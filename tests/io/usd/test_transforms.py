@@ -10,6 +10,7 @@ import pytest
 from pxr import Gf, Usd, UsdGeom
 
 import daguerre as dg
+from daguerre.files.notes import Notes
 from daguerre.io.usd.transforms import joined, local
 from daguerre.io.usd.values import Clock
 from daguerre.motion.values import at as value_at
@@ -38,7 +39,7 @@ def _clock(time: float = 0.0) -> Clock:
 
 
 def _world(prim: Usd.Prim, time: float) -> np.ndarray:
-    ops, _ = local(prim, _clock(time))
+    ops, _ = local(prim, _clock(time), Notes())
     return np.asarray(value_at(joined(np.eye(4), ops), time))
 
 
@@ -72,7 +73,7 @@ def test_a_moving_stack_is_pure_and_travels() -> None:
     op = xform.AddRotateZOp()
     op.Set(0.0, 0)
     op.Set(180.0, 24)
-    moving = joined(np.eye(4), local(xform.GetPrim(), _clock())[0])
+    moving = joined(np.eye(4), local(xform.GetPrim(), _clock(), Notes())[0])
     assert moving.breaks(-1, 2) == [0.0, 1.0]
     again = pickle.loads(pickle.dumps(moving))
     assert again == moving
@@ -129,4 +130,98 @@ def test_an_operation_without_an_inverse_is_refused(tmp_path: Path) -> None:
     xform.AddScaleOp(opSuffix="p").Set(Gf.Vec3f(0, 1, 1))
     xform.AddScaleOp(opSuffix="p", isInverseOp=True)
     with pytest.raises(dg.InputError, match=r"wanted an operation with an inverse"):
+        dg.load(stages.save(stage))
+
+
+# --- Matrices that are not affine ------------------------------------------------------------
+
+_BENT = "a transform whose last column is not 0, 0, 0, 1 is made affine"
+
+
+def _matrix(rng: np.random.Generator, last: tuple[float, float, float, float]) -> Gf.Matrix4d:
+    rows = rng.normal(size=(4, 4))
+    rows[:, 3] = last
+    return Gf.Matrix4d(rows.tolist())
+
+
+def _read_matrix(samples: dict[float, Gf.Matrix4d], time: float = 0.0) -> tuple[np.ndarray, Notes]:
+    stage = Usd.Stage.CreateInMemory()
+    op = UsdGeom.Xform.Define(stage, "/x").AddTransformOp()
+    for code, matrix in samples.items():
+        op.Set(matrix, code)
+    ops, _ = local(stage.GetPrimAtPath("/x"), _clock(time), notes := Notes())
+    return np.asarray(value_at(joined(np.eye(4), ops), time)), notes
+
+
+@pytest.mark.parametrize("w", [2.0, 0.04, -3.0])
+def test_a_last_number_divides_points_as_in_usd(w: float) -> None:
+    rng = np.random.default_rng(1)
+    theirs = _matrix(rng, (0, 0, 0, w))
+    ours, notes = _read_matrix({0.0: theirs})
+    points = rng.normal(size=(20, 3))
+    wanted = [theirs.Transform(Gf.Vec3d(*point)) for point in points]
+    assert np.allclose(points @ ours[:3, :3].T + ours[:3, 3], wanted)
+    assert ours[3].tolist() == [0, 0, 0, 1]
+    (note,) = notes.sentences()
+    assert note.startswith(_BENT)
+    assert note.endswith("(1 use)")
+
+
+def test_a_last_number_over_time_divides_too() -> None:
+    rng = np.random.default_rng(2)
+    first, last = (_matrix(rng, (0, 0, 0, 4)) for _ in range(2))
+    ours, notes = _read_matrix({0.0: first, 24.0: last}, 0.25)
+    wanted = (0.75 * first + 0.25 * last).Transform(Gf.Vec3d(1, 2, 3))
+    assert np.allclose(ours[:3] @ (1, 2, 3, 1), wanted)
+    assert len(notes.sentences()) == 1
+    assert notes.sentences()[0].endswith("(1 use)")
+
+
+def test_perspective_is_dropped_and_the_origin_stays() -> None:
+    theirs = _matrix(np.random.default_rng(3), (0.5, -1, 0.25, 2))
+    ours, notes = _read_matrix({0.0: theirs})
+    assert np.allclose(ours[:3, 3], theirs.Transform(Gf.Vec3d(0, 0, 0)))
+    assert np.allclose(ours[:3, :3], np.array(theirs)[:3, :3].T / 2)
+    assert ours[3].tolist() == [0, 0, 0, 1]
+    assert notes.sentences()[0].startswith(_BENT)
+
+
+def test_rounding_of_a_last_column_is_no_note() -> None:
+    affine = _matrix(np.random.default_rng(4), (1e-9, 0, 0, 1 - 1e-9))
+    assert _read_matrix({0.0: affine})[1].sentences() == []
+
+
+def test_a_scene_with_such_a_matrix_is_drawn_with_one_note(tmp_path: Path) -> None:
+    stage = stages.new_stage(tmp_path / "x.usda")
+    for name in ("/a", "/b"):
+        stages.mesh(stage, name).AddTransformOp().Set(Gf.Matrix4d(2))
+    scene = dg.load(stages.save(stage))
+    assert [note for note in scene.warnings if "last column" in note] == [
+        "a transform whose last column is not 0, 0, 0, 1 is made affine: divided by its last "
+        "number, without perspective (2 uses)"
+    ]
+    assert all(np.array_equal(one.transform, np.eye(4)) for one in scene.instances)
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "wanted"),
+    [
+        ((3, 3), 0.0, "wanted a last number other than 0, got 0"),
+        ((3, 3), float("nan"), "wanted finite numbers"),
+        ((0, 3), float("inf"), "wanted finite numbers"),
+        ((3, 3), 1e-320, "wanted finite numbers"),
+    ],
+)
+@pytest.mark.parametrize("codes", [(0.0,), (0.0, 5.0)])
+def test_matrices_that_have_no_meaning_are_refused(
+    tmp_path: Path, place: tuple[int, int], value: float, wanted: str, codes: tuple[float, ...]
+) -> None:
+    stage = stages.new_stage(tmp_path / "x.usda")
+    op = UsdGeom.Xform.Define(stage, "/A").AddTransformOp()
+    for code in codes:
+        matrix = Gf.Matrix4d(1)
+        if code == codes[-1]:
+            matrix[place] = value
+        op.Set(matrix, code)
+    with pytest.raises(dg.InputError, match=rf"/A\.xformOp:transform: .*{wanted}"):
         dg.load(stages.save(stage))

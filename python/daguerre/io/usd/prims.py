@@ -10,6 +10,7 @@ from pxr import Usd, UsdGeom
 
 from daguerre.cached import cached_property
 from daguerre.errors import InputError
+from daguerre.files.notes import Notes
 from daguerre.files.value import Value
 from daguerre.motion.values import Keys
 
@@ -94,10 +95,12 @@ class Walk:
         clock: Time codes of the stage.
         root: Scene from stage, for prims that ignore the transforms of their parents.
         purposes: Purposes to draw, besides ``default``.
+        notes: Receives notes on unsupported content.
     """
 
-    def __init__(self, clock: Clock, root: Matrix, purposes: Collection[str]) -> None:
+    def __init__(self, clock: Clock, root: Matrix, purposes: Collection[str], notes: Notes) -> None:
         self._clock = clock
+        self._notes = notes
         self._root = root
         self._purposes = {_ALWAYS, *purposes}
         self._count = 0
@@ -135,7 +138,7 @@ class Walk:
         world, shown, purpose = parent.world, parent.shown, parent.purpose
         imageable = UsdGeom.Imageable(prim)
         if imageable:
-            ops, resets = local(prim, self._clock)
+            ops, resets = local(prim, self._clock, self._notes)
             world = joined(self._root if resets else world, ops) if ops or resets else world
             shown = _visible(shown, imageable, self._clock)
             stated = imageable.GetPurposeAttr()

@@ -111,7 +111,7 @@ class _Reader:
 
     def read(self, purposes: Sequence[str], camera_millimetres: float | None) -> Scene:
         opened = self._opened
-        self._walk = Walk(self._clock, opened.root, purposes)
+        self._walk = Walk(self._clock, opened.root, purposes, self._notes)
         visits = list(self._walk.below(opened.stage.GetPseudoRoot(), opened.root))
         self._add_skeletons(visits)
         worlds = _skeleton_worlds(visits)

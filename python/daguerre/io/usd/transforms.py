@@ -16,16 +16,23 @@ from numpy.typing import NDArray
 from pxr import Usd, UsdGeom
 
 from daguerre.errors import InputError
+from daguerre.files.notes import Notes
 from daguerre.files.value import Value
 from daguerre.motion.values import Dynamic, is_dynamic
 from daguerre.motion.values import at as value_at
 from daguerre.scene.transforms import compose, without_scale
 
 from .quaternions import moving_turns
-from .values import Clock
+from .values import Clock, plain
 
 Matrix = NDArray[np.float64]
 _AXES = {"X": 0, "Y": 1, "Z": 2}
+#: Difference of the last column of a matrix from 0, 0, 0, 1 that is rounding.
+_EXACT = 1e-5
+_BENT = (
+    "a transform whose last column is not 0, 0, 0, 1 is made affine: divided by its last number, "
+    "without perspective"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,8 +146,13 @@ def position(world: Matrix | Transform, time: float) -> Matrix:
     return np.array(value_at(world, time)[:3, 3])
 
 
-def local(prim: Usd.Prim, clock: Clock) -> tuple[list[Operation], bool]:
+def local(prim: Usd.Prim, clock: Clock, notes: Notes) -> tuple[list[Operation], bool]:
     """Operations of a prim, the outermost first, and whether they replace those of its parents.
+
+    Args:
+        prim: The prim.
+        clock: Time codes of the stage.
+        notes: Receives a note on matrices that are not affine.
 
     Raises:
         InputError: A number is not finite, or an inverse does not exist.
@@ -148,20 +160,24 @@ def local(prim: Usd.Prim, clock: Clock) -> tuple[list[Operation], bool]:
     xformable = UsdGeom.Xformable(prim)
     if not xformable:
         return [], False
-    ops = [made for op in xformable.GetOrderedXformOps() if (made := _operation(op, clock))]
+    ops = [made for op in xformable.GetOrderedXformOps() if (made := _operation(op, clock, notes))]
     return ops, bool(xformable.GetResetXformStack())
 
 
-def _operation(op: UsdGeom.XformOp, clock: Clock) -> Operation | None:
+def _operation(op: UsdGeom.XformOp, clock: Clock, notes: Notes) -> Operation | None:
     kind, axes = _kind(str(UsdGeom.XformOp.GetOpTypeToken(op.GetOpType())))
     attribute = op.GetAttr()
-    value = clock.value(attribute)
+    where = f"{clock.file}: {attribute.GetPath()}"
+    affine = _Affine(where)
+    value = clock.value(attribute, affine if kind == "transform" else plain)
     if value is None:
         return None
     if kind == "orient" and is_dynamic(value):
         value = moving_turns(value)
+    if affine.changed:
+        notes.add(_BENT)
     made = Operation(kind, axes, value, bool(op.IsInverseOp()))
-    _check(made, f"{clock.file}: {attribute.GetPath()}", clock.time)
+    _check(made, where, clock.time)
     return made
 
 
@@ -175,8 +191,39 @@ def _check(made: Operation, where: str, time: float) -> None:
         raise InputError(f"{where}: wanted an operation with an inverse, got none") from None
     if not np.isfinite(matrix).all():
         raise InputError(f"{where}: wanted finite numbers, got others")
-    if np.abs(matrix[3] - (0, 0, 0, 1)).max() > 1e-5:
-        raise InputError(f"{where}: wanted 0, 0, 0, 1 as its last column, got another")
+
+
+class _Affine:
+    """Converts matrices of USD to affine ones.
+
+    USD multiplies homogeneous coordinates and divides by the last one, so 0, 0, 0, w in the last
+    column is a division by w. A perspective is dropped; the origin keeps its place.
+
+    Source: OpenUSD, GfMatrix4d::Transform, and the shaders of Storm. (HdEmbree ignores the column.)
+
+    Attributes:
+        changed: Whether one was not affine.
+    """
+
+    def __init__(self, where: str) -> None:
+        self._where = where
+        self.changed = False
+
+    def __call__(self, value: Any) -> Matrix:
+        """An affine matrix that acts on column vectors, shape (4, 4).
+
+        Raises:
+            InputError: A number is not finite, or the last one is 0.
+        """
+        made: Matrix = plain(value)
+        if not np.isfinite(made).all():
+            raise InputError(f"{self._where}: wanted finite numbers, got others")
+        if not made[3, 3]:
+            raise InputError(f"{self._where}: wanted a last number other than 0, got 0")
+        self.changed |= bool(np.abs(made[3] - (0, 0, 0, 1)).max() > _EXACT)
+        made = made / made[3, 3]
+        made[3] = 0, 0, 0, 1
+        return made
 
 
 def _kind(name: str) -> tuple[str, str]:
