@@ -40,11 +40,17 @@ def wanted_count(basis: str, wrap: str) -> str:
 
 def are_counts(counts: Counts, basis: str, wrap: str) -> NDArray[np.bool_]:
     """Whether curves may have these numbers of control points."""
+    return np.asarray((counts > 0) & (fitting_counts(counts, basis, wrap) == counts))
+
+
+def fitting_counts(counts: Counts, basis: str, wrap: str) -> Counts:
+    """Largest numbers of control points up to these that curves may have; 0: they are too few."""
     if basis == "bezier":
-        closed = wrap == "periodic"
-        return np.asarray((counts >= 3) & (counts % 3 == (0 if closed else 1)))
+        end = 0 if wrap == "periodic" else 1
+        segments = (counts - end) // 3
+        return np.where(segments > 0, 3 * segments + end, 0)
     least = int(wanted_count(basis, wrap).split()[-1])
-    return counts >= least
+    return np.where(counts >= least, counts, 0)
 
 
 @dataclass(frozen=True, eq=False)

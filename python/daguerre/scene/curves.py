@@ -178,7 +178,7 @@ def _radii(widths: Any, where: str, counts: NDArray[np.int64], form: BezierForm)
     if (flat < 0).any():
         bad = int(np.flatnonzero(flat < 0)[0])
         raise InputError(f"{where}: widths[{bad}]: wanted at least 0 m, got {flat[bad, 0]:g}")
-    if numbers.ndim == 0:
+    if len(flat) == 1:
         flat = np.broadcast_to(flat, (len(counts), 1))
     total = int(counts.sum())
     if len(flat) not in (len(counts), total):

@@ -215,7 +215,6 @@ def _material(stage: Usd.Stage, name: str, color: Any) -> UsdShade.Material:
         (lambda m: m.CreateFaceVertexCountsAttr([-4]), "faceVertexCounts: wanted at least 0"),
         (lambda m: m.CreateFaceVertexIndicesAttr([0, 1, 2, 9]), r"wanted 0 \.\. 3, got 9"),
         (lambda m: m.CreateFaceVertexIndicesAttr([0, 1, 2, -1]), r"wanted 0 \.\. 3, got -1"),
-        (lambda m: m.CreatePointsAttr([]), "wanted none, as there are no points"),
         (
             lambda m: m.CreatePointsAttr([(0, 0, 0), (1, 0, 0), (0, float("inf"), 0), (0, 0, 0)]),
             "wanted finite points",
@@ -231,6 +230,39 @@ def test_topologies_that_lie_are_refused(
         _load(tmp_path, lambda s: change(stages.mesh(s, "/card", scheme=scheme)))
     assert "/card" in str(caught.value)
     assert len(str(caught.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize("scheme", ["none", "catmullClark"])
+@pytest.mark.parametrize(
+    ("kind", "value"),
+    [
+        ("", None),
+        ("point3f[]", Vt.Vec3fArray()),
+        ("int[]", Vt.IntArray(12)),
+        ("float[]", Vt.FloatArray(12)),
+        ("float3", Gf.Vec3f(1, 2, 3)),
+    ],
+)
+def test_a_mesh_without_points_is_left_out(
+    tmp_path: Path, scheme: str, kind: str, value: Any
+) -> None:
+    def write(stage: Usd.Stage) -> None:
+        stages.mesh(stage, "/other")
+        stages.mesh(stage, "/card", scheme=scheme).GetPrim().RemoveProperty("points")
+        if kind:  # the schema's own type would be enforced above the layer
+            card = stage.GetRootLayer().GetPrimAtPath("/card")
+            made = Sdf.AttributeSpec(card, "points", Sdf.ValueTypeNames.Find(kind))
+            made.default = value
+
+    scene = _load(tmp_path, write)
+    assert len(scene.instances) == 1
+    assert "a mesh without points is left out (1 use)" in scene.warnings
+
+
+def test_an_empty_mesh_is_no_note(tmp_path: Path) -> None:
+    scene = _load(tmp_path, lambda s: stages.mesh(s, "/card", np.zeros((0, 3)), (), ()))
+    assert not scene.instances
+    assert scene.warnings == []
 
 
 def test_creases_that_do_not_fit_are_refused(tmp_path: Path) -> None:

@@ -11,15 +11,21 @@ from pxr import Usd, UsdGeom
 
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
+from daguerre.motion.values import Dynamic, is_dynamic
 from daguerre.motion.values import at as value_at
+from daguerre.scene.curve_bases import fitting_counts
 from daguerre.scene.scene import Scene
 
+from .deforming import ChosenOverTime
 from .points import read_points
 from .primvars import Array, note_length, read_primvar
 from .spheres import read_widths
 from .values import Clock
 
 Counts = NDArray[np.int64]
+_TOO_FEW = (
+    "a curve whose number of points does not fit its basis loses the last ones, or is left out"
+)
 _BASES = {"bezier": "bezier", "bspline": "bspline", "catmullRom": "catmull-rom"}
 
 
@@ -50,6 +56,26 @@ class Layout:
         if interpolation in ("vertex", "varying") and len(values) == points:
             return values
         return self._between(values) if interpolation == "varying" else None
+
+    def fitting(self) -> Counts:
+        """Points of each curve that its basis uses, shape (C,); 0: they are too few."""
+        return fitting_counts(self.counts, self.basis, self.wrap)
+
+    def cut(
+        self, points: Array | Dynamic, given: dict[str, Array]
+    ) -> tuple[Array | Dynamic, Counts, dict[str, Array]]:
+        """Points, counts, and values for each curve or point, without what the basis cannot use."""
+        fits, total = self.fitting(), int(self.counts.sum())
+        starts = np.cumsum(self.counts) - self.counts
+        place = np.arange(total) - np.repeat(starts, self.counts)
+        rows, curves = np.flatnonzero(place < np.repeat(fits, self.counts)), fits > 0
+        kept = {
+            name: values[rows] if len(values) == total else values[curves]
+            for name, values in given.items()
+        }
+        moving = is_dynamic(points)
+        chosen = ChosenOverTime(points, rows) if moving else points[rows]  # type: ignore[arg-type,index]
+        return chosen, fits[curves], kept
 
     def _between(self, values: Array) -> Array | None:
         knots = [self._knots(int(count)) for count in self.counts]
@@ -100,6 +126,10 @@ def read_curves(
             f"got {int(counts.sum())}"
         )
     layout = Layout(counts, _basis(schema, clock, notes), str(schema.GetWrapAttr().Get(clock.code)))
+    fits = layout.fitting()
+    if not fits.any():
+        notes.add(_TOO_FEW, len(fits))
+        return None
     if schema.GetNormalsAttr().HasAuthoredValue():
         notes.add("ribbons of curves are drawn as round curves")
     given: dict[str, Any] = {
@@ -112,11 +142,14 @@ def read_curves(
     }
     if "uv" in given:
         given["uv"] = (given["uv"] * (1, -1) + (0, 1)).astype(np.float32)
-    widths = _widths(schema, layout, len(now), clock, notes)
+    given["widths"] = _widths(schema, layout, len(now), clock, notes)
+    cut = (fits != counts) | (fits == 0)
+    if cut.any():
+        notes.add(_TOO_FEW, int(cut.sum()))
+        points, counts, given = layout.cut(points, given)
     try:
         return scene.add_curves(
-            points, counts, widths, basis=layout.basis, wrap=layout.wrap, name=str(prim.GetPath()),
-            **given,
+            points, counts, basis=layout.basis, wrap=layout.wrap, name=str(prim.GetPath()), **given,
         )  # fmt: skip
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
@@ -138,7 +171,7 @@ def _widths(schema: Any, layout: Layout, count: int, clock: Clock, notes: Notes)
         if found is not None:
             note_length("widths", notes)
         notes.add("curves without widths have a width of 1")
-        return np.ones(1, np.float32)
+        return np.ones(len(layout.counts), np.float32)
     return spread[:, 0]
 
 

@@ -17,12 +17,12 @@ from .topology import Surface
 
 
 @dataclass(frozen=True, eq=False)
-class PolygonsOverTime(Value):
-    """Positions of the vertices of a polygon mesh over time.
+class ChosenOverTime(Value):
+    """Some of the points of a prim over time, such as those of the vertices of a polygon mesh.
 
     Attributes:
-        points: Points of the mesh over time, shape (P, 3).
-        origins: Point of each vertex, shape (N,).
+        points: Points of the prim over time, shape (P, 3).
+        origins: Number of each point that is meant, shape (N,).
     """
 
     points: Dynamic

@@ -19,7 +19,7 @@ from daguerre.scene.point_cache import PointCache
 from daguerre.scene.polygons import triangulate, weld
 from daguerre.scene.scene import Scene
 
-from .deforming import LimitOverTime, PolygonsOverTime
+from .deforming import ChosenOverTime, LimitOverTime
 from .primvars import Array, Primvar, as_rows, note_length, read_primvar
 from .topology import Surface, read_faces, surface_of
 from .values import Clock
@@ -88,7 +88,7 @@ class Meshes:
         self._clock = clock
         self._count = count
         self._notes = notes
-        self._shapes: dict[str, Shape] = {}
+        self._shapes: dict[str, Shape | None] = {}
         self._made: dict[tuple[str, Choice], int | None] = {}
 
     def index(
@@ -99,7 +99,7 @@ class Meshes:
         choice: Choice,
         faces: NDArray[np.int64] | None = None,
     ) -> int | None:
-        """Index of the mesh of the scene; None if it has no faces.
+        """Index of the mesh of the scene; None if it has no faces or no points.
 
         Args:
             source: Path of the prim that instances share.
@@ -112,12 +112,18 @@ class Meshes:
         if key not in self._made:
             if source not in self._shapes:
                 self._shapes[source] = self._shape(prim, *read())
-            self._made[key] = self._add(self._shapes[source], choice, faces)
+            shape = self._shapes[source]
+            self._made[key] = None if shape is None else self._add(shape, choice, faces)
         return self._made[key]
 
-    def _shape(self, prim: Any, points: Array | Dynamic, before: Array | Dynamic) -> Shape:
+    def _shape(self, prim: Any, points: Array | Dynamic, before: Array | Dynamic) -> Shape | None:
+        """The shape of a mesh; None, with a note, if it has no points."""
         mesh = UsdGeom.Mesh(prim)
         here = np.asarray(_now(points, self._clock), np.float32)
+        if not len(here):
+            if len(mesh.GetFaceVertexIndicesAttr().Get(self._clock.code) or ()):
+                self._notes.add("a mesh without points is left out")
+            return None
         faces = read_faces(mesh, len(here), self._clock, self._notes)
         surface = surface_of(faces, mesh, self._level(len(faces.sizes)), self._clock, self._notes)
         flipped = mesh.GetOrientationAttr().Get(self._clock.code) == "leftHanded"
@@ -169,7 +175,7 @@ class Meshes:
         if moves and smooth:
             motion = LimitOverTime(moving, shape.surface, origins, made, shape.flipped)
         elif moves:
-            steps = PolygonsOverTime(moving, origins)
+            steps = ChosenOverTime(moving, origins)
         if shape.rest is not None and made.normals is not None and not smooth:
             rest = replace(made, positions=np.ascontiguousarray(shape.rest[origins]))
             if moves:

@@ -77,8 +77,7 @@ def read_faces(mesh: UsdGeom.Mesh, count: int, clock: Clock, notes: Notes) -> Fa
         )
     if vertices.size and not (vertices.min() >= 0 and vertices.max() < count):
         worst = vertices.max() if vertices.min() >= 0 else vertices.min()
-        wanted = f"0 .. {count - 1}" if count else "none, as there are no points"
-        raise InputError(f"{where}: faceVertexIndices: wanted {wanted}, got {worst}")
+        raise InputError(f"{where}: faceVertexIndices: wanted 0 .. {count - 1}, got {worst}")
     kept = sizes >= 3
     if not kept.all():
         notes.add("a face of fewer than three corners is left out", int((~kept).sum()))
