@@ -232,13 +232,11 @@ def test_a_moving_instancer_of_moving_copies_of_moving_prototypes(tmp_path: Path
     [
         (lambda i: i.GetProtoIndicesAttr().Set([0, 1, 0]), r"/i\.protoIndices: wanted 0 \.\. 0"),
         (lambda i: i.GetProtoIndicesAttr().Set([0, -1, 0]), r"/i\.protoIndices: wanted 0 \.\. 0"),
-        (lambda i: i.GetPrototypesRel().ClearTargets(False), r"/i\.prototypes: wanted one or more"),
-        (lambda i: i.GetPositionsAttr().Clear(), r"/i\.positions: wanted 3, .*got 0"),
         (lambda i: i.GetPositionsAttr().Set([(0, 0, 0)] * 2), r"/i\.positions: wanted 3, .*got 2"),
-        (lambda i: i.CreateScalesAttr([(1, 1, 1)] * 4), r"/i\.scales: wanted 3, .*got 4"),
+        (lambda i: i.CreateScalesAttr([(1, 1, 1)] * 2), r"/i\.scales: wanted 3, .*got 2"),
         (
-            lambda i: i.CreateOrientationsAttr(Vt.QuathArray([Gf.Quath(1)] * 5)),
-            r"/i\.orientations: wanted 3, .*got 5",
+            lambda i: i.CreateOrientationsAttr(Vt.QuathArray([Gf.Quath(1)] * 2)),
+            r"/i\.orientations: wanted 3, .*got 2",
         ),
         (
             lambda i: i.GetPositionsAttr().Set([(0, 0, 0), (0, float("nan"), 0), (0, 0, 0)]),
@@ -253,6 +251,41 @@ def test_what_does_not_fit_is_one_error(tmp_path: Path, change: Any, place: str)
     with pytest.raises(dg.InputError, match=place) as caught:
         dg.load(stages.save(stage))
     assert str(caught.value).startswith(f"{tmp_path / 'x.usda'}: ")
+
+
+def test_values_beyond_the_copies_do_not_count(tmp_path: Path) -> None:
+    stage = stages.new_stage(tmp_path / "x.usda")
+    made = stages.instancer(stage, "/i", [(1, 0, 0), (2, 0, 0), (3, 0, 0)], [0, 0])
+    made.CreateScalesAttr(stages.vectors([(2, 2, 2)] * 4))
+    made.CreateOrientationsAttr(Vt.QuathArray([Gf.Quath(1)] * 3))
+    scene = dg.load(stages.save(stage))
+    assert [one.transform[0, 3] for one in scene.instances] == [1, 2]
+    assert all(one.transform[0, 0] == 2 for one in scene.instances)
+    assert [note for note in scene.warnings if "instancer" in note] == [
+        f"{name} of a point instancer are more than its copies: the first ones count (1 use)"
+        for name in ("positions", "orientations", "scales")
+    ]
+    assert not any("changes over time" in note for note in scene.warnings)
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        (lambda i: i.GetPrototypesRel().ClearTargets(False), "prototypes"),
+        (lambda i: i.GetPositionsAttr().Clear(), "positions"),
+        (lambda i: i.GetProtoIndicesAttr().Clear(), "protoIndices"),
+        (lambda i: i.GetPositionsAttr().Set([]), "positions"),
+    ],
+)
+def test_an_instancer_that_has_nothing_to_place_is_left_out(
+    tmp_path: Path, change: Any, what: str
+) -> None:
+    stage = stages.new_stage(tmp_path / "x.usda")
+    change(stages.instancer(stage, "/i", np.zeros((3, 3))))
+    stages.mesh(stage, "/card")
+    scene = dg.load(stages.save(stage))
+    assert len(scene.instances) == 1
+    assert f"a point instancer without {what} is left out (1 use)" in scene.warnings
 
 
 def test_a_missing_prototype_is_a_note(tmp_path: Path) -> None:

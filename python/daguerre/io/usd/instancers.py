@@ -47,12 +47,14 @@ def read_copies(prim: Usd.Prim, clock: Clock, notes: Notes) -> list[Copies]:
     """
     instancer = UsdGeom.PointInstancer(prim)
     where = f"{clock.file}: {prim.GetPath()}"
+    lacking = _lacking(instancer, clock)
+    if lacking:
+        notes.add(f"a point instancer without {lacking} is left out")
+        return []
     kinds = np.asarray(instancer.GetProtoIndicesAttr().Get(clock.code) or [], np.int64)
     targets = instancer.GetPrototypesRel().GetForwardedTargets()
     if not len(kinds):
         return []
-    if not targets:
-        raise InputError(f"{where}.prototypes: wanted one or more, got none")
     if kinds.min() < 0 or kinds.max() >= len(targets):
         raise InputError(
             f"{where}.protoIndices: wanted 0 .. {len(targets) - 1}, one of the prototypes, "
@@ -72,6 +74,18 @@ def read_copies(prim: Usd.Prim, clock: Clock, notes: Notes) -> list[Copies]:
         elif len(numbers):
             made.append(Copies(prototype, now[numbers], crowd.of(numbers) if crowd.moves else None))
     return made
+
+
+def _lacking(instancer: UsdGeom.PointInstancer, clock: Clock) -> str:
+    """Names what an instancer lacks that its schema requires; empty: it has all, or no copies."""
+    kinds = instancer.GetProtoIndicesAttr().Get(clock.code)
+    if kinds is None:
+        return "protoIndices"
+    if not len(kinds):
+        return ""
+    if not instancer.GetPrototypesRel().GetForwardedTargets():
+        return "prototypes"
+    return "" if len(instancer.GetPositionsAttr().Get(clock.code) or ()) else "positions"
 
 
 class _Reader:
@@ -97,6 +111,7 @@ class _Reader:
             codes = [_base(starts, now) if starts else now]
             if not flies:
                 codes = [now]
+            if not flies and len(rows) > 1:
                 self._notes.add("copies whose number changes over time: those of one moment rest")
         return self._made(codes, starts if flies else [], turning if spins else [])
 
@@ -165,6 +180,12 @@ class _Reader:
     def _each(self, attribute: Usd.Attribute, code: float, columns: int, default: Any) -> Array:
         """A row for each copy; where there are none, a default, or an error."""
         rows = self._rows(attribute, code, columns)
+        if rows is not None and len(rows) > self._count:
+            self._notes.add(
+                f"{attribute.GetName()} of a point instancer are more than its copies: the first "
+                "ones count"
+            )
+            rows = rows[: self._count]
         if rows is None and default is not None:
             return np.broadcast_to(np.asarray(default, np.float64), (self._count, columns))
         if rows is None or len(rows) != self._count:
