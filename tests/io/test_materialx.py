@@ -91,6 +91,15 @@ def test_bad_xml_is_one_error(data: bytes, said: str) -> None:
     assert said in str(caught.value)
 
 
+@pytest.mark.parametrize("space", [b" ", b"\n\n", b"\t\r\n"])
+def test_white_space_before_the_declaration_is_passed_over(space: bytes) -> None:
+    text = b'<?xml version="1.0"?>\n<materialx version="1.38"/>'
+    Document(space + text, "x.mtlx", Notes())
+    line = 2 + space.count(b"\n")
+    with pytest.raises(dg.InputError, match=rf"XML: line {line}, column 27"):
+        Document(space + text.replace(b"/>", b">"), "x.mtlx", Notes())
+
+
 @pytest.mark.parametrize("value", ["nan, 0, 0", "1, 2", "1, 2, 3, 4", "inf,0,0", "red", ""])
 def test_bad_numbers_name_the_line(value: str) -> None:
     bad = document(

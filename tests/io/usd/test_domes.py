@@ -280,6 +280,14 @@ def test_a_damaged_picture_is_refused(tmp_path: Path) -> None:
         stages.read(stage)
 
 
+def test_a_picture_in_a_format_that_cannot_be_read_is_a_note(tmp_path: Path) -> None:
+    (tmp_path / "sky.ptx").write_bytes(b"Ptex and more")
+    stage = stages.new_stage(tmp_path / "x.usda")
+    _dome(stage).CreateTextureFileAttr(Sdf.AssetPath("./sky.ptx"))
+    assert len(_notes(stage, "a picture of a light in a format that cannot be read")) == 1
+    assert stages.read(stage).environment.color == (1, 1, 1)
+
+
 def test_a_picture_inside_of_a_package(tmp_path: Path) -> None:
     stage = stages.new_stage(tmp_path / "x.usda")
     _pictured(stage)

@@ -458,9 +458,9 @@ def test_a_second_reading_is_equal_and_sees_changes(tmp_path: Path) -> None:
     assert len(dg.load(path).instances) == len(first.instances) + 1
 
 
-@pytest.mark.parametrize("name", ["pictures/none.png", "./pictures/none.png", "none.<UDIM>.png"])
-def test_a_missing_picture_in_the_folder_is_a_note(tmp_path: Path, name: str) -> None:
-    stage = stages.new_stage(tmp_path / "x.usda")
+def _textured(folder: Path, name: str) -> Path:
+    """A card whose colour is a picture."""
+    stage = stages.new_stage(folder / "x.usda")
     card = stages.mesh(stage, "/card")
     texture = UsdShade.Shader.Define(stage, "/M/texture")
     texture.CreateIdAttr("UsdUVTexture")
@@ -472,5 +472,33 @@ def test_a_missing_picture_in_the_folder_is_a_note(tmp_path: Path, name: str) ->
     made = UsdShade.Material.Define(stage, "/M")
     made.CreateSurfaceOutput().ConnectToSource(surface.ConnectableAPI(), "surface")
     UsdShade.MaterialBindingAPI.Apply(card.GetPrim()).Bind(made)
-    notes = dg.load(stages.save(stage)).warnings
+    return stages.save(stage)
+
+
+@pytest.mark.parametrize("name", ["pictures/none.png", "./pictures/none.png", "none.<UDIM>.png"])
+def test_a_missing_picture_in_the_folder_is_a_note(tmp_path: Path, name: str) -> None:
+    notes = dg.load(_textured(tmp_path, name)).warnings
     assert "a texture whose file is missing shows its fallback value (1 use)" in notes
+
+
+@pytest.mark.parametrize("name", ["wood.ptx", "wood.tex", "wood.usda"])
+def test_a_picture_in_a_format_that_cannot_be_read_is_a_note(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_bytes(b"no picture that any reader knows")
+    notes = dg.load(_textured(tmp_path, name)).warnings
+    assert "a texture in a format that cannot be read shows its fallback value (1 use)" in notes
+    assert not any("missing" in note for note in notes)
+
+
+@pytest.mark.parametrize("name", ["wood.png", "wood.exr", "wood.tif"])
+def test_a_damaged_picture_is_one_error(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_bytes(b"no picture that any reader knows")
+    with pytest.raises(dg.InputError, match=rf"{name}: wanted"):
+        dg.load(_textured(tmp_path, name))
+
+
+def test_a_picture_is_known_by_its_content_where_its_suffix_is_not(tmp_path: Path) -> None:
+    stages.picture(tmp_path / "wood.tif", np.full((2, 2, 3), 0.5))
+    (tmp_path / "wood.tif").rename(tmp_path / "wood.tex")
+    scene = dg.load(_textured(tmp_path, "wood.tex"))
+    assert len(scene.textures) == 1
+    assert not any("fallback" in note for note in scene.warnings)

@@ -6,12 +6,15 @@ bounds or read other files.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
 from daguerre.errors import InputError
 from daguerre.files.xml_text import xml_errors
 
+#: White space before the declaration, which XML forbids and other readers of MaterialX pass over.
+_LATE = re.compile(rb"\A(\s+)(<\?xml\b[^>]*\?>)")
 MAX_DEPTH = 64
 MAX_ELEMENTS = 1_000_000
 MAX_BYTES = 64 << 20
@@ -51,7 +54,7 @@ def parse(data: bytes, file: str) -> Element:
         raise InputError(f"{file}: XML: wanted at most {MAX_BYTES} bytes, got {len(data)}")
     reader = _Reader(file)
     with xml_errors(file):
-        reader.parser.Parse(data, True)
+        reader.parser.Parse(_LATE.sub(rb"\2\1", data, count=1), True)
     assert reader.root is not None  # expat refuses a text without an element
     return reader.root
 

@@ -23,7 +23,7 @@ from daguerre.scene.scene import Scene
 
 from .shading import udim
 from .shading.channels import IDENTITY, Plane, Six
-from .shading.picture_bytes import bytes_of, decoded, member, opened_package
+from .shading.picture_bytes import UnknownFormat, bytes_of, decoded, member, opened_package
 
 #: Finds the file of an asset path: ``resolve(place, path)``. The file need not exist; a path that
 #: leaves the folders that a stage may read is an ``InputError`` at ``place``.
@@ -34,6 +34,7 @@ _SHARE = 0.6
 _PACKAGED = re.compile(r"(?P<package>[^\[\]]*)\[(?P<name>[^\[\]]+)\]\Z")
 #: Most pictures that are decoded before anything asks for them.
 _MOST_BEGUN = 64
+_UNKNOWN = "a texture in a format that cannot be read shows its fallback value"
 _MISSING = "a texture whose file is missing shows its fallback value"
 
 
@@ -78,6 +79,7 @@ class Images:
         self.resolve = resolve
         self._notes = notes
         self._pictures: dict[str, Picture | None] = {}
+        self._unknown: set[str] = set()
         self._textures: dict[Any, int] = {}
         self._kept: list[Any] = []  # arrays whose identity is a key
         self._left = _most_bytes()
@@ -85,22 +87,29 @@ class Images:
         self._pool = ThreadPoolExecutor(min(8, os.cpu_count() or 1))
 
     def picture(self, place: str, path: str) -> Picture | None:
-        """Decodes the picture of an asset path; None, and a note: there is no such file.
+        """Decodes the picture of an asset path.
+
+        Returns:
+            The picture; None, and a note: there is no such file, or its format is unknown.
 
         Raises:
-            InputError: The path leaves the stage's folders, or the picture cannot be decoded.
+            InputError: The path leaves the stage's folders, or the picture is damaged.
         """
         if path not in self._pictures:
-            begun = self._begun.pop(path, None)
-            tiled = udim.MARK in path
-            if begun is not None:
-                found = begun.result()
-            else:
-                found = self._tiles(place, path) if tiled else self._one(place, path)
-            self._pictures[path] = self._counted(place, found)
+            try:
+                self._pictures[path] = self._counted(place, self._found(place, path))
+            except UnknownFormat:
+                self._pictures[path] = None
+                self._unknown.add(path)
         if self._pictures[path] is None:
-            self._notes.add(_MISSING)
+            self._notes.add(_UNKNOWN if path in self._unknown else _MISSING)
         return self._pictures[path]
+
+    def _found(self, place: str, path: str) -> Picture | None:
+        begun = self._begun.pop(path, None)
+        if begun is not None:
+            return begun.result()
+        return self._tiles(place, path) if udim.MARK in path else self._one(place, path)
 
     def prefetch(self, places: Mapping[str, str]) -> None:
         """Begins to decode the pictures of asset paths; ``places`` name each, for messages.

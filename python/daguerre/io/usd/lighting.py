@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import UsdLux
 
+from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.motion.values import MAX_TIME, is_dynamic
 from daguerre.scene.light_profile import LightProfile
@@ -25,6 +26,7 @@ from .light_shapes import area, cylinder, disk, rectangle
 from .lights import Lamp, cone_size, times
 from .placing import Placing, Spots
 from .prims import Visit
+from .shading.picture_bytes import is_known
 from .shapes import Solid, ball
 from .shaping import is_shaped, read_profile
 from .stage import Opened
@@ -121,9 +123,19 @@ class Lighting:
         if path is not None and not is_latlong(visit.prim):
             self._notes.add("a dome light whose picture is no latlong panorama has one colour")
             path = None
-        image = None if path is None else read_panorama(path)
+        image = None if path is None else self._panorama(path)
         emission = lamp.emission(1.0, visit.shown)
         self._domes.append(Dome(emission, image, turn_of(visit.prim, spots.still[0])))
+
+    def _panorama(self, path: Path) -> Any:
+        """Picture of a dome; None, with a note, if its format is unknown."""
+        try:
+            return read_panorama(path)
+        except InputError:
+            if is_known(path.name.rstrip("]")):
+                raise
+            self._notes.add("a picture of a light in a format that cannot be read is left out")
+            return None
 
     def _profile(self, lamp: Lamp) -> LightProfile | None:
         """Factor on the light by its direction; None: the same in all directions."""

@@ -27,6 +27,10 @@ from daguerre.io.exr.reader import ExrReader, is_exr, light_names
 _DECODED = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"RIFF", b"\xabKTX")
 
 
+class UnknownFormat(InputError):
+    """Reports a picture of a suffix and a content that no reader knows, such as a Ptex."""
+
+
 def decoded(data: bytes, name: str, where: str) -> NDArray[Any]:
     """Decodes a picture: those of glTF, and every other that OpenImageIO and OpenEXR read.
 
@@ -39,7 +43,8 @@ def decoded(data: bytes, name: str, where: str) -> NDArray[Any]:
         Shape (H, W, 1..4), uint8 or float32.
 
     Raises:
-        InputError: It is no picture, or is damaged or too large.
+        InputError: It is damaged or too large.
+        UnknownFormat: It is no picture, by its name either.
     """
     if data.startswith(_DECODED):
         return images.decode(data, where)
@@ -49,9 +54,19 @@ def decoded(data: bytes, name: str, where: str) -> NDArray[Any]:
             stream.write(data)
         return _other(Path(temporary))
     except InputError as error:
-        raise InputError(str(error).replace(temporary, where)) from None
+        kind = InputError if is_known(name) else UnknownFormat
+        raise kind(str(error).replace(temporary, where)) from None
     finally:
         Path(temporary).unlink(missing_ok=True)
+
+
+def is_known(name: str) -> bool:
+    """Whether a picture has no suffix, or one that a reader knows."""
+    import OpenImageIO as oiio
+
+    suffix = _suffix(name).lower().removeprefix(".")
+    listed = str(oiio.get_string_attribute("extension_list"))
+    return suffix in ("", "ktx2", *re.split("[;:,]", listed))
 
 
 def _suffix(name: str) -> str:
