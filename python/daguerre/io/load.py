@@ -54,5 +54,5 @@ def load(
         raise InputError(f"{path}: strict: wanted no notes, got: {scene.warnings[0]}{more}")
     if not scene.cameras and (camera := frame_everything(scene)) is not None:
         scene.add_camera("framing", camera)
-        scene.note("no camera in the file; 'framing' has everything in view")
+        scene.note("the file has no camera that can be used; 'framing' has everything in view")
     return scene

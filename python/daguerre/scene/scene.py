@@ -515,11 +515,7 @@ class Scene(Value):
         """
         if name is None:
             if self.default_camera is None:
-                where = self.path or "scene"
-                raise InputError(
-                    f"{where}: cameras: wanted one, in the file, by add_camera, or by "
-                    "--position and --look-at"
-                )
+                raise InputError(f"{self.path or 'scene'}: {self._lacking()}")
             name = self.default_camera
         if name not in self.cameras:
             name = self.camera_aliases.get(name, name)
@@ -529,6 +525,15 @@ class Scene(Value):
                 f"{suggest(name, self.cameras, few=True)}"
             )
         return self.cameras[name]
+
+    def _lacking(self) -> str:
+        """Tells what a scene without a camera needs."""
+        if any(instance.shown for instance in self.instances):
+            return "cameras: wanted one, in the file, by add_camera, or by --position and --look-at"
+        return (
+            "wanted visible geometry or a camera, got neither "
+            "(--position and --look-at place a camera)"
+        )
 
 
 def _counted(count: int, name: str) -> str:
