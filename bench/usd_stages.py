@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import resource
 import subprocess
 import sys
@@ -72,6 +73,14 @@ def fate(row: dict[str, Any]) -> str:
     return "rendered" if row["code"] == 0 else "refused"
 
 
+def reason(row: dict[str, Any]) -> str:
+    """Error of a refused stage without places and numbers, so that like ones count as one."""
+    told = row["said"][-1] if row["said"] else ""
+    at = told.find("wanted")
+    words = told[at:] if at >= 0 else told.rpartition(": ")[2]
+    return re.sub(r"/[^\s,)']+", "...", re.sub(r"\d+", "N", words))
+
+
 def main() -> None:
     """Renders the stages of a folder."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -97,6 +106,7 @@ def main() -> None:
                 "fates": Counter(row["fate"] for row in rows),
                 "slowest_s": max((row["cpu_s"] for row in rows), default=0),
                 "largest_mb": max((row["peak_mb"] for row in rows), default=0),
+                "reasons": Counter(reason(row) for row in rows if row["fate"] == "refused"),
                 "not_rendered": [row for row in rows if row["fate"] != "rendered"],
                 "notes": len(notes),
             },
