@@ -36,6 +36,11 @@ def text(numbers: tuple[float, ...]) -> str:
     return ", ".join(map(str, numbers))
 
 
+#: Beginning of a place2d "c" of texture coordinates "u".
+PLACED = '<texcoord name="u" type="vector2"/><place2d name="c" type="vector2">'
+PLACED += in_("texcoord", "u", "vector2")
+
+
 # --- Documents
 
 
@@ -305,6 +310,41 @@ def test_nodes_of_numbers(kind: str, tmp_path: Path) -> None:
     assert read.notes.sentences() == []
 
 
+@pytest.mark.parametrize(
+    ("node", "type_", "inputs", "wanted"),
+    [
+        ("combine2", "color4", in_("in2", "0.5", "float"), (0, 0, 0, 0.5)),
+        ("combine2", "vector4", in_("in1", "3, 4", "vector2"), (3, 4, 0, 0)),
+        ("combine4", "color4", in_("in2", "0.5", "float"), (0, 0.5, 0, 0)),
+        ("convert", "color4", in_("in", "0.5", "float"), (0.5,) * 4),
+        ("convert", "color4", in_("in", "1, 2, 3"), (1, 2, 3, 1)),
+        ("add", "vector3", "", (0, 0, 0)),
+        ("ifequal", "color3", in_("in1", "1, 2, 3"), (1, 2, 3)),
+        ("ifgreater", "color3", in_("in1", "1, 2, 3"), (1, 2, 3)),
+        ("switch", "vector2", in_("in1", "1, 2", "vector2"), (1, 2)),
+        ("switch", "float", in_("in10", "2", "float") + in_("which", "9.5", "float"), (2,)),
+        ("switch", "float", in_("in10", "2", "float") + in_("which", "10", "float"), (0,)),
+        ("rgbtohsv", "color3", in_("in", "-0.5, -0.2, -0.1"), (0, 0, -0.1)),
+        ("smoothstep", "float", in_("in", "2", "float") + in_("low", "1", "float"), (1,)),
+        ("smoothstep", "float", in_("low", "1", "float"), (0,)),
+    ],
+)
+def test_inputs_that_are_missing(
+    node: str, type_: str, inputs: str, wanted: tuple[float, ...], tmp_path: Path
+) -> None:
+    """Each channel by itself, as surfaces take no more than three."""
+    for i, number in enumerate(wanted):
+        source = f'<{node} name="A" type="{type_}">{inputs}</{node}>'
+        index = in_("index", str(i), "integer")
+        last = f'<extract name="e" type="float">{in_("in", "A", type_)}{index}</extract>'
+        last += (
+            f'<add name="N" type="float">{in_("in1", "e", "float")}{in_("in2", "1", "float")}</add>'
+        )
+        read = Read(shining(source + last), tmp_path)
+        assert read.kind.emissive == pytest.approx((1 + number,) * 3), i
+        assert read.notes.sentences() == []
+
+
 @pytest.mark.parametrize("kind", NODES)
 def test_nodes_of_pictures(kind: str, tmp_path: Path) -> None:
     pixels = np.random.default_rng(3).uniform(0.1, 0.9, (2, 3, 3)).astype(np.float32)
@@ -413,10 +453,10 @@ def test_a_budget_limits_computed_pictures(tmp_path: Path) -> None:
 
 def test_pictures_that_lie_differently_are_combined_by_the_mean(tmp_path: Path) -> None:
     write(tmp_path / "a.exr", np.array([[[0.2] * 3, [0.6] * 3]], np.float32))
-    place = f'<place2d name="p" type="vector2">{in_("scale", "0.5, 0.5", "vector2")}</place2d>'
+    place = f"{PLACED}{in_('scale', '0.5, 0.5', 'vector2')}</place2d>"
     file = '<input name="file" type="filename" value="a.exr"/>'
     nodes = f"""{place}<image name="A" type="color3">{file}</image>
-      <image name="B" type="color3">{file}{in_("texcoord", "p", "vector2")}</image>
+      <image name="B" type="color3">{file}{in_("texcoord", "c", "vector2")}</image>
       <multiply name="N" type="color3">{in_("in1", "A")}{in_("in2", "B")}</multiply>"""
     read = Read(shining(nodes), tmp_path)
     assert color_at(read, "emissive", 0.75, 0.5) == pytest.approx((0.24,) * 3)
@@ -434,18 +474,27 @@ CORNERS = np.array([[[10], [20]], [[30], [40]]], np.uint8)  # top left, top righ
         ("", lambda s, t: (s, t)),
         ('<texcoord name="c" type="vector2"/>', lambda s, t: (s, t)),
         (
-            f'<place2d name="c" type="vector2">{in_("offset", "0.25, 0.5", "vector2")}'
+            f"{PLACED}{in_('offset', '0.25, 0.5', 'vector2')}"
             f"{in_('scale', '2, 0.5', 'vector2')}{in_('pivot', '0.5, 0.25', 'vector2')}</place2d>",
             lambda s, t: ((s - 0.5) / 2 - 0.25 + 0.5, (t - 0.25) / 0.5 - 0.5 + 0.25),
         ),
         (
-            f'<place2d name="c" type="vector2">{in_("offset", "0.25, 0.5", "vector2")}'
+            f"{PLACED}{in_('offset', '0.25, 0.5', 'vector2')}"
             f"{in_('scale', '2, 0.5', 'vector2')}{in_('operationorder', '1', 'integer')}</place2d>",
             lambda s, t: ((s - 0.25) / 2, (t - 0.5) / 0.5),
         ),
         (  # clockwise: (1, 0) goes to (0, -1)
-            f'<place2d name="c" type="vector2">{in_("rotate", "90", "float")}</place2d>',
+            f"{PLACED}{in_('rotate', '90', 'float')}</place2d>",
             lambda s, t: (t, -s),
+        ),
+        (
+            f'{PLACED}<input name="rotate" type="float" value="1.5707963267948966" '
+            'unittype="angle" unit="radian"/></place2d>',
+            lambda s, t: (t, -s),
+        ),
+        (  # without coordinates: those of the pivot
+            f'<place2d name="c" type="vector2">{in_("offset", "0.3, 0.6", "vector2")}</place2d>',
+            lambda s, t: (-0.3, -0.6),
         ),
         (
             '<texcoord name="u" type="vector2"/><multiply name="c" type="vector2">'
@@ -468,6 +517,42 @@ def test_coordinates(
             wanted = CORNERS[1 - int(np.floor(2 * y)) % 2, int(np.floor(2 * x)) % 2, 0] / 255
             assert color_at(read, "emissive", s, t)[0] == pytest.approx(wanted)
     assert read.notes.sentences() == []
+
+
+@pytest.mark.parametrize("degrees", [0, 30])
+@pytest.mark.parametrize("kind", ["gltf_image", "gltf_colorimage"])
+def test_pictures_of_gltf_lie_as_in_gltf(kind: str, degrees: float, tmp_path: Path) -> None:
+    """KHR_texture_transform: scaled, turned, then moved, with (0, 0) at the top left."""
+    write(tmp_path / "a.png", CORNERS)
+    inputs = '<input name="file" type="filename" value="a.png"/>'
+    inputs += in_("scale", "2, 3", "vector2") + in_("offset", "0.25, 0.5", "vector2")
+    inputs += in_("rotate", str(degrees), "float")
+    type_ = "multioutput" if kind == "gltf_colorimage" else "color3"
+    output = "outcolor" if kind == "gltf_colorimage" else ""
+    image = f'<{kind} name="N" type="{type_}">{inputs}</{kind}>'
+    slot = Read(shining(image, output=output), tmp_path).kind.emissive_texture
+    assert slot is not None
+    cosine, sine = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    wanted = (2 * cosine, 3 * sine, 0.25, -2 * sine, 3 * cosine, 0.5)
+    assert slot.transform == pytest.approx(wanted)
+
+
+def test_pictures_of_gltf_are_tinted(tmp_path: Path) -> None:
+    write(tmp_path / "a.png", CORNERS)
+    inputs = '<input name="file" type="filename" value="a.png"/>'
+    inputs += in_("color", "0.5, 0.5, 0.5, 1", "color4")
+    inputs += in_("geomcolor", "0.2, 0.4, 0.8, 1", "color4")
+    image = f'<gltf_colorimage name="N" type="multioutput">{inputs}</gltf_colorimage>'
+    read = Read(shining(image, output="outcolor"), tmp_path)
+    assert read.kind.emissive == pytest.approx((0.1, 0.2, 0.4))
+    vertices = inputs.replace('value="0.2, 0.4, 0.8, 1"', 'nodename="v"')
+    nodes = f"""<geomcolor name="v" type="color4"/>
+      <gltf_colorimage name="N" type="multioutput">{vertices}</gltf_colorimage>"""
+    read = Read(shining(nodes, output="outcolor"), tmp_path)
+    assert read.kind.emissive == (0.5, 0.5, 0.5)
+    assert read.notes.sentences() == [
+        "colours of vertices that tint a picture are left out (1 use)"
+    ]
 
 
 @pytest.mark.parametrize("mode", ["periodic", "clamp", "mirror", "constant"])

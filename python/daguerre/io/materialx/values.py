@@ -1,4 +1,4 @@
-"""Values of MaterialX's attributes: numbers, flags, texts, and lengths in units.
+"""Values of MaterialX's attributes: numbers, flags, texts, and lengths and angles in units.
 
 Source: MaterialX specification 1.39, chapters "Data Types" and "Units".
 """
@@ -13,10 +13,14 @@ from daguerre.files.json_item import short
 from .elements import Element
 from .graph import SIZES
 
-#: Units of length, m.
-METRES = {
+#: Units of length, m, and of angle, degrees.
+_METRES = {
     **{"nanometer": 1e-9, "micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "meter": 1.0},
     **{"kilometer": 1e3, "inch": 0.0254, "foot": 0.3048, "yard": 0.9144, "mile": 1609.344},
+}
+_UNITS: dict[str, dict[str, float]] = {
+    "distance": _METRES,
+    "angle": {"degree": 1.0, "radian": math.degrees(1.0)},
 }
 _FLAGS = {"true": 1.0, "false": 0.0}
 
@@ -38,7 +42,7 @@ def value_of(element: Element, text: str, file: str) -> tuple[float, ...] | str:
     found = [number for number in numbers if number is not None]
     if len(found) != size or len(numbers) != size:
         fail(element, file, f"value: wanted {size} finite numbers, got {short(text)}")
-    scale = METRES.get(element.get("unit"), 1.0) if element.get("unittype") == "distance" else 1.0
+    scale = _UNITS.get(element.get("unittype"), {}).get(element.get("unit"), 1.0)
     return tuple(number * scale for number in found)
 
 

@@ -110,7 +110,7 @@ def uv_sets(graph: Graph) -> tuple[str, ...]:
     for name in names_before(graph, preview_surface.IGNORED):
         node = graph.nodes[name]
         placed = {"st", "texcoord"} & node.inputs.keys()
-        if node.kind in (*_IMAGES, "place2d") and not placed:
+        if node.kind in _IMAGES and not placed:
             found[_DEFAULT_SET] = None
         elif node.kind == "texcoord":
             index = node.inputs.get("index")

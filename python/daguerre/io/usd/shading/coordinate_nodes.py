@@ -1,12 +1,13 @@
 """Nodes of texture coordinates and of primvars.
 
 Source: OpenUSD, "UsdPreviewSurface Specification"; MaterialX specification 1.39, "Geometric
-Nodes", and the graphs of ``place2d`` and ``tiledimage`` in its standard library.
+Nodes", and the graphs of ``place2d``, ``tiledimage`` and ``gltf_image`` in its libraries.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 
 from daguerre.files.json_item import short
 from daguerre.io.materialx.graph import SIZES
@@ -21,7 +22,7 @@ _OPACITIES = ("displayOpacity",)
 def texture_coordinates(given: Arguments) -> Value:
     """MaterialX texcoord: set 0 is ``st``, the others are ``st1``, ``st2``, ..."""
     index = int(given.number("index", 0.0))
-    return coordinates(f"st{index}" if index else "st")
+    return fit(coordinates(f"st{index}" if index else "st"), max(given.size, 2))
 
 
 def geometry_color(given: Arguments) -> Value:
@@ -53,9 +54,28 @@ def usd_transform(given: Arguments) -> Value:
     return arithmetic.add(turned, given.numbers("translation", (0.0, 0.0)))
 
 
+@dataclass(frozen=True)
+class _Placement:
+    """Inputs of place2d.
+
+    Attributes:
+        pivot: Point about which a picture is scaled and turned.
+        scale: Size of the picture along both axes.
+        degrees: Angle by which coordinates turn clockwise.
+        offset: Shift of the picture.
+        scale_first: Whether coordinates are scaled, turned, then shifted; else the reverse.
+    """
+
+    pivot: tuple[float, ...]
+    scale: tuple[float, ...]
+    degrees: float
+    offset: tuple[float, ...]
+    scale_first: bool
+
+
 def place(given: Arguments) -> Value:
     """MaterialX place2d."""
-    return placed(given, given.value("texcoord", coordinates("st")), (0.0, 0.0))
+    return _placed(given, given.value("texcoord", (0.0, 0.0)), _placement(given, (0.0, 0.0)))
 
 
 def rotate(given: Arguments) -> Value:
@@ -63,20 +83,28 @@ def rotate(given: Arguments) -> Value:
     return _turned(given, given.value("in", (0.0, 0.0)), given.number("amount", 0.0))
 
 
-def placed(given: Arguments, uv: Value, pivot: tuple[float, float], order: float = 0.0) -> Value:
-    """Coordinates after place2d: about the pivot, in one of two orders."""
-    arithmetic = given.context.math
-    middle = given.numbers("pivot", pivot)
-    scale, offset = given.numbers("scale", (1.0, 1.0)), given.numbers("offset", (0.0, 0.0))
-    degrees = given.number("rotate", 0.0)
-    uv = arithmetic.subtract(fit(uv, 2), middle)
-    if given.number("operationorder", order) == 0.0:
-        uv = _turned(given, arithmetic.divide(uv, scale), degrees)
-        uv = arithmetic.subtract(uv, offset)
-    else:
-        uv = _turned(given, arithmetic.subtract(uv, offset), degrees)
-        uv = arithmetic.divide(uv, scale)
-    return arithmetic.add(uv, middle)
+def placed_by_gltf(given: Arguments, *, ordered: bool = True) -> Value:
+    """Coordinates of the glTF nodes.
+
+    They scale and turn coordinates instead of the picture, so that their graphs pass the inverse
+    of each input to place2d; offsets are those of coordinates with (0, 0) at the top left. The
+    default order is that of the definitions, which is another for colours with opacity.
+
+    Args:
+        given: Inputs of the node.
+        ordered: Whether the node passes its ``operationorder`` on; else coordinates are scaled
+            first.
+    """
+    found = _placement(given, (0.0, 1.0), 1.0 if given.node.type == "color4" else 0.0)
+    across, up = found.offset
+    inverse = replace(
+        found,
+        scale=tuple(1.0 / size if size else 0.0 for size in found.scale),
+        degrees=-found.degrees,
+        offset=(-across, up),
+        scale_first=found.scale_first or not ordered,
+    )
+    return _placed(given, given.given("texcoord") or coordinates("st"), inverse)
 
 
 def tiled(given: Arguments, uv: Value) -> Value:
@@ -86,6 +114,29 @@ def tiled(given: Arguments, uv: Value) -> Value:
     uv = arithmetic.subtract(uv, given.numbers("uvoffset", (0.0, 0.0)))
     uv = arithmetic.divide(uv, given.numbers("realworldimagesize", (1.0, 1.0)))
     return arithmetic.multiply(uv, given.numbers("realworldtilesize", (1.0, 1.0)))
+
+
+def _placement(given: Arguments, pivot: tuple[float, float], order: float = 0.0) -> _Placement:
+    return _Placement(
+        given.numbers("pivot", pivot),
+        given.numbers("scale", (1.0, 1.0)),
+        given.number("rotate", 0.0),
+        given.numbers("offset", (0.0, 0.0)),
+        given.number("operationorder", order) < 1.0,
+    )
+
+
+def _placed(given: Arguments, uv: Value, how: _Placement) -> Value:
+    """Coordinates after place2d."""
+    arithmetic = given.context.math
+    uv = arithmetic.subtract(fit(uv, 2), how.pivot)
+    if how.scale_first:
+        uv = _turned(given, arithmetic.divide(uv, how.scale), how.degrees)
+        uv = arithmetic.subtract(uv, how.offset)
+    else:
+        uv = _turned(given, arithmetic.subtract(uv, how.offset), how.degrees)
+        uv = arithmetic.divide(uv, how.scale)
+    return arithmetic.add(uv, how.pivot)
 
 
 def _turned(given: Arguments, uv: Value, degrees: float) -> Value:

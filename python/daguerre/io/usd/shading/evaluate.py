@@ -231,10 +231,17 @@ class Evaluator:
             name: self.linked(one) for name, one in node.inputs.items() if isinstance(one, Link)
         }
         try:
-            return operation(Arguments(node, self._context, values))
+            return _filled(operation(Arguments(node, self._context, values)), node)
         except UnsupportedError as error:
             self._context.notes.add(f"shading: {error} is not supported")
             return None
+
+
+def _filled(found: Outputs, node: Node) -> Outputs:
+    """Outputs of a node; a number is repeated in all channels of its type."""
+    if isinstance(found, tuple) and len(found) == 1:
+        return found * SIZES.get(node.type, 1)
+    return found
 
 
 class _Lazy(Mapping[str, "Value | None"]):

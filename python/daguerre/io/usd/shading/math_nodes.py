@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .channels import Channel, UnsupportedError, Value, broadcast, fit
+from .channels import Channel, UnsupportedError, Value, broadcast
 from .evaluate import Arguments, Operation
 
 #: Weights of red, green and blue in the luminance of linear Rec.709: the defaults of MaterialX.
@@ -90,14 +90,13 @@ def remap(given: Arguments) -> Value:
 
 def smoothstep(given: Arguments) -> Value:
     """Rises smoothly from 0 to 1 between two values."""
-    arithmetic = given.context.math
-    low, high = given.value("low", 0.0), given.value("high", 1.0)
-    share = arithmetic.fraction(
-        arithmetic.divide(
-            arithmetic.subtract(given.value("in", 0.0), low), arithmetic.subtract(high, low)
-        )
-    )
-    return arithmetic.each(lambda s: s * s * (3 - 2 * s), share)
+    values = given.value("in", 0.0), given.value("low", 0.0), given.value("high", 1.0)
+    return given.context.math.each(_smooth, *values)
+
+
+def _smooth(value: Any, low: Any, high: Any) -> Any:
+    share = (value - low) / np.where(high == low, 1, high - low)
+    return np.where(value >= high, 1, np.where(value <= low, 0, share * share * (3 - 2 * share)))
 
 
 def contrast(given: Arguments) -> Value:
@@ -135,16 +134,20 @@ def of_three(function: Callable[..., Any]) -> Operation:
 
 
 def hsv_from_rgb(r: Any, g: Any, b: Any) -> tuple[Any, Any, Any]:
-    """Hue in turns, saturation and value (Smith 1978, "Color gamut transform pairs")."""
+    """Hue in turns, saturation and value (Smith 1978, "Color gamut transform pairs").
+
+    Colours without a channel above 0 have neither hue nor saturation.
+    """
     high, low = np.maximum(np.maximum(r, g), b), np.minimum(np.minimum(r, g), b)
-    span = high - low
+    span = np.where(high > 0, high - low, 0)
     safe = np.where(span == 0, 1, span)
     sixths = np.where(
         high == r,
         (g - b) / safe,
         np.where(high == g, 2 + (b - r) / safe, 4 + (r - g) / safe),
     )
-    return sixths / 6 % 1.0, np.where(high == 0, 0, span / np.where(high == 0, 1, high)), high
+    hue = np.where(span == 0, 0, sixths / 6 % 1.0)
+    return hue, span / np.where(span == 0, 1, high), high
 
 
 def rgb_from_hsv(h: Any, s: Any, v: Any) -> tuple[Any, Any, Any]:
@@ -178,19 +181,19 @@ def normalize(given: Arguments) -> Value:
 
 
 def combine(given: Arguments) -> Value:
-    """Joins the channels of up to four inputs."""
-    found: Value = ()
-    for name in ("in1", "in2", "in3", "in4"):
-        if name in given.node.inputs:
-            found += given.value(name, 0.0)
-        elif len(found) < given.size and name != "in4":
-            found += (0.0,)
-    return _typed(given, found)
+    """Joins the channels of two to four inputs; those that are missing share the rest as 0."""
+    names = ("in1", "in2", "in3", "in4")[: int(given.node.kind[-1])]
+    parts = [given.given(name) for name in names]
+    missing = sum(part is None for part in parts)
+    rest = given.size - sum(len(part) for part in parts if part is not None)
+    zeros = (0.0,) * max(rest // max(missing, 1), 1)
+    found = [zeros if part is None else part for part in parts]
+    return _typed(given, tuple(channel for part in found for channel in part))
 
 
 def separate(given: Arguments) -> Mapping[str, Value]:
     """Each channel by its letters."""
-    found = given.value("in", 0.0)
+    found = broadcast(given.value("in", 0.0), int(given.node.kind[-1]))
     names = {}
     for letter, index in _LETTERS.items():
         if index < len(found):
@@ -199,8 +202,8 @@ def separate(given: Arguments) -> Mapping[str, Value]:
 
 
 def extract(given: Arguments) -> Value:
-    """One channel by its number."""
-    found, index = given.value("in", 0.0), int(given.number("index", 0.0))
+    """One channel by its number; all of a missing value are 0."""
+    found, index = given.given("in") or (0.0,) * 4, int(given.number("index", 0.0))
     if not 0 <= index < len(found):
         raise UnsupportedError(f"extract: channel {index} of {len(found)}")
     return (found[index],)
@@ -220,11 +223,11 @@ def swizzle(given: Arguments) -> Value:
     return _typed(given, tuple(chosen) or (0.0,))
 
 
-def compared(test: Callable[[Any, Any], Any]) -> Operation:
+def compared(test: Callable[[Any, Any], Any], first: float = 1.0) -> Operation:
     """Node that chooses in1 where a test of value1 and value2 holds, else in2."""
 
     def apply(given: Arguments) -> Value:
-        a, b = given.value("value1", 1.0), given.value("value2", 0.0)
+        a, b = given.value("value1", first), given.value("value2", 0.0)
         yes, no = given.value("in1", 0.0), given.value("in2", 0.0)
         size = max(len(yes), len(no))
         share = given.context.math.each(lambda x, y: np.where(test(x, y), 1.0, 0.0), a, b)
@@ -234,15 +237,16 @@ def compared(test: Callable[[Any, Any], Any]) -> Operation:
 
 
 def switch(given: Arguments) -> Value:
-    """One of the inputs in1, in2, ... by its number."""
-    index = int(min(max(given.number("which", 0.0), 0.0), 9.0))
-    return _typed(given, given.value(f"in{index + 1}", 0.0))
+    """One of the inputs in1 to in10 by its number; 0 beyond the last."""
+    index = int(min(max(given.number("which", 0.0), 0.0), 10.0))
+    return _typed(given, given.value(f"in{index + 1}", 0.0) if index < 10 else (0.0,))
 
 
 def _color(given: Arguments) -> Value:
     """Input of a colour, with opacity if the node has it."""
-    return fit(given.value("in", (0.0, 0.0, 0.0)), 4 if given.size == 4 else 3)
+    return broadcast(given.value("in", 0.0), 4 if given.size == 4 else 3)
 
 
 def _typed(given: Arguments, value: Value) -> Value:
-    return fit(value, given.size) if given.size else value
+    """Value with as many channels as the output; a number is repeated, in opacity too."""
+    return broadcast(value, given.size) if given.size else value

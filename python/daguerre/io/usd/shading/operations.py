@@ -77,6 +77,6 @@ OPERATIONS: dict[str, Operation] = {
     "swizzle": math_nodes.swizzle,
     "ifgreater": math_nodes.compared(lambda a, b: a > b),
     "ifgreatereq": math_nodes.compared(lambda a, b: a >= b),
-    "ifequal": math_nodes.compared(lambda a, b: a == b),
+    "ifequal": math_nodes.compared(lambda a, b: a == b, first=0.0),
     "switch": math_nodes.switch,
 }

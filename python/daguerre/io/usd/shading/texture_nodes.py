@@ -24,6 +24,7 @@ from .channels import (
     Texel,
     UnsupportedError,
     Value,
+    VertexColor,
     broadcast,
     coordinates,
     fit,
@@ -32,7 +33,7 @@ from .channels import (
     Mapping as Lie,
 )
 from .color_spaces import Encoding
-from .coordinate_nodes import placed, tiled
+from .coordinate_nodes import placed_by_gltf, tiled
 from .evaluate import Arguments, in_rec709, known_encoding
 
 #: Wrapping by the names of USD and MaterialX. Pictures have no data on their wrapping that
@@ -87,23 +88,29 @@ def tiled_image(given: Arguments) -> Value:
 
 def gltf_image(given: Arguments) -> Value:
     """MaterialX gltf_image: a picture with its placement, times a factor."""
-    found = _image(given, placed(given, given.given("texcoord") or coordinates("st"), (0.0, 1.0)))
+    found = _image(given, placed_by_gltf(given))
     factor = given.given("factor")
     return found if factor is None else given.context.math.multiply(found, factor)
 
 
 def gltf_color_image(given: Arguments) -> Mapping[str, Value]:
-    """MaterialX gltf_colorimage: colour and opacity times ``color``."""
-    uv = placed(given, given.given("texcoord") or coordinates("st"), (0.0, 1.0), order=1.0)
-    found = _image(replace(given, node=replace(given.node, type="color4")), uv)
-    found = given.context.math.multiply(found, given.value("color", (1.0,) * 4))
+    """MaterialX gltf_colorimage: colour and opacity times ``color`` and ``geomcolor``."""
+    arithmetic, white = given.context.math, (1.0,) * 4
+    typed = replace(given, node=replace(given.node, type="color4"))
+    found = _image(typed, placed_by_gltf(given, ordered=False))
+    found = arithmetic.multiply(found, given.value("color", white))
+    tint = given.value("geomcolor", white)
+    if any(isinstance(channel, VertexColor) for channel in tint):
+        given.context.notes.add("colours of vertices that tint a picture are left out")
+    else:
+        found = arithmetic.multiply(found, tint)
     return {"outcolor": found[:3], "outa": found[3:]}
 
 
 def gltf_normal_map(given: Arguments) -> Value:
     """MaterialX gltf_normalmap: a picture of normals."""
-    uv = placed(given, given.given("texcoord") or coordinates("st"), (0.0, 1.0))
-    found = _image(replace(given, node=replace(given.node, type="vector3")), uv)
+    typed = replace(given, node=replace(given.node, type="vector3"))
+    found = _image(typed, placed_by_gltf(given), (0.5, 0.5, 1.0))
     return decoded_normal(given, found, 1.0)
 
 
@@ -122,11 +129,11 @@ def decoded_normal(given: Arguments, encoded: Value, scale: float) -> Value:
     return arithmetic.add(arithmetic.multiply(fit(encoded, 3), factor), offset)
 
 
-def _image(given: Arguments, uv: Value) -> Value:
+def _image(given: Arguments, uv: Value, plain: Value = (0.0,)) -> Value:
     size = given.size or 3
     wraps = (given.text("uaddressmode", "periodic"), given.text("vaddressmode", "periodic"))
     filter = _FILTERS.get(given.text("filtertype", "linear"), "linear")
-    default = broadcast(given.value("default", 0.0), size)
+    default = broadcast(given.value("default", plain), size)
     file = given.node.inputs.get("file")
     space = file.space if isinstance(file, Constant) else ""
     colored = given.node.type in ("color3", "color4")
