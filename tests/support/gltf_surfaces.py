@@ -1,4 +1,4 @@
-"""Materials of glTF with the look of a stage's: standard_surface of ``.mtlx`` files, and plain ones.
+"""Materials of a stage as those of glTF: standard_surface of ``.mtlx`` files, and constants.
 
 The package ``MaterialX`` reads the documents. An input without a counterpart in glTF is an error.
 """

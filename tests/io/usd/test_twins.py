@@ -25,7 +25,7 @@ _SHARED = Path(__file__).resolve().parents[4] / "shared" / "data"
 CHESS = Path(
     os.environ.get("DAGUERRE_CHESS_SET") or _SHARED / "OpenChessSet" / "chess_set.usda"
 ).resolve()
-_SCATTERED = "subsurface scattering is shown as diffuse light of its colour"
+_SCATTERED = "subsurface scattering is shown as diffuse light of its colour (4 uses)"
 
 _LOOKS = """<?xml version="1.0"?>
 <materialx version="1.38" colorspace="lin_rec709">
