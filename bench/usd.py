@@ -2,8 +2,8 @@
 
 ``open_s`` is USD's own opening of the stage, in a process of its own; ``picture_s`` is the whole
 of ``daguerre render`` at 960 x 540, 1 spp, from launch to the file on disk; ``beyond_s`` is the
-difference. ``copies_s`` is ``dg.load`` of the instancer. Medians of runs, wall time. The result is
-JSON.
+difference. ``copies_s`` is ``dg.load`` of the instancer, ``moving_s`` that of one whose copies have
+two samples. Medians of runs, wall time. The result is JSON.
 
     python bench/usd.py [--chess OpenChessSet/chess_set.usda] [--runs 5]
 """
@@ -39,8 +39,8 @@ def median(act: Callable[[], object], runs: int) -> float:
     return round(statistics.median(times), 2)
 
 
-def crowd(path: Path) -> Path:
-    """Writes a stage of many copies of a cube."""
+def crowd(path: Path, *, moving: bool = False) -> Path:
+    """Writes a stage of many copies of a cube, at rest or with positions at two times."""
     stage = Usd.Stage.CreateNew(str(path))
     made = UsdGeom.PointInstancer.Define(stage, "/crowd")
     UsdGeom.Cube.Define(stage, "/crowd/cube")
@@ -50,7 +50,9 @@ def crowd(path: Path) -> Path:
     turns /= np.linalg.norm(turns, axis=1, keepdims=True)
     made.CreateProtoIndicesAttr(Vt.IntArray([0] * _COPIES))
     places = np.ascontiguousarray(rng.uniform(-900, 900, (_COPIES, 3)), np.float32)
-    made.CreatePositionsAttr(Vt.Vec3fArray.FromNumpy(places))
+    positions = made.CreatePositionsAttr(Vt.Vec3fArray.FromNumpy(places))
+    for code in (0, 1) if moving else ():
+        positions.Set(Vt.Vec3fArray.FromNumpy(places + np.float32(code)), code)
     made.CreateOrientationsAttr(Vt.QuathArray([Gf.Quath(*map(float, turn)) for turn in turns]))
     stage.GetRootLayer().Save()
     return path
@@ -65,7 +67,9 @@ def main() -> None:
     found: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as folder:
         stage = crowd(Path(folder) / "crowd.usdc")
+        moving = crowd(Path(folder) / "moving.usdc", moving=True)
         found["copies_s"] = median(lambda: dg.load(stage), given.runs)
+        found["moving_s"] = median(lambda: dg.load(moving), given.runs)
         if given.chess is not None:
             command = [sys.executable, "-m", "daguerre", "render", str(given.chess)]
             command += ["--res", "960x540", "--spp", "1", "--sky", "1,1,1", "--quiet"]

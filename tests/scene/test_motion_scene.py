@@ -49,6 +49,36 @@ def test_an_instance_moves_and_hides():
     assert later.motion is scene.motion
 
 
+def test_many_instances_move():
+    scene = dg.Scene(time=0.5)
+    mesh, paint = scene.add_mesh(CORNERS, FACES), scene.add_material(dg.Diffuse())
+    scene.add_instance(mesh, paint)
+    paths = [slide(0, 2), slide(4, 0)]
+    now = np.stack([path.at(0.5) for path in paths])
+    scene.add_instances(mesh, paint, now, name="pair", motions=paths)
+    assert scene.nodes["pair"] == [1, 2]
+    assert scene.motion.instances == {1: paths[0], 2: paths[1]}
+    assert [i.transform[0, 3] for i in scene.instances] == [0, 1, 2]
+    assert [i.transform[0, 3] for i in scene.at(1).instances] == [0, 2, 0]
+    for wrong, got in ((paths[:1], "2 values over time, got 1"), (3, "2 values over time, got 3")):
+        with pytest.raises(dg.InputError, match=f"motions: wanted {got}"):
+            scene.add_instances(mesh, paint, now, motions=wrong)
+    with pytest.raises(dg.InputError, match=r"motions\[1\]: wanted a value over time, got 7"):
+        scene.add_instances(mesh, paint, now, motions=[paths[0], 7])
+    assert len(scene.instances) == 3
+
+
+def test_nodes_group_any_number_of_instances():
+    scene = dg.Scene()
+    scene.group_instances("all", range(200_001))
+    scene.group_instances("some", [3, 1])
+    assert scene.nodes["all"] == list(range(200_001))
+    assert scene.nodes["some"] == [3, 1]
+    for wrong in ([0.5], [-1], "abc", None, 3.5):
+        with pytest.raises(dg.InputError, match="node 'x': instances: wanted"):
+            scene.group_instances("x", wrong)
+
+
 def test_a_scene_in_which_nothing_moves():
     scene = dg.Scene()
     scene.add_instance(scene.add_mesh(CORNERS, FACES), dg.Diffuse())

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from daguerre.camera.camera import Camera
-from daguerre.checks import as_readonly, matrix, short, to_numbers
+from daguerre.checks import MAX_NUMBERS, as_readonly, matrix, short, to_numbers
 from daguerre.checks import color as check_color
 from daguerre.checks import number as check_number
 from daguerre.doors import guarded
@@ -38,9 +38,13 @@ from .node_names import find_node
 from .parts import Curves, Environment, Instance, Mesh, Plate, Texture, vertices_of
 from .point_cache import PointCache, steps_of
 from .polygon_mesh import Over, mesh_of_polygons, polygons_of
+from .subdivision.rules import integers
 
 
-@guarded(arrays=False, but=("camera", "light", "material", "mesh", "shown", "steps"))
+@guarded(
+    arrays=False,
+    but=("camera", "instances", "light", "material", "mesh", "motions", "shown", "steps"),
+)
 @dataclass(eq=False)
 class Scene(Value):
     """A scene: meshes, materials, lights, cameras and environment.
@@ -142,8 +146,13 @@ class Scene(Value):
             self.motion.node_positions[name] = motion
 
     def group_instances(self, name: str, instances: Sequence[int]) -> None:
-        """Sets the instances of a node: its own and its descendants'."""
-        self.nodes[name] = list(instances)
+        """Sets the instances of a node: its own and its descendants'; there may be a million.
+
+        Raises:
+            InputError: They are no whole numbers of at least 0.
+        """
+        found = integers(instances, f"node {name!r}", "instances", MAX_NUMBERS)
+        self.nodes[name] = found.reshape(-1).tolist()
 
     def set_catcher(self, node: str, effects: str | Sequence[str] = EFFECTS) -> None:
         """Makes the meshes of a node and its descendants catchers: stand-ins for the plate.
@@ -392,7 +401,13 @@ class Scene(Value):
         return index
 
     def add_instances(
-        self, mesh: int, material: int, transforms: NDArray[np.float64], *, name: str = ""
+        self,
+        mesh: int,
+        material: int,
+        transforms: NDArray[np.float64],
+        *,
+        name: str = "",
+        motions: Sequence[Dynamic] | None = None,
     ) -> None:
         """Places a mesh in the world many times, with one check for all: there may be a million.
 
@@ -401,9 +416,12 @@ class Scene(Value):
             material: Index from ``add_material``.
             transforms: World from local, shape (N, 4, 4).
             name: Name of all of them, as in :meth:`add_instance`.
+            motions: Each transform over time, N values; ``transforms`` then are their states at the
+                scene's time.
 
         Raises:
-            InputError: No such mesh or material, or a transform is not a finite matrix.
+            InputError: No such mesh or material, a transform is not a finite matrix, or the number
+                of motions is another.
         """
         where = f"instances {name or len(self.instances)!r}"
         mesh = self._index(mesh, len(self.meshes), f"{where}: mesh")
@@ -414,8 +432,10 @@ class Scene(Value):
                 f"{where}: transforms: wanted finite numbers of shape (N, 4, 4), got others of "
                 f"shape {worlds.shape}"
             )
+        over = _motions(motions, len(worlds), where)
         first = len(self.instances)
         self.instances.extend(Instance(mesh, material, world, name) for world in worlds)
+        self.motion.instances.update(enumerate(over, first))
         if name:
             self.nodes.setdefault(name, []).extend(range(first, len(self.instances)))
 
@@ -559,6 +579,25 @@ def _are_keys(transform: Any) -> bool:
             for key in transform
         )
     )
+
+
+def _motions(given: Any, count: int, where: str) -> Sequence[Dynamic]:
+    """Checks values over time, as many as transforms; none if None is given.
+
+    Raises:
+        InputError: Others.
+    """
+    if given is None:
+        return ()
+    if not isinstance(given, list | tuple) or len(given) != count:
+        got = len(given) if isinstance(given, list | tuple) else short(given)
+        raise InputError(f"{where}: motions: wanted {count} values over time, got {got}")
+    odd = next((i for i, motion in enumerate(given) if not is_dynamic(motion)), None)
+    if odd is not None:
+        raise InputError(
+            f"{where}: motions[{odd}]: wanted a value over time, got {short(given[odd])}"
+        )
+    return given
 
 
 def _panorama(image: ArrayLike) -> NDArray[np.float32]:

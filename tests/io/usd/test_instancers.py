@@ -323,17 +323,25 @@ def test_instancers_nested_too_deep_are_refused(tmp_path: Path) -> None:
         dg.load(_nested(tmp_path / "x.usda", 40, 1))
 
 
-def test_many_copies_load_fast(tmp_path: Path) -> None:
+@pytest.mark.parametrize("moving", [False, True])
+def test_many_copies_load_fast(tmp_path: Path, moving: bool) -> None:
     count = 100_000
     stage = stages.new_stage(tmp_path / "x.usdc")
     made = stages.instancer(stage, "/i", np.random.default_rng(0).normal(size=(count, 3)))
     made.CreateOrientationsAttr(Vt.QuathArray([Gf.Quath(0.6, 0, 0.8, 0)] * count))
     made.CreateScalesAttr(Vt.Vec3fArray([Gf.Vec3f(0.01)] * count))
+    if moving:
+        made.GetPositionsAttr().Set(made.GetPositionsAttr().Get(), 0)
+        made.GetPositionsAttr().Set(Vt.Vec3fArray([Gf.Vec3f(1)] * count), 24)
     path = stages.save(stage)
     begin = time.perf_counter()
-    scene = dg.load(path)
+    scene = dg.load(path, time=0.5)
     assert time.perf_counter() - begin < 6  # 1.5 s on a machine that does nothing else
     assert len(scene.instances) == count
+    assert len(scene.motion.instances) == count * moving
+    for i in (0, 777, count - 1) if moving else ():
+        shown = scene.instances[i].transform
+        assert np.allclose(shown, scene.motion.instances[i].at(0.5), rtol=0, atol=1e-12)
     assert scene.nodes["i"] == list(range(count))
 
 

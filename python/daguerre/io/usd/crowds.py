@@ -19,11 +19,14 @@ from .quaternions import of_vectors, product, slerp
 
 Array = NDArray[np.float64]
 _PARTS = ("positions", "turns", "scales", "velocities", "accelerations", "spins")
+#: A sample, and one of the copies or all of them.
+_Rows = tuple[int, int | slice]
+_ALL = slice(None)
 
 
 @dataclass(frozen=True, eq=False)
 class Crowd(Value):
-    """Transforms of N copies over time, or of one, where N is missing in all shapes.
+    """Transforms of N copies over time.
 
     Attributes:
         times: Times of the samples, rising, shape (K,), s.
@@ -45,30 +48,31 @@ class Crowd(Value):
     spins: Array | None = None
     held: bool = False
 
-    def at(self, time_s: float) -> Array:
-        """The matrices at a time, s, shape (N, 4, 4)."""
+    def at(self, time_s: float, copy: int | slice = _ALL) -> Array:
+        """The matrices at a time, s, shape (N, 4, 4); that of one copy has shape (4, 4)."""
         last = len(self.times) - 1
         i = min(max(int(np.searchsorted(self.times, time_s, side="right")) - 1, 0), last)
         j = min(i + 1, last)
         dt, length = time_s - self.times[i], self.times[j] - self.times[i]
         share = 0.0 if self.held or i == j else min(max(dt / length, 0.0), 1.0)
-        place, turn = self._place(i, j, share, dt), self._turn(i, j, share, dt)
-        return compose(place, turn, (1 - share) * self.scales[i] + share * self.scales[j])
+        one, other = (i, copy), (j, copy)
+        place, turn = self._place(one, other, share, dt), self._turn(one, other, share, dt)
+        return compose(place, turn, (1 - share) * self.scales[one] + share * self.scales[other])
 
-    def _place(self, i: int, j: int, share: float, dt: float) -> Array:
+    def _place(self, one: _Rows, other: _Rows, share: float, dt: float) -> Array:
         if self.velocities is None:
-            mixed: Array = (1 - share) * self.positions[i] + share * self.positions[j]
+            mixed: Array = (1 - share) * self.positions[one] + share * self.positions[other]
             return mixed
-        speed = self.velocities[i]
+        speed = self.velocities[one]
         if self.accelerations is not None:
-            speed = speed + 0.5 * dt * self.accelerations[i]
-        moved: Array = self.positions[i] + dt * speed
+            speed = speed + 0.5 * dt * self.accelerations[one]
+        moved: Array = self.positions[one] + dt * speed
         return moved
 
-    def _turn(self, i: int, j: int, share: float, dt: float) -> Array:
+    def _turn(self, one: _Rows, other: _Rows, share: float, dt: float) -> Array:
         if self.spins is not None:
-            return product(of_vectors(dt * self.spins[i]), self.turns[i])
-        return slerp(self.turns[i], self.turns[j], share) if share else self.turns[i]
+            return product(of_vectors(dt * self.spins[one]), self.turns[one])
+        return slerp(self.turns[one], self.turns[other], share) if share else self.turns[one]
 
     def breaks(self, begin: float, end: float) -> list[float]:
         """Times of the samples, s."""
@@ -79,14 +83,9 @@ class Crowd(Value):
         """Whether it may move."""
         return len(self.times) > 1 or self.velocities is not None or self.spins is not None
 
-    def each(self) -> list[Crowd]:
+    def each(self) -> list[OneOfCrowd]:
         """All copies, one by one."""
-        count = self.positions.shape[1]
-        parts: list[list[Any]] = [
-            [None] * count if part is None else list(np.ascontiguousarray(part.swapaxes(0, 1)))
-            for part in (getattr(self, name) for name in _PARTS)
-        ]
-        return [Crowd(self.times, *one) for one in zip(*parts, [self.held] * count, strict=True)]
+        return [OneOfCrowd(self, number) for number in range(self.positions.shape[1])]
 
     def of(self, chosen: NDArray[np.int64]) -> Crowd:
         """Some of the copies."""
@@ -96,3 +95,19 @@ class Crowd(Value):
             for name, part in parts.items()
         }
         return replace(self, **some)
+
+
+@dataclass(frozen=True, eq=False)
+class OneOfCrowd(Value):
+    """One copy of a crowd, which holds the numbers of all: there may be a million of them."""
+
+    crowd: Crowd
+    number: int
+
+    def at(self, time_s: float) -> Array:
+        """Its matrix at a time, s, shape (4, 4)."""
+        return self.crowd.at(time_s, self.number)
+
+    def breaks(self, begin: float, end: float) -> list[float]:
+        """Times of the samples, s."""
+        return self.crowd.breaks(begin, end)

@@ -35,7 +35,7 @@ class Spots:
     """
 
     still: Array
-    moving: Sequence[Array | Dynamic] | None = None
+    moving: Sequence[Dynamic] | None = None
     name: str = ""
 
     def __len__(self) -> int:
@@ -45,7 +45,7 @@ class Spots:
 def one(world: Matrix | Transform, time: float) -> Spots:
     """The place of a prim that is drawn once."""
     still = np.asarray(value_at(world, time), np.float64)[None]
-    return Spots(still, [world] if is_dynamic(world) else None)
+    return Spots(still, [world] if isinstance(world, Transform) else None)
 
 
 def times(outer: Spots, copies: Copies, inner: Matrix | Transform, name: str, time: float) -> Spots:
@@ -59,7 +59,7 @@ def times(outer: Spots, copies: Copies, inner: Matrix | Transform, name: str, ti
         time: Scene time, s.
     """
     still = outer.still[:, None] @ copies.transforms @ value_at(inner, time)
-    moving: list[Any] | None = None
+    moving: list[Dynamic] | None = None
     if outer.moving is not None or copies.moving is not None or is_dynamic(inner):
         firsts = outer.moving if outer.moving is not None else outer.still
         crowd = copies.moving
@@ -114,13 +114,15 @@ class Placing:
             shown: Whether it is visible, constant or over time.
         """
         self.spend(len(spots), f"/{name}")
-        if spots.moving is None and shown is True:
-            flat = ranks(spots.still[:, :3, :3]) < 3
+        scene, node, still, moving = self._scene, spots.name or name, spots.still, spots.moving
+        if shown is not True:
+            motions = [None] * len(still) if moving is None else moving
+            for world, motion in zip(still, motions, strict=True):
+                scene.add_instance(mesh, material, world, name=node, shown=shown, motion=motion)
+            return
+        if moving is None:
+            flat = ranks(still[:, :3, :3]) < 3
             if flat.any():
                 self._notes.add("a prim that is scaled to nothing is left out", int(flat.sum()))
-            kept = spots.still[~flat]
-            self._scene.add_instances(mesh, material, kept, name=spots.name or name)
-            return
-        worlds = spots.still if spots.moving is None else spots.moving
-        for world in worlds:
-            self._scene.add_instance(mesh, material, world, name=spots.name or name, shown=shown)
+            still = still[~flat]
+        scene.add_instances(mesh, material, still, name=node, motions=moving)
