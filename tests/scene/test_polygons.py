@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.scene import ears
+from daguerre.scene import ears, polygons
 from daguerre.scene.polygons import triangulate, weld
 from daguerre.scene.subdivision import Refiner, Rules, Subdivision
 from tests.support import control_meshes as meshes
@@ -33,11 +33,11 @@ def star(count: int, rng: np.random.Generator) -> np.ndarray:
 @pytest.mark.parametrize("count", [4, 5, 7, 12, 40])
 def test_triangles_cover_a_polygon_once(count: int) -> None:
     rng = np.random.default_rng(count)
-    polygons = [star(count, rng) for _ in range(50)]
-    points = np.concatenate(polygons)
+    stars = [star(count, rng) for _ in range(50)]
+    points = np.concatenate(stars)
     triangles, faces = triangulate([count] * 50, np.arange(count * 50), points)
     assert faces.tolist() == np.repeat(np.arange(50), count - 2).tolist()
-    for face, polygon in enumerate(polygons):
+    for face, polygon in enumerate(stars):
         whole = np.cross(polygon, np.roll(polygon, -1, axis=0)).sum(axis=0) / 2
         normal = whole / np.linalg.norm(whole)
         parts = areas(points, triangles[faces == face]) @ normal
@@ -118,6 +118,26 @@ def test_weld_makes_equal_corners_one() -> None:
     assert weld([], np.zeros((0, 2)))[1].shape == (0,)
     bits = np.array([[np.nan], [np.nan], [0.0], [-0.0]])
     assert weld([0, 0, 0, 0], bits)[1].tolist() == [0, 0, 1, 2]
+
+
+def test_weld_is_that_of_a_dictionary(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few corners differ from others of their vertex, each in one bit."""
+    monkeypatch.setattr(polygons, "_CHUNK", 64)
+    rng = np.random.default_rng(7)
+    vertices = rng.integers(0, 50, 1000)
+    uv = rng.random((50, 2)).astype(np.float32)[vertices]
+    normals = rng.random((50, 3)).astype(np.float32)[vertices]
+    for values in (uv, normals):
+        values.view(np.uint32)[rng.integers(0, 1000, 9), rng.integers(0, values.shape[1], 9)] ^= 1
+    known: dict[bytes, int] = {}
+    leaders = []
+    for corner in range(1000):
+        key = b"".join(part[corner].tobytes() for part in (vertices, uv, normals))
+        leaders.append(known.setdefault(key, corner))
+    rows, index = weld(vertices, uv, normals)
+    assert 50 < len(rows) <= 68
+    assert rows.tolist() == sorted(set(leaders))
+    assert rows[index].tolist() == leaders
 
 
 CUBE, FACES = meshes.cube()

@@ -71,10 +71,8 @@ def _divided(
 ) -> IntArray:
     """Triangles of polygons of one size, shape (B, n - 2, 3)."""
     corners, size = part.corners, part.corners.shape[1]
-    fan = np.stack(
-        [np.broadcast_to(corners[:, :1], corners[:, 2:].shape), corners[:, 1:-1], corners[:, 2:]],
-        axis=2,
-    )
+    fan = np.empty((len(corners), size - 2, 3), np.int64)
+    fan[:, :, 0], fan[:, :, 1], fan[:, :, 2] = corners[:, :1], corners[:, 1:-1], corners[:, 2:]
     if size == 3 or points is None:
         return fan
     if size == 4:
@@ -125,38 +123,62 @@ def weld(corner_vertices: ArrayLike, *corner_attributes: ArrayLike) -> tuple[Int
     """Makes corners with the same vertex and the same bits of all attributes one.
 
     Args:
-        corner_vertices: Vertex of each corner, shape (C,).
+        corner_vertices: Vertex of each corner, at least 0, shape (C,).
         *corner_attributes: Values of each corner, shape (C,) or (C, K), numbers.
 
     Returns:
         A corner for each different one, rising, shape (U,), and the number of each corner among
         them, shape (C,).
     """
-    columns = [np.asarray(corner_vertices, np.int64).view(np.uint64)]
-    for attribute in corner_attributes:
-        columns += _bits(np.asarray(attribute))
+    vertices = np.asarray(corner_vertices, np.int64)
+    attributes = [_bits(np.asarray(attribute)) for attribute in corner_attributes]
+    corners = np.arange(len(vertices))
+    first = np.zeros(int(vertices.max(initial=-1)) + 1, np.int64)
+    first[vertices[::-1]] = corners[::-1]
+    leader = first[vertices]
+    # All corners agree at most vertices; those of others are sorted.
+    apart = np.zeros(len(first), bool)
+    apart[vertices[_differ(attributes, leader)]] = True
+    if apart.any():
+        rest = np.flatnonzero(apart[vertices])
+        columns = [vertices[rest].view(np.uint64)]
+        columns += [column.astype(np.uint64) for bits in attributes for column in bits[rest].T]
+        leader[rest] = rest[_leaders(columns)]
+    leads = leader == corners
+    return np.flatnonzero(leads), (np.cumsum(leads) - 1)[leader]
+
+
+def _bits(values: NDArray[Any]) -> NDArray[Any]:
+    """Bits of rows of numbers as few whole numbers, shape (C, K)."""
+    rows = values.reshape(len(values), -1) if len(values) else values.reshape(0, 1)
+    size = values.dtype.itemsize
+    wide = rows.shape[1] * size % 8 == 0
+    return np.ascontiguousarray(rows).view(f"u{8 if wide else size}")
+
+
+def _differ(attributes: list[NDArray[Any]], leader: IntArray) -> IntArray:
+    """Corners that have other bits than those that lead them."""
+    found = [np.zeros(0, np.int64)]
+    for begin in range(0, len(leader), _CHUNK):
+        some = slice(begin, begin + _CHUNK)
+        for bits in attributes:
+            near = bits.take(leader[some], axis=0, mode="clip")
+            for k in range(bits.shape[1]):
+                found.append(begin + np.flatnonzero(bits[some, k] != near[:, k]))
+    return np.concatenate(found)
+
+
+def _leaders(columns: list[NDArray[np.uint64]]) -> IntArray:
+    """First row that is equal to each, shape (C,)."""
     order = np.argsort(_mixed(columns))
     new = np.ones(len(order), bool)
-    if len(order):
-        new[1:] = False
-        for column in columns:
-            bits = column[order]
-            new[1:] |= bits[1:] != bits[:-1]
-    starts = np.flatnonzero(new)
-    leader = np.minimum.reduceat(order, starts) if len(order) else order
-    number = np.empty(len(leader), np.int64)
-    ranks = np.argsort(leader)
-    number[ranks] = np.arange(len(leader))
-    index = np.empty(len(order), np.int64)
-    index[order] = number[np.cumsum(new) - 1]
-    return leader[ranks], index
-
-
-def _bits(values: NDArray[Any]) -> list[NDArray[np.uint64]]:
-    """Bits of each column."""
-    rows = values.reshape(len(values), -1) if len(values) else values.reshape(0, 1)
-    whole = np.ascontiguousarray(rows).view(f"u{values.dtype.itemsize}")
-    return [whole[:, k].astype(np.uint64) for k in range(whole.shape[1])]
+    new[1:] = False
+    for column in columns:
+        bits = column[order]
+        new[1:] |= bits[1:] != bits[:-1]
+    leader = np.empty(len(order), np.int64)
+    leader[order] = np.minimum.reduceat(order, np.flatnonzero(new))[np.cumsum(new) - 1]
+    return leader
 
 
 def _mixed(columns: list[NDArray[np.uint64]]) -> NDArray[np.uint64]:

@@ -148,19 +148,21 @@ class Meshes:
             return None
         values = self._attributes(shape, choice)
         first, index = weld(surface.vertices, *values.values())
-        indices, used = _packed(index[triangles], len(first))
-        first = first[used]
+        indices = index.astype(np.uint32)[triangles]
+        if faces is not None:  # else each corner is that of some triangle
+            indices, used = _packed(indices, len(first))
+            first = first[used]
         if shape.flipped:
-            indices = indices[:, ::-1]
+            indices = np.ascontiguousarray(indices[:, ::-1])
         origins = surface.vertices[first]
         given = {name: freeze_in_place(array[first]) for name, array in values.items()}
         if normals is not None:
             turned = -normals if shape.flipped else normals
-            given["normals"] = turned[origins]
+            given["normals"] = freeze_in_place(turned[origins])
         made = Vertices(
-            np.ascontiguousarray(positions[origins]), **{n: given.get(n) for n in _ATTRIBUTES}
+            freeze_in_place(positions[origins]), **{n: given.get(n) for n in _ATTRIBUTES}
         )
-        return self._store(shape, made, np.ascontiguousarray(indices), origins)
+        return self._store(shape, made, freeze_in_place(indices), origins)
 
     def _store(
         self, shape: Shape, made: Vertices, indices: NDArray[Any], origins: NDArray[np.int64]
@@ -240,7 +242,7 @@ def _packed(indices: NDArray[Any], count: int) -> tuple[NDArray[Any], NDArray[np
     """Numbers the vertices that are used from 0 on; returns the indices and those vertices."""
     seen = np.zeros(count, bool)
     seen[indices] = True
-    return (np.cumsum(seen) - 1)[indices], np.flatnonzero(seen)
+    return (np.cumsum(seen, dtype=np.uint32) - 1)[indices], np.flatnonzero(seen)
 
 
 def _flipped(uv: Array | None) -> Array | None:
