@@ -12,6 +12,8 @@ import pytest
 from daguerre.errors import InputError
 from daguerre.scene.subdivision import Refiner, Rules, edges_of_chains
 from daguerre.scene.subdivision.catmull_clark import CatmullClark
+from daguerre.scene.subdivision.cut import opened_mesh
+from daguerre.scene.subdivision.faces import Faces as Control
 from daguerre.scene.subdivision.loop import Loop
 from daguerre.scene.subdivision.refiner import MAX_FACES
 from daguerre.scene.subdivision.scheme import Scheme
@@ -456,6 +458,36 @@ def test_odd_topologies_end_well() -> None:
             np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1)
             corners = sum(len(face) for face in faces)
             np.testing.assert_allclose(made.face_varying(np.ones((corners, 2))), 1)
+
+
+def walked(faces: Control, twins: np.ndarray) -> list[list[int]]:
+    """Corners around each vertex, counter-clockwise, by steps from face to face."""
+    after = {int(faces.after[twin]): corner for corner, twin in enumerate(twins) if twin >= 0}
+    rings: list[list[int]] = []
+    for corner in (*np.flatnonzero(twins < 0).tolist(), *range(len(twins))):
+        if not any(corner in ring for ring in rings):
+            rings.append([corner])
+            while after.get(rings[-1][-1], corner) != corner:
+                rings[-1].append(after[rings[-1][-1]])
+    return sorted(rings, key=lambda ring: (faces.vertices[ring[0]], ring[0]))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_fans_are_those_of_a_walk(seed: int) -> None:
+    """Open and closed fans of up to 30 faces, and those of random faces, cut at random edges."""
+    rng = np.random.default_rng(seed)
+    tries = [meshes.cone(30)[1], meshes.torus(6, 5)[1], rng.integers(0, 6, (30, 4)).tolist()]
+    for polygons in tries:
+        flat = np.array([v for face in polygons for v in face])
+        made = Control(31, np.array([len(face) for face in polygons]), flat)
+        creases = rng.integers(0, 31, (4 * seed, 2))
+        opened = opened_mesh(made, Rules(creases=creases).checked(31, len(polygons), "cut"))
+        found, wanted = opened.fans, walked(made, opened.twins)
+        assert found.rings.tolist() == [corner for ring in wanted for corner in ring]
+        assert found.sizes.tolist() == [len(ring) for ring in wanted]
+        assert found.opened.tolist() == [opened.twins[ring[0]] < 0 for ring in wanted]
+        number = {corner: i for i, ring in enumerate(wanted) for corner in ring}
+        assert found.of_corner.tolist() == [number[corner] for corner in range(len(flat))]
 
 
 def test_a_vertex_of_many_faces_is_quick() -> None:

@@ -46,19 +46,41 @@ class Corners:
     sharpness: FloatArray
 
 
-def cut_mesh(faces: Faces, rules: Rules, *, everywhere: bool = False) -> Cut:
-    """Cuts a control mesh; ``everywhere``: along all its edges."""
+@dataclass(frozen=True)
+class Opened:
+    """A control mesh opened along its boundaries and infinitely sharp creases.
+
+    Attributes:
+        edges: Sharpness of each edge of the uncut mesh, shape (E,).
+        twins: Opposite half-edge of each, shape (C,); -1 where the mesh is open.
+        fans: Fans of faces between openings.
+        corners: Facts of the vertices.
+    """
+
+    edges: FloatArray
+    twins: IntArray
+    fans: Fans
+    corners: Corners
+
+
+def opened_mesh(faces: Faces, rules: Rules, *, everywhere: bool = False) -> Opened:
+    """Opens a control mesh; ``everywhere``: along all its edges."""
     edges = edge_sharpness(faces, rules)
     if everywhere:
         edges = np.full_like(edges, INFINITE)
     twins = np.where(edges[faces.edges[1]] >= INFINITE, -1, faces.twins)
     found = fans(faces, twins)
-    corners = classify(faces, rules, edges, found)
+    return Opened(edges, twins, found, classify(faces, rules, edges, found))
+
+
+def cut_mesh(faces: Faces, opened: Opened) -> Cut:
+    """Gives each fan of an opened mesh a vertex of its own."""
+    found, corners = opened.fans, opened.corners
     vertex = faces.vertices[found.heads]
     kinds = np.where(found.opened, OPEN, CLOSED).astype(np.uint8)
     kinds[found.opened & (corners.infinite[vertex] == 1)] = DART
-    level = opened_level(faces, twins, found, kinds, edges, corners.sharpness[vertex])
-    return Cut(level, vertex)
+    sharpness = corners.sharpness[vertex]
+    return Cut(opened_level(faces, opened.twins, found, kinds, opened.edges, sharpness), vertex)
 
 
 def edge_sharpness(faces: Faces, rules: Rules) -> FloatArray:

@@ -6,10 +6,10 @@ import numpy as np
 
 from daguerre.scene.polygons import weld
 
-from .cut import BoolArray, Cut, classify, edge_sharpness, opened_level
+from .cut import BoolArray, Cut, Opened, opened_level
 from .faces import Faces, Fans, fans
 from .level import CLOSED, DART, OPEN
-from .rules import INFINITE, FloatArray, IntArray, Rules
+from .rules import INFINITE, FloatArray, IntArray
 
 
 def value_indices(vertices: IntArray, values: FloatArray) -> IntArray:
@@ -24,19 +24,17 @@ def value_indices(vertices: IntArray, values: FloatArray) -> IntArray:
     return leaders[index]
 
 
-def cut_values(faces: Faces, rules: Rules, values: IntArray) -> Cut:
+def cut_values(faces: Faces, opened: Opened, rule: str, values: IntArray) -> Cut:
     """Cuts a mesh at its seams, besides its boundaries and infinitely sharp creases.
 
     Args:
         faces: The control mesh.
-        rules: Its rules.
+        opened: The same, opened along the others.
+        rule: One of ``FACE_VARYING``, but "all".
         values: Number of the value of each corner, shape (C,).
     """
-    edges = edge_sharpness(faces, rules)
-    whole = np.where(edges[faces.edges[1]] >= INFINITE, -1, faces.twins)
-    corners = classify(faces, rules, edges, fans(faces, whole))
-    seam = _seams(faces, values)
-    twins = np.where(seam, -1, whole)
+    edges, seam = opened.edges, _seams(faces, values)
+    twins = np.where(seam, -1, opened.twins)
     found = fans(faces, twins)
     vertex, value = faces.vertices[found.heads], values[found.heads]
     kinds = np.where(found.opened, OPEN, CLOSED).astype(np.uint8)
@@ -46,8 +44,8 @@ def cut_values(faces: Faces, rules: Rules, values: IntArray) -> Cut:
     infinite = edges >= INFINITE
     inner = infinite & (np.bincount(faces.edges[1], minlength=len(edges)) > 1)
     facts = _Facts(vertex, value, found.sizes, at_seam, _at(faces, inner[faces.edges[1]]))
-    sharp = facts.corners(rules.face_varying, _at(faces, faces.twins < 0)) & found.opened
-    sharpness = np.where(sharp, INFINITE, corners.sharpness[vertex])
+    sharp = facts.corners(rule, _at(faces, faces.twins < 0)) & found.opened
+    sharpness = np.where(sharp, INFINITE, opened.corners.sharpness[vertex])
     return Cut(opened_level(faces, twins, found, kinds, edges, sharpness), value)
 
 
@@ -94,12 +92,10 @@ class _Facts:
     ) -> None:
         self._vertex, self._sizes = vertex, sizes
         self._seam, self._creased = seam[vertex], creased[vertex]
-        pairs, self._pair = np.unique(
-            np.stack([vertex, value], axis=1).reshape(-1, 2), axis=0, return_inverse=True
-        )
-        self._pair = self._pair.reshape(-1)
-        self._values = np.bincount(pairs[:, 0], minlength=len(seam))[vertex]
-        self._parts = np.bincount(self._pair)[self._pair] if len(vertex) else self._values
+        span = int(value.max(initial=0)) + 1
+        keys, pair = np.unique(vertex * span + value, return_inverse=True)
+        self._values = np.bincount(keys // span, minlength=len(seam))[vertex]
+        self._parts = np.bincount(pair)[pair] if len(vertex) else self._values
 
     def corners(self, rule: str, boundary: BoolArray) -> BoolArray:
         """Whether each fan keeps its value, shape (V,).

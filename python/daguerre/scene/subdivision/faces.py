@@ -68,16 +68,16 @@ class Faces(Value):
     def twins(self) -> IntArray:
         """Opposite half-edge of each, shape (C,); -1 unless exactly two run in two directions."""
         found, edge_of = self.edges
-        order = np.argsort(edge_of, kind="stable")
-        counts = np.bincount(edge_of, minlength=len(found))
-        pairs = order[counts[edge_of[order]] == 2].reshape(-1, 2)
-        starts = self.vertices[pairs]
-        opposite = (starts[:, 0] != starts[:, 1]) & (
-            starts[:, 0] == self.vertices[self.after[pairs[:, 1]]]
-        )
-        pairs = pairs[opposite]
-        twins = np.full(len(self.vertices), -1)
-        twins[pairs[:, 0]], twins[pairs[:, 1]] = pairs[:, 1], pairs[:, 0]
+        halves = np.arange(len(edge_of))
+        one, other = np.empty_like(found), np.empty_like(found)
+        one[edge_of[::-1]], other[edge_of] = halves[::-1], halves  # the first and the last half
+        two = np.bincount(edge_of, minlength=len(found)) == 2
+        one, other = one[two], other[two]
+        starts = self.vertices[one]
+        opposite = (starts != self.vertices[other]) & (starts == self.vertices[self.after[other]])
+        one, other = one[opposite], other[opposite]
+        twins = np.full(len(edge_of), -1)
+        twins[one], twins[other] = other, one
         return twins
 
 
@@ -137,35 +137,37 @@ class Fans:
 def fans(faces: Faces, twins: IntArray) -> Fans:
     """Walks from face to face around each vertex, across half-edges that have twins.
 
-    Fans are sorted by vertex. Lists are ranked by doubling of steps (Wyllie 1979), so that a
-    vertex of many faces costs no more than many vertices.
+    Fans are sorted by vertex, then by their first corner: that without a twin, else the least.
     """
     corners = np.arange(len(faces.vertices))
     head = twins < 0
-    clockwise = np.where(head, corners, faces.after[twins])
-    loops, least = _loops(head, clockwise)
-    begins = head | (loops & (least == corners))
-    steps, place = np.where(begins, corners, clockwise), np.where(begins, 0, 1)
-    while not begins[steps].all():
-        place = place + place[steps]
-        steps = steps[steps]
-    order = np.lexsort((place, steps, faces.vertices))
-    first = begins[order]
-    of_corner = np.empty(len(corners), np.int64)
-    of_corner[order] = np.cumsum(first) - 1
-    heads = order[first]
+    first, place = _ranked(head, np.where(head, corners, faces.after[twins]))
+    heads = np.flatnonzero(first == corners)
+    heads = heads[np.argsort(faces.vertices[heads] * len(corners) + heads)]
+    number = np.empty(len(corners), np.int64)
+    number[heads] = np.arange(len(heads))
+    of_corner = number[first]
     sizes = np.bincount(of_corner, minlength=len(heads))
-    return Fans(order, sizes, of_corner, ~loops[heads])
+    rings = np.empty(len(corners), np.int64)
+    rings[(np.cumsum(sizes) - sizes)[of_corner] + place] = corners
+    return Fans(rings, sizes, of_corner, head[heads])
 
 
-def _loops(head: NDArray[np.bool_], step: IntArray) -> tuple[NDArray[np.bool_], IntArray]:
-    """Whether steps from a corner never come to a head, and the least corner that they reach.
+def _ranked(head: NDArray[np.bool_], step: IntArray) -> tuple[IntArray, IntArray]:
+    """First corner of the list or loop of each corner, and the number of steps to it.
 
-    A set of corners without a head that steps do not leave is made of loops.
+    Lists end at a head, which steps to itself; loops have none and begin at their least corner.
+    Lists are ranked by doubling of steps (Wyllie 1979), so that a vertex of many faces costs no
+    more than many vertices. Heads count as less than all others while the least is sought: so
+    nothing changes any more once each step reaches around its loop, or to the end of its list.
     """
-    least, jump = np.arange(len(step)), step
+    corners = np.arange(len(step))
+    least, jump = np.where(head, corners - len(corners), corners), step
+    place, width = np.zeros(len(step), np.int64), 1
     while True:
-        least, jump = np.minimum(least, least[jump]), jump[jump]
-        endless = ~head[jump]
-        if (~endless | (endless[step] & (least == least[step]))).all():
-            return endless, least
+        farther = least[jump]
+        less = farther < least
+        if not less.any():
+            return np.where(least < 0, least + len(corners), least), place
+        place = np.where(less, place[jump] + width, place)
+        least, jump, width = np.minimum(least, farther), jump[jump], 2 * width

@@ -121,17 +121,22 @@ class Level:
         """Next corner in the face."""
         if self.size == 4:
             return (corners & ~3) | ((corners + 1) & 3)
-        face = self.faces_at(corners)
-        start, end = self.starts[face], self.starts[face + 1]
-        return np.where(corners + 1 == end, start, corners + 1)
+        return self._turns[0][corners]
 
     def before(self, corners: IntArray) -> IntArray:
         """Corner before in the face."""
         if self.size == 4:
             return (corners & ~3) | ((corners + 3) & 3)
-        face = self.faces_at(corners)
-        start, end = self.starts[face], self.starts[face + 1]
-        return np.where(corners == start, end - 1, corners - 1)
+        return self._turns[1][corners]
+
+    @cached_property
+    def _turns(self) -> tuple[IntArray, IntArray]:
+        """Next corner in the face, and the corner before, of all corners, each of shape (C,)."""
+        firsts, lasts = self.starts[:-1], self.starts[1:] - 1
+        corners = np.arange(len(self.vertices))
+        after, before = corners + 1, corners - 1
+        after[lasts], before[firsts] = firsts, lasts
+        return after, before
 
     @cached_property
     def ring_starts(self) -> IntArray:

@@ -14,7 +14,7 @@ from daguerre.files.value import Value
 
 from .bilinear import Bilinear
 from .catmull_clark import CatmullClark
-from .cut import cut_mesh
+from .cut import Opened, cut_mesh, opened_mesh
 from .face_varying import cut_values, linear_corners, value_indices
 from .faces import Faces, checked_faces
 from .holes import kept_faces
@@ -161,9 +161,13 @@ class Refiner(Value):
         return _MAKERS[self.scheme]
 
     @cached_property
+    def _opened(self) -> Opened:
+        """The control mesh, opened as positions and all values are."""
+        return opened_mesh(self._faces, self.rules, everywhere=self._scheme.linear)
+
+    @cached_property
     def _main(self) -> Surface:
-        cut = cut_mesh(self._faces, self.rules, everywhere=self._scheme.linear)
-        return Surface(cut, self._scheme, self.level)
+        return Surface(cut_mesh(self._faces, self._opened), self._scheme, self.level)
 
     @cached_property
     def _surfaces(self) -> dict[bytes, Surface]:
@@ -175,7 +179,7 @@ class Refiner(Value):
         key, kept = chosen.tobytes(), self._surfaces
         found = kept.get(key)
         if found is None:
-            cut = cut_values(self._faces, self.rules, chosen)
+            cut = cut_values(self._faces, self._opened, self.rules.face_varying, chosen)
             found = Surface(cut, self._scheme, self.level)
             kept.clear()
             kept[key] = found

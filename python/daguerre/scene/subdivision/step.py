@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .level import OPEN, Level
+from .level import CLOSED, OPEN, Level
 from .rules import FloatArray, IntArray
 from .scheme import Scheme
 from .sharpness import open_weights
-from .stencils import Group, sums
+from .stencils import Group, side_by_side, sums
 
 
 @dataclass(frozen=True)
@@ -85,12 +85,14 @@ def _rim(level: Level, begin: int) -> Group:
 def _inner_edges(level: Level, scheme: Scheme) -> list[Group]:
     """Points of edges with two faces, smooth and sharp."""
     one, other = level.first[: len(level.second)], level.second
-    ends = [level.vertices[one], level.vertices[other]]
-    if scheme.quads:
-        ends += [level.count + level.faces_at(half) for half in (one, other)]
-    else:
-        ends += [level.vertices[level.before(half)] for half in (one, other)]
-    index = np.stack(ends, axis=1)
+
+    def parts(some: slice) -> list[IntArray]:
+        halves = np.stack([one[some], other[some]], axis=1)
+        if scheme.quads:
+            return [level.vertices[halves], level.count + level.faces_at(halves)]
+        return [level.vertices[halves], level.vertices[level.before(halves)]]
+
+    index = side_by_side(len(other), 4, parts)
     rows: IntArray | slice = slice(level.count, level.count + len(other))
     smooth = np.array(scheme.edge)
     sharp = level.sharp_edges
@@ -111,18 +113,22 @@ def _vertices(
     level: Level, scheme: Scheme, kind: int, valence: int, special: bool, vertices: IntArray
 ) -> Group:
     """Points of vertices of one kind and valence."""
-    fan = level.fan(vertices, valence)
     sharpness = level.sharp_vertices.of(vertices) if special else np.zeros(0)
     if kind == OPEN:
+        fan = level.fan(vertices, valence)
         ends = [level.vertices[level.after(fan[:, 0])], level.vertices[level.before(fan[:, -1])]]
         weights = open_weights(sharpness if special else np.zeros(1))
         index = np.stack([vertices, *ends], axis=1)
         return Group(vertices, index, weights[:, :, None] if special else weights[0][:, None])
-    parts = [vertices[:, None], level.vertices[level.after(fan)]]
-    if scheme.quads:
-        parts.append(level.count + level.faces_at(fan))
-    index = np.concatenate(parts, axis=1)
+
+    def parts(some: slice) -> list[IntArray]:
+        fan = level.fan(vertices[some], valence)
+        found = [vertices[some, None], level.vertices[level.after(fan)]]
+        return [*found, level.count + level.faces_at(fan)] if scheme.quads else found
+
+    index = side_by_side(len(vertices), scheme.ring(CLOSED, valence), parts)
     if not special:
         return Group(vertices, index, scheme.smooth(valence)[:, None])
-    weights = scheme.vertex_weights(kind, sharpness, level.fan_sharpness(fan, kind))
+    spokes = level.fan_sharpness(level.fan(vertices, valence), kind)
+    weights = scheme.vertex_weights(kind, sharpness, spokes)
     return Group(vertices, index, weights[:, :, None])
