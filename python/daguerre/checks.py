@@ -39,8 +39,9 @@ def array(values: ArrayLike, where: str, what: str, columns: int) -> NDArray[np.
         raise InputError(f"{where}: {what}: wanted shape (N, {columns}), got {numbers.shape}")
     with np.errstate(over="ignore"):
         single = as_readonly(numbers, np.float32)
-    bad = np.flatnonzero(~np.isfinite(single).all(axis=1))
-    if bad.size:
+    finite = np.isfinite(single)
+    if not finite.all():
+        bad = np.flatnonzero(~finite.all(axis=1))
         raise InputError(
             f"{where}: {what}[{bad[0]}]: wanted finite numbers, got {numbers[bad[0]].tolist()} "
             f"({bad.size} such elements)"

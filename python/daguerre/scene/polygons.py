@@ -78,7 +78,8 @@ def _divided(
     if size == 4:
         for begin in range(0, len(fan), _CHUNK):
             some = slice(begin, begin + _CHUNK)
-            take = begin + np.flatnonzero(_takes_other(points[vertices[corners[some]]]))
+            near = points.take(vertices[corners[some]], axis=0)
+            take = begin + np.flatnonzero(_takes_other(near))
             fan[take] = corners[take][:, [[1, 2, 3], [1, 3, 0]]]
         return fan
     near = points[vertices[corners]]
@@ -144,8 +145,10 @@ def weld(corner_vertices: ArrayLike, *corner_attributes: ArrayLike) -> tuple[Int
         columns = [vertices[rest].view(np.uint64)]
         columns += [column.astype(np.uint64) for bits in attributes for column in bits[rest].T]
         leader[rest] = rest[_leaders(columns)]
-    leads = leader == corners
-    return np.flatnonzero(leads), (np.cumsum(leads) - 1)[leader]
+    found = np.flatnonzero(leader == corners)
+    number = np.empty(len(corners), np.int64)
+    number[found] = np.arange(len(found))
+    return found, number[leader]
 
 
 def _bits(values: NDArray[Any]) -> NDArray[Any]:

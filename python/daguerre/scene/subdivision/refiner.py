@@ -151,7 +151,7 @@ class Refiner(Value):
             refined = linear_corners(self._faces, self._scheme.quads, self.level, numbers[chosen])
         else:
             surface = self._seams(chosen)
-            refined = surface.limit(numbers)[surface.last.vertices]
+            refined = surface.limit(numbers).take(surface.last.vertices, axis=0)
         kept = self._kept
         size = 4 if self._scheme.quads else 3
         return refined if kept is None else refined[np.repeat(kept, size)]
@@ -214,7 +214,7 @@ class Refiner(Value):
 
     def _used(self, values: FloatArray) -> FloatArray:
         used = self._output[2]
-        return values if used is None else values[used]
+        return values if used is None else values.take(used, axis=0)
 
     def _values(self, values: ArrayLike, what: str, columns: int | None = None) -> FloatArray:
         return _numbers(values, self.where, what, columns, self._faces.count)
@@ -252,8 +252,9 @@ def _numbers(
     if not fits:
         raise InputError(f"{where}: {what}: wanted {wanted}, got {found.shape}")
     found = np.asarray(found, np.float64)
-    bad = np.flatnonzero(~np.isfinite(found).all(axis=1))
-    if len(bad):
+    finite = np.isfinite(found)
+    if not finite.all():
+        bad = np.flatnonzero(~finite.all(axis=1))
         raise InputError(
             f"{where}: {what}[{bad[0]}]: wanted finite numbers, got {found[bad[0]].tolist()} "
             f"({len(bad)} such elements)"

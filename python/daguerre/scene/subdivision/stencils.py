@@ -66,7 +66,11 @@ def side_by_side(count: int, width: int, parts: Callable[[slice], list[IntArray]
 
 def _interleaved(weights: FloatArray, columns: int) -> NDArray[np.float64]:
     """Matrix (P K, J K) that acts on P points with K columns each, row after row."""
-    return np.asarray(np.kron(weights, np.eye(columns)), np.float64)
+    points, results = weights.shape
+    matrix = np.zeros((points, columns, results, columns))
+    for column in range(columns):
+        matrix[:, column, :, column] = weights
+    return matrix.reshape(points * columns, results * columns)
 
 
 def sums(groups: list[Group], points: FloatArray, count: int, results: int = 1) -> FloatArray:
