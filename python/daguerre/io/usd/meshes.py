@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -57,7 +58,7 @@ class Shape:
         points: Points, or points over time.
         surface: Its polygons.
         flipped: Whether it is left-handed.
-        now: Positions and normals of the surface's vertices at the scene's time.
+        begun: Positions and normals of the surface's vertices at the scene's time.
         rest: Points before a skin moved them, to which the normals of the file belong; or None.
     """
 
@@ -65,7 +66,7 @@ class Shape:
     points: Array | Dynamic
     surface: Surface
     flipped: bool
-    now: tuple[Array, Array | None]
+    begun: Future[tuple[Array, Array | None]]
     rest: Array | None
 
 
@@ -90,6 +91,11 @@ class Meshes:
         self._notes = notes
         self._shapes: dict[str, Shape | None] = {}
         self._made: dict[tuple[str, Choice], int | None] = {}
+        self._pool = ThreadPoolExecutor(1)
+
+    def close(self) -> None:
+        """Ends the thread that finds limits of surfaces."""
+        self._pool.shutdown(cancel_futures=True)
 
     def index(
         self,
@@ -132,7 +138,15 @@ class Meshes:
                 self._notes.add("a mesh whose faces change over time keeps those of one moment")
                 break
         rest = None if before is points else np.asarray(_now(before, self._clock), np.float32)
-        return Shape(prim, points, surface, flipped, surface.points(here), rest)
+        return Shape(prim, points, surface, flipped, self._begun(surface, here), rest)
+
+    def _begun(self, surface: Surface, points: Array) -> Future[tuple[Array, Array | None]]:
+        """Points of a surface; those of a smooth one are found while its values are."""
+        if surface.smooth:
+            return self._pool.submit(_quiet, surface, points)
+        done: Future[tuple[Array, Array | None]] = Future()
+        done.set_result(surface.points(points))
+        return done
 
     def _level(self, faces: int) -> int:
         """Levels of subdivision for a mesh, so that all fit and each is smooth."""
@@ -140,28 +154,29 @@ class Meshes:
         return int(np.clip(np.log(max(share, 1)) / np.log(4), 1, _MOST_LEVELS))
 
     def _add(self, shape: Shape, choice: Choice, faces: NDArray[np.int64] | None) -> int | None:
-        surface, (positions, normals) = shape.surface, shape.now
-        triangles, polygons = triangulate(surface.sizes, surface.vertices, positions)
-        if faces is not None:
-            triangles = triangles[np.isin(surface.face_ids[polygons], faces)]
-        if not len(triangles):
+        surface = shape.surface
+        drawn = None if faces is None else np.isin(surface.face_ids, faces)
+        if not len(surface.sizes) or not (drawn is None or drawn.any()):
             return None
         values = self._attributes(shape, choice)
+        positions, normals = shape.begun.result()
+        triangles, polygons = triangulate(surface.sizes, surface.vertices, positions)
+        if drawn is not None:
+            triangles = triangles[drawn[polygons]]
         first, index = weld(surface.vertices, *values.values())
         indices = index.astype(np.uint32)[triangles]
-        if faces is not None:  # else each corner is that of some triangle
+        if drawn is not None:  # else each corner is that of some triangle
             indices, used = _packed(indices, len(first))
             first = first[used]
         if shape.flipped:
             indices = np.ascontiguousarray(indices[:, ::-1])
         origins = surface.vertices[first]
-        given = {name: freeze_in_place(array[first]) for name, array in values.items()}
+        given = {name: freeze_in_place(rows.take(first, axis=0)) for name, rows in values.items()}
         if normals is not None:
             turned = -normals if shape.flipped else normals
-            given["normals"] = freeze_in_place(turned[origins])
-        made = Vertices(
-            freeze_in_place(positions[origins]), **{n: given.get(n) for n in _ATTRIBUTES}
-        )
+            given["normals"] = freeze_in_place(turned.take(origins, axis=0))
+        points = freeze_in_place(positions.take(origins, axis=0))
+        made = Vertices(points, **{n: given.get(n) for n in _ATTRIBUTES})
         return self._store(shape, made, freeze_in_place(indices), origins)
 
     def _store(
@@ -170,7 +185,7 @@ class Meshes:
         name = str(shape.prim.GetPath())
         given = {n: getattr(made, n) for n in _ATTRIBUTES}
         points = made.positions
-        smooth, moves = shape.now[1] is not None, is_dynamic(shape.points)
+        smooth, moves = shape.surface.smooth, is_dynamic(shape.points)
         moving: Any = shape.points
         motion: Dynamic | None = None
         steps: Dynamic | None = None
@@ -195,7 +210,7 @@ class Meshes:
     def _attributes(self, shape: Shape, choice: Choice) -> Mapping[str, Array]:
         """Values at the corners of the polygons, by attribute of a mesh."""
         found: dict[str, Array | None] = {}
-        if shape.now[1] is None:
+        if not shape.surface.smooth:
             found["normals"] = self._normals(shape)
         for attribute, name in zip(("uv", "uv1"), choice.uv_sets, strict=False):
             found[attribute] = _flipped(self._corners(shape, name, 2))
@@ -207,6 +222,8 @@ class Meshes:
         primvar = read_primvar(shape.prim, name, columns, self._clock)
         if primvar is None:
             return None
+        if primvar.interpolation == "vertex":
+            shape.begun.result()  # it makes the maps that these values need, too
         found = shape.surface.corners(primvar)
         if found is None:
             note_length(name, self._notes)
@@ -236,6 +253,12 @@ class Meshes:
             return None
         alpha = np.ones((len(color), 1), np.float32) if opacity is None else opacity
         return np.asarray(np.clip(np.concatenate([color, alpha], axis=1), 0, None), np.float32)
+
+
+def _quiet(surface: Surface, points: Array) -> tuple[Array, Array | None]:
+    """Points of a surface; huge numbers may overflow in between, as in all of the reader."""
+    with np.errstate(all="ignore"):
+        return surface.points(points)
 
 
 def _packed(indices: NDArray[Any], count: int) -> tuple[NDArray[Any], NDArray[np.int64]]:

@@ -118,7 +118,7 @@ class _Reader:
         with typed(opened.file, "meshes"):
             faces = self._smooth_faces(visits)
         self._meshes = Meshes(self.scene, self._clock, faces, self._notes)
-        with closing(self._images):
+        with closing(self._images), closing(self._meshes):
             firsts = self._nodes(visits, worlds)
         self._group(visits, [*firsts, len(self.scene.instances)])
         self._cameras(visits, camera_millimetres)

@@ -97,6 +97,9 @@ def _integers(value: Any) -> Indices:
 class Surface(Value):
     """Polygons of a mesh as they are drawn, without subdivision."""
 
+    #: whether ``points`` has normals, and takes long
+    smooth = False
+
     def __init__(self, faces: Faces) -> None:
         self._faces = faces
         drawn = ~faces.holes
@@ -129,14 +132,16 @@ class Surface(Value):
         return self._smooth(primvar.flat, kind)
 
     def _face_varying(self, primvar: Primvar) -> Array:
-        return primvar.flat[self._faces.corner_ids[self._corners]]
+        return primvar.flat.take(self._faces.corner_ids[self._corners], axis=0)
 
     def _smooth(self, values: Array, kind: str) -> Array:
-        return values[self.vertices]
+        return values.take(self.vertices, axis=0)
 
 
 class Subdivided(Surface):
     """The limit surface of a mesh, at a level of refinement."""
+
+    smooth = True
 
     def __init__(self, faces: Faces, mesh: UsdGeom.Mesh, level: int, clock: Clock) -> None:
         self._faces = faces
@@ -168,7 +173,7 @@ class Subdivided(Surface):
 
     def _smooth(self, values: Array, kind: str) -> Array:
         refine = self._refiner.vertex if kind == "vertex" else self._refiner.varying
-        return np.asarray(refine(values), np.float32)[self.vertices]
+        return np.asarray(refine(values), np.float32).take(self.vertices, axis=0)
 
 
 def scheme_of(mesh: UsdGeom.Mesh, clock: Clock) -> str:
