@@ -276,7 +276,7 @@ def test_colours_of_vertices(compared: Comparison) -> None:
 
 
 def test_colour_spaces(compared: Comparison) -> None:
-    """Of pictures and of numbers, for all spaces that the package converts."""
+    """Pictures and numbers, in all spaces that the package converts."""
     end = "_to_lin_rec709"
     kinds = {one.getNodeString() for one in library().getNodeDefs()}
     spaces = sorted(kind.removesuffix(end) for kind in kinds if kind.endswith(end))

@@ -37,7 +37,7 @@ def read_exposure(read: Checked) -> dict[str, Any]:
 def never_opens(read: Checked) -> bool:
     """Whether the shutter closes before it opens: the picture is black."""
     shut = _shutter(read, lambda opens, closes: closes - opens)
-    return min(shut.values if isinstance(shut, Keys) else (shut,)) < 0
+    return bool(min(shut.values if isinstance(shut, Keys) else (shut,)) < 0)
 
 
 def read_shutter(read: Checked) -> dict[str, Any]:
