@@ -367,8 +367,8 @@ void def_lights(nb::class_<Builder>& c) {
                                        inner_rad, outer_rad, range});
              })
         .def("add_directional_light",
-             [](Builder& b, const Triple& direction, const Triple& illuminance) {
-                 b.add_light(DirectionalLight{normalize(vec(direction)), to_rgb(illuminance)});
+             [](Builder& b, const Triple& direction, const Triple& illuminance, float angle_rad) {
+                 b.add_light(DirectionalLight{normalize(vec(direction)), to_rgb(illuminance), angle_rad});
              })
         .def("add_sphere_light",
              [](Builder& b, const Triple& center, float radius, const Triple& luminance, const Lamp& lamp) {

@@ -167,12 +167,12 @@ bool leave(const EmissionReach& reach, const SpotLight& light, Vec2f, Vec2f u, E
     return true;
 }
 
-bool leave(const EmissionReach& reach, const DirectionalLight& light, Vec2f u_point, Vec2f,
+bool leave(const EmissionReach& reach, const DirectionalLight& light, Vec2f u_point, Vec2f u,
            EmissionRay& ray) {
-    const DiscEmission out{reach, light.direction};
+    const DiscEmission out{reach, -toward_disc(light, u)};
     ray.origin = out.sample(u_point);
-    ray.direction = light.direction;
-    ray.value = light.illuminance;
+    ray.direction = out.w;
+    ray.value = disc_illuminance(light);
     ray.pdf = out.pdf(ray.origin);
     return true;
 }
@@ -201,9 +201,8 @@ float leaving_pdf(const EmissionReach& reach, const SpotLight& light, Vec3f, Vec
     return cone(reach.aim, light).pdf(-wi) / (distance * distance);
 }
 
-float leaving_pdf(const EmissionReach& reach, const DirectionalLight& light, Vec3f position, Vec3f,
-                  float) {
-    return DiscEmission{reach, light.direction}.pdf(position);
+float leaving_pdf(const EmissionReach& reach, const DirectionalLight&, Vec3f position, Vec3f wi, float) {
+    return DiscEmission{reach, -wi}.pdf(position);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 // A light is chosen by its power. Densities are those of a ray, per m2 sr: per m2 of the emitter, per sr,
 // over the cosine there. Light from infinity has them per m2 across the ray. A delta light lacks a factor
 // that it lacks in light sampling too: a point is one, so the density is per sr, and that of a direction
-// per m2.
+// per m2, also where it is one of many that a directional light draws.
 #pragma once
 #include "light/emission_aim.h"
 #include "light/light.h"

@@ -72,6 +72,10 @@ TEST_CASE("the flux of all rays is the known power of the lamp, aimed or not") {
         CHECK(agrees(power(SpotLight{{0, 1, 0}, {0, -1, 0}, {2, 2, 2}, 0.3f, 0.6f}),
                      2 * 2 * kPiD * (1 - inner + (inner - outer) / 3)));
         CHECK(agrees(power(DirectionalLight{{0, -1, 0}, {2, 2, 2}}), 2 * kPiD * 9));
+        // From a disc more light comes in all than onto what faces it: L 2 pi (1 - cos) to pi L sin^2.
+        for (const double angle : {0.01, 1.0, kPiD})
+            CHECK(agrees(power(DirectionalLight{{0, -1, 0}, {2, 2, 2}, float(angle)}),
+                         2 * 2 / (1 + std::cos(angle / 2)) * kPiD * 9));
     }
 }
 
@@ -185,20 +189,27 @@ TEST_CASE("points and directions of lamps with an extent follow the density wher
 }
 
 TEST_CASE("rays from infinity start before everything, and their density is found again on their way") {
-    const LightSet set({DirectionalLight{normalize(Vec3f{1, -2, 0}), {1, 1, 1}}}, sky());
+    const LightSet set({DirectionalLight{normalize(Vec3f{1, -2, 0}), {1, 1, 1}},
+                        DirectionalLight{normalize(Vec3f{1, -2, 0}), {1, 1, 1}, 0.8f}}, sky());
     for (const bool aimed : {false, true}) {
         const EmissionRays rays(set, reach(aimed));
         int skies = 0;
+        Vec3f mean{};   // direction of the disc's rays
+        int rays_of_disc = 0;
         for (int i = 0; i < 2000; ++i) {
             const auto ray = rays.sample(float(hash_uniform(1, i)), pair(2, i), pair(3, i), 0);
             REQUIRE(ray.has_value());
             CHECK(length(ray->origin - kAll.center) > kAll.radius);
             CHECK(dot(kAll.center - ray->origin, ray->direction) > 0);
             skies += ray->light == LightSet::kEnvironment;
+            if (ray->light == 1) mean += ray->direction, ++rays_of_disc;
             const Vec3f at = ray->origin + ray->direction * 7.f;
             CHECK(rays.pdf(ray->light, at, -ray->direction, kInfinity, 0) ==
                   doctest::Approx(ray->pdf).epsilon(1e-3));
         }
+        // Evenly over the disc: the mean of the cosine is the middle of its range.
+        CHECK(dot(mean / float(rays_of_disc), normalize(Vec3f{1, -2, 0})) ==
+              doctest::Approx((1 + std::cos(0.4)) / 2).epsilon(0.002));
         CHECK(skies > 100);
         CHECK(skies < 1900);
     }

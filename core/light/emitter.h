@@ -45,6 +45,13 @@ std::optional<EmitterSample> sample_emitter(const SphereLight& light, Vec2f u,
 std::optional<EmitterSample> sample_emitter(const TriangleLight& light, Vec2f u,
                                             Vec3f position);
 
+/// Unit vector toward a point of the disc from which a directional light shines, even over its solid angle.
+Vec3f toward_disc(const DirectionalLight& light, Vec2f u);
+/// What each such direction stands for, as that of a parallel light: lux across it. An even disc of luminance L and
+/// half angle h has the solid angle W = 2 pi (1 - cos h) and brings E = pi L sin^2 h to a surface that faces it, pi L
+/// from h = pi / 2 on; this is L W.
+Rgb disc_illuminance(const DirectionalLight& light);
+
 /// Solid-angle density of sample_emitter.
 float emitter_pdf(const SphereLight& light, Vec3f position);
 float emitter_pdf(const TriangleLight& light, float t, float cos_light);

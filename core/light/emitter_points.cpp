@@ -228,7 +228,7 @@ std::optional<EmitterPoint> EmitterPoints::sample_light(std::int32_t light, Vec2
         from.delta = true;
         const Light now = lights_->light_at(light, time);
         if (const auto* sun = std::get_if<DirectionalLight>(&now))
-            point->position = -sun->direction, from.at_infinity = true;
+            point->position = toward_disc(*sun, u), from.at_infinity = true;
         else if (const auto* spot = std::get_if<SpotLight>(&now))
             point->position = spot->position;
         else

@@ -37,9 +37,11 @@ struct SpotLight {
     float inner_angle, outer_angle;  // rad, half angles
     float range = std::numeric_limits<float>::infinity();
 };
+/// Light from infinity: parallel, or from an even disc that light sampling alone finds (emitter.h).
 struct DirectionalLight {
-    Vec3f direction;  // unit, where it shines
-    Rgb illuminance;  // lux
+    Vec3f direction;  // unit, where it shines; of a disc from its middle
+    Rgb illuminance;  // lux, on a surface that faces it
+    float angle = 0;  // rad, diameter of the disc; 0: parallel
 };
 /// A ball that shines evenly, or by a profile; rays can hit it (Intersector sphere `sphere`).
 struct SphereLight {
@@ -89,7 +91,7 @@ struct LightSample {
                         // a facing surface
     float pdf;  // solid angle, selection included; for a delta light the selection
                 // probability
-    bool delta;
+    bool delta;  // light sampling alone finds it: it has no size, or is the disc of a sun
     /// Index in lights(), or kEnvironment; of a triangle also where it was sampled (weights
     /// of its second and third corner).
     std::int32_t light = -1;

@@ -38,8 +38,9 @@ SpotLight between(const SpotLight& a, const SpotLight& b, float s) {
             on_the_way(a.outer_angle, outer, s),   on_the_way(a.range, range, s)};
 }
 DirectionalLight between(const DirectionalLight& a, const DirectionalLight& b, float s) {
-    const auto& [direction, illuminance] = b;
-    return {turn_toward(a.direction, direction, s), on_the_way(a.illuminance, illuminance, s)};
+    const auto& [direction, illuminance, angle] = b;
+    return {turn_toward(a.direction, direction, s), on_the_way(a.illuminance, illuminance, s),
+            on_the_way(a.angle, angle, s)};
 }
 SphereLight between(const SphereLight& a, const SphereLight& b, float s) {
     const auto& [shape, luminance, lamp] = b;

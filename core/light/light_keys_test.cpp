@@ -103,6 +103,8 @@ TEST_CASE("directions turn at constant speed, also by a half turn; ranges that e
     const auto third = std::get<DirectionalLight>(blend(down, aside, 1 / 3.f));
     CHECK(third.direction.x == doctest::Approx(0.5));
     CHECK(third.illuminance.x == doctest::Approx(5 / 3.0));
+    const Light sun = DirectionalLight{{0, -1, 0}, {1, 1, 1}, 0.1f}, wide = DirectionalLight{{0, -1, 0}, {1, 1, 1}, 0.4f};
+    CHECK(std::get<DirectionalLight>(blend(sun, wide, 1 / 3.f)).angle == doctest::Approx(0.2));
     const auto half = std::get<DirectionalLight>(blend(down, up, 0.5f));
     CHECK(length(half.direction) == doctest::Approx(1));
     CHECK(half.direction.y == doctest::Approx(0).epsilon(1e-6));

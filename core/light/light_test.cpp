@@ -86,6 +86,83 @@ TEST_CASE("directional light: its illuminance, anywhere") {
           std::numeric_limits<float>::infinity());
 }
 
+namespace {
+
+constexpr double degrees(double angle) { return angle * kPiD / 180; }
+
+/// Illuminance of a facet that is tilted from an even disc of half angle h by so much, over that of one that faces it:
+/// the integral of the cosine over what is above the facet.
+double seen_share(double h, double tilt) {
+    constexpr int kSteps = 400;
+    double sum = 0;
+    for (int i = 0; i < kSteps * kSteps; ++i) {
+        const double z = 1 - (i / kSteps + 0.5) / kSteps * (1 - std::cos(h));
+        const double phi = (i % kSteps + 0.5) / kSteps * 2 * kPiD;
+        sum += std::max(0.0, z * std::cos(tilt) + std::sqrt(1 - z * z) * std::cos(phi) * std::sin(tilt));
+    }
+    const double facing = kPiD * std::pow(std::sin(std::min(h, kPiD / 2)), 2);
+    return sum / kSteps / kSteps * 2 * kPiD * (1 - std::cos(h)) / facing;
+}
+
+DirectionalLight sun_of(double angle, float lux = 3) {
+    return {normalize(Vec3f{0.2f, -1, 0.4f}), Rgb{1, 1, 1} * lux, float(angle)};
+}
+
+}  // namespace
+
+TEST_CASE("a sun with an angle: its illuminance on what faces it, and what of the disc a tilted facet sees") {
+    for (const double angle : {0.001, 0.53, 20.0, 120.0, 180.0, 250.0, 360.0}) {
+        CAPTURE(angle);
+        const DirectionalLight sun = sun_of(degrees(angle));
+        const Frame frame = Frame::from_normal(-sun.direction);
+        for (const double tilt : {0.0, 30.0, 75.0, 95.0, 140.0}) {
+            CAPTURE(tilt);
+            const double t = degrees(tilt), wanted = 3 * seen_share(degrees(angle / 2), t);
+            const Vec3f normal = frame.to_world({float(std::sin(t)), 0, float(std::cos(t))});
+            CHECK(std::abs(illuminance(one(sun), {1, 2, 3}, normal, 400000) - wanted) < 0.03);
+        }
+    }
+    CHECK(seen_share(degrees(10), degrees(60)) == doctest::Approx(0.5).epsilon(1e-4));   // in full view: the cosine
+    CHECK(seen_share(degrees(90), degrees(60)) == doctest::Approx(0.75).epsilon(1e-4));  // half a sphere of sky
+    CHECK(seen_share(degrees(180), degrees(140)) == doctest::Approx(1).epsilon(1e-4));   // all of one
+}
+
+TEST_CASE("chi-square: directions of a sun with an angle fall evenly on its disc, and on no other") {
+    for (const double angle : {8.0, 30.0, 180.0, 300.0, 360.0}) {
+        CAPTURE(angle);
+        const DirectionalLight sun = sun_of(degrees(angle));
+        const double cos_half = std::cos(degrees(angle / 2));
+        DirectionGrid grid{.frame = Frame::from_normal(-sun.direction), .cos_min = cos_half};
+        const auto p_value = [&](double fault) {
+            const auto sample = [&](Vec2f u) { return std::optional(sample_emitter(sun, u, {})->wi); };
+            return direction_p_value(grid, sample, [&](Vec3f) { return fault / (2 * kPiD * (1 - cos_half)); });
+        };
+        CHECK(p_value(1) > 1e-3);
+        CHECK(p_value(1.02) < 1e-3);
+    }
+    // The sun of the earth, where cosines have hardly any digits: squares of the sine are even.
+    const DirectionalLight sun = sun_of(degrees(0.53));
+    double sum = 0, most = 0;
+    for (int i = 0; i < 100000; ++i) {
+        const double s2 = length_squared(cross(sample_emitter(sun, uniform_2d(i), {})->wi, sun.direction));
+        sum += s2, most = std::max(most, s2);
+    }
+    const double edge = std::pow(std::sin(degrees(0.265)), 2);
+    CHECK(sum / 100000 == doctest::Approx(edge / 2).epsilon(0.005).scale(0));
+    CHECK(most == doctest::Approx(edge).epsilon(1e-3).scale(0));
+}
+
+TEST_CASE("a sun without an angle, and one of nearly none, are parallel light") {
+    const DirectionalLight parallel = sun_of(0), thin = sun_of(1e-12);
+    for (int i = 0; i < 100; ++i) {
+        const auto exact = sample_emitter(parallel, uniform_2d(i), {}), near = sample_emitter(thin, uniform_2d(i), {});
+        CHECK(exact->wi == -parallel.direction);
+        CHECK(exact->value == parallel.illuminance);
+        CHECK(length(near->wi - exact->wi) < 1e-6f);
+        CHECK(near->value == parallel.illuminance);
+    }
+}
+
 TEST_CASE("sphere light: E = pi L (r/d)^2 on a facet that faces it, far, near and tiny") {
     for (float r : {1e-3f, 0.5f, 1.9f, 1.999f}) {
         const LightSet lights = one(SphereLight{{{0, 2, 0}, r}, {5, 5, 5}});
@@ -273,5 +350,8 @@ TEST_CASE("no light, bad light") {
         Error);
     CHECK_THROWS_AS(one(SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 0.5f, 0.4f}), Error);
     CHECK_THROWS_AS(one(DirectionalLight{{0, -2, 0}, {1, 1, 1}}), Error);
+    for (const float angle : {-0.1f, 6.4f, std::numeric_limits<float>::quiet_NaN()})
+        CHECK_THROWS_WITH_AS(one(DirectionalLight{{0, -1, 0}, {1, 1, 1}, angle}),
+                             doctest::Contains("light 0 (directional): angle: wanted 0 to 2 pi rad"), Error);
     CHECK_THROWS_AS(one(SphereLight{{{}, 0}, {1, 1, 1}}), Error);
 }

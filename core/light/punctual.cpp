@@ -1,6 +1,7 @@
 // punctual.cpp -- point, spot and directional lights as KHR_lights_punctual defines them.
 #include "light/emitter.h"
 #include "light/emitter_check.h"
+#include "math/warp.h"
 
 namespace dg {
 namespace {
@@ -17,6 +18,12 @@ std::optional<EmitterSample> toward(Vec3f light, Rgb intensity, float range,
     const float window = range_window(d, range);
     if (window <= 0) return std::nullopt;
     return EmitterSample{to * (1 / d), d, intensity * (window / d2), 1, true};
+}
+
+/// Without cancellation where the angle is small.
+float one_minus_cos_half(float angle) {
+    const float s = std::sin(angle / 4);
+    return 2 * s * s;
 }
 
 }  // namespace
@@ -58,6 +65,8 @@ void check_emitter(const SpotLight& light, const std::string& where) {
 void check_emitter(const DirectionalLight& light, const std::string& where) {
     check_unit(where, "direction", light.direction);
     check_color(where, "illuminance", light.illuminance);
+    if (!(light.angle >= 0 && light.angle <= 2 * kPi + 1e-5f))
+        throw input_error(where, "angle", "0 to 2 pi rad", std::to_string(light.angle));
 }
 
 LightBounds emitter_bounds(const PointLight& light) {
@@ -98,8 +107,19 @@ std::optional<EmitterSample> sample_emitter(const SpotLight& light, Vec2f,
     return sample;
 }
 
-std::optional<EmitterSample> sample_emitter(const DirectionalLight& light, Vec2f, Vec3f) {
-    return EmitterSample{-light.direction, kInfinity, light.illuminance, 1, true};
+Vec3f toward_disc(const DirectionalLight& light, Vec2f u) {
+    if (light.angle == 0) return -light.direction;
+    const Vec3f w = warp_cone(u, one_minus_cos_half(light.angle));
+    return normalize(Frame::from_normal(-light.direction).to_world(w));
+}
+
+Rgb disc_illuminance(const DirectionalLight& light) {
+    const float c = one_minus_cos_half(light.angle);
+    return light.illuminance * (c <= 1 ? 2 / (2 - c) : 2 * c);   // sin^2 h = c (2 - c)
+}
+
+std::optional<EmitterSample> sample_emitter(const DirectionalLight& light, Vec2f u, Vec3f) {
+    return EmitterSample{toward_disc(light, u), kInfinity, disc_illuminance(light), 1, true};
 }
 
 }  // namespace dg

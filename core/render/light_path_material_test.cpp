@@ -66,6 +66,8 @@ TEST_CASE("camera, light and both: a table with things of all materials on it") 
     world("window, sun and point", World().add(0, {"pane", sheet()}, kPane).add(1, {"glass", solid(0)}, kBallPlace)
                                        .light(DirectionalLight{normalize(Vec3f{0.3f, -1, -0.4f}), {1, 1, 1}})
                                        .light(PointLight{{-0.2f, 0.5f, 0.7f}, {0.5f, 0.5f, 0.5f}}));
+    world("window, sun with an angle", World().add(0, {"pane", sheet()}, kPane).add(1, {"glass", solid(0)}, kBallPlace)
+                                           .light(DirectionalLight{normalize(Vec3f{0.3f, -1, -0.4f}), {1, 1, 1}, 0.4f}));
     World bumps_world(bumpy(0.4f));
     bumps_world.d.textures.push_back(bumps());
     world("bumpy", std::move(bumps_world.light(kLamp)));

@@ -880,7 +880,7 @@ def _of_scenes() -> dict[str, Call]:
         ),
         "add_directional_light": (
             lambda b, *a: b.add_directional_light(*a),
-            [(0.0, -1.0, 0.0), rgb],
+            [(0.0, -1.0, 0.0), rgb, 0.01],
         ),
         "add_sphere_light": (lamp("add_sphere_light"), [(0.0, 1.0, 2.0), 0.2, rgb, 0, *AXES]),
         "set_environment_image": (

@@ -144,7 +144,7 @@ Light any_light(FuzzInput& in) {
             const float outer = in.factor();
             return SpotLight{position, {0, 0, -1}, color(in), outer * in.factor(), outer, in.number()};
         }
-        case 2: return DirectionalLight{{0, 0, -1}, color(in)};
+        case 2: return DirectionalLight{{0, 0, -1}, color(in), in.number()};
         default: return SphereLight{{position, in.number()}, color(in)};
     }
 }

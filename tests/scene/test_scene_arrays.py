@@ -48,6 +48,7 @@ BAD: list[tuple[str, Callable[[dg.Scene], Any], str]] = [
     ("intensity", lambda s: s.add_light(dg.PointLight(5)), "intensity: wanted three numbers"),
     ("dark", lambda s: s.add_light(dg.PointLight((-1, 0, 0))), "intensity: wanted three finite"),
     ("cone", lambda s: s.add_light(dg.SpotLight(inner_angle=60)), "inner_angle < outer_angle"),
+    ("angle", lambda s: s.add_light(dg.DirectionalLight(angle=400)), "angle: wanted a number"),
     ("camera", lambda s: s.add_camera("a", "b"), "wanted a Camera, got 'b'"),
     ("sky", lambda s: s.set_environment(color=(1, 2)), "color: wanted three numbers"),
     ("night", lambda s: s.set_environment(-np.ones((2, 4, 3))), "at least 0"),

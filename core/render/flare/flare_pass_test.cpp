@@ -163,6 +163,24 @@ TEST_CASE("ghosts of lights without size are the limit of small lamps") {
     CHECK(whole(of_sun).mean / whole(of_far).mean == doctest::Approx(1).epsilon(0.015));
 }
 
+TEST_CASE("ghosts of a sun with an angle are those of a far ball that looks as large") {
+    const Vec3f way = normalize(Vec3f{0.08f, 0.1f, -1});
+    const Rgb lux{100, 100, 100};
+    const Camera camera = camera_with(test::tessar());
+    const auto ghosts = [&](const Light& light) {
+        SceneDescription d;
+        d.lights = {light};
+        return forward(*Scene::build(std::move(d)), camera, 8, 40000);
+    };
+    for (const float sine : {0.02f, 0.06f}) {   // 2.3 degrees across, by maps, and 6.9 degrees, without
+        const Blocks far = ghosts(SphereLight{{way * 1000.f, 1000 * sine}, lux * (1 / (kPi * sine * sine))});
+        const Blocks sun = ghosts(DirectionalLight{-way, lux, 2 * std::asin(sine)});
+        INFO(show(far) << show(sun));
+        CHECK(equality(sun, far) > 1e-3);
+        CHECK(equality(ghosts(DirectionalLight{-way, lux}), far) < 1e-3);
+    }
+}
+
 TEST_CASE("flare has the same bits on any number of threads, and ranges of samples add") {
     const auto scene = bright_scene();
     const Camera camera = camera_with(test::tessar());

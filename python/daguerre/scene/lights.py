@@ -40,10 +40,16 @@ class SpotLight:
 
 @dataclass(frozen=True)
 class DirectionalLight:
-    """Directional light: illuminance in lux on a surface that faces it."""
+    """Directional light: illuminance in lux on a surface that faces it.
+
+    It shines from a disc of even luminance at infinity, ``angle`` degrees across, which makes the
+    edges of shadows soft; 0: a parallel beam, and sharp shadows. The illuminance does not depend on
+    the angle. Neither the camera nor a perfect mirror shows the disc.
+    """
 
     illuminance: Color = (1.0, 1.0, 1.0)
     name: str = ""
+    angle: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -80,6 +86,8 @@ def check_light(light: Light) -> None:
             color(value, f"{where}: {name}")
         elif name == "range":
             number(value, f"{where}: range", above=0, infinite=True, error=InputError)
+        elif name == "angle":
+            number(value, f"{where}: angle", 0, 360, error=InputError)
         elif name == "radius":
             number(value, f"{where}: radius", 0, error=InputError)
         elif name == "profile":

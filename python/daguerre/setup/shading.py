@@ -215,7 +215,7 @@ def _core_light(light: Light, transform: NDArray[np.float64]) -> CoreLight:
         cone = math.radians(light.inner_angle), math.radians(light.outer_angle)
         return "spot", position, direction, light.intensity, *cone, light.range
     if isinstance(light, DirectionalLight):
-        return "directional", direction, light.illuminance
+        return "directional", direction, light.illuminance, math.radians(light.angle)
     if isinstance(light, SphereLight):
         return "sphere", position, light.radius, light.luminance, _lamp(light, transform)
     raise InputError(f"light: wanted a point, spot, directional or sphere light, got {light!r}")
