@@ -171,6 +171,39 @@ def test_illuminance_by_a_distant_light(stage: Usd.Stage, inputs: Any, lux: floa
     assert np.allclose(_distant_lux(stage, **inputs), lux, rtol=0.01)
 
 
+@pytest.mark.parametrize(
+    ("inputs", "angle"),
+    [
+        ({}, 0.53),
+        ({"angle": 0.0}, 0.0),
+        ({"angle": 12.5, "normalize": True}, 12.5),
+        ({"angle": 500.0}, 360.0),
+        ({"angle": -4.0}, 0.0),
+    ],
+)
+def test_a_distant_light_keeps_its_angle(stage: Usd.Stage, inputs: Any, angle: float) -> None:
+    _light(stage, UsdLux.DistantLight, **inputs)
+    scene = stages.read(stage)
+    assert scene.lights[0][0].angle == pytest.approx(angle, rel=1e-6)
+    assert [note for note in scene.warnings if "distant" in note] == []
+
+
+@pytest.mark.parametrize(
+    ("inputs", "normal", "lux"),
+    [
+        ({"angle": 180.0, "intensity": 1.0}, (1, 0, 0), math.pi / 2),
+        ({"angle": 360.0, "intensity": 1.0}, (0, 0, -1), math.pi),
+        ({"angle": 500.0, "intensity": 1.0, "normalize": True}, (0, 1, 0), 0.5),
+        ({"angle": 60.0, "intensity": 2.0, "normalize": True}, (0.5, 0, 0.75**0.5), 3**0.5),
+        ({"angle": 60.0, "intensity": 1.0}, (0.1, 0, -1), 0.0),
+    ],
+)
+def test_a_wide_distant_light_is_a_cap_of_sky_of_even_luminance(
+    stage: Usd.Stage, inputs: Any, normal: Any, lux: float
+) -> None:
+    assert np.allclose(_distant_lux(stage, normal, **inputs), lux, rtol=0.015)
+
+
 def test_a_distant_light_shines_along_minus_z(stage: Usd.Stage) -> None:
     light = _light(stage, UsdLux.DistantLight, angle=0.0, intensity=1.0)
     stages.place(light, turn=(60, 0, 0), scale=(2, 5, 1))

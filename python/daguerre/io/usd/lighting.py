@@ -155,14 +155,13 @@ class Lighting:
         return path
 
     def _distant(self, visit: Visit, spots: Spots, lamp: Lamp) -> None:
-        degrees = lamp.still("inputs:angle")
-        if degrees > 0:
-            self._notes.add("a distant light is a point at infinity: its shadows are sharp")
+        degrees = min(max(lamp.still("inputs:angle"), 0.0), 360.0)
         if is_shaped(visit.prim):
             self._notes.add("the shaping of a distant light is left out")
         lux, size = cone_size(degrees)
         emission = times(lamp.emission(size, visit.shown), lux)
-        self._lamps(spots, lambda rgb: DirectionalLight(rgb, name=visit.name), emission)
+        make = _maker(DirectionalLight, name=visit.name, angle=degrees)
+        self._lamps(spots, make, emission)
 
     def _sphere(self, visit: Visit, spots: Spots, lamp: Lamp) -> None:
         radius = lamp.size("radius")
