@@ -250,6 +250,10 @@ void bind_camera(nb::module_& m) {
              "Radius of the iris, as a fraction of the lens's own, and shifts (K, 2) of the film.")
         .def_rw("sensor_stack", &Camera::sensor_stack, "Reflecting parts of the body, for ghosts and scatter alone.")
         .def_rw("scatter", &Camera::scatter, "How the parts of an exact lens scatter, where that is drawn.")
+        .def("clip_near",
+             [](Camera& camera, double distance_m, bool round) { camera.near_clip = {distance_m, round}; },
+             "distance_m"_a, "round"_a,
+             "Clips what is nearer than a plane across the axis, or than that radius; 0: nothing.")
         .def_prop_ro("lens_numbers", &lens_numbers,
                      "Numbers that change evenly, in groups. Pinhole: film distance (mm). Thin lens: film distance, iris radius (mm), "
              "1 / focus distance (1/m), tilts (deg). Projection: focal lengths; principal point; iris radius (mm); "

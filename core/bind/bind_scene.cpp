@@ -282,11 +282,12 @@ struct Builder {
 
 
 std::optional<std::tuple<float, std::uint32_t>> first_hit(const Scene& scene, const Triple& origin,
-                                                          const Triple& direction) {
+                                                          const Triple& direction, float t_min) {
     Ray ray;
     ray.origin = vec(origin);
     ray.direction = normalize(vec(direction));
     ray.time = 0.5f;
+    ray.t_min = t_min;
     if (!is_traceable(ray)) return std::nullopt;
     const auto hit = scene.intersect(ray);
     if (!hit) return std::nullopt;
@@ -303,8 +304,8 @@ void bind_built_scene(nb::module_& m) {
                          return std::tuple{Triple{b.min.x, b.min.y, b.min.z},
                                            Triple{b.max.x, b.max.y, b.max.z}};
                      })
-        .def("first_hit", &first_hit, "origin"_a, "direction"_a,
-             "Distance (m) and instance index of the nearest surface at mid-interval, or None.");
+        .def("first_hit", &first_hit, "origin"_a, "direction"_a, "t_min"_a = 0.f,
+             "Distance (m) and instance index of the nearest surface at mid-interval, beyond t_min, or None.");
 }
 
 /// Meshes, textures, and where meshes stand.

@@ -1,5 +1,7 @@
 #include "camera/camera.h"
 
+#include <algorithm>
+
 #include "camera/lens_motion.h"
 
 namespace dg {
@@ -82,6 +84,7 @@ Ray to_world(const Camera& camera, const Ray& ray) {
     Ray world = ray;
     world.origin = to_float(pose.point(to_double(ray.origin)));
     world.direction = to_float(pose.vector(to_double(ray.direction)));
+    world.t_min = std::max(ray.t_min, float(camera.near_clip.end(to_double(ray.origin), to_double(ray.direction))));
     return world;
 }
 

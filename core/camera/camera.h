@@ -20,6 +20,7 @@
 
 #include "camera/camera_kind.h"
 #include "camera/exact.h"
+#include "camera/near_clip.h"
 #include "camera/pinhole.h"
 #include "camera/projection.h"
 #include "camera/thick.h"
@@ -64,6 +65,7 @@ struct Camera {
     Keyed<LensSetting> setting = {};  // empty: it stays
     SensorStack sensor_stack = {};    // what of the body reflects: for ghosts and scatter alone
     LensScatter scatter = {};         // how an exact lens's parts scatter, where that is drawn
+    NearClip near_clip = {};          // of its view
 };
 
 /// Fills rays[i] (camera frame) for samples[i], with the lens as it is at their times; weight 0: stopped by
@@ -86,7 +88,8 @@ inline LensSetting setting_at(const Camera& camera, float time) {
     return camera.setting.values.empty() ? LensSetting{} : camera.setting.at(time);
 }
 
-/// The wall between the camera's frame and the world's, as they lie at the ray's time.
+/// The wall between the camera's frame and the world's, as they lie at the ray's time. What the camera clips lies
+/// before the t_min of the ray.
 Ray to_world(const Camera& camera, const Ray& ray);
 
 }  // namespace dg

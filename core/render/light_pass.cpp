@@ -58,6 +58,7 @@ std::optional<LightArrival> StraightLightPass::begin(std::uint64_t index) const 
     path.lens.ray = Ray{.origin = lens->origin, .direction = lens->direction, .time = moment.time};
     path.lens.iris_opening = moment.iris_opening * setting_at(camera, moment.time).iris_opening;
     const Ray world = to_world(camera, path.lens.ray);
+    path.lens.ray.t_min = world.t_min;
     const float cosine = sky ? 1 : std::abs(dot(point->normal, world.direction));
     path.density = weight_.of_light(point->pdf, lens->pdf, cosine);
     if (!(path.density > 0) || !std::isfinite(path.density)) return std::nullopt;
@@ -101,7 +102,7 @@ void LightPass::look(LightArrival& path, std::span<const Reprojection> landings)
     if (hero == landings.end()) return;
     const RayCone cone = cone_.at(hero->film_mm, path.lens.ray);
     const Rgb luminance = picture_.scene.emission(*path.source, path.shadow.direction, path.shadow.time,
-                                          cone.after(path.shadow.t_max).width);
+                                          cone.after(path.lens.ray.t_min + path.shadow.t_max).width);
     path.radiance = path.wavelengths.emission(luminance);
 }
 

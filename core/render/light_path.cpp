@@ -64,7 +64,7 @@ std::optional<LightArrival> LightPaths::connect(const Flight& flight, LightVerte
     if (!sent) return std::nullopt;
     arrival.density = sent->density, arrival.radiance = sent->radiance;
     arrival.shadow = spawn_ray(vertex.hit(), w, time);
-    arrival.shadow.t_max = length(world.origin - arrival.shadow.origin);
+    arrival.shadow.t_max = length(world.origin - arrival.shadow.origin) - world.t_min;
     arrival.lens.iris_opening = flight.moment.iris_opening * setting_at(camera_, time).iris_opening;
     arrival.wavelengths = flight.walk.wavelengths();
     arrival.u_pixel = u.pixel;

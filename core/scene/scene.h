@@ -89,7 +89,8 @@ class Scene {
     Spectrum visibility(Ray ray, float distance, bool delta, const Interior& medium,
                         const Wavelengths& wavelengths) const;
 
-    /// Visibility of light that runs along `ray` from t_min to t_max, all of it through air and sheets.
+    /// Visibility of light that runs along `ray` from t_min to t_max, all of it through air and sheets. None comes along
+    /// a ray that ends before it starts (t_max < 0).
     Spectrum visibility_along(const Ray& ray, const Wavelengths& wavelengths) const;
 
     bool has_clear() const { return has_clear_; }  // some shadow rays pass surfaces

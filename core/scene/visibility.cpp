@@ -27,6 +27,7 @@ Spectrum Scene::visibility(Ray ray, float distance, bool delta, const Interior& 
 }
 
 Spectrum Scene::visibility_along(const Ray& ray, const Wavelengths& wavelengths) const {
+    if (ray.t_max < 0) return 0.f;
     if (!(ray.t_max > ray.t_min)) return 1.f;
     return transmission(ray, ray.t_max, false, {}, wavelengths);
 }

@@ -46,6 +46,7 @@ TEXTS = {
     "sensor_fit": "vertical",
     "shift": "0,8.5",
     "tilt": "0,6",
+    "near_clip": "0.5",
     "iso": "400",
     "exposure": "auto:spot",
     "exposure_compensation": "-0.667",

@@ -82,7 +82,9 @@ void FlareAim::look_for_highlights(const RenderSettings& settings) {
     const auto ray = [&](const EmitterPoint& to, Vec2f at, float time) -> std::optional<Ray> {
         const auto way = this->way(to, at, time);
         if (!way || way->direction.z > kFurthestBack) return std::nullopt;
-        return way->ray();
+        Ray ray = way->ray();
+        ray.t_min = float(camera_.near_clip.end(way->start, way->direction));
+        return ray;
     };
     const Vec3f middle = to_float(camera_.world_from_camera.at(0.5f).point(center_));
     Survey survey = survey_highlights(

@@ -18,6 +18,7 @@ std::optional<Ray> TruthView::ray(Vec2d px) const {
     const Affine3d world = pose(ray.time);
     ray.origin = to_float(world.point(chief.origin));
     ray.direction = to_float(normalize(world.vector(chief.direction)));
+    ray.t_min = float(camera_.near_clip.end(chief.origin, normalize(chief.direction)));
     if (!is_traceable(ray)) return std::nullopt;
     return ray;
 }

@@ -134,6 +134,9 @@ class Camera(Value):
         responsivity: Factor that scales the exposure; default: 1.
         white_balance: White for development: colour temperature, K, or chromaticity (x, y).
         motion: Parameters that change over time, by name.
+        near_clip: Near clipping plane: what is nearer along the axis, m, is not seen; 0: nothing is
+            clipped; default: 0. What is clipped still casts shadows and is seen in mirrors. A lens
+            that sees to the side has a sphere instead.
     """
 
     transform: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
@@ -184,6 +187,7 @@ class Camera(Value):
     responsivity: float = _default("responsivity")
     white_balance: float | tuple[float, float] | None = None
     motion: dict[str, Dynamic] = field(default_factory=dict)
+    near_clip: float = _default("near_clip")
 
     def __post_init__(self) -> None:
         if self.sensor is not None and self.sensor_size is FULL_FRAME:

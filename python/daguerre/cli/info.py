@@ -126,6 +126,8 @@ def camera_rows(facts: Facts, resolution: tuple[int, int]) -> dict[str, str]:
             f"{_metres(facts.near_m)} to {_metres(facts.far_m)} "
             f"(circle of confusion {facts.coc_mm * 1000:.3g} um)"
         )
+    if facts.near_clip_m:
+        rows["near clipping plane"] = _metres(facts.near_clip_m)
     rows["shutter"] = facts.shutter
     rows["exposure"] = facts.exposure
     if facts.ev100 is not None:

@@ -29,6 +29,7 @@ from .film import frame_size
 from .focus import Focus
 from .framing import Framing
 from .lens_motion import LensMotion
+from .near_clip import set_near_clip
 from .pose import changes
 from .pose import pose as pose_over
 from .resolved import ResolvedCamera, ResolvedLens
@@ -84,6 +85,7 @@ def set_up(
     if of_lens := set(changing) - {"transform"}:
         motion = LensMotion(camera, of_lens, begin, end, lens, lens_of)
         notes += motion.apply(size, framing.pitch_mm)
+    set_near_clip(lens.core, now, size)
     notes += exposure_notes(now, lens.f_stop, shutter.shutter_time(now))
     return ResolvedCamera(
         camera=now,

@@ -61,6 +61,7 @@ class Facts:
         shutter: Description of the shutter.
         exposure: Description of what sets the brightness.
         ev100: Exposure value log2(N^2 / t) - log2(ISO / 100), ISO 2720.
+        near_clip_m: Distance of the near clipping plane; 0: nothing is clipped.
     """
 
     lens: str
@@ -88,6 +89,7 @@ class Facts:
     shutter: str
     exposure: str
     ev100: float | None
+    near_clip_m: float
 
 
 def camera_facts(
@@ -167,6 +169,7 @@ def facts_of(
         describe(camera, resolution),
         describe_exposure(camera, stop, shutter),
         ev100,
+        setup.camera.near_clip,
     )
 
 

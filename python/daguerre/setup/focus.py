@@ -15,12 +15,11 @@ from daguerre.errors import InputError, UsageError, suggest
 from daguerre.scene.node_names import find_node
 from daguerre.scene.scene import Scene
 
+from .near_clip import Directions, view_begins
+
 _VERTICES_AT_ONCE = 1 << 18
 _ROUNDS = 4
 
-
-#: unit view direction in the camera's frame of a film point (mm, upright)
-Directions = Callable[[float, float], NDArray[np.float64]]
 #: focus distance (m) at which a point of the camera's frame (m) is sharp
 SharpAt = Callable[[NDArray[np.float64]], float]
 
@@ -81,7 +80,9 @@ class Focus:
         film_x = (x / self.resolution[0] - 0.5) * self.frame_mm[0] + camera.shift[0]
         film_y = (0.5 - y / self.resolution[1]) * self.frame_mm[1] + camera.shift[1]
         what = f"pixel {x:g},{y:g}" if camera.focus_at else "centre ray"
-        return self._along(direction_of(film_x, film_y), what)
+        direction = direction_of(film_x, film_y)
+        start = view_begins(camera, direction_of, self.frame_mm, direction)
+        return self._along(direction, start, what)
 
     def settled(self, direction_at: Callable[[float], Directions]) -> Sharp:
         """Finds the focus of a tilted lens, whose view directions depend on its focus.
@@ -95,11 +96,12 @@ class Focus:
                 found = self.distance(direction_at(found.distance_m))
         return found
 
-    def _along(self, direction: NDArray[np.float64], what: str) -> Sharp:
+    def _along(self, direction: NDArray[np.float64], start: float, what: str) -> Sharp:
         hit = None
         if self.core_scene is not None:
             origin = tuple(self.world[:3, 3])
-            hit = self.core_scene.first_hit(origin, tuple(self.world[:3, :3] @ direction))
+            toward = tuple(self.world[:3, :3] @ direction)
+            hit = self.core_scene.first_hit(origin, toward, start)
         if hit is None:
             return Sharp(math.inf, (f"autofocus: {what} meets nothing; focus at infinity",))
         depth = float(hit[0]) * -float(direction[2])

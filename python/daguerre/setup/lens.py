@@ -25,11 +25,12 @@ from . import tilt
 from .aim_cache import exact_lens
 from .body import parts_of, stack_of
 from .fit import DEFAULT_DEGREE, FitQuality, judged
-from .focus import Directions, ideal_direction
+from .focus import ideal_direction
 from .framing import Framing
 from .ideal import DEFAULT_F_STOP, core_of
 from .imperfections import imperfect
 from .iris import iris_of, mask_of
+from .near_clip import Directions
 from .resolved import Glass, ResolvedLens
 
 

@@ -15,6 +15,7 @@ from daguerre.analysis.pencils import Pencil
 from daguerre.errors import UsageError
 from daguerre.plots.lens_section import draw, section, to_svg
 from daguerre.rendering.session import Session
+from daguerre.setup.near_clip import directions_of, view_begins
 
 #: Width of the spread's picture, px.
 PIXELS = 48
@@ -80,9 +81,11 @@ def _lit(bench: Bench, film: tuple[float, float], distance_mm: float | None) -> 
 
 def _distance_mm(session: Session, light: Pencil) -> float:
     """Depth of the surface that a chief ray comes from, mm; infinite: it meets none."""
-    pose = session.prepared.setup.world_from_camera
+    setup = session.prepared.setup
+    pose, seen = setup.world_from_camera, directions_of(setup.core)
     toward = -light.direction  # the lens's axes are the camera's
-    hit = session.built.core.first_hit(tuple(pose[:3, 3]), tuple(pose[:3, :3] @ toward))
+    start = view_begins(setup.camera, seen, setup.frame_size_mm, toward)
+    hit = session.built.core.first_hit(tuple(pose[:3, 3]), tuple(pose[:3, :3] @ toward), start)
     depth = math.inf if hit is None else 1e3 * float(hit[0]) * -float(toward[2])
     return depth if depth > 0 else math.inf
 

@@ -19,7 +19,7 @@ pytest.importorskip("pxr")
 
 from pxr import Usd, UsdGeom
 
-from .stage import again, opened
+from .stage import again, opened, read
 
 #: Fields that a stage states though a camera may leave them to its defaults.
 STATED = {"focal_length": 50.0, "shutter_angle": 180.0}
@@ -203,6 +203,7 @@ def test_any_camera_comes_back_equal(seed: int, tmp_path: Path) -> None:
         **any_focus(draw),
         **any_shutter(draw),
         **any_exposure(draw),
+        near_clip=draw.choice([0.0, draw.uniform(1e-4, 1e4)]),
     )
     made = round_trip(camera, tmp_path, draw.choice([".usda", ".usdc", ".usd"]))
     if camera.f_stop is None and camera.projection is not None:
@@ -286,6 +287,12 @@ def test_usd_itself_sees_the_camera(tmp_path: Path) -> None:
     assert scale == pytest.approx(0.01 * 4 * 2 / 5.6**2, rel=1e-6)
     assert (usd.GetShutterOpenAttr().Get(), usd.GetShutterCloseAttr().Get()) == (-0.25, 0.25)
     assert usd.GetClippingRangeAttr().Get()[0] < 0.01  # its default hides the nearest metre
+    assert read(first, metres=1.0).near_clip == 0
+    dg.export_camera(camera.with_(near_clip=0.25), tmp_path / "b.usda")
+    (second,) = opened(tmp_path / "b.usda")
+    assert tuple(UsdGeom.Camera(second).GetClippingRangeAttr().Get()) == (0.25, 1e6)
+    assert not second.GetAttribute("daguerre:nearClip")
+    assert read(second, metres=1.0).near_clip == 0.25
 
 
 def test_isaac_sims_names_are_written(tmp_path: Path) -> None:

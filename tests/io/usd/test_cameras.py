@@ -252,15 +252,40 @@ def test_a_shutter_that_closes_before_it_opens_at_one_moment_makes_no_picture() 
 def test_what_is_not_drawn_is_noted_once() -> None:
     lines = """
         float4[] clippingPlanes = [(0, 0, 1, 2)]
-        float2 clippingRange = (50, 1e6)
+        float2 clippingRange = (50, 20)
         uniform token stereoRole = "left"
     """
     _, notes = noted(camera_prim(lines))
     assert [note.split(" of a camera")[0][:22] for note in notes] == [
-        "clipping planes", "stereoRole left", "a near clipping plane ",
+        "a clipping range whose", "clipping planes", "stereoRole left",
     ]  # fmt: skip
-    _, notes = noted(camera_prim("float2 clippingRange = (0.1, 100)"))
+
+
+@pytest.mark.parametrize(("authored", "metres", "wanted"), [
+    ("", 0.01, 0.0),  # the schema's fallback is nobody's wish
+    ("float2 clippingRange = (0.1, 100)", 0.01, 0.001),
+    ("float2 clippingRange = (50, 1e6)", 0.01, 0.5),
+    ("float2 clippingRange = (0.25, 1e6)", 1.0, 0.25),
+    ("float2 clippingRange = (0, 100)", 1.0, 0.0),
+    ("float2 clippingRange = (-1, 100)", 1.0, 0.0),
+    ("float2 clippingRange = (3, 100)\ndouble daguerre:nearClip = 0", 1.0, 0.0),
+    ("float2 clippingRange = (3, 100)\ndouble daguerre:nearClip = 0.125", 0.01, 0.125),
+])  # fmt: skip
+def test_a_near_clipping_plane_is_honoured(authored: str, metres: float, wanted: float) -> None:
+    camera, notes = noted(camera_prim(authored), metres=metres, camera_millimetres=1.0)
+    assert camera is not None
+    assert camera.near_clip == pytest.approx(wanted, rel=1e-12)
     assert notes == []
+
+
+@pytest.mark.parametrize("pair", ["(5, 5)", "(5, 1)", "(0, 0)"])
+def test_a_clipping_range_that_holds_nothing_is_noted(pair: str) -> None:
+    camera, notes = noted(camera_prim(f"float2 clippingRange = {pair}"))
+    assert camera is not None
+    assert camera.near_clip == 0
+    assert notes == [
+        "a clipping range whose far plane is not beyond its near one is left out (1 use)"
+    ]
 
 
 OURS = """
@@ -333,6 +358,7 @@ BAD = {
     "exposure:fStop": ("float exposure:fStop = inf", "finite"),
     "exposure": ("float exposure = 1000", "at most"),
     "clippingRange": ("float2 clippingRange = (nan, 1)", "finite"),
+    "clippingRange ": ("float2 clippingRange = (1e30, 2e30)", "at most"),
     "daguerre:lens:name": ('string daguerre:lens:name = "nonsense"', "of the library"),
     "daguerre:lens:model": ('token daguerre:lens:model = "quantum"', "exact"),
     "daguerre:aperture:blades": ("int daguerre:aperture:blades = -7", "3 .. 64"),

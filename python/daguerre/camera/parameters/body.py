@@ -158,6 +158,21 @@ STANDING = (
         needs=(needs.LENS_ITSELF,),
         movable=True,
     ),
+    Parameter(
+        "near_clip",
+        "Near clipping plane: what is nearer along the axis, m, is not seen; 0: nothing is clipped",
+        "m",
+        default=0.0,
+        low=0,
+        high=1e9,
+        flags=("--near-clip",),
+        metavar="M",
+        panel="Camera",
+        tells_default=True,
+        more="What is clipped still casts shadows and is seen in mirrors. A lens that sees to the "
+        "side has a sphere instead",
+        explained=("lens-models.md#the-near-clipping-plane",),
+    ),
     _LensRow(
         "decenter",
         "Shift X,Y (mm) and tilt AX,AY (degrees) of the lens surfaces FIRST to LAST; repeatable",

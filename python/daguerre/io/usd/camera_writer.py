@@ -26,6 +26,8 @@ from .shutter_writer import write_exposure, write_shutter
 from .stage_writer import Output
 
 _ROOT = "World"
+#: Clipping planes, m, for others, which always have some; the default hides the nearest metre.
+_NEAR, _FAR = 1e-3, 1e6
 
 
 def write_cameras(
@@ -79,8 +81,8 @@ def write_camera(prim: UsdGeom.Camera, camera: Camera, output: Output) -> set[fl
     write_exposure(output)
     write_shutter(output)
     write_ours(output)
-    # Others draw nothing nearer than this plane, and its default is 1 m here.
-    prim.CreateClippingRangeAttr(Gf.Vec2f(0.001, 1e6))
+    near = camera.near_clip or _NEAR
+    prim.CreateClippingRangeAttr(Gf.Vec2f(near, max(_FAR, 1e3 * near)))
     return output.codes
 
 

@@ -9,7 +9,6 @@ Source: OpenUSD, UsdGeomCamera; GfCamera for the direction of offsets.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -34,8 +33,6 @@ from .values import path_text
 
 #: F-stop of a moment that has none, within keys of a camera that has one at another: sharp.
 _SHARP = 1e9
-#: Distance of a near clipping plane, m, from which on a note tells that it is not applied.
-NEAR_M = 0.1
 _FOCUSED = ("focus_at", "focus_on")
 _STOPPED = ("t_stop", "aperture_diameter")
 
@@ -65,7 +62,7 @@ def read_camera(
         notes.add("a camera whose shutter closes before it opens is left out: it sees nothing")
         return None
     values = _film(read) | _opening(read) | read_exposure(read) | read_shutter(read)
-    values |= read_rolling(read, OMNI)
+    values |= read_rolling(read, OMNI) | _near_clip(read)
     ours = read_ours(read)
     if ours.get("lens") in (None, *IDEAL):
         values = _projected(values, read_distortion(read))
@@ -235,10 +232,15 @@ def _unread(read: Checked) -> None:
     role = read.text("stereoRole")
     if role not in (None, "mono"):
         read.notes.add(f"stereoRole {role} of a camera is not read: it stands where its prim does")
-    near = read.now("clippingRange") if read.is_authored("clippingRange") else None
-    if near is not None and not all(map(math.isfinite, near)):
-        read.fail("clippingRange", "finite numbers", near)
-    if near is not None and near[0] * read.stage.metres > NEAR_M:
-        read.notes.add(
-            f"a near clipping plane beyond {NEAR_M:g} m is not applied: a lens sees what is nearer"
-        )
+
+
+def _near_clip(read: Checked) -> dict[str, Any]:
+    """Near clipping plane, if the stage itself has one; the far one would cut what a lens sees."""
+    if not read.is_authored("clippingRange"):
+        return {}
+    near, far = read.numbers("clippingRange", 2) or (0.0, 1.0)
+    if near >= far:
+        read.notes.add("a clipping range whose far plane is not beyond its near one is left out")
+        return {}
+    distance = max(near, 0.0) * read.stage.metres
+    return {"near_clip": read.within("clippingRange", "near_clip", distance)}

@@ -67,6 +67,7 @@ PLAIN = (
     Plain("blade_curvature", "aperture:curvature", "double"),
     Plain("sensor_fit", "sensor:fit", "token"),
     Plain("sensor_reflectance", "sensor:reflectance", "double"),
+    Plain("near_clip", "nearClip", "double"),
     Plain("fps", "shutter:fps", "double"),
     Plain("shutter_time", "shutter:time", "double"),
     Plain("shutter_angle", "shutter:angle", "double"),

@@ -71,6 +71,8 @@ def _is_told(output: Output, row: Plain) -> bool:
         return value is not None and math.isinf(value)
     if row.field == "shutter_time":
         return False
+    if row.field == "near_clip":  # others need a plane even where nothing is clipped
+        return bool(value == 0)
     if row.field == "fps":
         return bool(camera.fps != output.rate)
     return row.field in camera.motion or (value is not None and value != default)
