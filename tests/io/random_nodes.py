@@ -50,7 +50,7 @@ RANGES: dict[str, dict[str, Range]] = {
     **dict.fromkeys(PLACING, _PLACEMENT),
 }
 #: Inputs whose default has no result, or does not tell how many channels it has.
-_NEEDED = {("normalize", "in"), ("convert", "in"), ("power", "in1")}
+NEEDED = {("normalize", "in"), ("convert", "in"), ("power", "in1")}
 _OPTIONS = ("out", "constant", "picture", "node")
 
 
@@ -79,11 +79,14 @@ class Grower:
     Args:
         rng: Random numbers.
         definitions: Definitions of the nodes that inputs may be connected to.
+        left_out: How often an input is left out, where constants have 2 and pictures 3.
     """
 
-    def __init__(self, rng: np.random.Generator, definitions: Sequence[Any] = ()) -> None:
+    def __init__(
+        self, rng: np.random.Generator, definitions: Sequence[Any] = (), left_out: float = 1
+    ) -> None:
         self.text = ""
-        self._rng = rng
+        self._rng, self._left_out = rng, left_out
         self._makers: dict[str, list[tuple[Any, str]]] = {}
         self._pictures: dict[tuple[str, str], Source] = {}
         self._count = 0
@@ -142,9 +145,9 @@ class Grower:
         low, high = limited or _FREE
         still = type_ not in CHANNELS or kind in PLACING or one.getIsUniform() or name == "which"
         lit = low <= PICTURED[0] and high >= PICTURED[1] and kind != "ifequal"
-        allowed = ((kind, name) not in _NEEDED, True, not still and (lit or not limited))
+        allowed = ((kind, name) not in NEEDED, True, not still and (lit or not limited))
         deep = depth > 0 and not still and not limited and type_ in self._makers
-        weights = np.array([*allowed, deep]) * [1, 2, 3, 8]
+        weights = np.array([*allowed, deep]) * [self._left_out, 2, 3, 8]
         option = self._rng.choice(_OPTIONS, p=weights / weights.sum())
         if option == "out":
             return ""
