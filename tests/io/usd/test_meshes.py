@@ -240,6 +240,7 @@ def test_topologies_that_lie_are_refused(
         ("point3f[]", Vt.Vec3fArray()),
         ("int[]", Vt.IntArray(12)),
         ("float[]", Vt.FloatArray(12)),
+        ("int", 3),
         ("float3", Gf.Vec3f(1, 2, 3)),
     ],
 )

@@ -125,9 +125,8 @@ def _samples(attribute: Usd.Attribute, codes: list[float], clock: Clock) -> list
 
 
 def _checked(attribute: Usd.Attribute, value: Any, clock: Clock) -> Array:
-    if value is None or not len(value):
-        return np.zeros((0, 3), np.float32)
-    if isinstance(value[0], int | float):  # an attribute of another type holds no points
+    # An attribute of another type holds no points: a number, or numbers.
+    if not hasattr(value, "__len__") or not len(value) or isinstance(value[0], int | float):
         return np.zeros((0, 3), np.float32)
     rows = as_rows(value, 3)
     if rows is None:
