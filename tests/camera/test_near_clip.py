@@ -1,8 +1,9 @@
-"""The near clipping plane: what is nearer is not in the picture, by whatever way light comes there."""
+"""Near clipping plane: what is nearer is not in the picture, by whatever way light comes there."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -82,10 +83,26 @@ def test_a_card_before_the_plane_leaves_the_picture_to_the_bit(kind: str) -> Non
     assert not np.array_equal(drawn(stage(), CAMERAS[kind]).rgb, without.rgb)
 
 
+def lit_wall() -> dg.Scene:
+    """A wall that another one lights, and a card before half of it; the lamp is out of sight."""
+    scene = dg.Scene()
+    aside = np.array([[0, 0, -1, 0.9], [0, 1, 0, 0], [1, 0, 0, -3.2], [0, 0, 0, 1.0]])
+    lamp = aside.copy()
+    lamp[0, 3] = 0.3  # it shines on the other wall alone
+    scene.add_light(dg.SpotLight((3000, 2000, 1000), 15.0, 22.0), lamp)
+    pane = scene.add_mesh(*scenes.quad(0.05))
+    scene.add_instance(pane, dg.Material(dg.Diffuse((0.9,) * 3)), scenes.at(*CARD))
+    wall = scene.add_mesh(*scenes.quad(1.0))
+    scene.add_instance(wall, dg.Material(), scenes.at(0, 0, -3.5))
+    scene.add_instance(wall, dg.Material(dg.Diffuse((0.9,) * 3)), aside)
+    return scene
+
+
 @pytest.mark.parametrize("kind", ["pinhole", "thin", "exact", "polynomial", "fisheye"])
-def test_camera_light_and_both_are_one_picture(kind: str) -> None:
+@pytest.mark.parametrize("made", [stage, lit_wall])
+def test_camera_light_and_both_are_one_picture(made: Callable[[], dg.Scene], kind: str) -> None:
     """What is clipped is neither met nor in the way, from either end."""
-    scene, camera = stage(), clipped(kind)
+    scene, camera = made(), clipped(kind)
 
     def draw(technique: str, spp: int, plan: Any, seed: int, one: dg.Camera = camera) -> np.ndarray:
         options = {"technique": technique, "light_paths": plan, "seed": seed, "max_depth": 3}
