@@ -13,7 +13,7 @@ TEST_CASE("camera, light and both: a table under a lamp of each kind, through a 
     worlds.push_back({"spot", World().light(SpotLight{{-0.2f, 0.5f, 0.1f}, normalize(Vec3f{0.2f, -1, 0}), {1, 1, 1}, 0.3f, 0.8f})});
     worlds.push_back({"sun", World().light(DirectionalLight{normalize(Vec3f{0.3f, -1, 0.2f}), {2, 2, 2}})});
     worlds.push_back({"sun with an angle", World().add(1, {"ball", plain(0.4f)}, placed({0.1f, 0.12f, 0}, 0.12f))
-        .light(DirectionalLight{normalize(Vec3f{0.3f, -1, 0.2f}), {2, 2, 2}, 0.6f})});
+        .light(DirectionalLight{normalize(Vec3f{0.3f, -1, 0.2f}), {2, 2, 2}, 2.2f})});
     worlds.push_back({"sky", World()});
     worlds.back().second.d.environment = Environment::image(sky, 1, {});
     worlds.push_back({"panel", World().add(0, {"panel", DiffuseMaterial{{0, 0, 0}}, {9, 9, 9}, true}, placed({0.1f, 0.5f, -0.2f}, 0.1f))});
