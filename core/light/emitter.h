@@ -47,9 +47,9 @@ std::optional<EmitterSample> sample_emitter(const TriangleLight& light, Vec2f u,
 
 /// Unit vector toward a point of the disc from which a directional light shines, even over its solid angle.
 Vec3f toward_disc(const DirectionalLight& light, Vec2f u);
-/// What each such direction stands for, as that of a parallel light: lux across it. An even disc of luminance L and
-/// half angle h has the solid angle W = 2 pi (1 - cos h) and brings E = pi L sin^2 h to a surface that faces it, pi L
-/// from h = pi / 2 on; this is L W.
+/// Illuminance (lux) of the parallel light that each such direction stands for. An even disc of luminance L and half
+/// angle h has the solid angle W = 2 pi (1 - cos h) and brings E = pi L sin^2 h to a surface that faces it, pi L from
+/// h = pi / 2 on; this is L W.
 Rgb disc_illuminance(const DirectionalLight& light);
 
 /// Solid-angle density of sample_emitter.
