@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,9 @@ import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, Vt
 
 import daguerre as dg
+from daguerre.files.notes import Notes
+from daguerre.io.usd.meshes import Choice, Meshes
+from daguerre.io.usd.values import Clock
 from tests.support import stages
 
 CYCLES = [0, 1, 2, 3]
@@ -315,3 +319,35 @@ def test_one_mesh_serves_all_instances(tmp_path: Path) -> None:
     assert (len(scene.meshes), len(scene.instances)) == (1, 5)
     assert np.allclose(scene.node_positions["copy4"], (12, 0, 0))
     assert scene.nodes["copy4"] == scene.nodes["copy4/card"]
+
+
+@pytest.mark.parametrize("interpolation", ["faceVarying", "vertex"])
+def test_a_shape_that_is_needed_again_is_the_same(tmp_path: Path, interpolation: str) -> None:
+    """Two choices of one mesh, with another mesh in between: it is read and noted once."""
+    stage = stages.new_stage(tmp_path / "x.usda")
+    sizes, corners = [4] * 6 + [2], [*stages.CUBE_FACES, 0, 1]
+    made = stages.mesh(stage, "/a", stages.CUBE, sizes, corners, "catmullClark")
+    uv = np.random.default_rng(1).random((26 if interpolation == "faceVarying" else 8, 2))
+    stages.primvar(made, "st", uv, interpolation)
+    other = stages.cube(stage, "/b", "catmullClark")
+    scene, notes, reads = dg.Scene(), Notes(), []
+    meshes = Meshes(scene, Clock("f", 24.0, 0.0), 12, notes)
+
+    def index(prim: Any, *uv_sets: str) -> Any:
+        def read() -> Any:
+            reads.append(prim.GetPath())
+            points = np.array(UsdGeom.Mesh(prim).GetPointsAttr().Get(), np.float32)
+            return points, points
+
+        choice = Choice("", uv_sets, False)
+        return scene.meshes[meshes.index(str(prim.GetPath()), prim, read, choice)]
+
+    with closing(meshes):
+        first, _, again = index(made.GetPrim(), "st"), index(other.GetPrim()), index(made.GetPrim())
+    assert [str(path) for path in reads] == ["/a", "/b"]
+    assert notes.sentences() == ["a face of fewer than three corners is left out (1 use)"]
+    assert first.uv is not None
+    assert again.uv is None
+    for name in ("positions", "normals"):
+        corners_of = [getattr(one, name)[one.indices] for one in (first, again)]
+        assert np.array_equal(*corners_of)

@@ -89,7 +89,8 @@ class Meshes:
         self._clock = clock
         self._count = count
         self._notes = notes
-        self._shapes: dict[str, Shape | None] = {}
+        self._points: dict[str, Points] = {}
+        self._last: tuple[str, Shape | None] | None = None
         self._made: dict[tuple[str, Choice], int | None] = {}
         self._pool = ThreadPoolExecutor(1)
 
@@ -116,26 +117,37 @@ class Meshes:
         """
         key = (source, choice)
         if key not in self._made:
-            if source not in self._shapes:
-                self._shapes[source] = self._shape(prim, *read())
-            shape = self._shapes[source]
+            shape = self._shape_of(source, prim, read)
             self._made[key] = None if shape is None else self._add(shape, choice, faces)
         return self._made[key]
 
-    def _shape(self, prim: Any, points: Array | Dynamic, before: Array | Dynamic) -> Shape | None:
+    def _shape_of(self, source: str, prim: Any, read: Callable[[], Points]) -> Shape | None:
+        """Shape of a prim; the last one is kept, as parts of a prim follow each other.
+
+        One that is made again, for another choice later on, has no new notes.
+        """
+        if self._last is None or self._last[0] != source:
+            self._last = None  # before the next one takes memory
+            again = source in self._points
+            points = self._points[source] if again else read()
+            self._points[source] = points
+            self._last = source, self._shape(prim, points, Notes() if again else self._notes)
+        return self._last[1]
+
+    def _shape(self, prim: Any, both: Points, notes: Notes) -> Shape | None:
         """The shape of a mesh; None, with a note, if it has no points."""
-        mesh = UsdGeom.Mesh(prim)
+        mesh, (points, before) = UsdGeom.Mesh(prim), both
         here = np.asarray(_now(points, self._clock), np.float32)
         if not len(here):
             if len(mesh.GetFaceVertexIndicesAttr().Get(self._clock.code) or ()):
-                self._notes.add("a mesh without points is left out")
+                notes.add("a mesh without points is left out")
             return None
-        faces = read_faces(mesh, len(here), self._clock, self._notes)
-        surface = surface_of(faces, mesh, self._level(len(faces.sizes)), self._clock, self._notes)
+        faces = read_faces(mesh, len(here), self._clock, notes)
+        surface = surface_of(faces, mesh, self._level(len(faces.sizes)), self._clock, notes)
         flipped = mesh.GetOrientationAttr().Get(self._clock.code) == "leftHanded"
         for attribute in (mesh.GetFaceVertexIndicesAttr(), mesh.GetFaceVertexCountsAttr()):
             if attribute.ValueMightBeTimeVarying():
-                self._notes.add("a mesh whose faces change over time keeps those of one moment")
+                notes.add("a mesh whose faces change over time keeps those of one moment")
                 break
         rest = None if before is points else np.asarray(_now(before, self._clock), np.float32)
         return Shape(prim, points, surface, flipped, self._begun(surface, here), rest)
