@@ -5,7 +5,7 @@ from __future__ import annotations
 from .level import OPEN, Level
 from .rules import INFINITE, FloatArray, IntArray
 from .scheme import Scheme, pulled_through
-from .stencils import Group, Index, side_by_side
+from .stencils import Group, side_by_side
 
 
 def limit_groups(level: Level, scheme: Scheme) -> list[Group]:
@@ -20,7 +20,9 @@ def limit_groups(level: Level, scheme: Scheme) -> list[Group]:
     return found
 
 
-def ring_points(level: Level, scheme: Scheme, kind: int, valence: int, vertices: IntArray) -> Index:
+def ring_points(
+    level: Level, scheme: Scheme, kind: int, valence: int, vertices: IntArray
+) -> IntArray:
     """Vertices of rings: vertex, spokes, opposite corners; shape (M, P)."""
 
     def parts(some: slice) -> list[IntArray]:

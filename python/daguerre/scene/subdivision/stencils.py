@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +15,6 @@ from .rules import FloatArray, IntArray
 _CHUNK, _PRODUCTS = 4096, 1 << 18
 _COLUMNS = 4
 
-#: Points of sums; half as wide as other indices, as they are read once and take much memory.
-Index = NDArray[np.int32]
-
 
 @dataclass(frozen=True)
 class Group:
@@ -26,13 +22,13 @@ class Group:
 
     Attributes:
         rows: Rows of the result, shape (M,), or a slice.
-        index: Points of each sum, shape (M, P), integers.
+        index: Points of each sum, shape (M, P).
         weights: Weights of the points, one column for each of J results: shape (P, J) for all
             rows, or (M, P, J).
     """
 
     rows: IntArray | slice
-    index: NDArray[Any]
+    index: IntArray
     weights: FloatArray
 
     def add_to(self, out: FloatArray, points: FloatArray) -> None:
@@ -55,12 +51,12 @@ class Group:
             )
 
 
-def side_by_side(count: int, width: int, parts: Callable[[slice], list[IntArray]]) -> Index:
+def side_by_side(count: int, width: int, parts: Callable[[slice], list[IntArray]]) -> IntArray:
     """Points of sums, shape (count, width): columns from a function of some rows at a time."""
-    index = np.empty((count, width), np.int32)
+    index = np.empty((count, width), np.int64)
     for begin in range(0, count, _CHUNK):
         some = slice(begin, begin + _CHUNK)
-        np.concatenate(parts(some), axis=1, out=index[some], casting="same_kind")
+        np.concatenate(parts(some), axis=1, out=index[some])
     return index
 
 
