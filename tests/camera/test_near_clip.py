@@ -101,7 +101,7 @@ def lit_wall() -> dg.Scene:
 @pytest.mark.parametrize("kind", ["pinhole", "thin", "exact", "polynomial", "fisheye"])
 @pytest.mark.parametrize("made", [stage, lit_wall])
 def test_camera_light_and_both_are_one_picture(made: Callable[[], dg.Scene], kind: str) -> None:
-    """What is clipped is neither met nor in the way, from either end."""
+    """Nothing that is clipped is met or in the way, from either end."""
     scene, camera = made(), clipped(kind)
 
     def draw(technique: str, spp: int, plan: Any, seed: int, one: dg.Camera = camera) -> np.ndarray:
