@@ -119,7 +119,7 @@ TEXTS: dict[str, tuple[bytes, str]] = {
     ),
     "no camera": (
         json.dumps({"asset": {"version": "2.0"}}).encode(),
-        r"cameras: wanted one",
+        r"wanted visible geometry or a camera, got neither",
     ),
     "lone surrogate": (
         b'{"asset":{"version":"2.0"},"extensionsRequired":["\\ud800"]}',
