@@ -218,11 +218,20 @@ def _text(value: Any) -> Any:
 
 
 def _path(value: Any) -> Any:
-    """Accepts a path of text without a zero byte, which no system supports."""
+    """Accepts a path that the system can have: text without a zero byte or half a character."""
     if isinstance(value, os.PathLike) and not isinstance(value, PurePath):
         value = os.fspath(value)
-    fits = isinstance(value, str | PurePath) and "\0" not in str(value)
-    return value if fits else REFUSED
+    if not isinstance(value, str | PurePath):
+        return REFUSED
+    try:
+        return REFUSED if b"\0" in os.fsencode(value) else value
+    except UnicodeEncodeError:  # a lone surrogate, as JSON can hold
+        return REFUSED
+
+
+def is_path(text: str) -> bool:
+    """Whether the system can have a path of this text."""
+    return _path(text) is not REFUSED
 
 
 def _array(value: Any) -> Any:

@@ -265,6 +265,7 @@ _PATH: dict[str, Callable[[Any], Any]] = {
     "as bytes": bytes,
     "as text": str,
     "with a zero byte": lambda p: str(p) + "\0",
+    "with half a character": lambda p: str(p) + "\ud800",
     "very long": lambda p: p.with_name("x" * 300 + p.suffix),
     "in a list": lambda p: [p],
 }

@@ -270,6 +270,7 @@ FAULTS = [
     (("camera",), None, "camera"),
     (("sensor",), "../other.json", "in the same folder"),
     (("sensor",), "nul\0.json", "in the same folder"),
+    (("sensor",), "\ud800.json", "in the same folder"),
     (("sensor",), "", "in the same folder"),
     (("sensor",), "missing.json", "missing.json"),
     (("noise", "kind"), "display", "noise.kind"),

@@ -16,6 +16,7 @@ from daguerre.development.looks import LOOKS
 from daguerre.doors import guarded
 from daguerre.files.json_file import read_json_file
 from daguerre.files.json_item import Item, short
+from daguerre.kinds import is_path
 from daguerre.sensors import Sensor
 
 from .blur import Blur
@@ -122,7 +123,7 @@ def _sensor(item: Item | None, file: Path, kind: str) -> Sensor | None:
     if item is None:
         return None
     name = item.text()
-    if not name or Path(name).name != name or "\0" in name:
+    if not name or Path(name).name != name or not is_path(name):
         item.fail(f"wanted the name of a file in the same folder, got {short(name)}")
     if kind != "raw":
         item.fail(f"wanted no sensor file for a plate of kind {kind}, got {short(name)}")
