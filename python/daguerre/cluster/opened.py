@@ -13,7 +13,7 @@ from daguerre.rendering.schedule import WorkOf
 from .address import WANTED, connected
 from .crew import Crew
 from .work import work_of
-from .workers import Tell
+from .workers import Tell, is_client
 
 
 @contextmanager
@@ -32,7 +32,7 @@ def opened(
         UsageError: The address is none.
         InputError: The cluster cannot be reached, or has no worker that may draw.
     """
-    if not isinstance(cluster, str) and not hasattr(cluster, "submit"):
+    if not isinstance(cluster, str) and not is_client(cluster):
         raise UsageError(f"cluster: wanted a distributed.Client or {WANTED}, got {short(cluster)}")
     reached = (
         connected(cluster, insecure=insecure) if isinstance(cluster, str) else nullcontext(cluster)

@@ -20,6 +20,7 @@ from daguerre.setup.built_scene import BuiltScene
 
 from .crew import Crew
 from .work import ClusterParts, ClusterRange
+from .workers import is_client
 
 Progress = Callable[[float], bool]
 
@@ -55,7 +56,7 @@ class ClusterSession(Session):
         built: BuiltScene | None = None,
         **keywords: Unpack[SettingsKeywords],
     ) -> None:
-        if not hasattr(client, "submit"):
+        if not is_client(client):
             raise UsageError(f"client: wanted a distributed.Client, got {short(client)}")
         super().__init__(scene, camera, settings=settings, built=built, **keywords)
         self._crew = Crew(client)

@@ -22,6 +22,11 @@ REACH_S = 2.0
 Tell = Callable[[str], None]
 
 
+def is_client(value: Any) -> bool:
+    """Whether a value can be a client of Dask; its class is none."""
+    return hasattr(value, "submit") and not isinstance(value, type)
+
+
 class Workers:
     """Workers of a Dask cluster that may draw.
 

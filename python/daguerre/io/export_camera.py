@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from daguerre.camera.camera import Camera
-from daguerre.checks import numbers
+from daguerre.checks import numbers, short
 from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.files import formats
@@ -37,11 +38,15 @@ def export_camera(
         OutputError: The file cannot be written.
     """
     if isinstance(camera, Camera):
-        cameras: Mapping[str, Camera] = {"camera": camera}
+        cameras: Mapping[Any, Any] = {"camera": camera}
     else:
         cameras = camera.cameras if isinstance(camera, Scene) else camera
     if not cameras:
         raise UsageError("export_camera: camera: wanted at least one, got none")
+    for name, one in cameras.items():
+        if not isinstance(name, str) or not isinstance(one, Camera):
+            got = f"{short(name)}: {short(one)}"
+            raise UsageError(f"export_camera: camera: wanted cameras by name, got {got}")
     span = None
     if times is not None:
         begin, end = numbers(times, "export_camera: times", 2, "begin and end, s")

@@ -13,6 +13,7 @@ import pytest
 import daguerre as dg
 from daguerre.camera import shutter
 from daguerre.cli import main
+from daguerre.errors import UsageError
 from daguerre.files import formats
 
 pytest.importorskip("pxr")
@@ -427,3 +428,9 @@ def test_cameras_of_a_stage_leave_as_its_flags_say(tmp_path: Path, capsys: Any) 
     assert main([*words, "--variant", "/Rig:lens=wide", "--strict"]) == 3
     assert main([*words, "--time", "1", "--time-code", "24"]) == 2
     assert "Traceback" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("bad", [{"a": 1}, {1: dg.Camera()}, {"a": None}])
+def test_what_is_no_camera_is_one_error(bad: Any, tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="wanted cameras by name, got"):
+        dg.export_camera(bad, tmp_path / "cam.usda")
