@@ -13,11 +13,11 @@ import daguerre as dg
 from daguerre.color import srgb
 from daguerre.files.notes import Notes
 from daguerre.io.materialx.document import Document
-from daguerre.io.usd.images import Images
-from daguerre.io.usd.shading.arithmetic import Arithmetic
-from daguerre.io.usd.shading.bake import Baker
-from daguerre.io.usd.shading.build import Builder
-from daguerre.io.usd.shading.evaluate import Context
+from daguerre.io.shading.arithmetic import Arithmetic
+from daguerre.io.shading.bake import Baker
+from daguerre.io.shading.build import Builder
+from daguerre.io.shading.evaluate import Context
+from daguerre.io.shading.images import Images
 from daguerre.scene.materials import Gltf, TextureSlot
 
 

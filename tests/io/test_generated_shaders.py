@@ -20,12 +20,12 @@ import daguerre as dg
 from daguerre.files.notes import Notes
 from daguerre.io.materialx.document import Document
 from daguerre.io.materialx.graph import Link
-from daguerre.io.usd.images import Images
-from daguerre.io.usd.shading.arithmetic import Arithmetic
-from daguerre.io.usd.shading.bake import Baker
-from daguerre.io.usd.shading.channels import Channel, Coordinate, Texel, VertexColor
-from daguerre.io.usd.shading.evaluate import Context, Evaluator
-from daguerre.io.usd.shading.operations import OPERATIONS
+from daguerre.io.shading.arithmetic import Arithmetic
+from daguerre.io.shading.bake import Baker
+from daguerre.io.shading.channels import Channel, Coordinate, Texel, VertexColor
+from daguerre.io.shading.evaluate import Context, Evaluator
+from daguerre.io.shading.images import Images
+from daguerre.io.shading.operations import OPERATIONS
 from tests.io.generated_shaders import COLOR, SIZE, Generator, Screen, library, texture_coordinates
 from tests.io.random_nodes import (
     CHANNELS,

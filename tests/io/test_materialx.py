@@ -15,7 +15,7 @@ import daguerre as dg
 from daguerre.files.notes import Notes
 from daguerre.io.materialx.document import Document
 from daguerre.io.materialx.graph import Constant, Link
-from daguerre.io.usd.shading.color_spaces import encoding_of, rec709_from
+from daguerre.io.shading.color_spaces import encoding_of, rec709_from
 from tests.io.shading_scenes import Read, color_at, shining, surface, write
 
 A = (0.25, 0.5, 0.75)

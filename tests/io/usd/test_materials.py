@@ -19,9 +19,9 @@ pytest.importorskip("pxr", reason="needs the package usd-core")
 
 from pxr import Sdf, Usd, UsdShade
 
-from daguerre.io.usd.images import Images
+from daguerre.io.shading.images import Images
+from daguerre.io.shading.udim import stitched
 from daguerre.io.usd.materials import Materials
-from daguerre.io.usd.shading.udim import stitched
 
 ALL = ("st", "st1", "displayColor")
 

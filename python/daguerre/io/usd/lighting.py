@@ -13,6 +13,8 @@ from pxr import UsdLux
 
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
+from daguerre.io.shading.images import Images
+from daguerre.io.shading.picture_bytes import is_known
 from daguerre.motion.values import MAX_TIME, is_dynamic
 from daguerre.scene.light_profile import LightProfile
 from daguerre.scene.lights import DirectionalLight, PointLight, SphereLight
@@ -21,12 +23,10 @@ from daguerre.scene.scene import Scene
 from daguerre.scene.transforms import without_scale
 
 from .domes import Dome, is_dome, is_latlong, read_panorama, set_environment, turn_of
-from .images import Images
 from .light_shapes import area, cylinder, disk, rectangle
 from .lights import Lamp, cone_size, times
 from .placing import Placing, Spots
 from .prims import Visit
-from .shading.picture_bytes import is_known
 from .shapes import Solid, ball
 from .shaping import is_shaped, read_profile
 from .stage import Opened

@@ -16,17 +16,17 @@ from daguerre.files.json_item import short
 from daguerre.files.notes import Notes
 from daguerre.io.materialx.document import Document, read
 from daguerre.io.materialx.graph import Graph
+from daguerre.io.shading.arithmetic import Arithmetic
+from daguerre.io.shading.bake import Baker
+from daguerre.io.shading.build import SURFACES, Builder, picture_files, uv_sets, vertex_colors
+from daguerre.io.shading.evaluate import Context
+from daguerre.io.shading.images import Images
+from daguerre.io.shading.operations import OPERATIONS
 from daguerre.scene.materials import Gltf, Material
 from daguerre.scene.scene import Scene
 
-from .images import Images
-from .shading.arithmetic import Arithmetic
-from .shading.bake import Baker
-from .shading.build import SURFACES, Builder, picture_files, uv_sets, vertex_colors
-from .shading.evaluate import Context
-from .shading.mtlx_arcs import bound_path, material_in_document
-from .shading.network import Clock, Networks
-from .shading.operations import OPERATIONS
+from .mtlx_arcs import bound_path, material_in_document
+from .network import Clock, Networks
 
 #: Names of the primvars that a surface has.
 PrimvarNames = Collection[str]

@@ -19,12 +19,12 @@ from pxr import Usd, UsdGeom, UsdSkel
 
 from daguerre.errors import UsageError, suggest
 from daguerre.files.notes import Notes
+from daguerre.io.shading.images import Images
 from daguerre.scene.scene import Scene
 
 from .bindings import Bindings
 from .cameras import read_camera
 from .curves import read_curves
-from .images import Images
 from .instancers import read_copies
 from .lighting import Lighting
 from .lights import is_light

@@ -21,9 +21,9 @@ from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.scene.scene import Scene
 
-from .shading import udim
-from .shading.channels import IDENTITY, Plane, Six
-from .shading.picture_bytes import UnknownFormat, bytes_of, decoded, member, opened_package
+from . import udim
+from .channels import IDENTITY, Plane, Six
+from .picture_bytes import UnknownFormat, bytes_of, decoded, member, opened_package
 
 #: Finds the file of an asset path: ``resolve(place, path)``. The file need not exist; a path that
 #: leaves the folders that a stage may read is an ``InputError`` at ``place``.

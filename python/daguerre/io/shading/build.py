@@ -28,7 +28,7 @@ from .textures import Packer
 from .walks import moving_nodes, names_before
 
 if TYPE_CHECKING:
-    from daguerre.io.usd.images import Images
+    from daguerre.io.shading.images import Images
 
 #: Nodes whose vector of two numbers is one of texture coordinates, and the name of the primvar.
 _DEFAULT_SET = "st"

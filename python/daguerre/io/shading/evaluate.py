@@ -32,7 +32,7 @@ _Key = tuple[str, str]
 
 
 class Pictures(Protocol):
-    """Source of pictures; :class:`daguerre.io.usd.images.Images` is one."""
+    """Source of pictures; :class:`daguerre.io.shading.images.Images` is one."""
 
     def picture(self, place: str, path: str) -> Any:
         """Decodes the picture of an asset path; None: it is missing."""
@@ -183,7 +183,11 @@ class Evaluator:
 
     def surface(self) -> Arguments | None:
         """The surface with its inputs; None: the material has none."""
-        node = self._graph.nodes.get(self._graph.surface)
+        return self.arguments(self._graph.surface)
+
+    def arguments(self, name: str) -> Arguments | None:
+        """A node with its inputs, which are evaluated when they are read; None: no such node."""
+        node = self._graph.nodes.get(name)
         return None if node is None else Arguments(node, self._context, _Lazy(self, node))
 
     def note(self, sentence: str) -> None:

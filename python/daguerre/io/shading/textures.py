@@ -14,7 +14,7 @@ from .bake import Baker
 from .channels import Channel, Mapping, Plane, Six, Texel, VertexColor
 
 if TYPE_CHECKING:
-    from daguerre.io.usd.images import Images
+    from daguerre.io.shading.images import Images
 
 _BEYOND_TWO = "a texture that needs a third set of texture coordinates is replaced by its mean"
 _ONLY_BASE = "colours of vertices are supported in the colour and opacity of a material only"

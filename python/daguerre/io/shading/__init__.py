@@ -1,0 +1,1 @@
+"""Shading graphs to the renderer's materials: values, pictures, nodes and surfaces."""
