@@ -39,7 +39,7 @@ FLOORS = [
     {"rendering"},
     {"maps", "labels", "charts"},
     {"plates"},
-    {"viewfinder", "cluster"},
+    {"viewfinder", "cluster", "blender"},
     {"__init__"},
     {"cli"},
     {"__main__"},

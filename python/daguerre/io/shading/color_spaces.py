@@ -63,6 +63,7 @@ _BY_NAME = {
     Encoding(primaries=_P3): "lin_displayp3 lin_p3d65 lin_p3d65_scene",
     Encoding(srgb=True, primaries=_P3): "srgb_displayp3 srgb_p3d65 srgb_p3d65_scene",
     Encoding(primaries=_P2020): "lin_rec2020 lin_rec2020_scene",
+    Encoding(gamma=2.4, primaries=_P2020): "g24_rec2020 g24_rec2020_scene",
     Encoding(primaries=_ADOBE): "lin_adobergb lin_adobergb_scene",
     Encoding(gamma=_ADOBE_GAMMA, primaries=_ADOBE): "adobergb g22_adobergb g22_adobergb_scene",
 }

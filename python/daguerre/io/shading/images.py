@@ -65,7 +65,43 @@ class Picture:
         return Plane(self.pixels[:, :, index], srgb, self.pixels, index, self.name)
 
 
-class Images:
+class Textures:
+    """Textures of a scene: each is added once, however many materials use it."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._textures: dict[Any, int] = {}
+        self._kept: list[Any] = []  # arrays whose identity is a key
+
+    def texture(
+        self,
+        pixels: NDArray[Any],
+        *,
+        srgb: bool,
+        wrap: tuple[str, str],
+        filter: str,
+        name: str,
+        key: Any = None,
+    ) -> int:
+        """Adds pixels to the scene once; ``key`` stands for their content if they are new."""
+        known = (id(pixels) if key is None else key, srgb, wrap, filter)
+        if known not in self._textures:
+            self._kept.append(pixels)
+            self._textures[known] = self._scene.add_texture(
+                freeze_in_place(pixels), srgb=srgb, wrap=wrap, filter=filter, name=name
+            )
+        return self._textures[known]
+
+    def known(self, key: Any, srgb: bool, wrap: tuple[str, str], filter: str) -> int | None:
+        """Index of a texture that was added with this key."""
+        return self._textures.get((key, srgb, wrap, filter))
+
+    def keep(self, value: Any) -> None:
+        """Keeps an array alive, so that its identity stays a key."""
+        self._kept.append(value)
+
+
+class Images(Textures):
     """The pictures of a stage.
 
     Args:
@@ -75,13 +111,11 @@ class Images:
     """
 
     def __init__(self, scene: Scene, resolve: Resolve, notes: Notes) -> None:
-        self._scene = scene
+        super().__init__(scene)
         self.resolve = resolve
         self._notes = notes
         self._pictures: dict[str, Picture | None] = {}
         self._unknown: set[str] = set()
-        self._textures: dict[Any, int] = {}
-        self._kept: list[Any] = []  # arrays whose identity is a key
         self._left = _most_bytes()
         self._begun: dict[str, Future[Picture | None]] = {}
         self._pool = ThreadPoolExecutor(min(8, os.cpu_count() or 1))
@@ -146,33 +180,6 @@ class Images:
         if found is None:
             return None
         return self.texture(found.pixels, srgb=srgb, wrap=wrap, filter=filter, name=found.name)
-
-    def texture(
-        self,
-        pixels: NDArray[Any],
-        *,
-        srgb: bool,
-        wrap: tuple[str, str],
-        filter: str,
-        name: str,
-        key: Any = None,
-    ) -> int:
-        """Adds pixels to the scene once; ``key`` stands for their content if they are new."""
-        known = (id(pixels) if key is None else key, srgb, wrap, filter)
-        if known not in self._textures:
-            self._kept.append(pixels)
-            self._textures[known] = self._scene.add_texture(
-                freeze_in_place(pixels), srgb=srgb, wrap=wrap, filter=filter, name=name
-            )
-        return self._textures[known]
-
-    def known(self, key: Any, srgb: bool, wrap: tuple[str, str], filter: str) -> int | None:
-        """Index of a texture that was added with this key."""
-        return self._textures.get((key, srgb, wrap, filter))
-
-    def keep(self, value: Any) -> None:
-        """Keeps an array alive, so that its identity stays a key."""
-        self._kept.append(value)
 
     def _one(self, place: str, path: str) -> Picture | None:
         packaged = _PACKAGED.match(path)

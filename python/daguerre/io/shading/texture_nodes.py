@@ -64,7 +64,7 @@ def usd_texture(given: Arguments) -> Mapping[str, Value]:
         given.context.notes.add("a texture without coordinates is read by those named 'st'")
     wraps = (given.text("wrapS", "useMetadata"), given.text("wrapT", "useMetadata"))
     encoding = _usd_encoding(given)
-    found = _sampled(given, st or coordinates("st"), wraps, "linear", encoding, (0.0,) * 4)
+    found = sampled(given, st or coordinates("st"), wraps, "linear", encoding, (0.0,) * 4)
     if found is None:
         found = fallback
     else:
@@ -138,7 +138,7 @@ def _image(given: Arguments, uv: Value, plain: Value = (0.0,)) -> Value:
     space = file.space if isinstance(file, Constant) else ""
     colored = given.node.type in ("color3", "color4")
     encoding = known_encoding(space, given.context.notes) if colored else Encoding()
-    found = _sampled(given, uv, wraps, filter, encoding, fit(default, 4))
+    found = sampled(given, uv, wraps, filter, encoding, fit(default, 4))
     return default if found is None else found[:size]
 
 
@@ -153,7 +153,7 @@ def _usd_encoding(given: Arguments) -> Encoding | None:
     return _USD_SPACES.get(space.lower()) or known_encoding(space, given.context.notes)
 
 
-def _sampled(
+def sampled(
     given: Arguments,
     uv: Value,
     wraps: tuple[str, str],

@@ -14,7 +14,7 @@ from .bake import Baker
 from .channels import Channel, Mapping, Plane, Six, Texel, VertexColor
 
 if TYPE_CHECKING:
-    from daguerre.io.shading.images import Images
+    from .images import Textures
 
 _BEYOND_TWO = "a texture that needs a third set of texture coordinates is replaced by its mean"
 _ONLY_BASE = "colours of vertices are supported in the colour and opacity of a material only"
@@ -37,7 +37,7 @@ class Packer:
         uv_sets: Primvars of texture coordinates, by number of their set.
     """
 
-    def __init__(self, images: Images, baker: Baker, uv_sets: Sequence[str]) -> None:
+    def __init__(self, images: Textures, baker: Baker, uv_sets: Sequence[str]) -> None:
         self._images = images
         self._baker = baker
         self._uv_sets = uv_sets

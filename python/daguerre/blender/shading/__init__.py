@@ -1,0 +1,1 @@
+"""Node trees of Blender's materials to the renderer's materials."""

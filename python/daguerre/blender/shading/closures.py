@@ -1,0 +1,212 @@
+"""Light that a tree of shaders sends back: what covers the surface, and what it emits.
+
+Blender's shaders are sums of scattered light with weights; the renderer has one layered surface.
+So a mix becomes one surface with mixed parameters, which is exact for diffuse and glossy light and
+for anything with a transparent or a glowing surface.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from daguerre.io.shading.arithmetic import Arithmetic
+from daguerre.io.shading.channels import Texel, Value, broadcast, numbers_of
+from daguerre.io.shading.layers import is_set
+from daguerre.io.shading.surface import Surface
+
+BLACK: Value = (0.0, 0.0, 0.0)
+WHITE: Value = (1.0, 1.0, 1.0)
+#: Parameters that count only where their weight does.
+_LAYERS = {
+    "clearcoat": ("clearcoat_roughness", "clearcoat_normal"),
+    "sheen_color": ("sheen_roughness",),
+    "iridescence": ("iridescence_ior", "iridescence_thickness_nm"),
+    "diffuse_transmission": ("diffuse_transmission_color",),
+    "anisotropy": ("anisotropy_rotation",),
+    "transmission": ("volume", "attenuation_distance", "attenuation_color", "dispersion"),
+}
+
+
+@dataclass(frozen=True)
+class Closure:
+    """Sum of shaders.
+
+    Attributes:
+        surface: What scatters light; None: it is black.
+        emission: Luminance of the share that is covered, cd/m2.
+        cover: Share of the surface that is there; light passes straight through the rest.
+    """
+
+    surface: Surface | None = None
+    emission: Value = BLACK
+    cover: Value = (1.0,)
+
+
+def mirror(arithmetic: Arithmetic, color: Value, roughness: Value) -> Surface:
+    """Gloss of a constant reflectance; its largest channel is also that at grazing angles."""
+    most = arithmetic.baker.combined(lambda *c: np.maximum(np.maximum(c[0], c[1]), c[2]), *color)
+    share = arithmetic.divide(color, (most,))
+    surface = Surface(base_color=BLACK, roughness=roughness, ior=0.0, double_sided=True)
+    surface.specular, surface.specular_color = (most,), broadcast(share, 3)
+    return surface
+
+
+def is_diffuse(surface: Surface) -> bool:
+    """Whether a surface has nothing but diffuse light, on one or both sides."""
+    weights = (surface.specular, surface.metallic, surface.transmission, surface.clearcoat)
+    return not any(is_set(weight) for weight in (*weights, surface.sheen_color))
+
+
+def is_mirror(surface: Surface) -> bool:
+    """Whether a surface has nothing but gloss of a constant reflectance."""
+    clear = is_set(surface.transmission) or is_set(surface.metallic)
+    return surface.ior == 0.0 and not clear and surface.base_color == BLACK
+
+
+def mixed(math: Arithmetic, a: Closure, b: Closure, share: Value) -> tuple[Closure, bool]:
+    """Mix of two closures, the share being that of the second; and whether it is exact."""
+    cover = math.mix(a.cover, b.cover, share)
+    if a.cover != b.cover:
+        share = math.divide(math.multiply(share, b.cover), cover)
+    emission = math.mix(a.emission, b.emission, share)
+    surface, exact = _one_surface(math, a.surface, b.surface, share)
+    return Closure(surface, emission, cover), exact
+
+
+def _one_surface(
+    math: Arithmetic, a: Surface | None, b: Surface | None, share: Value
+) -> tuple[Surface | None, bool]:
+    if share == (0.0,) or share == (1.0,) or (a is None and b is None):
+        return (b if share == (1.0,) else a), True
+    if a is None or b is None:
+        one = a if b is None else b
+        assert one is not None
+        rest = math.subtract((1.0,), share) if b is None else share
+        return dimmed(math, one, rest), not is_set(one.metallic)
+    if is_diffuse(a) and is_mirror(b):
+        return _glossed(math, a, b, share), True
+    if is_diffuse(b) and is_mirror(a):
+        return _glossed(math, b, a, math.subtract((1.0,), share)), True
+    alike = (is_diffuse(a) and is_diffuse(b)) or (is_mirror(a) and is_mirror(b))
+    if not alike:
+        a, b = as_metal(math, a), as_metal(math, b)
+    return parameters_mixed(math, a, b, share), alike
+
+
+def _glossed(math: Arithmetic, diffuse: Surface, gloss: Surface, share: Value) -> Surface:
+    """Diffuse light under gloss: (1 - share) of the one, share of the other.
+
+    The renderer dims what lies below gloss of the reflectance f by 1 - f, which is undone.
+    """
+    specular = math.multiply(gloss.specular, share)
+    rest = math.divide(math.subtract((1.0,), share), math.subtract((1.0,), specular))
+    return replace(
+        diffuse,
+        base_color=math.multiply(diffuse.base_color, rest),
+        roughness=gloss.roughness,
+        normal=gloss.normal if diffuse.normal is None else diffuse.normal,
+        ior=0.0,
+        specular=specular,
+        specular_color=gloss.specular_color,
+        anisotropy=gloss.anisotropy,
+        anisotropy_rotation=gloss.anisotropy_rotation,
+    )
+
+
+def dimmed(math: Arithmetic, surface: Surface, share: Value) -> Surface:
+    """Surface that scatters a share of its light."""
+    names = ("base_color", "specular", "sheen_color", "clearcoat", "diffuse_transmission_color")
+    less: dict[str, Any] = {name: math.multiply(getattr(surface, name), share) for name in names}
+    return replace(surface, **less)
+
+
+def as_metal(math: Arithmetic, surface: Surface) -> Surface:
+    """Gloss in the form of a metal, for a mix with a surface of another kind."""
+    if not is_mirror(surface):
+        return surface
+    color = math.multiply(surface.specular_color, surface.specular)
+    plain = Surface()
+    return replace(
+        surface, base_color=color, metallic=(1.0,), ior=plain.ior,
+        specular=plain.specular, specular_color=plain.specular_color,
+    )  # fmt: skip
+
+
+def parameters_mixed(math: Arithmetic, a: Surface, b: Surface, share: Value) -> Surface:
+    """Surface with mixed parameters; those that are no values come from the heavier one."""
+    a, b = _with_layers(a, b), _with_layers(b, a)
+    heavier = b if _mean(share) > 0.5 else a
+    if not is_set(a.specular) and is_set(b.specular):
+        heavier = b  # the index of refraction of the only one that reflects
+    elif not is_set(b.specular) and is_set(a.specular):
+        heavier = a
+    found: dict[str, Any] = {}
+    for field in fields(Surface):
+        first, second = getattr(a, field.name), getattr(b, field.name)
+        if isinstance(first, tuple) and isinstance(second, tuple) and first != second:
+            found[field.name] = math.mix(first, second, share)
+    return replace(heavier, **found)
+
+
+def _with_layers(surface: Surface, other: Surface) -> Surface:
+    """Surface whose layers without weight have the parameters of the other's."""
+    taken = {
+        name: getattr(other, name)
+        for weight, names in _LAYERS.items()
+        if not is_set(getattr(surface, weight))
+        for name in names
+    }
+    if not (is_set(surface.specular) or is_set(surface.metallic)):
+        taken["roughness"] = other.roughness
+    if surface.diffuse_transmission == (1.0,) and is_diffuse(surface):
+        taken["base_color"] = other.base_color
+    return replace(surface, **taken)
+
+
+def _mean(share: Value) -> float:
+    numbers = numbers_of(share)
+    if numbers:
+        return numbers[0]
+    return share[0].mean() if isinstance(share[0], Texel) else 0.5
+
+
+def added(math: Arithmetic, a: Closure, b: Closure) -> tuple[Closure, bool]:
+    """Sum of two closures, and whether it is exact; else the stronger one scatters."""
+    if a.cover != (1.0,) or b.cover != (1.0,):
+        whole = a if _mean(a.cover) >= _mean(b.cover) else b
+        lights = (math.multiply(one.emission, one.cover) for one in (a, b))
+        return replace(whole, emission=math.divide(math.add(*lights), whole.cover)), False
+    emission = math.add(a.emission, b.emission)
+    if a.surface is None or b.surface is None:
+        return Closure(a.surface or b.surface, emission), True
+    first, second = a.surface, b.surface
+    if is_diffuse(second):
+        first, second = second, first
+    if is_diffuse(first) and is_diffuse(second) and not _passes(first) and not _passes(second):
+        total = math.add(first.base_color, second.base_color)
+        return Closure(replace(first, base_color=total), emission), True
+    if is_diffuse(first) and is_mirror(second):
+        doubled = replace(first, base_color=math.multiply(first.base_color, (2.0,)))
+        twice = replace(second, specular=math.multiply(second.specular, (2.0,)))
+        return Closure(_glossed(math, doubled, twice, (0.5,)), emission), True
+    stronger = max(a.surface, b.surface, key=_strength)
+    return Closure(stronger, emission), False
+
+
+def _passes(surface: Surface) -> bool:
+    return is_set(surface.diffuse_transmission)
+
+
+def _strength(surface: Surface) -> float:
+    """Rough measure of the light that a surface scatters."""
+    diffuse = sum(_level(channel) for channel in surface.base_color) / len(surface.base_color)
+    return diffuse + (_level(surface.specular[0]) if surface.ior == 0.0 else 0.0)
+
+
+def _level(channel: object) -> float:
+    if isinstance(channel, Texel):
+        return channel.mean()
+    return channel if isinstance(channel, float) else 0.5

@@ -1,0 +1,82 @@
+"""Inputs of one Blender node as values of shading."""
+
+from __future__ import annotations
+
+from daguerre.io.materialx.graph import Constant, Link
+from daguerre.io.shading.channels import Texel, Value, broadcast, numbers_of
+from daguerre.io.shading.evaluate import Arguments
+
+
+class Sockets:
+    """Reads the sockets and properties of a node.
+
+    A socket whose node is not supported has the value that it shows without the link.
+    """
+
+    def __init__(self, given: Arguments) -> None:
+        self.given = given
+        self.math = given.context.math
+
+    def value(self, name: str, size: int = 3) -> Value:
+        """Value of a socket with one or three channels; zeros if it has none."""
+        found = self.linked(name)
+        if found is None:
+            kept = self.given.node.inputs.get(f"={name}", self.given.node.inputs.get(name))
+            numbers = kept.value if isinstance(kept, Constant) else ()
+            found = numbers if isinstance(numbers, tuple) and numbers else (0.0,)
+        return broadcast(found, size) if size > 1 else found[:1]
+
+    def linked(self, name: str) -> Value | None:
+        """Value of a link to a socket; None: there is none, or its node is not supported."""
+        found = self.given.node.inputs.get(name)
+        return self.given.given(name) if isinstance(found, Link) else None
+
+    def is_linked(self, name: str) -> bool:
+        """Whether something is linked to a socket."""
+        return isinstance(self.given.node.inputs.get(name), Link)
+
+    def one(self, name: str) -> Value:
+        """Value of a socket with one channel."""
+        return self.value(name, 1)
+
+    def numbers(self, name: str, size: int = 3) -> tuple[float, ...]:
+        """Numbers of a socket; a picture is replaced by its mean, with a note."""
+        found = self.value(name, size)
+        numbers = numbers_of(found)
+        if numbers is not None:
+            return numbers
+        self.note(f"the mean of the picture in {name!r} is used")
+        return tuple(_mean(channel) for channel in found)
+
+    def number(self, name: str) -> float:
+        """A constant number of a socket."""
+        return self.numbers(name, 1)[0]
+
+    def text(self, name: str, default: str = "") -> str:
+        """Property of the node as a text."""
+        return self.given.text(f".{name}", default)
+
+    def flag(self, name: str) -> bool:
+        """Property of the node that is on or off."""
+        return bool(self.text(name))
+
+    def table(self, name: str) -> tuple[float, ...]:
+        """Row of a curve or ramp."""
+        found = self.given.node.inputs.get(f".{name}")
+        numbers = found.value if isinstance(found, Constant) else ()
+        return numbers if isinstance(numbers, tuple) else ()
+
+    def note(self, sentence: str) -> None:
+        """Adds a note that begins with the name of the node's kind."""
+        self.given.context.notes.add(f"{self.kind}: {sentence}")
+
+    @property
+    def kind(self) -> str:
+        """Name of the node's kind without its prefix, such as "BsdfPrincipled"."""
+        return self.given.node.kind.removeprefix("ShaderNode")
+
+
+def _mean(channel: object) -> float:
+    if isinstance(channel, Texel):
+        return channel.mean()
+    return channel if isinstance(channel, float) else 0.0

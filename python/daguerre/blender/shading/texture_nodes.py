@@ -1,0 +1,202 @@
+"""Nodes of pictures and of texture coordinates, and stand-ins for computed patterns.
+
+Patterns that a formula makes (noise, Voronoi, waves, ...) have no counterpart in the renderer.
+Blender's own bake would need an operator, which it forbids while it renders, and changes to the
+user's scene; so a pattern is replaced by its mean, with a note. A user who wants it bakes it to an
+image in Blender.
+
+Source: Blender 5.0 Manual, "Texture Nodes", "Input Nodes" and "Vector Nodes".
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.color import srgb
+from daguerre.io.materialx.graph import Constant
+from daguerre.io.shading.channels import Channel, Value, VertexColor, broadcast, coordinates, fit
+from daguerre.io.shading.color_spaces import Encoding
+from daguerre.io.shading.evaluate import Arguments, known_encoding
+from daguerre.io.shading.texture_nodes import file_of, sampled
+
+from .sockets import Sockets
+
+Matrix = NDArray[np.float64]
+#: Name of the texture coordinates, or colours, that are active for rendering; no layer has it.
+ACTIVE = "\n"
+_WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black", "MIRROR": "mirror"}
+_SRGB = Encoding(srgb=True)
+#: Colour of a texture that is missing.
+_MISSING: Value = (1.0, 0.0, 1.0)
+
+
+def image(given: Arguments) -> Mapping[str, Value]:
+    """Image Texture: colour and opacity."""
+    sockets = Sockets(given)
+    if sockets.text("projection", "FLAT") != "FLAT":
+        sockets.note(f"projection {sockets.text('projection')} is read as FLAT")
+    path = file_of(given.node)
+    if path is None:
+        return {"Color": (0.0, 0.0, 0.0), "Alpha": (0.0,)}
+    uv = sockets.linked("Vector") or coordinates(ACTIVE)
+    wrap = _WRAPS.get(sockets.text("extension"), "repeat")
+    filter = "nearest" if sockets.text("interpolation") == "Closest" else "linear"
+    encoding = _encoding(given, path)
+    found = sampled(given, uv, (wrap, wrap), filter, encoding, (0.0,) * 4)
+    if found is None:
+        return {"Color": _MISSING, "Alpha": (1.0,)}
+    color, alpha = found[:3], found[3:]
+    mode = sockets.text("alpha")
+    if mode == "NONE":
+        alpha = (1.0,)
+    elif mode != "CHANNEL_PACKED" and not sockets.flag("uses_alpha") and alpha != (1.0,):
+        color = _over_black(sockets, color, alpha, encoded=encoding == _SRGB)
+    return {"Color": color, "Alpha": alpha}
+
+
+def _over_black(sockets: Sockets, color: Value, alpha: Value, *, encoded: bool) -> Value:
+    """Colour times opacity, where nothing reads the opacity; in sRGB the product of the bytes."""
+    if not encoded:
+        return sockets.math.multiply(color, alpha)
+    return sockets.math.each(
+        lambda c, a: srgb.to_linear(srgb.from_linear(np.asarray(c)) * a), color, alpha
+    )
+
+
+def _encoding(given: Arguments, path: str) -> Encoding:
+    """Encoding of a picture; Blender gives light in place of the numbers of a float file."""
+    picture = given.context.images.picture(given.node.place, path)
+    if picture is None or (picture.pixels.dtype != np.uint8 and not picture.tiled):
+        return Encoding()
+    file = given.node.inputs["file"]
+    space = file.space if isinstance(file, Constant) else ""
+    return known_encoding(space, given.context.notes)
+
+
+class _Noted(Mapping[str, Value]):
+    """Outputs, some of which are stand-ins that add a note when they are read."""
+
+    def __init__(self, sockets: Sockets, values: Mapping[str, Value], notes: Mapping[str, str]):
+        self._sockets, self._values, self._notes = sockets, values, notes
+
+    def __getitem__(self, name: str) -> Value:
+        found = self._values[name]
+        if name in self._notes:
+            self._sockets.note(self._notes[name])
+        return found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+
+def texture_coordinates(given: Arguments) -> Mapping[str, Value]:
+    """Texture Coordinate: UV; the others are stand-ins."""
+    uv = (*coordinates(ACTIVE), 0.0)
+    others = ("Generated", "Normal", "Object", "Camera", "Window", "Reflection")
+    notes = {name: f"{name!r} coordinates are read as 'UV'" for name in others}
+    return _Noted(Sockets(given), dict.fromkeys(("UV", *others), uv), notes)
+
+
+def uv_map(given: Arguments) -> Value:
+    """UV Map: a layer of texture coordinates."""
+    return (*coordinates(given.text(".uv_map") or ACTIVE), 0.0)
+
+
+def color_attribute(given: Arguments) -> Mapping[str, Value]:
+    """Color Attribute, and Attribute of a geometry: colours of the vertices."""
+    sockets = Sockets(given)
+    name = sockets.text("layer_name") or sockets.text("attribute_name")
+    where = sockets.text("attribute_type", "GEOMETRY")
+    if where != "GEOMETRY":
+        sockets.note(f"attributes of {where.lower()} are black")
+        black: Value = (0.0, 0.0, 0.0)
+        return {"Color": black, "Vector": black, "Fac": (0.0,), "Alpha": (0.0,)}
+    color: Value = tuple(VertexColor(name or ACTIVE, i) for i in range(3))
+    alpha: Value = (VertexColor(name or ACTIVE, 3),)
+    return {"Color": color, "Vector": color, "Fac": color[:1], "Alpha": alpha}
+
+
+def mapping(given: Arguments) -> Value:
+    """Mapping: scales, turns about x, y, then z, and shifts; textures the reverse."""
+    sockets = Sockets(given)
+    kind = sockets.text("vector_type", "POINT")
+    scale = sockets.numbers("Scale")
+    turn = _rotation(sockets.numbers("Rotation"))
+    shift = sockets.numbers("Location") if kind in ("POINT", "TEXTURE") else (0.0,) * 3
+    vector = sockets.linked("Vector") or sockets.value("Vector")
+    arithmetic = sockets.math
+    if kind == "TEXTURE":
+        vector = _turned(sockets, arithmetic.subtract(fit(vector, 3), shift), turn.T)
+        return arithmetic.divide(vector, scale)
+    if kind == "NORMAL":
+        scale = tuple(1 / n if n else 0.0 for n in scale)
+    vector = _turned(sockets, arithmetic.multiply(fit(vector, 3), scale), turn)
+    if kind == "NORMAL":
+        length = arithmetic.each(np.sqrt, arithmetic.dot(vector, vector))
+        return arithmetic.divide(vector, length)
+    return arithmetic.add(vector, shift)
+
+
+def _rotation(angles: tuple[float, ...]) -> Matrix:
+    """Rotation about x, then y, then z."""
+    (cx, sx), (cy, sy), (cz, sz) = ((math.cos(a), math.sin(a)) for a in angles)
+    about_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
+    about_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
+    about_z = np.array([[cz, -sz, 0], [sz, cz, 0], [0, 0, 1]])
+    return np.asarray(about_z @ about_y @ about_x)
+
+
+def _turned(sockets: Sockets, vector: Value, matrix: Matrix) -> Value:
+    arithmetic = sockets.math
+    rows: list[Channel] = []
+    for row in matrix:
+        total: Value = (0.0,)
+        for channel, factor in zip(vector, row, strict=True):
+            if abs(factor) > 1e-12:
+                total = arithmetic.add(total, arithmetic.multiply((channel,), (float(factor),)))
+        rows += total
+    return tuple(rows)
+
+
+def checker(given: Arguments) -> Mapping[str, Value]:
+    """Checker Texture: the mean of its colours."""
+    sockets = Sockets(given)
+    sockets.note("the pattern is replaced by its mean")
+    mean = sockets.math.mix(sockets.value("Color1"), sockets.value("Color2"), (0.5,))
+    return {"Color": mean, "Fac": (0.5,)}
+
+
+def pattern(given: Arguments) -> Mapping[str, Value]:
+    """Other computed patterns: a middle value in place of each output."""
+    sockets = Sockets(given)
+    sockets.note("the pattern is replaced by its mean")
+    middle = (0.5,)
+    names = ("Fac", "Distance", "W", "Radius", "Height", "Value")
+    return {
+        **dict.fromkeys(names, middle),
+        "Color": broadcast(middle, 3),
+        "Position": broadcast(middle, 3),
+    }
+
+
+def fresnel(given: Arguments) -> Value:
+    """Fresnel: reflectance at normal incidence, as nothing else depends on direction."""
+    sockets = Sockets(given)
+    sockets.note("the value at normal incidence is used")
+    return sockets.math.each(lambda n: ((n - 1) / (n + 1)) ** 2, sockets.one("IOR"))
+
+
+def layer_weight(given: Arguments) -> Mapping[str, Value]:
+    """Layer Weight: values at normal incidence; the index of refraction is 1 / (1 - blend)."""
+    sockets = Sockets(given)
+    sockets.note("the value at normal incidence is used")
+    blend = sockets.math.clamp(sockets.one("Blend"), (0.0,), (1 - 1e-5,))
+    found = sockets.math.each(lambda b: (b / (2 - b)) ** 2, blend)
+    return {"Fresnel": found, "Facing": (0.0,)}
