@@ -25,6 +25,12 @@ def emptied() -> None:
     bpy.ops.wm.read_factory_settings(use_empty=True)
 
 
+def _with_nodes(owner: Any) -> None:
+    """Gives a material or a world its nodes, which Blender 5 and later do by themselves."""
+    if owner.node_tree is None:
+        owner.use_nodes = True
+
+
 def picture(name: str, pixels: Array, space: str = "Non-Color", *, floats: bool = True) -> Any:
     """Image of pixels (H, W, 4), row 0 on top."""
     height, width = pixels.shape[:2]
@@ -53,7 +59,7 @@ class Tree:
 
     def __init__(self, name: str = "M") -> None:
         self.material = bpy.data.materials.new(name)
-        self.material.use_nodes = True
+        _with_nodes(self.material)
         self.nodes, self.links = self.material.node_tree.nodes, self.material.node_tree.links
         self.nodes.clear()
         self.output = self.nodes.new("ShaderNodeOutputMaterial")
@@ -130,7 +136,7 @@ def stage(material: Any, light: float = 0.0, size: int = SIZE) -> None:
     scene.cycles.use_denoising = False
     scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 0.01
     world = bpy.data.worlds.new("World")
-    world.use_nodes = True
+    _with_nodes(world)
     background = next(n for n in world.node_tree.nodes if n.bl_idname == "ShaderNodeBackground")
     background.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
     background.inputs["Strength"].default_value = light

@@ -19,6 +19,8 @@ from daguerre.io.shading.surface import Surface
 
 BLACK: Value = (0.0, 0.0, 0.0)
 WHITE: Value = (1.0, 1.0, 1.0)
+#: Share that a transparent surface covers so that it can shine.
+_LEAST_COVER = 0.1
 #: Parameters that count only where their weight does.
 _LAYERS = {
     "clearcoat": ("clearcoat_roughness", "clearcoat_normal"),
@@ -69,7 +71,11 @@ def is_mirror(surface: Surface) -> bool:
 def mixed(math: Arithmetic, a: Closure, b: Closure, share: Value) -> tuple[Closure, bool]:
     """Mix of two closures, the share being that of the second; and whether it is exact."""
     cover = math.mix(a.cover, b.cover, share)
-    if a.cover != b.cover:
+    if a.cover == (0.0,):
+        share = (1.0,)
+    elif b.cover == (0.0,):
+        share = (0.0,)
+    elif a.cover != b.cover:
         share = math.divide(math.multiply(share, b.cover), cover)
     emission = math.mix(a.emission, b.emission, share)
     surface, exact = _one_surface(math, a.surface, b.surface, share)
@@ -176,9 +182,7 @@ def _mean(share: Value) -> float:
 def added(math: Arithmetic, a: Closure, b: Closure) -> tuple[Closure, bool]:
     """Sum of two closures, and whether it is exact; else the stronger one scatters."""
     if a.cover != (1.0,) or b.cover != (1.0,):
-        whole = a if _mean(a.cover) >= _mean(b.cover) else b
-        lights = (math.multiply(one.emission, one.cover) for one in (a, b))
-        return replace(whole, emission=math.divide(math.add(*lights), whole.cover)), False
+        return _added_clear(math, a, b)
     emission = math.add(a.emission, b.emission)
     if a.surface is None or b.surface is None:
         return Closure(a.surface or b.surface, emission), True
@@ -194,6 +198,20 @@ def added(math: Arithmetic, a: Closure, b: Closure) -> tuple[Closure, bool]:
         return Closure(_glossed(math, doubled, twice, (0.5,)), emission), True
     stronger = max(a.surface, b.surface, key=_strength)
     return Closure(stronger, emission), False
+
+
+def _added_clear(math: Arithmetic, a: Closure, b: Closure) -> tuple[Closure, bool]:
+    """Sum with a closure that lets light pass: exact if the other one only shines.
+
+    What is not there cannot shine, so a clear surface covers a little.
+    """
+    clear, other = (a, b) if _mean(a.cover) <= _mean(b.cover) else (b, a)
+    exact = other.surface is None and other.cover == (1.0,) and clear.cover != (0.0,)
+    cover = clear.cover if other.surface is None else other.cover
+    cover = math.clamp(cover, (_LEAST_COVER,), (1.0,))
+    lights = (math.multiply(one.emission, one.cover) for one in (a, b))
+    emission = math.divide(math.add(*lights), cover)
+    return Closure(other.surface or clear.surface, emission, cover), exact
 
 
 def _passes(surface: Surface) -> bool:

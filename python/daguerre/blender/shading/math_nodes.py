@@ -69,7 +69,6 @@ def _logarithm(a: Any, base: Any) -> Any:
 #: Functions of numbers by operation, with the number of their arguments.
 _MATH: dict[str, tuple[int, Callable[..., Any]]] = {
     "DIVIDE": (2, divided),
-    "MULTIPLY_ADD": (3, lambda a, b, c: a * b + c),
     "POWER": (2, power),
     "LOGARITHM": (2, _logarithm),
     "SQRT": (1, lambda a: np.sqrt(np.maximum(a, 0))),
@@ -116,7 +115,7 @@ _AFFINE = {"ADD": "add", "SUBTRACT": "subtract", "MULTIPLY": "multiply", "DIVIDE
 _EACH = {
     **{name: name for name in ("POWER", "SIGN", "ABSOLUTE", "MINIMUM", "MAXIMUM", "FLOOR")},
     **{name: name for name in ("CEIL", "MODULO", "WRAP", "SNAP", "SINE", "COSINE", "TANGENT")},
-    **{"FRACTION": "FRACT", "MULTIPLY_ADD": "MULTIPLY_ADD", "ROUND": "ROUND"},
+    **{"FRACTION": "FRACT", "ROUND": "ROUND"},
 }
 
 
@@ -127,6 +126,9 @@ def math(given: Arguments) -> Value:
     if operation in _AFFINE:
         method = getattr(sockets.math, _AFFINE[operation])
         found: Value = method(sockets.one(names[0]), sockets.one(names[1]))
+    elif operation == "MULTIPLY_ADD":
+        a, b, c = (sockets.one(name) for name in names)
+        found = sockets.math.add(sockets.math.multiply(a, b), c)
     elif operation in _MATH:
         count, function = _MATH[operation]
         found = sockets.math.each(function, *(sockets.one(name) for name in names[:count]))
@@ -153,6 +155,8 @@ def _vector(sockets: Sockets, operation: str, a: Value, b: Value) -> Value:
     if operation in _AFFINE:
         found: Value = getattr(arithmetic, _AFFINE[operation])(a, b)
         return found
+    if operation == "MULTIPLY_ADD":
+        return arithmetic.add(arithmetic.multiply(a, b), sockets.value("Vector_002"))
     if operation == "SCALE":
         return arithmetic.multiply(a, sockets.one("Scale"))
     if operation == "NORMALIZE":

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,13 +43,15 @@ def image(given: Arguments) -> Mapping[str, Value]:
     path = file_of(given.node)
     if path is None:
         return {"Color": (0.0, 0.0, 0.0), "Alpha": (0.0,)}
+    picture = given.context.images.picture(given.node.place, path)
+    if picture is None:
+        return {"Color": _MISSING, "Alpha": (1.0,)}
     uv = sockets.linked("Vector") or coordinates(ACTIVE)
     wrap = _WRAPS.get(sockets.text("extension"), "repeat")
     filter = "nearest" if sockets.text("interpolation") == "Closest" else "linear"
-    encoding = _encoding(given, path)
+    encoding = _encoding(given, picture)
     found = sampled(given, uv, (wrap, wrap), filter, encoding, (0.0,) * 4)
-    if found is None:
-        return {"Color": _MISSING, "Alpha": (1.0,)}
+    assert found is not None  # the picture is there
     color, alpha = found[:3], found[3:]
     mode = sockets.text("alpha")
     if mode == "NONE":
@@ -67,10 +70,9 @@ def _over_black(sockets: Sockets, color: Value, alpha: Value, *, encoded: bool) 
     )
 
 
-def _encoding(given: Arguments, path: str) -> Encoding:
+def _encoding(given: Arguments, picture: Any) -> Encoding:
     """Encoding of a picture; Blender gives light in place of the numbers of a float file."""
-    picture = given.context.images.picture(given.node.place, path)
-    if picture is None or (picture.pixels.dtype != np.uint8 and not picture.tiled):
+    if picture.pixels.dtype != np.uint8 and not picture.tiled:
         return Encoding()
     file = given.node.inputs["file"]
     space = file.space if isinstance(file, Constant) else ""

@@ -80,7 +80,7 @@ class Tree:
         if sockets.given.node.kind == _ADD:
             found, exact = added(self._math, a, b)
             if not exact:
-                sockets.note("only the stronger of two shaders scatters light")
+                sockets.note("a sum of shaders is not exact: one of them scatters light")
             return found
         share = self._math.fraction(sockets.one("Fac"))
         found, exact = mixed(self._math, a, b, share)
