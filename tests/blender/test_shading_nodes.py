@@ -487,6 +487,32 @@ def test_groups_reroutes_and_muted_nodes(tmp_path):
     compared(build, tmp_path)
 
 
+def nested(inside):
+    """Group with one colour that passes through another group, or a Gamma of 2."""
+    made = bpy.data.node_groups.new("N", "ShaderNodeTree")
+    made.interface.new_socket("A", in_out="INPUT", socket_type="NodeSocketColor")
+    made.interface.new_socket("Out", in_out="OUTPUT", socket_type="NodeSocketColor")
+    begin, end = made.nodes.new("NodeGroupInput"), made.nodes.new("NodeGroupOutput")
+    node = made.nodes.new("ShaderNodeGroup" if inside else "ShaderNodeGamma")
+    if inside:
+        node.node_tree = inside
+    else:
+        node.inputs["Gamma"].default_value = 2.0
+    made.links.new(begin.outputs[0], node.inputs[0])
+    made.links.new(node.outputs[0], end.inputs[0])
+    return made
+
+
+def test_groups_pass_inputs_to_groups_inside(tmp_path):
+    def build(tree):
+        node = tree.node("Group")
+        node.node_tree = nested(nested(nested(None)))
+        tree.links.new(pixels(1, 0, 1)(tree), node.inputs[0])
+        return node.outputs[0]
+
+    compared(build, tmp_path)
+
+
 def test_groups_inside_each_other_are_limited(monkeypatch):
     monkeypatch.setattr("daguerre.blender.shading.network.MAX_NODES", 500)
     trees = []

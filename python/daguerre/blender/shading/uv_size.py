@@ -7,6 +7,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
 
 
 def uv_size(material: Any) -> float:
@@ -55,7 +58,7 @@ def _areas(mesh: Any, slots: list[int]) -> tuple[float, float]:
     return float(space[chosen].sum(dtype=np.float64)), float(np.abs(plane).sum())
 
 
-def _signed_areas(uv: np.ndarray, start: np.ndarray, total: np.ndarray) -> np.ndarray:
+def _signed_areas(uv: Array, start: Array, total: Array) -> Array:
     """Areas of polygons of corners that follow each other, by Gauss's formula."""
     if not len(start):
         return np.zeros(0)
