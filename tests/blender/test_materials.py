@@ -246,7 +246,8 @@ EXACT = [
     ("diffuse", "grey", 0.3), ("diffuse", "glossy", 0.3), ("glossy", "diffuse", 0.3),
     ("diffuse", "transparent", 0.3), ("transparent", "emission", 0.3),
     ("diffuse", "emission", 0.3), ("diffuse", "translucent", 0.3), ("lamp", "transparent", 0.4),
-    ("plastic", "transparent", 0.3), ("plastic", "emission", 0.3), ("glossy", "emission", 0.6), ("lamp", "emission", 0.4),
+    ("plastic", "transparent", 0.3), ("plastic", "emission", 0.3), ("glossy", "emission", 0.6),
+    ("lamp", "emission", 0.4),
 ]  # fmt: skip
 
 

@@ -107,7 +107,7 @@ class Materials:
         return _Made(self._scene.add_material(made), sets, colors)
 
     def _closure(self, material: Any) -> Closure:
-        """What the surface of a material scatters and emits; black if it has no surface."""
+        """Scattering and emission of a material's surface; black if it has none."""
         graph = Networks(self._notes).graph(material)
         if graph is None:
             self._notes.add("a material without a surface is black")

@@ -37,7 +37,7 @@ class Closure:
     """Sum of shaders.
 
     Attributes:
-        surface: What scatters light; None: it is black.
+        surface: Surface that scatters light; None: it is black.
         emission: Luminance of the share that is covered, cd/m2.
         cover: Share of the surface that is there; light passes straight through the rest.
     """
@@ -203,7 +203,7 @@ def added(math: Arithmetic, a: Closure, b: Closure) -> tuple[Closure, bool]:
 def _added_clear(math: Arithmetic, a: Closure, b: Closure) -> tuple[Closure, bool]:
     """Sum with a closure that lets light pass: exact if the other one only shines.
 
-    What is not there cannot shine, so a clear surface covers a little.
+    Nothing that is absent can shine, so a clear surface covers a little.
     """
     clear, other = (a, b) if _mean(a.cover) <= _mean(b.cover) else (b, a)
     exact = other.surface is None and other.cover == (1.0,) and clear.cover != (0.0,)

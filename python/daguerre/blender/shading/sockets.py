@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from daguerre.io.materialx.graph import Constant, Link
 from daguerre.io.shading.channels import Texel, Value, broadcast, numbers_of
-from daguerre.io.shading.evaluate import Arguments
+from daguerre.io.shading.evaluate import Arguments, constant
 
 
 class Sockets:
     """Reads the sockets and properties of a node.
 
-    A socket whose node is not supported has the value that it shows without the link.
+    A socket whose node is not supported has the value that it shows without the link. Values that
+    are not finite are an ``InputError``.
     """
 
     def __init__(self, given: Arguments) -> None:
@@ -22,8 +23,9 @@ class Sockets:
         found = self.linked(name)
         if found is None:
             kept = self.given.node.inputs.get(f"={name}", self.given.node.inputs.get(name))
-            numbers = kept.value if isinstance(kept, Constant) else ()
-            found = numbers if isinstance(numbers, tuple) and numbers else (0.0,)
+            found = (0.0,)
+            if isinstance(kept, Constant) and not isinstance(kept.value, str):
+                found = constant(kept, self.given.context, self.given.node.place)
         return broadcast(found, size) if size > 1 else found[:1]
 
     def linked(self, name: str) -> Value | None:
