@@ -437,3 +437,54 @@ def test_bump_of_a_number_is_flat_and_other_spaces_are_noted():
     found = Read(tree.material)
     assert found.kind.normal_texture is None
     assert found.sentences == ["NormalMap: normals in the space WORLD are left out (1 use)"]
+
+
+UNSUPPORTED = "shading: arithmetic on colours of vertices is not supported"
+
+
+def test_colors_of_vertices_that_cannot_be_computed_make_a_grey_material():
+    tree = Tree()
+    color = tree.node("VertexColor", {}, layer_name="Paint").outputs["Color"]
+    bent = tree.node("NormalMap", {"Color": color})
+    tree.surface(tree.node("BsdfPrincipled", {"Normal": bent.outputs[0]}))
+    found = Read(tree.material)
+    assert found.sentences == [
+        "shading: arithmetic on colours of vertices is not supported (1 use)"
+    ]
+    emptied()
+    tree = Tree()
+    color = tree.node("VertexColor", {}, layer_name="Paint").outputs["Color"]
+    tree.surface(tree.node("BsdfPrincipled", {"Normal": color}))
+    found = Read(tree.material)
+    np.testing.assert_allclose(found.kind.base_color, 0.8, rtol=1e-6)
+    assert found.sentences == [f"{UNSUPPORTED}: the material is grey (1 use)"]
+
+
+def test_values_that_are_not_finite_are_an_error():
+    tree = Tree()
+    node = tree.node("Value")
+    node.outputs[0].default_value = math.nan
+    tree.surface(tree.node("BsdfPrincipled", {"Roughness": node.outputs[0]}))
+    with pytest.raises(InputError, match=r"material 'M': node 'Value': wanted finite numbers"):
+        Read(tree.material)
+
+
+def test_bumps_follow_the_size_of_the_mesh():
+    """A unit of texture coordinates that is twice as long halves the slopes."""
+    slopes = []
+    for scale in (1.0, 2.0):
+        emptied()
+        tree = Tree()
+        u = np.tile((np.arange(SIZE) + 0.5) / SIZE, (SIZE, 1))
+        pixels = np.ones((SIZE, SIZE, 4))
+        pixels[:, :, :3] = u[:, :, None]
+        node = tree.texture(picture("p", pixels), extension="EXTEND")
+        bump = tree.node("Bump", {"Height": node.outputs[0], "Distance": 0.5})
+        tree.surface(tree.node("BsdfPrincipled", {"Normal": bump.outputs[0]}))
+        stage(tree.material)
+        square = next(one for one in bpy.data.objects if one.type == "MESH")
+        square.scale = (scale,) * 3
+        bpy.context.view_layer.update()
+        normal = our_normals(Read(tree.material))[4, 4]
+        slopes.append(-normal[0] / normal[2])
+    np.testing.assert_allclose(slopes, [0.25, 0.125], rtol=1e-4)

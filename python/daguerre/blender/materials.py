@@ -96,14 +96,21 @@ class Materials:
     def _make(self, material: Any) -> _Made:
         if material.node_tree is None:
             return _Made(self._scene.add_material(_displayed(material)))
-        closure = self._closure(material)
-        surface = _surface(closure)
+        try:
+            surface = _surface(self._closure(material))
+            return self._assembled(surface, str(material.name))
+        except UnsupportedError as error:
+            self._notes.add(f"shading: {error} is not supported: the material is grey")
+            return self._assembled(Surface(base_color=_PLAIN), str(material.name))
+
+    def _assembled(self, surface: Surface, name: str) -> _Made:
+        """Adds the material of a surface."""
         sets = tuple(dict.fromkeys(_layers(surface, Texel)))
         if len(sets) > 2:
             self._notes.add("a material reads more than two UV layers")
         colors = next(iter(_layers(surface, VertexColor)), None)
         assembler = Assembler(Packer(self._pictures, self._baker, sets), self._baker)
-        made = assembler.material(surface, str(material.name))
+        made = assembler.material(surface, name)
         return _Made(self._scene.add_material(made), sets, colors)
 
     def _closure(self, material: Any) -> Closure:
@@ -117,11 +124,7 @@ class Materials:
         )
         nodes = operations(partial(uv_size, material))
         evaluator = Evaluator(graph, nodes, context)
-        try:
-            return Tree(graph, evaluator, self._math).surface()
-        except UnsupportedError as error:
-            self._notes.add(f"shading: {error} is not supported: the material is grey")
-            return Closure(Surface(base_color=_PLAIN))
+        return Tree(graph, evaluator, self._math).surface()
 
 
 def _displayed(material: Any) -> Material:

@@ -135,11 +135,14 @@ def _pixels(image: Any) -> NDArray[Any] | None:
         return None
     flat = np.empty(count, np.float32)
     image.pixels.foreach_get(flat)
+    if not image.is_float:  # in place, as pictures are large
+        np.rint(np.multiply(np.clip(flat, 0, 1, out=flat), 255, out=flat), out=flat)
     pixels = flat.reshape(height, width, channels)[::-1]
-    if channels == 4 and pixels[:, :, 3].min() >= 1:
+    opaque = 1 if image.is_float else 255
+    if channels == 4 and pixels[:, :, 3].min() >= opaque:
         pixels = pixels[:, :, :3]
     if not image.is_float:
-        return np.ascontiguousarray(np.rint(np.clip(pixels, 0, 1) * 255).astype(np.uint8))
+        return np.ascontiguousarray(pixels.astype(np.uint8))
     pixels = np.nan_to_num(pixels, nan=0.0, posinf=0.0, neginf=0.0)
     if pixels.shape[2] == 4 and alpha_of(image) in ("STRAIGHT", "PREMUL"):
         alpha = pixels[:, :, 3:]
