@@ -1,0 +1,24 @@
+"""The frame of Blender (z-up, in units of the scene) and that of a ``Scene`` (y-up, metres)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Matrix = NDArray[np.float64]
+
+#: (x, y, z) of Blender is (x, z, -y) here.
+_AXES: Matrix = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+
+
+def world_from_blender(scene: Any) -> Matrix:
+    """World (m, y-up) from the world of a Blender scene, shape (4, 4)."""
+    scale = float(scene.unit_settings.scale_length)
+    return np.asarray(_AXES @ np.diag([scale, scale, scale, 1.0]))
+
+
+def seconds_per_frame(scene: Any) -> float:
+    """Time of a frame of a Blender scene, s."""
+    return float(scene.render.fps_base) / float(scene.render.fps)

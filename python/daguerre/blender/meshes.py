@@ -1,0 +1,207 @@
+"""Reads evaluated meshes: one mesh of the scene for each material, shared by all copies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.checks import freeze_in_place
+from daguerre.files.notes import Notes
+from daguerre.scene.polygons import weld
+from daguerre.scene.scene import Scene
+
+from .arrays import attribute, points_of, read
+
+#: Times (S,) in s, and points of all vertices at each, shape (S, N, 3).
+Steps = tuple[Sequence[float], NDArray[np.float32]]
+Parts = list[tuple[int, int]]
+
+
+class Needs(NamedTuple):
+    """Layers of a mesh that a material reads, by name.
+
+    Attributes:
+        uv: UV maps of texture coordinates 0 and 1; "" stands for the one that renders use.
+        color: Colour attribute that tints the material; "" stands for the one that renders use;
+            None: none.
+    """
+
+    uv: tuple[str, ...] = ("",)
+    color: str | None = None
+
+
+class Materials(Protocol):
+    """Materials of the scene. They may tell by ``needs(material) -> Needs`` what they read."""
+
+    def index(self, material: Any) -> int:
+        """Index in the scene of a ``bpy.types.Material``; None: the default."""
+
+
+def slots_of(thing: Any) -> tuple[Any, ...]:
+    """Materials of an object, by slot; at least one, which may be None."""
+    return tuple(slot.material for slot in thing.material_slots) or (None,)
+
+
+def needs_of(materials: Materials, material: Any) -> Needs:
+    """Layers that a material reads; those that renders use if it cannot tell."""
+    tell = getattr(materials, "needs", None)
+    return Needs() if tell is None else tell(material)
+
+
+@dataclass(frozen=True)
+class Source:
+    """The arrays of a Blender mesh.
+
+    Attributes:
+        mesh: ``bpy.types.Mesh``, evaluated.
+        points: Shape (N, 3).
+        vertices: Vertex of each corner, shape (C,).
+        triangles: Corners of each triangle, shape (T, 3).
+        slots: Material slot of each triangle, shape (T,).
+        normals: Unit normals of corners, shape (C, 3); None: the mesh is flat.
+    """
+
+    mesh: Any
+    points: NDArray[np.float32]
+    vertices: NDArray[np.int32]
+    triangles: NDArray[np.int32]
+    slots: NDArray[np.int32]
+    normals: NDArray[np.float32] | None
+
+
+def source_of(mesh: Any, slots: int) -> Source:
+    """Reads a mesh.
+
+    Args:
+        mesh: ``bpy.types.Mesh``, evaluated.
+        slots: Number of material slots; faces of later ones have the last.
+    """
+    mesh.calc_loop_triangles()
+    triangles = read(mesh.loop_triangles, "loops", 3, np.uint32).view(np.int32)
+    vertices = attribute(mesh, ".corner_vert")
+    if vertices is None:
+        vertices = np.zeros(0, np.int32)
+    faces = read(mesh.loop_triangle_polygons, "value", 1, np.int32)
+    index = attribute(mesh, "material_index")
+    chosen = np.zeros(len(faces), np.int32) if index is None else index[faces]
+    return Source(
+        mesh,
+        points_of(mesh),
+        vertices,
+        triangles,
+        np.clip(chosen, 0, slots - 1),
+        _normals(mesh, vertices),
+    )
+
+
+def _normals(mesh: Any, vertices: NDArray[np.int32]) -> NDArray[np.float32] | None:
+    """Normals of corners; None: each face has one normal."""
+    if mesh.normals_domain == "FACE":
+        return None
+    if mesh.normals_domain == "POINT":
+        return read(mesh.vertex_normals, "vector", 3, np.float32)[vertices]
+    return read(mesh.corner_normals, "vector", 3, np.float32)
+
+
+class Meshes:
+    """Meshes of a scene, each added once for all copies.
+
+    Args:
+        scene: Receives the meshes.
+        materials: Materials by slot.
+        notes: Receives notes on layers that are left out.
+    """
+
+    def __init__(self, scene: Scene, materials: Materials, notes: Notes) -> None:
+        self._scene = scene
+        self._materials = materials
+        self._notes = notes
+        self._made: dict[tuple[int, ...], Parts] = {}
+
+    def index(self, thing: Any, steps: Steps | None = None) -> Parts:
+        """Pairs (mesh, material) of an evaluated object of type MESH; no pairs: no faces.
+
+        Args:
+            thing: ``bpy.types.Object``, evaluated.
+            steps: Points over time. Copies share those of the first.
+        """
+        materials = slots_of(thing)
+        key = (thing.data.as_pointer(), *(0 if m is None else m.as_pointer() for m in materials))
+        if key not in self._made:
+            self._made[key] = self._add(thing.data, materials, steps)
+        return self._made[key]
+
+    def _add(self, mesh: Any, materials: Sequence[Any], steps: Steps | None) -> Parts:
+        """Adds a mesh for each material that some face has."""
+        source = source_of(mesh, len(materials))
+        parts: Parts = []
+        for slot in np.unique(source.slots):
+            triangles = source.triangles
+            if source.slots.min() != source.slots.max():
+                triangles = triangles[source.slots == slot]
+            material = materials[slot]
+            made = self._part(source, triangles, needs_of(self._materials, material), steps)
+            parts.append((made, self._materials.index(material)))
+        return parts
+
+    def _part(
+        self, source: Source, triangles: NDArray[np.int32], needs: Needs, steps: Steps | None
+    ) -> int:
+        """Adds some triangles, with vertices for their corners."""
+        corners, index = triangles, None
+        if len(triangles) < len(source.triangles):
+            used = np.zeros(len(source.vertices), bool)
+            used[triangles] = True
+            index = np.flatnonzero(used)
+            corners = (np.cumsum(used) - 1)[triangles]
+        values = self._layers(source, needs)
+        if index is not None:
+            values = {name: rows[index] for name, rows in values.items()}
+        vertices = source.vertices if index is None else source.vertices[index]
+        first, number = weld(vertices, *values.values())
+        rows = vertices[first]
+        given: dict[str, Any] = {n: freeze_in_place(value[first]) for n, value in values.items()}
+        moved = None if steps is None else (steps[0], steps[1][:, rows])
+        return self._scene.add_mesh(
+            freeze_in_place(source.points[rows]),
+            freeze_in_place(number.astype(np.uint32)[corners]),
+            steps=moved,
+            name=source.mesh.name_full,
+            **given,
+        )
+
+    def _layers(self, source: Source, needs: Needs) -> dict[str, NDArray[np.float32]]:
+        """Values of corners, by argument of ``Scene.add_mesh``."""
+        found = {"normals": source.normals}
+        for key, name in zip(("uv", "uv1"), needs.uv, strict=False):
+            found[key] = self._uv(source.mesh, name)
+        if needs.color is not None:
+            found["colors"] = self._colors(source, needs.color)
+        return {key: values for key, values in found.items() if values is not None}
+
+    def _uv(self, mesh: Any, name: str) -> NDArray[np.float32] | None:
+        """Texture coordinates of corners, (0, 0) at the top left; None: there are none."""
+        layers = mesh.uv_layers
+        layer = layers.get(name) if name else next((x for x in layers if x.active_render), None)
+        if layer is None:
+            if name:
+                self._notes.add(f"UV map {name!r} is missing on a mesh")
+            return None
+        uv = read(layer.uv, "vector", 2, np.float32)
+        np.subtract(1, uv[:, 1], out=uv[:, 1])
+        return uv
+
+    def _colors(self, source: Source, name: str) -> NDArray[np.float32] | None:
+        """Linear colours of corners; None: there are none."""
+        layers = source.mesh.color_attributes
+        index = layers.find(name) if name else layers.render_color_index
+        if not 0 <= index < len(layers):
+            self._notes.add(f"colour attribute {name!r} is missing on a mesh")
+            return None
+        layer = layers[index]
+        values = read(layer.data, "color", 4, np.float32)
+        return values if layer.domain == "CORNER" else values[source.vertices]

@@ -1,0 +1,93 @@
+"""Walks over what Blender draws: objects, copies by instancers, and instances of geometry nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: Tells the same thing at another moment: instancer, object, type, and place among the copies.
+Identity = tuple[str, str, str, tuple[int, ...]]
+
+#: Types that cannot be drawn, in words; types without surfaces, such as empties, are not here.
+UNDRAWN = {
+    "VOLUME": "volumes",
+    "GREASEPENCIL": "grease pencil drawings",
+    "GPENCIL": "grease pencil drawings",
+    "POINTCLOUD": "point clouds",
+    "LIGHT_PROBE": "light probes",
+}
+
+
+@dataclass(frozen=True)
+class Seen:
+    """One thing that Blender draws; valid until the walk goes on.
+
+    Attributes:
+        object: Evaluated object.
+        matrix: World from object in Blender's frame, shape (4, 4).
+        name: Name of the object, or of the instancer that copies it.
+        own: Whether it is an object of the scene, and no copy or part of one.
+        surface: Whether its own surface is drawn, and not only its copies.
+        copy: The walk's own record of it.
+    """
+
+    object: Any
+    matrix: NDArray[np.float64]
+    name: str
+    own: bool
+    surface: bool
+    copy: Any
+
+    @property
+    def identity(self) -> Identity:
+        """Finds it again at another moment."""
+        path = () if self.own else tuple(self.copy.persistent_id)
+        return self.name, self.object.name_full, self.object.type, path
+
+
+def walk(depsgraph: Any) -> Iterator[Seen]:
+    """Everything that renders show, in the order of the dependency graph.
+
+    Args:
+        depsgraph: Evaluated ``bpy.types.Depsgraph``.
+    """
+    hidden = _hidden(depsgraph.scene)
+    for copy in depsgraph.object_instances:
+        thing, own = copy.object, not copy.is_instance
+        owner = thing if own or copy.parent is None else copy.parent
+        name = owner.name_full
+        if name in hidden or thing.hide_render:
+            continue
+        matrix = np.array(copy.matrix_world, np.float64)
+        yield Seen(thing, matrix, name, own, copy.show_self, copy)
+
+
+def _hidden(scene: Any) -> set[str]:
+    """Names of objects that only collections without render visibility hold."""
+    shown: set[str] = set()
+    every: set[str] = set()
+    stack = [(scene.collection, True)]
+    while stack:
+        collection, visible = stack.pop()
+        visible = visible and not collection.hide_render
+        names = [thing.name_full for thing in collection.objects]
+        every.update(names)
+        if visible:
+            shown.update(names)
+        stack.extend((child, visible) for child in collection.children)
+    return every - shown
+
+
+def descendants(depsgraph: Any) -> dict[str, list[str]]:
+    """Names of the objects below each object that has children."""
+    below: dict[str, list[str]] = {}
+    for thing in depsgraph.objects:
+        parent = thing.parent
+        while parent is not None:
+            below.setdefault(parent.name_full, []).append(thing.name_full)
+            parent = parent.parent
+    return below
