@@ -120,7 +120,7 @@ class Meshes:
         self._scene = scene
         self._materials = materials
         self._notes = notes
-        self._made: dict[tuple[int, ...], Parts] = {}
+        self._made: dict[tuple[int, tuple[Needs, ...]], Parts] = {}
 
     def index(self, thing: Any, steps: Steps | None = None) -> Parts:
         """Pairs (mesh, material) of an evaluated object of type MESH; no pairs: no faces.
@@ -130,22 +130,21 @@ class Meshes:
             steps: Points over time. Copies share those of the first.
         """
         materials = slots_of(thing)
-        key = (thing.data.as_pointer(), *(0 if m is None else m.as_pointer() for m in materials))
+        needs = tuple(needs_of(self._materials, material) for material in materials)
+        key = (thing.data.as_pointer(), needs)
         if key not in self._made:
-            self._made[key] = self._add(thing.data, materials, steps)
-        return self._made[key]
+            self._made[key] = self._add(thing.data, needs, steps)
+        return [(mesh, self._materials.index(materials[slot])) for mesh, slot in self._made[key]]
 
-    def _add(self, mesh: Any, materials: Sequence[Any], steps: Steps | None) -> Parts:
-        """Adds a mesh for each material that some face has."""
-        source = source_of(mesh, len(materials))
+    def _add(self, mesh: Any, needs: Sequence[Needs], steps: Steps | None) -> Parts:
+        """Adds a mesh for each slot that some face has; returns pairs (mesh, slot)."""
+        source = source_of(mesh, len(needs))
+        used = np.unique(source.slots)
         parts: Parts = []
-        for slot in np.unique(source.slots):
-            triangles = source.triangles
-            if source.slots.min() != source.slots.max():
-                triangles = triangles[source.slots == slot]
-            material = materials[slot]
-            made = self._part(source, triangles, needs_of(self._materials, material), steps)
-            parts.append((made, self._materials.index(material)))
+        for slot in used.tolist():
+            mine = source.slots == slot
+            triangles = source.triangles[mine] if len(used) > 1 else source.triangles
+            parts.append((self._part(source, triangles, needs[slot], steps), slot))
         return parts
 
     def _part(

@@ -31,7 +31,7 @@ class Seen:
         matrix: World from object in Blender's frame, shape (4, 4).
         name: Name of the object, or of the instancer that copies it.
         own: Whether it is an object of the scene, and no copy or part of one.
-        surface: Whether its own surface is drawn, and not only its copies.
+        surface: Whether it is drawn itself, and not only its copies.
         copy: The walk's own record of it.
     """
 
@@ -63,7 +63,18 @@ def walk(depsgraph: Any) -> Iterator[Seen]:
         if name in hidden or thing.hide_render:
             continue
         matrix = np.array(copy.matrix_world, np.float64)
-        yield Seen(thing, matrix, name, own, copy.show_self, copy)
+        surface = copy.show_self and not (own and _is_pattern(thing))
+        yield Seen(thing, matrix, name, own, surface, copy)
+
+
+def _is_pattern(thing: Any) -> bool:
+    """Whether an object is there to be copied: one above it copies what is below itself."""
+    above = thing.parent
+    while above is not None:
+        if above.instance_type in ("VERTS", "FACES"):
+            return True
+        above = above.parent
+    return False
 
 
 def _hidden(scene: Any) -> set[str]:

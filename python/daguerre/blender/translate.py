@@ -127,12 +127,14 @@ class _Translation:
             over = None if path is None else keys([(t, place[:3, 3]) for t, place in path])
             self._scene.add_node(seen.name, world[:3, 3], motion=over)
             self._note_effects(seen)
-        if kind in ("MESH", "CURVES"):
+        if kind == "CAMERA" and seen.own:
+            self._add_camera(seen, world)
+        elif not seen.surface:
+            return
+        elif kind in ("MESH", "CURVES"):
             self._add_shape(seen, world, path)
         elif kind == "LIGHT":
             self._add_light(seen, world)
-        elif kind == "CAMERA" and seen.own:
-            self._add_camera(seen, world)
         elif kind in UNDRAWN:
             self._notes.add(f"{UNDRAWN[kind]} are left out")
 
@@ -144,8 +146,6 @@ class _Translation:
     def _add_shape(
         self, seen: Seen, world: Matrix, path: list[tuple[float, Matrix]] | None
     ) -> None:
-        if not seen.surface:
-            return
         steps = self.motion.points.get(seen.identity) if self.motion.points else None
         shapes = self._meshes if seen.object.type == "MESH" else self._hair
         self._placing.add(shapes.index(seen.object, steps), seen.name, world, path)
