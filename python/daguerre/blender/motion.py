@@ -80,7 +80,7 @@ class Blur:
 
 def blur_of(thing: Any) -> Blur:
     """Cycles' settings of an object, which it has if that add-on is there."""
-    given = getattr(thing, "cycles", None)
+    given = getattr(thing.original, "cycles", None)  # a script's changes do not reach the copy
     if given is None:
         return Blur(1 << USUAL_STEPS, True)
     if not given.use_motion_blur:
