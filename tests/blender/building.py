@@ -111,3 +111,28 @@ def straighten():
                         curve.extrapolation = "LINEAR"
                         for point in curve.keyframe_points:
                             point.interpolation = "LINEAR"
+
+
+class Recorder(bpy.types.RenderEngine):
+    """An engine of Blender that translates the scene when it renders."""
+
+    bl_idname, bl_label = "RECORDER", "Recorder"
+    found = None
+
+    def render(self, depsgraph):
+        scene = scene_of(depsgraph, by=GREY, frame_set=self.frame_set)
+        type(self).found = scene, depsgraph.scene.frame_current_final
+
+
+def in_a_render():
+    """The scene of the file as an engine sees it in a render, and the frame after it."""
+    render = bpy.context.scene.render
+    render.resolution_x = render.resolution_y = 4
+    bpy.utils.register_class(Recorder)
+    try:
+        render.engine = "RECORDER"
+        bpy.ops.render.render()
+        return Recorder.found
+    finally:
+        bpy.utils.unregister_class(Recorder)
+        Recorder.found = None

@@ -7,7 +7,18 @@ import daguerre as dg
 from daguerre.blender.motion import shutter_of
 from tests.support import blur
 
-from .building import bpy, empty, graph, grid, key, link, mesh_of, straighten, translated
+from .building import (
+    bpy,
+    empty,
+    graph,
+    grid,
+    in_a_render,
+    key,
+    link,
+    mesh_of,
+    straighten,
+    translated,
+)
 
 FPS = 24.0
 
@@ -268,3 +279,23 @@ def test_blurred_is_the_mean_of_stills(make):
     late = blur.Case(scene, camera, (0.0, 2 * half), still)
     shifted = blur.mean_of_stills(late, batches=8, moments=8, spp=8)
     assert blur.disagreement(blur.blurred(case, batches=8, spp=64), shifted)  # it can tell
+
+
+def test_in_a_render_of_blender():
+    """The graph of a render has its own switches; its engine goes to frames."""
+    bscene = opened(1.0)
+    seen_from_above(bscene)
+    slide(link(grid(1), "mover"))
+    thing = shaped(bscene)
+    thing.modifiers.new("s", "SUBSURF").render_levels = 2
+    link(grid(1), "viewport only").hide_render = True
+    link(grid(1), "render only").hide_viewport = True
+    scene, frame = in_a_render()
+    assert frame == 2
+    assert {i.name for i in scene.instances} == {"mover", "bar", "render only"}
+    (path,) = scene.motion.instances.values()
+    np.testing.assert_allclose([m[0, 3] for m in path.values], [0.5, 1, 1.5], atol=1e-6)
+    (mesh,) = scene.motion.meshes
+    assert len(scene.meshes[mesh].indices) == 2 * 36 * 16
+    ends = [scene.motion.meshes[mesh].at(t / FPS).positions[:, 0].max() for t in (-0.5, 0.5)]
+    assert ends == pytest.approx([2 + 1.6 * 0.25, 2 + 1.6 * 0.75], abs=0.1)

@@ -10,7 +10,19 @@ import pytest
 import daguerre as dg
 
 from . import triangles
-from .building import GREY, bpy, empty, graph, grid, key, link, mesh_of, scene_of, translated
+from .building import (
+    GREY,
+    bpy,
+    empty,
+    graph,
+    grid,
+    in_a_render,
+    key,
+    link,
+    mesh_of,
+    scene_of,
+    translated,
+)
 
 CORNER = [(0, 0, 0), (1, 2, 3), (0, 1, 0)]
 
@@ -289,6 +301,65 @@ def test_kinds_of_hair():
         "Bezier and NURBS hair curves are left out (2 uses)",
         "hair curves with too few points are left out (1 use)",
     ]
+
+
+def fur(**settings):
+    """A moved grid with straight hair of length 0.5."""
+    thing = link(grid(3), "fur", location=(5, 6, 7), rotation_euler=(0.3, 0.4, 0.5))
+    thing.data.materials.append(bpy.data.materials.new("skin"))
+    thing.data.materials.append(bpy.data.materials.new("keratin"))
+    thing.modifiers.new("hair", "PARTICLE_SYSTEM")
+    made = thing.particle_systems[0].settings
+    made.type, made.count, made.hair_length, made.material = "HAIR", 20, 0.5, 2
+    for name, value in settings.items():
+        setattr(made, name, value)
+    return thing
+
+
+def test_particle_hair():
+    """Strands stand on the surface and are as long as Blender says; the tip is closed."""
+    empty()
+    fur(root_radius=3.0, tip_radius=1.0, radius_scale=0.02)
+    scene = translated()
+    mine = next(i for i in scene.instances if len(scene.meshes[i.mesh].indices) == 0)
+    assert scene.materials[mine.material].name == "keratin"
+    curves = scene.meshes[mine.mesh]
+    assert len(curves.ends) == 20
+    strands = curves.positions.reshape(20, -1, 3)[:, ::3]  # ends of segments
+    steps = np.linalg.norm(np.diff(strands, axis=1), axis=2)
+    np.testing.assert_allclose(steps.sum(axis=1), 0.5, rtol=0.05)
+    root = strands[:, 0]
+    np.testing.assert_allclose(root[:, 2], 0.1 * np.sin(6 * root[:, 0]) * np.cos(5 * root[:, 1]),
+                               atol=0.08)  # fmt: skip
+    np.testing.assert_allclose(mine.transform[:3, 3], [5, 7, -6], atol=1e-6)
+    radii = curves.radii.reshape(20, -1)
+    np.testing.assert_allclose(radii[:, 0], 0.03, rtol=1e-5)
+    np.testing.assert_allclose(radii[:, -1], 0, atol=1e-7)
+
+
+def test_particle_hair_in_a_render():
+    """With the detail of renders."""
+    bscene = empty()
+    fur(render_step=4, display_step=2)
+    bscene.camera = link(bpy.data.cameras.new("c"), "c")
+    scene, _ = in_a_render()
+    (curves,) = (mesh for mesh in scene.meshes if not len(mesh.indices))
+    assert len(curves.starts) == 20 * 16
+    strands = curves.positions.reshape(20, -1, 3)[:, ::3]
+    lengths = np.linalg.norm(np.diff(strands, axis=1), axis=2).sum(axis=1)
+    np.testing.assert_allclose(lengths, 0.5, rtol=0.05)
+
+
+def test_children_of_particle_hair():
+    """They replace their parents unless these are asked for; copies share the strands."""
+    empty()
+    thing = fur(child_type="SIMPLE", child_percent=3, rendered_child_count=3)
+    link(thing.data, "other")
+    scene = translated()
+    assert [len(m.ends) for m in scene.meshes if not len(m.indices)] == [60]
+    thing.particle_systems[0].settings.use_parent_particles = True
+    scene = translated()
+    assert [len(m.ends) for m in scene.meshes if not len(m.indices)] == [80]
 
 
 def resident_mb():

@@ -21,6 +21,7 @@ from .meshes import Materials, Meshes
 from .motion import FrameSet, Motion, motion_of, shutter_of
 from .objects import UNDRAWN, Seen, descendants, walk
 from .over_time import move_lights, moving_camera
+from .particles import ParticleHair
 from .placing import Placing
 
 Matrix = NDArray[np.float64]
@@ -103,6 +104,8 @@ class _Translation:
         self._by, self._notes = by, notes
         materials = by.materials(scene, notes)
         self._meshes, self._hair = Meshes(scene, materials, notes), Hair(scene, materials, notes)
+        rendering = depsgraph.mode == "RENDER"
+        self._fur = ParticleHair(scene, materials, notes, rendering=rendering)
         self._placing = Placing(scene, notes)
         self._base = world_from_blender(depsgraph.scene)
         self._cameras: dict[str, Camera] = {}
@@ -127,6 +130,8 @@ class _Translation:
             over = None if path is None else keys([(t, place[:3, 3]) for t, place in path])
             self._scene.add_node(seen.name, world[:3, 3], motion=over)
             self._note_effects(seen)
+        if kind == "MESH" and seen.copy.show_particles:
+            self._placing.add(self._fur.index(seen.object), seen.name, world, path)
         if kind == "CAMERA" and seen.own:
             self._add_camera(seen, world)
         elif not seen.surface:
