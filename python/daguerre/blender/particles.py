@@ -79,7 +79,8 @@ class ParticleHair:
         ]
         world = np.array(places, np.float64).reshape(-1, 3)
         local = np.linalg.inv(np.array(thing.matrix_world, np.float64))
-        return (world @ local[:3, :3].T + local[:3, 3]).reshape(-1, (1 << steps) + 1, 3)
+        points = world @ local[:3, :3].T + local[:3, 3]
+        return np.asarray(points.reshape(-1, (1 << steps) + 1, 3))
 
 
 def _widths(settings: Any, points: int) -> FloatArray:
@@ -87,4 +88,4 @@ def _widths(settings: Any, points: int) -> FloatArray:
     widths = np.linspace(settings.root_radius, settings.tip_radius, points)
     if settings.use_close_tip:
         widths[-1] = 0
-    return widths * settings.radius_scale
+    return np.asarray(widths * settings.radius_scale)
