@@ -103,9 +103,9 @@ def test_two_thousand_copies_are_one_mesh():
     source = copies(link(mesh_of(points.tolist(), []), "points"), "VERTS")
     link(grid(20, name="leaf"), "leaf").parent = source
     depsgraph = graph()
-    begin = time.perf_counter()
+    begin = time.process_time()
     scene = scene_of(depsgraph, by=GREY)
-    assert time.perf_counter() - begin < 0.5
+    assert time.process_time() - begin < 0.5
     assert len(scene.meshes) == 1
     found = np.array([i.transform[:3, 3] for i in scene.instances])
     wanted = points[:, [0, 2, 1]] * [1, 1, -1]
