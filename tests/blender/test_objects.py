@@ -137,7 +137,52 @@ def test_an_object_with_a_modifier_has_its_own_mesh():
     assert [len(m.indices) for m in scene.meshes] == [8, 2 * 8 + 2 * 8]
 
 
-def instances_by_nodes(thing, leaf):
+def hidden_member():
+    """A collection with an object that renders hide."""
+    group = bpy.data.collections.new("group")
+    for name, hides in (("seen", False), ("hidden", True)):
+        member = bpy.data.objects.new(name, grid(1, name=name))
+        member.hide_render = hides
+        group.objects.link(member)
+    link(None, "place", instance_type="COLLECTION", instance_collection=group)
+
+
+def hidden_leaf():
+    """An instancer whose child renders hide."""
+    source = link(grid(1), "source", instance_type="VERTS")
+    link(grid(1, name="leaf"), "leaf", hide_render=True).parent = source
+
+
+def hidden_instancer():
+    """An instancer that renders hide."""
+    source = link(grid(1), "source", instance_type="VERTS", hide_render=True)
+    link(grid(1, name="leaf"), "leaf").parent = source
+
+
+def hidden_source_of_nodes():
+    """Geometry nodes place an object that renders hide."""
+    leaf = link(grid(1, name="leaf"), "leaf", hide_render=True)
+    instances_by_nodes(link(grid(1), "field"), leaf, as_instance=True)
+
+
+@pytest.mark.parametrize(
+    "make", [hidden_member, hidden_leaf, hidden_instancer, hidden_source_of_nodes]
+)
+def test_the_viewport_shows_what_renders_show(make):
+    """Both graphs give the same copies; Blender itself decides in that of a render."""
+    bscene = empty()
+    make()
+    bscene.camera = link(bpy.data.cameras.new("c"), "c")
+    viewport = translated()
+    render, _ = in_a_render()
+    found = [
+        sorted((scene.meshes[i.mesh].name, i.name) for i in scene.instances)
+        for scene in (viewport, render)
+    ]
+    assert found[0] == found[1]
+
+
+def instances_by_nodes(thing, leaf, *, as_instance=False):
     """Geometry nodes that place an object at all vertices."""
     tree = bpy.data.node_groups.new("tree", "GeometryNodeTree")
     tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
@@ -147,6 +192,7 @@ def instances_by_nodes(thing, leaf):
         tree.nodes.new(kind) for kind in ("GeometryNodeInstanceOnPoints", "GeometryNodeObjectInfo")
     )
     info.inputs["Object"].default_value = leaf
+    info.inputs["As Instance"].default_value = as_instance
     tree.links.new(first.outputs[0], place.inputs["Points"])
     tree.links.new(info.outputs["Geometry"], place.inputs["Instance"])
     tree.links.new(place.outputs[0], last.inputs[0])

@@ -52,19 +52,31 @@ class Seen:
 def walk(depsgraph: Any) -> Iterator[Seen]:
     """Everything that renders show, in the order of the dependency graph.
 
+    The graph of a render holds nothing else. That of the viewport also holds what renders hide.
+
     Args:
         depsgraph: Evaluated ``bpy.types.Depsgraph``.
     """
-    hidden = _hidden(depsgraph.scene)
+    viewport = depsgraph.mode != "RENDER"
+    hidden = _hidden(depsgraph.scene) if viewport else set()
     for copy in depsgraph.object_instances:
         thing, own = copy.object, not copy.is_instance
         owner = thing if own or copy.parent is None else copy.parent
         name = owner.name_full
-        if name in hidden or thing.hide_render:
+        if viewport and (name in hidden or _hides(thing, owner)):
             continue
         matrix = np.array(copy.matrix_world, np.float64)
         surface = copy.show_self and not (own and _is_pattern(thing))
         yield Seen(thing, matrix, name, own, surface, copy)
+
+
+def _hides(thing: Any, owner: Any) -> bool:
+    """Whether switches of an object or of its instancer hide it in renders.
+
+    Geometry nodes and particles also copy objects that renders hide.
+    """
+    copied = thing.name_full != owner.name_full and owner.instance_type == "NONE"
+    return bool(owner.hide_render or (thing.hide_render and not copied))
 
 
 def _is_pattern(thing: Any) -> bool:
