@@ -234,13 +234,14 @@ def test_a_mesh_without_faces():
     assert not scene.instances
 
 
-def test_numbers_that_cannot_be_drawn():
+@pytest.mark.parametrize("number", [np.nan, 2e18])
+def test_numbers_that_cannot_be_drawn(number):
     """One error that names the mesh."""
     empty()
     mesh = grid(1, name="broken")
-    mesh.vertices[0].co = (np.nan, 0, 0)
+    mesh.vertices[0].co = (number, 0, 0)
     link(mesh)
-    with pytest.raises(InputError, match=r"mesh 'broken'.*positions"):
+    with pytest.raises(InputError, match=r"mesh 'broken'.*positions.*wanted"):
         translated()
 
 

@@ -271,12 +271,22 @@ def test_what_cannot_be_drawn_is_counted():
     bpy.ops.object.armature_add()
     link(None, "empty")
     link(grid(1), "flat", scale=(1, 0, 0))
+    assert not translated().instances
     assert sorted(translated().warnings) == [
         "an object that is scaled to nothing is left out (1 use)",
         "grease pencil drawings are left out (1 use)",
         "point clouds are left out (1 use)",
         "volumes are left out (2 uses)",
     ]
+
+
+@pytest.mark.parametrize("number", [np.nan, 2e18])
+def test_places_that_cannot_be_drawn(number):
+    """One error that names the object."""
+    empty()
+    link(grid(1), "far", location=(number, 0, 0))
+    with pytest.raises(dg.InputError, match=r"object 'far': transform: wanted"):
+        translated()
 
 
 def test_lights_cameras_and_the_world():
@@ -334,7 +344,7 @@ def test_hair():
 def test_kinds_of_hair():
     """Polylines and closed splines are meshes of their own; other kinds are counted."""
     empty()
-    hair(
+    points = hair(
         [4, 4, 4, 4, 4, 1],
         cyclic=("BOOLEAN", "CURVE", np.array([0, 0, 0, 0, 1, 0], bool)),
     )
@@ -343,6 +353,9 @@ def test_kinds_of_hair():
     scene = translated()
     kinds = [(mesh.cubic, mesh.closed, len(mesh.starts)) for mesh in scene.meshes]
     assert kinds == [(True, False, 3), (True, True, 4), (False, False, 3)]
+    np.testing.assert_allclose(scene.meshes[2].positions, points[4:8], atol=1e-6)
+    closed = np.roll(scene.meshes[1].positions[::3][:4], 1, axis=0)  # they begin at point 1
+    np.testing.assert_allclose(closed, points[16:20], atol=1e-6)
     assert sorted(scene.warnings) == [
         "Bezier and NURBS hair curves are left out (2 uses)",
         "hair curves with too few points are left out (1 use)",
@@ -353,7 +366,8 @@ def fur(**settings):
     """A moved grid with straight hair of length 0.5."""
     thing = link(grid(3), "fur", location=(5, 6, 7), rotation_euler=(0.3, 0.4, 0.5))
     thing.data.materials.append(bpy.data.materials.new("skin"))
-    thing.data.materials.append(bpy.data.materials.new("keratin"))
+    for name in ("keratin", "horn"):
+        thing.data.materials.append(bpy.data.materials.new(name))
     thing.modifiers.new("hair", "PARTICLE_SYSTEM")
     made = thing.particle_systems[0].settings
     made.type, made.count, made.hair_length, made.material = "HAIR", 20, 0.5, 2
@@ -400,9 +414,12 @@ def test_children_of_particle_hair():
     """They replace their parents unless these are asked for; copies share the strands."""
     empty()
     thing = fur(child_type="SIMPLE", child_percent=3, rendered_child_count=3)
-    link(thing.data, "other")
+    group = bpy.data.collections.new("group")
+    group.objects.link(thing)
+    link(None, "place", location=(9, 0, 0), instance_type="COLLECTION", instance_collection=group)
     scene = translated()
     assert [len(m.ends) for m in scene.meshes if not len(m.indices)] == [60]
+    assert sum(not len(scene.meshes[i.mesh].indices) for i in scene.instances) == 2
     thing.particle_systems[0].settings.use_parent_particles = True
     scene = translated()
     assert [len(m.ends) for m in scene.meshes if not len(m.indices)] == [80]

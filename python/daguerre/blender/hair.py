@@ -11,6 +11,7 @@ from daguerre.files.notes import Notes
 from daguerre.scene.scene import Scene
 
 from .arrays import attribute, points_of, read
+from .frames import check_size
 from .meshes import Materials, Parts, Steps, slots_of
 
 #: Radius of curves without an attribute of it, units of the scene.
@@ -80,7 +81,8 @@ class Hair:
         steps: Steps | None,
     ) -> int:
         """Adds some curves of one basis and wrap."""
-        rows = np.flatnonzero(np.repeat(chosen, counts))
+        points, rows = points_of(curves), np.flatnonzero(np.repeat(chosen, counts))
+        check_size(points, f"curves {curves.name_full!r}: positions")
         radius = attribute(curves, "radius")
         roots = attribute(curves, "surface_uv_coordinate")
         uv = None
@@ -88,7 +90,7 @@ class Hair:
             uv = roots[chosen]
             np.subtract(1, uv[:, 1], out=uv[:, 1])
         return self._scene.add_curves(
-            points_of(curves)[rows],
+            points[rows],
             counts[chosen],
             2 * RADIUS if radius is None else 2 * np.maximum(radius[rows], 0),
             basis=kind[0],

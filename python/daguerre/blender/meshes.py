@@ -15,6 +15,7 @@ from daguerre.scene.polygons import weld
 from daguerre.scene.scene import Scene
 
 from .arrays import attribute, points_of, read
+from .frames import check_size
 
 #: Times (S,) in s, and points of all vertices at each, shape (S, N, 3).
 Steps = tuple[Sequence[float], NDArray[np.float32]]
@@ -139,6 +140,8 @@ class Meshes:
     def _add(self, mesh: Any, needs: Sequence[Needs], steps: Steps | None) -> Parts:
         """Adds a mesh for each slot that some face has; returns pairs (mesh, slot)."""
         source = source_of(mesh, len(needs))
+        for points in (source.points, steps[1] if steps else source.points):
+            check_size(points, f"mesh {mesh.name_full!r}: positions")
         used = np.unique(source.slots)
         parts: Parts = []
         for slot in used.tolist():

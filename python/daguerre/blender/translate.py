@@ -15,7 +15,7 @@ from daguerre.files.notes import Notes, Silence
 from daguerre.motion.values import keys
 from daguerre.scene.scene import Scene
 
-from .frames import world_from_blender
+from .frames import check_size, world_from_blender
 from .hair import Hair
 from .meshes import Materials, Meshes
 from .motion import FrameSet, Motion, motion_of, shutter_of
@@ -125,6 +125,7 @@ class _Translation:
     def add(self, seen: Seen) -> None:
         """Adds one thing to the scene."""
         kind, world = seen.object.type, self._base @ seen.matrix
+        check_size(world, f"object {seen.name!r}: transform")
         path = self._path(seen)
         if seen.own:
             over = None if path is None else keys([(t, place[:3, 3]) for t, place in path])
@@ -146,7 +147,10 @@ class _Translation:
     def _path(self, seen: Seen) -> list[tuple[float, Matrix]] | None:
         """World from the thing over time; None: it rests."""
         moves = self.motion.matrices and self.motion.matrices.get(seen.identity)
-        return [(t, self._base @ place) for t, place in moves] if moves else None
+        if not moves:
+            return None
+        check_size(np.array([place for _, place in moves]), f"object {seen.name!r}: transform")
+        return [(t, self._base @ place) for t, place in moves]
 
     def _add_shape(
         self, seen: Seen, world: Matrix, path: list[tuple[float, Matrix]] | None
