@@ -238,6 +238,23 @@ def test_lights_and_cameras_move():
     assert then.transform[2, 3] == pytest.approx(-0.75)
 
 
+def test_curves_that_become_thick():
+    """Text and curves, which Blender turns into meshes, deform, too."""
+    bscene = opened(1.0)
+    data = bpy.data.curves.new("c", "CURVE")
+    data.dimensions = "3D"
+    data.splines.new("POLY").points.add(1)
+    data.splines[0].points[1].co = (0, 3, 0, 1)
+    key(data, "bevel_depth", [(1, 0.1), (3, 0.3)])
+    link(data, "cable")
+    straighten()
+    bscene.frame_set(2)
+    scene = translated()
+    (mesh,) = scene.motion.meshes
+    widths = [scene.motion.meshes[mesh].at(t / FPS).positions[:, 0].max() for t in (-0.5, 0, 0.5)]
+    assert widths == pytest.approx([0.15, 0.2, 0.25], abs=1e-5)
+
+
 def test_hair_moves():
     """Control points that a deformation moves."""
     bscene = opened()

@@ -91,14 +91,14 @@ def blur_of(thing: Any) -> Blur:
 
 @dataclass
 class Look:
-    """What the scene shows at one moment.
+    """Things that the scene shows at one moment.
 
     Attributes:
         matrices: World from object, by thing.
         points: Points, by the first thing that has them; in Blender's memory there is one array
             for all copies.
         blurs: Settings, by thing.
-        probed: What the probe found, by thing.
+        probed: Findings of the probe, by thing.
     """
 
     matrices: dict[Identity, NDArray[np.float64]] = field(default_factory=dict)
@@ -128,12 +128,12 @@ def look(depsgraph: Any, probe: Probe, wanted: set[Identity] | None = None) -> L
 
 @dataclass(frozen=True)
 class Motion:
-    """What moves while the shutter is open.
+    """Motion while the shutter is open.
 
     Attributes:
         matrices: Keys (time in s, world from object in Blender's frame), by thing.
         points: Times in s and points, by the first thing that has them.
-        probed: Pairs (time in s, what the probe found), by thing.
+        probed: Pairs (time in s, finding of the probe), by thing.
     """
 
     matrices: Mapping[Identity, list[tuple[float, NDArray[np.float64]]]] = field(
