@@ -255,17 +255,34 @@ def test_curves_that_become_thick():
     assert widths == pytest.approx([0.15, 0.2, 0.25], abs=1e-5)
 
 
+def lifted_by_frames(thing):
+    """Geometry nodes that lift points by the number of the frame."""
+    tree = bpy.data.node_groups.new("lift", "GeometryNodeTree")
+    for side in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=side, socket_type="NodeSocketGeometry")
+    kinds = ("NodeGroupInput", "GeometryNodeInputSceneTime", "ShaderNodeCombineXYZ",
+             "GeometryNodeSetPosition", "NodeGroupOutput")  # fmt: skip
+    first, clock, vector, lift, last = (tree.nodes.new(kind) for kind in kinds)
+    tree.links.new(clock.outputs["Frame"], vector.inputs["Z"])
+    tree.links.new(vector.outputs[0], lift.inputs["Offset"])
+    tree.links.new(first.outputs[0], lift.inputs["Geometry"])
+    tree.links.new(lift.outputs[0], last.inputs[0])
+    thing.modifiers.new("nodes", "NODES").node_group = tree
+
+
 def test_hair_moves():
-    """Control points that a deformation moves."""
-    bscene = opened()
+    """Control points that a deformation moves, and no transform."""
+    opened()
     data = bpy.data.hair_curves.new("hair")
     data.add_curves([3])
-    positions = np.float32([[0, 0, 0], [0, 0, 1], [0, 0, 2]])
+    positions = np.float32([[0, 0, 0], [1, 0, 0], [2, 0, 0]])
     data.attributes["position"].data.foreach_set("vector", positions.reshape(-1))
-    slide(link(data, "hair"))
-    assert bscene
+    lifted_by_frames(link(data, "hair"))
     scene = translated()
-    assert len(scene.motion.instances) == 1
+    assert not scene.motion.instances
+    for offset in (-0.25, 0.1, 0.25):
+        heights = scene.motion.meshes[0].at(offset / FPS).positions[:, 2]
+        np.testing.assert_allclose(heights, 2 + offset, atol=1e-5)
 
 
 def seen_from_above(bscene):
