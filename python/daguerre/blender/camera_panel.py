@@ -1,0 +1,40 @@
+"""Daguerre's own properties of a camera, ``camera.data.daguerre``, which the extension declares.
+
+A property counts if the user set it, or if the user chose a lens: then the panel shows all values
+that rule. What does not count has Blender's own value. Without the extension nothing counts.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class CameraPanel:
+    """Properties of a camera that the user chose.
+
+    Args:
+        data: ``bpy.types.Camera``, or None.
+    """
+
+    def __init__(self, data: Any) -> None:
+        self._group = getattr(data, "daguerre", None)
+
+    def chosen(self, name: str) -> Any:
+        """Value of a property; None if it does not count, or names nothing."""
+        if self._group is None or not (self._is_set("lens") or self._is_set(name)):
+            return None
+        value = getattr(self._group, name, None)
+        return None if value == "" else value
+
+    def named(self, name: str, *others: str) -> str | None:
+        """Choice of a menu, in lower case; None if it does not count, or is one of ``others``."""
+        value = self.chosen(name)
+        found = None if value is None else str(value)
+        return None if found is None or found.lower() in others else found
+
+    def _is_set(self, name: str) -> bool:
+        """Whether the user set a property; of an object that is no group: whether it is there."""
+        asked = getattr(self._group, "is_property_set", None)
+        if asked is None:
+            return hasattr(self._group, name)
+        return hasattr(self._group, name) and bool(asked(name))

@@ -1,0 +1,62 @@
+"""The part of Blender's film that a picture covers.
+
+Blender fits one side of the sensor to one side of the picture: the width if ``sensor_fit`` is
+horizontal, the height if it is vertical, and if it is automatic the sensor's width to the longer
+side. A shift is a share of that side, right and up.
+
+Source: Blender manual, Cameras: sensor fit and shift; ``bpy_extras.object_utils`` is what
+``tests/blender/test_cameras.py`` holds against.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Film:
+    """Film of a picture.
+
+    Attributes:
+        resolution: Width and height of the picture, px.
+        size: Width and height that it covers, mm.
+        shift: Shift of the film, right and up, mm.
+        fitted: Length of the side of the sensor that is fitted, mm.
+        square: Whether pixels are square.
+    """
+
+    resolution: tuple[int, int]
+    size: tuple[float, float]
+    shift: tuple[float, float]
+    fitted: float
+    square: bool
+
+
+def resolution_of(render: Any) -> tuple[int, int]:
+    """Width and height of the picture, px."""
+    share = render.resolution_percentage
+    columns, rows = (
+        max(1, int(side) * int(share) // 100) for side in (render.resolution_x, render.resolution_y)
+    )
+    return columns, rows
+
+
+def film_of(data: Any, render: Any) -> Film:
+    """Film of a camera (``bpy.types.Camera``) for a render (``bpy.types.RenderSettings``)."""
+    columns, rows = resolution_of(render)
+    tall = render.pixel_aspect_y / render.pixel_aspect_x
+    fit = data.sensor_fit
+    if fit == "AUTO":
+        is_wide = columns * render.pixel_aspect_x >= rows * render.pixel_aspect_y
+    else:
+        is_wide = fit == "HORIZONTAL"
+    side = float(data.sensor_height if fit == "VERTICAL" else data.sensor_width)
+    pitch = side / (columns if is_wide else tall * rows)
+    return Film(
+        (columns, rows),
+        (columns * pitch, rows * pitch * tall),
+        (data.shift_x * side, data.shift_y * side),
+        side,
+        abs(tall - 1) < 1e-6,
+    )
