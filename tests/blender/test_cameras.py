@@ -1,16 +1,13 @@
 """Cameras of Blender: where points are seen, panoramas and blur against Cycles, and their panel."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.blender.camera_panel import CameraPanel
 from daguerre.blender.cameras import camera_of
 from daguerre.blender.film import resolution_of
-from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from tests.support import blender_pictures as blender
 

@@ -162,13 +162,19 @@ def _iris(
 
 
 def _blades(dof: Any, panel: CameraPanel) -> dict[str, Any]:
+    """Blades of the iris.
+
+    The polygon of Blender is turned by half a side, and lies within the circle of the f-stop; that
+    of Daguerre has the area of the circle.
+    """
     count, turn = panel.chosen("blades"), panel.chosen("blade_rotation")
     bend = panel.chosen("blade_curvature")
     own = int(dof.aperture_blades) if dof.use_dof else 0
     blades = own if count is None else int(count)
     if blades < 3:
         return {}
-    degrees = math.degrees(dof.aperture_rotation) if turn is None else float(turn)
+    own_turn = math.degrees(dof.aperture_rotation) + 180 / blades
+    degrees = own_turn if turn is None else float(turn)
     return {"blades": blades, "blade_rotation": degrees, "blade_curvature": float(bend or 0.0)}
 
 
