@@ -1,14 +1,18 @@
 """Cameras of Blender: where points are seen, panoramas and blur against Cycles, and their panel."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.blender.camera_panel import CameraPanel
 from daguerre.blender.cameras import camera_of
 from daguerre.blender.film import resolution_of
+from daguerre.errors import InputError
 from daguerre.files.notes import Notes
+from daguerre.scene.scene import Scene
 from tests.support import blender_pictures as blender
 
 bpy = blender.bpy
@@ -108,3 +112,152 @@ def test_panoramas_look_where_those_of_cycles_look(kind, which, resolution):
     assert seen.mean() > 0.3
     turned = np.stack([ours[..., 0], -ours[..., 2], ours[..., 1]], axis=2)
     np.testing.assert_allclose(turned[seen], theirs[seen], atol=2e-3)
+
+
+def test_a_perspective_camera_has_blenders_values():
+    blender.empty()
+    thing = blender.camera()
+    data = thing.data
+    data.clip_start, data.lens = 0.25, 35.0
+    sharp = made(thing, metres=0.5)
+    assert (sharp.lens, sharp.focal_length) == ("pinhole", 35)
+    assert sharp.near_clip == pytest.approx(0.125)
+    assert sharp.shutter_time == 0
+    data.dof.use_dof = True
+    data.dof.aperture_fstop, data.dof.focus_distance = 2.0, 3.0
+    notes = Notes()
+    blurred = made(thing, metres=0.5, notes=notes)
+    assert (blurred.lens, blurred.f_stop, blurred.focus_distance) == ("thin", 2.0, 1.5)
+    assert len(notes.sentences()) == 1
+
+
+def test_an_object_in_focus_counts_along_the_axis():
+    blender.empty()
+    thing = blender.camera((0, 0, 5))
+    thing.data.dof.use_dof = True
+    thing.data.dof.focus_object = blender.linked(None, (3, 1, 1))
+    assert made(thing).focus_distance == pytest.approx(4.0)
+
+
+@pytest.mark.parametrize(("position", "offset"), [("START", 0.0), ("CENTER", -0.3), ("END", -0.6)])
+def test_the_shutter_of_motion_blur(position, offset):
+    scene = blender.empty()
+    render = scene.render
+    render.fps, render.fps_base, render.use_motion_blur = 30, 1.001, True
+    render.motion_blur_shutter, render.motion_blur_position = 0.6, position
+    camera = made(blender.camera())
+    assert camera.fps == pytest.approx(30 / 1.001)
+    assert camera.shutter_time == pytest.approx(0.6 * 1.001 / 30)
+    assert camera.shutter_offset == pytest.approx(offset)
+    assert camera.shutter_curve is None
+    points = render.motion_blur_shutter_curve.curves[0].points
+    points[0].location = (0.0, 0.0)
+    render.motion_blur_shutter_curve.update()
+    curve = made(blender.camera()).shutter_curve
+    assert curve[0] == pytest.approx((0, 0), abs=1e-6)
+    assert curve[-1] == pytest.approx((1, 1), abs=1e-3)
+
+
+@pytest.mark.parametrize("blades", [0, 3])
+def test_blur_and_blades_are_those_of_cycles(blades):
+    """An out-of-focus ball; the polygon of Blender has a smaller area than its circle."""
+    scene = blender.empty((32, 32), 256)
+    thing = blender.camera((0, 0, 0))
+    ball = blender.glowing_ball((0.02, 0.01, -2), 0.02, 1000.0)
+    data = thing.data
+    data.sensor_width, data.dof.use_dof, data.dof.focus_distance = 8.0, True, 1.0
+    data.dof.aperture_fstop, data.dof.aperture_blades = 0.4, blades
+    data.dof.aperture_rotation = 0.3
+    theirs = blender.picture()[..., 0]
+    camera = made(thing)
+    if blades:
+        inscribed = blades / 2 * math.sin(2 * math.pi / blades) / math.pi
+        camera = camera.with_(f_stop=camera.f_stop / math.sqrt(inscribed))
+    assert ball.name in scene.objects
+
+    def drawn(eye):
+        place = np.eye(4)
+        place[:3, 3] = (0.02, -2, -0.01)
+        ours = Scene()
+        ours.add_light(dg.SphereLight((1000.0,) * 3, 0.02), place)
+        return dg.render(ours, eye, resolution=(32, 32), spp=256, filter="box").rgb[..., 0]
+
+    def apart(picture):
+        return np.abs(picture / picture.sum() - theirs / theirs.sum()).sum()
+
+    right = apart(drawn(camera))
+    assert right < 0.35
+    other = {"blade_rotation": camera.blade_rotation + 60} if blades else {"f_stop": 0.6}
+    assert apart(drawn(camera.with_(**other))) > right + 0.2
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"type": "ORTHO"}, "type: wanted PERSP or PANO, got ORTHO"),
+        ({"type": "PANO", "panorama_type": "MIRRORBALL"}, "panorama_type: wanted EQUIRECT"),
+        (
+            {"type": "PANO", "panorama_type": "FISHEYE_LENS_POLYNOMIAL",
+             "fisheye_polynomial_k1": 0.1},
+            "fisheye_polynomial_k0, _k1: wanted",
+        ),
+        (
+            {"type": "PANO", "panorama_type": "EQUIRECTANGULAR", "longitude_min": 3.0,
+             "longitude_max": -1.0},
+            "longitude_min, longitude_max: wanted",
+        ),
+    ],
+)  # fmt: skip
+def test_cameras_that_no_lens_can_be_are_one_error(values, words):
+    blender.empty()
+    thing = blender.camera()
+    for name, value in values.items():
+        setattr(thing.data, name, value)
+    with pytest.raises(InputError, match="camera 'camera': ") as raised:
+        made(thing)
+    assert words in str(raised.value)
+
+
+def with_panel(thing, **values):
+    """The camera with properties of Daguerre's panel."""
+    names = ("type", "dof", "lens", "sensor_fit", "sensor_width", "sensor_height", "shift_x")
+    data = {name: getattr(thing.data, name) for name in (*names, "shift_y", "clip_start")}
+    made_of = SimpleNamespace(**data, daguerre=SimpleNamespace(**values))
+    return SimpleNamespace(name="camera", data=made_of, matrix_world=thing.matrix_world)
+
+
+def test_the_panel_takes_precedence():
+    blender.empty()
+    panel = {
+        "lens": "double-gauss-50mm-f2", "lens_model": "polynomial", "f_stop": 4.0,
+        "use_t_stop": False, "t_stop": 8.0, "focus_mode": "auto", "blades": 9,
+        "blade_rotation": 10.0, "blade_curvature": 0.5, "tilt_x": 1.0, "tilt_y": 2.0,
+        "sensor": "blender", "iso": 400.0, "ev": -1.0, "shutter_mode": "angle",
+        "shutter_angle": 90.0, "shutter_time": 0.1, "rolling_side": "top", "rolling_time": 0.01,
+    }  # fmt: skip
+    camera = made(with_panel(blender.camera(), **panel))
+    assert (camera.lens, camera.lens_model) == ("double-gauss-50mm-f2", "polynomial")
+    assert (camera.f_stop, camera.t_stop, camera.focus_distance) == (4.0, None, None)
+    assert (camera.blades, camera.blade_rotation, camera.blade_curvature) == (9, 10.0, 0.5)
+    assert camera.tilt == (1.0, 2.0)
+    assert (camera.iso, camera.exposure_compensation) == (400.0, -1.0)
+    assert (camera.shutter_angle, camera.shutter_time) == (90.0, None)
+    assert camera.rolling_shutter.readout_time == 0.01
+    assert camera.focal_length is None
+    other = made(with_panel(blender.camera(), **panel | {"use_t_stop": True}))
+    assert (other.f_stop, other.t_stop) == (None, 8.0)
+
+
+def test_properties_that_nobody_set_leave_blenders_values():
+    blender.empty()
+
+    class Untouched(SimpleNamespace):
+        def is_property_set(self, name):
+            return name == "iso"
+
+    group = Untouched(lens="double-gauss-50mm-f2", f_stop=5.6, iso=800.0)
+    panel = CameraPanel(SimpleNamespace(daguerre=group))
+    assert panel.chosen("lens") is None
+    assert panel.chosen("f_stop") is None
+    assert panel.chosen("iso") == 800.0
+    assert CameraPanel(SimpleNamespace(daguerre=group), always=True).chosen("f_stop") == 5.6

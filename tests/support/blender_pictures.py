@@ -51,6 +51,23 @@ def card(size=0.2, location=(0, 0, 0), rotation=(0, 0, 0)):
     return made
 
 
+def glowing_ball(location, radius, strength):
+    """A ball that emits."""
+    bpy.ops.mesh.primitive_uv_sphere_add(
+        radius=radius, location=location, segments=64, ring_count=32
+    )
+    made = bpy.context.object
+    material = bpy.data.materials.new("glow")
+    tree = material.node_tree
+    tree.nodes.clear()
+    emission = tree.nodes.new("ShaderNodeEmission")
+    emission.inputs["Strength"].default_value = strength
+    output = tree.nodes.new("ShaderNodeOutputMaterial")
+    tree.links.new(emission.outputs[0], output.inputs["Surface"])
+    made.data.materials.append(material)
+    return made
+
+
 def camera(location=(0, 0, 2), rotation=(0, 0, 0), lens=50.0):
     """The scene's camera; without rotation it looks down."""
     data = bpy.data.cameras.new("camera")

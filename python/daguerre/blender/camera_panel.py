@@ -1,4 +1,4 @@
-"""Daguerre's own properties of a camera, ``camera.data.daguerre``, which the extension declares.
+"""Daguerre's own properties of a camera or a scene, ``daguerre``, which the extension declares.
 
 A property counts if the user set it, or if the user chose a lens: then the panel shows all values
 that rule. What does not count has Blender's own value. Without the extension nothing counts.
@@ -10,18 +10,22 @@ from typing import Any
 
 
 class CameraPanel:
-    """Properties of a camera that the user chose.
+    """Properties of a camera that the user chose, or of a scene.
 
     Args:
-        data: ``bpy.types.Camera``, or None.
+        data: ``bpy.types.Camera`` or ``bpy.types.Scene``, or None.
+        always: Whether all properties count, as those of a scene.
     """
 
-    def __init__(self, data: Any) -> None:
+    def __init__(self, data: Any, *, always: bool = False) -> None:
+        self._always = always
         self._group = getattr(data, "daguerre", None)
 
     def chosen(self, name: str) -> Any:
         """Value of a property; None if it does not count, or names nothing."""
-        if self._group is None or not (self._is_set("lens") or self._is_set(name)):
+        if self._group is None:
+            return None
+        if not (self._always or self._is_set("lens") or self._is_set(name)):
             return None
         value = getattr(self._group, name, None)
         return None if value == "" else value

@@ -43,7 +43,7 @@ def settings_of(scene: bpy.types.Scene, camera: bpy.types.Object | None = None) 
         UsageError: A value is out of its range.
     """
     eye = scene.camera if camera is None else camera
-    panel, switches = CameraPanel(scene), CameraPanel(eye.data if eye is not None else None)
+    panel, switches = CameraPanel(scene, always=True), CameraPanel(getattr(eye, "data", None))
     render = scene.render
     size = resolution_of(render)
     values: dict[str, Any] = {"resolution": size, "threads": _threads(render)}
@@ -60,17 +60,22 @@ def _threads(render: Any) -> int:
 
 
 def _crop(render: Any, size: tuple[int, int]) -> tuple[int, int, int, int]:
-    """Region of the picture, px, from the top left, ends exclusive; at least a pixel."""
+    """Region of the picture, px, from the top left, ends exclusive; at least a pixel.
+
+    Blender counts whole pixels from the lower left.
+    """
     columns, rows = size
-    left, right = (round(render.border_min_x * columns), round(render.border_max_x * columns))
-    top, bottom = (round((1 - v) * rows) for v in (render.border_max_y, render.border_min_y))
-    left, top = min(max(left, 0), columns - 1), min(max(top, 0), rows - 1)
-    return left, top, min(max(right, left + 1), columns), min(max(bottom, top + 1), rows)
+    left, right = (int(v * columns) for v in (render.border_min_x, render.border_max_x))
+    bottom, top = (int(v * rows) for v in (render.border_min_y, render.border_max_y))
+    left, bottom = min(max(left, 0), columns - 1), min(max(bottom, 0), rows - 1)
+    right, top = min(max(right, left + 1), columns), min(max(top, bottom + 1), rows)
+    return left, rows - top, right, rows - bottom
 
 
 def _sampling(scene: Any, panel: CameraPanel) -> dict[str, Any]:
     """Samples, noise and seed."""
-    cycles, found = getattr(scene, "cycles", None), {}
+    cycles = getattr(scene, "cycles", None)
+    found: dict[str, Any] = {}
     if (samples := panel.chosen("spp")) is not None:
         found["spp"] = int(samples)
     elif cycles is not None:
