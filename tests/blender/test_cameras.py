@@ -261,3 +261,13 @@ def test_properties_that_nobody_set_leave_blenders_values():
     assert panel.chosen("f_stop") is None
     assert panel.chosen("iso") == 800.0
     assert CameraPanel(SimpleNamespace(daguerre=group), always=True).chosen("f_stop") == 5.6
+
+
+def test_an_eye_of_a_stereo_pair_has_its_own_shift():
+    scene = blender.empty((16, 8))
+    thing = blender.camera()
+    thing.data.shift_x, thing.data.shift_y = 0.1, 0.2
+    place = blender.y_up(thing.matrix_world)
+    camera = camera_of(thing, scene.render, place, Notes(), shift_x=-0.05)
+    assert camera.shift == pytest.approx((-0.05 * 36, 0.2 * 36))
+    assert made(thing).shift == pytest.approx((0.1 * 36, 0.2 * 36))

@@ -5,8 +5,10 @@ import math
 import numpy as np
 import pytest
 
+import daguerre as dg
 from daguerre.blender import world_bake
-from daguerre.blender.settings import LUMENS_PER_WATT
+from daguerre.blender.cameras import camera_of
+from daguerre.blender.settings import LUMENS_PER_WATT, factor_of
 from daguerre.blender.world import set_world
 from daguerre.files.notes import Notes
 from daguerre.scene.scene import Scene
@@ -172,3 +174,19 @@ def test_the_middle_of_a_panorama_lies_along_y_of_blender():
     angle = math.pi / 128
     np.testing.assert_allclose(picture[32, 64], (math.sin(angle), math.cos(angle), 0), atol=0.03)
     np.testing.assert_allclose(picture[0, 64, 2], 1, atol=0.01)
+
+
+def test_a_camera_sees_a_world_as_cycles_shows_it():
+    blender.empty((16, 16))
+    world = textured(picture_of_hills(), mappings=MAPPINGS["about all"])
+    eye = blender.camera((0, 0, 0), (1.2, 0.3, -0.7), lens=20.0)
+    bpy.context.view_layer.update()
+    wanted = blender.picture()
+    scene = Scene()
+    set_world(scene, world, Notes())
+    camera = camera_of(eye, bpy.context.scene.render, blender.y_up(eye.matrix_world), Notes())
+    frame = dg.render(scene, camera, resolution=(16, 16), spp=64, filter="box")
+    found = frame.rgb * factor_of(bpy.context.scene)
+    blocks = [p.reshape(4, 4, 4, 4, 3).mean(axis=(1, 3)) for p in (found, wanted)]
+    assert np.ptp(wanted) > 0.2
+    np.testing.assert_allclose(blocks[0], blocks[1], rtol=0.01)

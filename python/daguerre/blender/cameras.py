@@ -32,7 +32,12 @@ Matrix = NDArray[np.float64]
 
 
 def camera_of(
-    thing: bpy.types.Object, render: bpy.types.RenderSettings, matrix: Matrix, notes: Notes
+    thing: bpy.types.Object,
+    render: bpy.types.RenderSettings,
+    matrix: Matrix,
+    notes: Notes,
+    *,
+    shift_x: float | None = None,
 ) -> Camera:
     """Makes a camera.
 
@@ -41,6 +46,8 @@ def camera_of(
         render: Render settings of its scene, which give resolution, unit and shutter.
         matrix: World from camera, y-up, m for each unit of Blender, shape (4, 4).
         notes: Receives notes on unsupported content.
+        shift_x: Shift of one eye of a stereo pair, as ``RenderEngine.camera_shift_x`` has it, and
+            ``matrix`` then is its place; default: the camera's own.
 
     Raises:
         InputError: A camera that no lens can be, or a value that is wrong; the message names it.
@@ -53,7 +60,7 @@ def camera_of(
     if data.type not in ("PERSP", "PANO"):
         raise InputError(f"{where}: type: wanted PERSP or PANO, got {data.type}")
     metres = float(render.id_data.unit_settings.scale_length)
-    film = film_of(data, render)
+    film = film_of(data, render, shift_x)
     lens = _lens_of(data, panel, where)
     values = _optics(data, film, lens, panel, where, notes) | _body(panel)
     if "pinhole" not in (lens, values.get("lens_model")):

@@ -42,8 +42,15 @@ def resolution_of(render: Any) -> tuple[int, int]:
     return columns, rows
 
 
-def film_of(data: Any, render: Any) -> Film:
-    """Film of a camera (``bpy.types.Camera``) for a render (``bpy.types.RenderSettings``)."""
+def film_of(data: Any, render: Any, shift_x: float | None = None) -> Film:
+    """Film of a camera.
+
+    Args:
+        data: ``bpy.types.Camera``.
+        render: ``bpy.types.RenderSettings``.
+        shift_x: Shift to the right of one eye of a stereo pair; default: the camera's own.
+    """
+    right = data.shift_x if shift_x is None else shift_x
     columns, rows = resolution_of(render)
     tall = render.pixel_aspect_y / render.pixel_aspect_x
     fit = data.sensor_fit
@@ -56,7 +63,7 @@ def film_of(data: Any, render: Any) -> Film:
     return Film(
         (columns, rows),
         (columns * pitch, rows * pitch * tall),
-        (data.shift_x * side, data.shift_y * side),
+        (right * side, data.shift_y * side),
         side,
         abs(tall - 1) < 1e-6,
     )
