@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Items of the menus: lenses, sensors and modes, with what a user needs to choose."""
+
+from daguerre import lenses, sensors
+from daguerre.camera.parameters import CAMERA
+from daguerre.development.looks import LOOKS
+from daguerre.exposure.metering import MODES
+from daguerre.frame.aovs import Source, made_by
+
+#: (identifier, name, description), or with icon and number for flags.
+Item = tuple[str, str, str]
+
+
+def _lens(entry: lenses.library.Entry) -> Item:
+    """One lens: its name and year; widest stop, focal length and image circle."""
+    year = f" ({entry.year})" if entry.year else ""
+    facts = [f"{entry.type}, {entry.focal_length}, f/{entry.f_number:.3g} wide open"]
+    if circle := image_circle(entry):
+        facts.append(f"image circle {circle:.3g} mm")
+    return entry.name, entry.title + year, "; ".join([*facts, entry.patent])
+
+
+def image_circle(entry: lenses.library.Entry) -> float | None:
+    """Diameter of the circle around a lens's format, mm; None: its format is unknown."""
+    sides = [float(side) for side in entry.format.split("x") if side]
+    return sum(side**2 for side in sides) ** 0.5 if len(sides) == 2 else None
+
+
+def _named(*names: str) -> list[Item]:
+    return [(name, name.replace("_", " ").capitalize(), "") for name in names]
+
+
+LENSES: list[Item] = [
+    ("blender", "Blender's lens", "Thin lens with Blender's depth of field, or else a pinhole"),
+    ("thin", "Thin lens", "Lens without thickness, of the focal length in Blender's Lens panel"),
+    ("pinhole", "Pinhole", "Camera without depth of field"),
+    ("file", "Lens file", "Lens from a file: Daguerre, Zemax, CODE V, Optical Bench or pbrt"),
+    *map(_lens, lenses.library.entries()),
+]
+MODELS: list[Item] = [
+    ("auto", "Automatic", "Exact if the lens has a prescription"),
+    *_named(*CAMERA["lens_model"].choices),
+]
+FOCUS: list[Item] = [
+    ("blender", "Distance or object", "Focus of Blender's Depth of Field panel"),
+    ("auto", "Autofocus", "Focus on the middle of the picture"),
+]
+SENSORS: list[Item] = [
+    ("blender", "Blender's size", "Perfect sensor of the size in Blender's Camera panel"),
+    *((name, name, "") for name in sensors.names()),
+]
+EXPOSURE: list[Item] = [
+    ("manual", "Manual", "Exposure by ISO, shutter and stop"),
+    *((mode, f"Automatic: {mode}", "The meter chooses the ISO") for mode in MODES),
+]
+SHUTTER: list[Item] = [
+    ("blender", "Blender's", "Shutter of Blender's Motion Blur panel"),
+    ("time", "Time", "Exposure time in seconds"),
+    ("angle", "Angle", "Exposure time as a shutter angle"),
+]
+SHUTTER_TYPES: list[Item] = _named(*CAMERA["shutter_type"].choices)
+ROLLING: list[Item] = [
+    ("off", "Global", "All lines are exposed at once"),
+    *((side, f"From the {side}", "") for side in ("top", "bottom", "left", "right")),
+]
+LIGHT_PATHS: list[Item] = [
+    ("auto", "Automatic", "As many as pay off"),
+    ("off", "Off", "Camera paths alone"),
+]
+LOOK: list[Item] = _named(*LOOKS)
+#: Groups of channels of the film that may become passes, as flags.
+PASSES = [
+    (row.name, row.name, f"{row.unit or 'no unit'}: {'/'.join(row.channels)}", 0, 1 << bit)
+    for bit, row in enumerate(made_by(Source.FILM, Source.GUIDES))
+]

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The render engine: final pictures by F12, and pictures in the viewport."""
+
+import logging
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Any
+
+import bpy
+import numpy as np
+
+from daguerre.errors import DaguerreError
+from daguerre.frame.frame import Frame
+from daguerre.rendering import Cancelled
+
+from . import passes, photograph, translation
+from .drawing import Drawing, check_denoiser
+from .viewport import Viewport
+
+ENGINE = "DAGUERRE"
+_log = logging.getLogger("daguerre.blender")
+
+
+class DaguerreEngine(bpy.types.RenderEngine):
+    """Renders a scene through a real lens."""
+
+    bl_idname = ENGINE
+    bl_label = "Daguerre"
+    bl_use_preview = False
+    bl_use_shading_nodes_custom = False
+    bl_use_eevee_viewport = True
+    bl_use_postprocess = True
+
+    viewport: Viewport | None = None
+
+    def __del__(self) -> None:
+        """Ends the viewport's thread."""
+        if self.viewport is not None:
+            self.viewport.close()
+
+    def update_render_passes(self, scene: Any, renderlayer: Any) -> None:
+        """Names the passes of the picture."""
+        for name, count, letters, kind in passes.registered(scene):
+            self.register_pass(scene, renderlayer, name, count, letters, kind)
+
+    def render(self, depsgraph: Any) -> None:
+        """Draws the final picture."""
+        self._guarded(lambda: self._render(depsgraph))
+
+    def _guarded(self, step: Callable[[], None]) -> None:
+        """Runs a step; its error becomes a report."""
+        try:
+            step()
+        except Cancelled:
+            pass
+        except DaguerreError as error:
+            self._refuse(str(error))
+        except MemoryError:
+            self._refuse("picture: wanted more memory than there is")
+        except Exception as error:  # a fault of ours must not fill the user's console
+            _log.debug("internal error", exc_info=True)
+            self._refuse(f"internal error ({type(error).__name__}: {error}); please report it")
+
+    def _refuse(self, text: str) -> None:
+        self.report({"ERROR"}, f"Daguerre: {text}")
+        self.error_set(f"Daguerre: {text}")
+
+    def _render(self, depsgraph: Any) -> None:
+        self.update_stats("", "Reading the scene")
+        scene = translation.scene_of(depsgraph, self._go)
+        for warning in scene.warnings:
+            self.report({"WARNING"}, f"Daguerre: {warning}")
+        denoises = self._denoises(depsgraph.scene)
+        for view in _views(depsgraph.scene.render):
+            self.active_view_set(view)
+            self._view(depsgraph, scene, view, denoises=denoises)
+
+    def _go(self, frame: int, part: float) -> None:
+        """Goes to a frame and a fraction of one."""
+        self.frame_set(frame, subframe=part)
+
+    def _denoises(self, scene: Any) -> bool:
+        """Whether to denoise; a denoiser that is missing costs a warning, not the picture."""
+        if not scene.daguerre.denoise:
+            return False
+        try:
+            check_denoiser()
+        except DaguerreError as error:
+            self.report({"WARNING"}, f"Daguerre: not denoised: {error}")
+            return False
+        return True
+
+    def _view(self, depsgraph: Any, scene: Any, view: str, *, denoises: bool) -> None:
+        """Draws one eye of the picture, or all of it."""
+        camera = self.camera_override or depsgraph.scene.camera
+        if camera is None:
+            self._refuse("scene: wanted a camera, got none")
+            return
+        eye = np.array(self.camera_model_matrix(camera)) if view else None
+        shot = translation.shot_of(depsgraph, scene, camera, eye)
+        layer = depsgraph.view_layer_eval.name
+        rows = passes.asked(depsgraph.scene)
+        crop = region_of(depsgraph.scene.render, shot.settings.film.resolution)
+        settings = shot.settings.with_(aovs=bool(rows) or denoises, crop=crop)
+        shot = replace(shot, settings=settings)
+        result = self._begin(shot, layer, view)
+
+        def show(frame: Frame) -> None:
+            self._write(result, passes.planes(frame, rows, shot.factor))
+            self.update_result(result)
+
+        finished = False
+        try:
+            show(frame := Drawing(self, shot, show).run(denoises=denoises))
+            finished = True
+        finally:
+            self.end_result(result, cancel=not finished)
+        if depsgraph.scene.daguerre.photograph:
+            photograph.write(frame, shot.camera, depsgraph.scene, camera.data.daguerre)
+
+    def _begin(self, shot: translation.Shot, layer: str, view: str) -> Any:
+        """Result of the picture's size."""
+        film = shot.settings.film
+        x0, y0, x1, y1 = film.crop or (0, 0, *film.resolution)
+        return self.begin_result(0, 0, x1 - x0, y1 - y0, layer=layer, view=view)
+
+    def _write(self, result: Any, planes: Iterator[tuple[str, Any]]) -> None:
+        """Writes passes into a result."""
+        kept = result.layers[0].passes
+        for name, pixels in planes:
+            if name in kept:
+                kept[name].rect.foreach_set(passes.flat(pixels))
+
+    def view_update(self, context: Any, depsgraph: Any) -> None:
+        """Takes over a changed scene."""
+        if self.viewport is None:
+            self.viewport = Viewport(self.tag_redraw)
+        viewport = self.viewport
+        self._guarded(lambda: viewport.update(context, depsgraph))
+
+    def view_draw(self, context: Any, depsgraph: Any) -> None:
+        """Shows the newest picture, and asks for another one if the view changed."""
+        viewport = self.viewport
+        if viewport is None:
+            return
+        self._guarded(lambda: viewport.draw(self, context, depsgraph))
+        self.update_stats("Daguerre", viewport.words)
+
+
+def region_of(render: Any, size: tuple[int, int]) -> tuple[int, int, int, int] | None:
+    """Render region: left, top, right, bottom, px; None: the whole picture.
+
+    Blender counts rows from the bottom, and rounds the edges down in single precision.
+    """
+    if not render.use_border:
+        return None
+    width, height = map(np.float32, size)
+    left, right = int(render.border_min_x * width), int(render.border_max_x * width)
+    bottom, top = int(render.border_min_y * height), int(render.border_max_y * height)
+    return left, size[1] - top, right, size[1] - bottom
+
+
+def _views(render: Any) -> list[str]:
+    """Names of the views of a picture; a single one has no name."""
+    return [view.name for view in render.views if view.use] if render.use_multiview else [""]
+
+
+def register() -> None:
+    """Adds the engine."""
+    bpy.utils.register_class(DaguerreEngine)
+
+
+def unregister() -> None:
+    """Removes the engine."""
+    bpy.utils.unregister_class(DaguerreEngine)

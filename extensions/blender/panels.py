@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels in the Properties editor: the camera's and the render's, and Blender's own that fit."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import bpy
+
+from . import choices
+from .engine import ENGINE
+
+#: Blender's panels that show for its simplest engine, but set what Daguerre does not have.
+_NOT_OURS = {"DATA_PT_light", "NODE_DATA_PT_light", "RENDER_PT_simplify", "VIEWLAYER_PT_filter"}
+#: Panels of another engine whose values Daguerre reads: materials, lights, worlds, focus, blur.
+_OURS_TOO = {
+    "DATA_PT_EEVEE_light", "DATA_PT_camera_dof", "DATA_PT_camera_dof_aperture",
+    "EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface", "EEVEE_WORLD_PT_surface",
+    "MATERIAL_PT_preview", "RENDER_PT_eevee_film", "RENDER_PT_eevee_motion_blur",
+}  # fmt: skip
+
+
+class _Panel:
+    """A panel of rows of properties, which shows for this engine alone."""
+
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    COMPAT_ENGINES = {ENGINE}
+    rows: tuple[str, ...] = ()
+    layout: Any
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return context.engine in cls.COMPAT_ENGINES and cls.group(context) is not None
+
+    @classmethod
+    def group(cls, context: Any) -> Any:
+        """Group of the properties that it shows; None: there is none here."""
+        return context.scene.daguerre
+
+    def draw(self, context: Any) -> None:
+        self.layout.use_property_split = True
+        group = self.group(context)
+        for name in self.shown(group):
+            self.layout.prop(group, name)
+
+    def shown(self, group: Any) -> Iterator[str]:
+        """Names of the properties that matter now."""
+        yield from self.rows
+
+
+class _CameraPanel(_Panel):
+    bl_context = "data"
+
+    @classmethod
+    def group(cls, context: Any) -> Any:
+        return context.camera.daguerre if context.camera else None
+
+
+class DAGUERRE_PT_lens(_CameraPanel, bpy.types.Panel):
+    """Lens of the camera."""
+
+    bl_label = "Lens (Daguerre)"
+
+    def draw(self, context: Any) -> None:
+        group = self.group(context)
+        name, words = _told(group.lens)
+        self.layout.operator("daguerre.choose_lens", text=name, icon="VIEWZOOM")
+        if words:
+            self.layout.label(text=words)
+        super().draw(context)
+
+    def shown(self, group: Any) -> Iterator[str]:
+        if group.lens == "file":
+            yield "lens_file"
+        if group.lens not in ("blender", "pinhole"):
+            yield from ("lens_model", "zoom", "focus_mode", "tilt_x", "tilt_y")
+
+
+class DAGUERRE_PT_iris(_CameraPanel, bpy.types.Panel):
+    """Opening of the lens."""
+
+    bl_label = "Iris"
+
+    def shown(self, group: Any) -> Iterator[str]:
+        if group.lens in ("blender", "pinhole"):
+            return
+        yield "use_t_stop"
+        yield "t_stop" if group.use_t_stop else "f_stop"
+        yield "blades"
+        if group.blades:
+            yield from ("blade_rotation", "blade_curvature")
+
+
+class DAGUERRE_PT_body(_CameraPanel, bpy.types.Panel):
+    """Sensor and exposure."""
+
+    bl_label = "Sensor and Exposure"
+
+    def shown(self, group: Any) -> Iterator[str]:
+        yield from ("sensor", "exposure_mode")
+        if group.exposure_mode == "manual":
+            yield "iso"
+        yield "ev"
+
+
+class DAGUERRE_PT_shutter(_CameraPanel, bpy.types.Panel):
+    """Shutter."""
+
+    bl_label = "Shutter"
+
+    def shown(self, group: Any) -> Iterator[str]:
+        yield "shutter_mode"
+        if group.shutter_mode != "blender":
+            yield f"shutter_{group.shutter_mode}"
+        yield from ("shutter_type", "rolling_side")
+        if group.rolling_side != "off":
+            yield "rolling_time"
+
+
+class DAGUERRE_PT_stray(_CameraPanel, bpy.types.Panel):
+    """Light that the lens adds."""
+
+    bl_label = "Flare and Diffraction"
+    rows = ("flare", "scatter", "diffraction")
+
+
+class DAGUERRE_PT_sampling(_Panel, bpy.types.Panel):
+    """Samples and light paths."""
+
+    bl_label = "Sampling"
+    bl_context = "render"
+    rows = ("spp", "noise", "light_paths", "denoise")
+
+
+class DAGUERRE_PT_photograph(_Panel, bpy.types.Panel):
+    """Photograph beside the render."""
+
+    bl_label = "Photograph"
+    bl_context = "output"
+
+    def shown(self, group: Any) -> Iterator[str]:
+        yield "photograph"
+        if group.photograph:
+            yield from ("look", "raw")
+
+
+class DAGUERRE_PT_passes(_Panel, bpy.types.Panel):
+    """Passes of the picture."""
+
+    bl_label = "Passes (Daguerre)"
+    bl_context = "view_layer"
+    rows = ("passes",)
+
+
+def _told(lens: str) -> tuple[str, str]:
+    """Name of a lens, and its facts."""
+    return next((name, words) for key, name, words in choices.LENSES if key == lens)
+
+
+def compatible() -> Iterator[Any]:
+    """Blender's own panels whose values Daguerre reads."""
+    for panel in bpy.types.Panel.__subclasses__():
+        engines: set[str] = getattr(panel, "COMPAT_ENGINES", set())
+        name = panel.__name__
+        if name in _OURS_TOO or ("BLENDER_RENDER" in engines and name not in _NOT_OURS):
+            yield panel
+
+
+_CLASSES = (
+    DAGUERRE_PT_lens, DAGUERRE_PT_iris, DAGUERRE_PT_body, DAGUERRE_PT_shutter, DAGUERRE_PT_stray,
+    DAGUERRE_PT_sampling, DAGUERRE_PT_photograph, DAGUERRE_PT_passes,
+)  # fmt: skip
+
+
+def register() -> None:
+    """Adds the panels."""
+    for one in _CLASSES:
+        bpy.utils.register_class(one)
+    for panel in compatible():
+        panel.COMPAT_ENGINES.add(ENGINE)
+
+
+def unregister() -> None:
+    """Removes the panels."""
+    for panel in compatible():
+        panel.COMPAT_ENGINES.discard(ENGINE)
+    for one in reversed(_CLASSES):
+        bpy.utils.unregister_class(one)

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Photograph: the exposed and developed picture, and its raw file, beside the render."""
+
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from daguerre.camera.camera import Camera
+from daguerre.frame.frame import Frame
+from daguerre.rendering import Photograph, Reporter
+from daguerre.sensors import load
+
+#: Endings of the files, after the name of the render.
+PICTURE, RAW = "_photograph.png", "_photograph.dng"
+
+
+def paths(scene: Any) -> list[Path]:
+    """Files beside the render of the scene's frame."""
+    render = Path(bpy.path.abspath(scene.render.frame_path(frame=scene.frame_current)))
+    ends = (PICTURE, RAW) if scene.daguerre.raw else (PICTURE,)
+    return [render.with_name(render.stem + end) for end in ends]
+
+
+def photograph_of(camera: Camera, look: str, group: Any) -> Photograph:
+    """Exposure and development that the camera's panel asks for."""
+    manual = group.exposure_mode == "manual"
+    return Photograph(
+        develops=True,
+        sensor=None if camera.sensor is None else load(camera.sensor),
+        iso=group.iso if manual else None,
+        meters=None if manual else group.exposure_mode,
+        ev=group.ev,
+        look=look,
+    )
+
+
+def write(frame: Frame, camera: Camera, scene: Any, group: Any) -> None:
+    """Writes the photograph of a frame.
+
+    Raises:
+        DaguerreError: It cannot be exposed, or a file cannot be written.
+    """
+    files, silent = paths(scene), Reporter()
+    for file in files:
+        file.parent.mkdir(parents=True, exist_ok=True)
+    asked = photograph_of(camera, scene.daguerre.look, group)
+    asked.check(frame.metadata, files, silent)
+    asked.write(asked.metered(frame, files, silent), files, "srgb", silent)

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Seam to ``daguerre.blender``, which translates Blender's evaluated data to Daguerre's."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from daguerre.camera.camera import Camera
+from daguerre.files.notes import Notes
+from daguerre.rendering.settings import RenderSettings
+from daguerre.scene.scene import Scene
+
+#: Goes to a frame and a fraction of one.
+FrameSet = Callable[[int, float], None]
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A picture to draw, as Daguerre takes it.
+
+    Attributes:
+        scene: The scene.
+        camera: The camera.
+        settings: Render settings; the crop is the render region.
+        factor: Blender's value of a picture over Daguerre's.
+    """
+
+    scene: Scene
+    camera: Camera
+    settings: RenderSettings
+    factor: float
+
+
+def scene_of(depsgraph: Any, frame_set: FrameSet | None = None) -> Scene:
+    """Translates the evaluated scene.
+
+    Args:
+        depsgraph: Evaluated data.
+        frame_set: Goes to a frame, for motion; that of the engine inside of a render.
+    """
+    from daguerre.blender import translate
+
+    made: Scene = translate.scene_of(depsgraph, frame_set=frame_set)
+    return made
+
+
+def shot_of(depsgraph: Any, scene: Scene, camera: Any, eye: Any = None) -> Shot:
+    """Makes the picture of one camera.
+
+    Args:
+        depsgraph: Evaluated data.
+        scene: Its translation.
+        camera: Camera object of Blender.
+        eye: World matrix of one eye of a stereo pair, shape (4, 4); None: the camera's own.
+    """
+    from daguerre.blender import settings
+
+    shot = depsgraph.scene
+    ours = scene.camera(camera.name_full) if eye is None else _eye(shot, camera, eye, scene)
+    return Shot(scene, ours, settings.settings_of(shot), settings.factor_of(shot))
+
+
+def _eye(shot: Any, camera: Any, eye: Any, scene: Scene) -> Camera:
+    """Camera of one eye of a stereo pair, which rests while the shutter is open."""
+    from daguerre.blender import cameras, frames
+
+    notes = Notes()
+    found: Camera = cameras.camera_of(
+        camera, shot.render, frames.world_from_blender(shot) @ eye, notes
+    )
+    scene.note(*notes.sentences())
+    return found

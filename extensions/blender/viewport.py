@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures in the viewport: a thread draws the newest wish, coarse at first, then better."""
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.camera.camera import Camera
+from daguerre.errors import UsageError
+from daguerre.rendering import Photograph
+from daguerre.viewfinder.dials import Dials
+from daguerre.viewfinder.painter import Drawn, Painter, Wish
+from daguerre.viewfinder.stage import Shot, Stage
+
+from . import passes, translation
+
+#: Width of the film of a free view, mm.
+FILM_MM = 36.0
+#: Daguerre's axes from Blender's: y is up instead of z.
+Y_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], float)
+
+Rectangle = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class View:
+    """What the viewport looks at; equal views have equal pictures.
+
+    Attributes:
+        size: Size of the picture, px.
+        rectangle: Where it stands in the region: x, y, width, height, px.
+        matrix: View from world, and projection, as numbers; empty: that of the scene's camera.
+    """
+
+    size: tuple[int, int]
+    rectangle: Rectangle
+    matrix: tuple[float, ...] = ()
+
+
+class Viewport:
+    """Pictures of one viewport.
+
+    Args:
+        redraw: Asks Blender to draw the viewport again; called from another thread.
+    """
+
+    def __init__(self, redraw: Callable[[], None]) -> None:
+        self._redraw = redraw
+        self._numbers = itertools.count()
+        self._view: View | None = None
+        self._stage: Stage | None = None
+        self._shot: translation.Shot | None = None
+        self.newest: Drawn | None = None
+        self.words = "Waiting"
+        self._painter = Painter(self._show, self._fail)
+
+    def close(self) -> None:
+        """Ends the thread."""
+        self._painter.close()
+
+    def update(self, context: Any, depsgraph: Any) -> None:
+        """Takes over a changed scene; the next ``draw`` asks for its picture."""
+        scene, camera = translation.scene_of(depsgraph), depsgraph.scene.camera
+        if camera is None:
+            raise UsageError("scene: wanted a camera, got none")
+        self._shot = translation.shot_of(depsgraph, scene, camera)
+        self._view = self._stage = None
+
+    def draw(self, engine: Any, context: Any, depsgraph: Any) -> None:
+        """Shows the newest picture, and asks for another one if the view changed."""
+        if self._shot is None:
+            return
+        view = view_of(context, depsgraph)
+        if view != self._view:
+            self._view = view
+            self.ask(self._shot, camera_of(view, self._shot.camera, depsgraph.scene), view.size)
+        if self.newest is not None:
+            pixels = passes.combined(self.newest.frame, self._shot.factor)
+            show(engine, depsgraph.scene, pixels, view.rectangle)
+
+    def ask(self, shot: translation.Shot, camera: Camera, size: tuple[int, int]) -> None:
+        """Asks for a picture instead of all before."""
+        settings = shot.settings.with_(resolution=size, crop=None, overscan=None)
+        if self._stage is None:
+            self._stage = Stage(shot.scene, camera, settings)
+        wished = Shot(shot.scene, camera, settings, Photograph())
+        self._painter.wish(Wish(next(self._numbers), self._stage, Dials(), wished))
+
+    def _show(self, drawn: Drawn) -> None:
+        self.newest = drawn
+        most = drawn.wish.shot.settings.sampling.most
+        self.words = f"{drawn.samples}/{most} spp" if drawn.whole else "Preview"
+        self._redraw()
+
+    def _fail(self, wish: Wish, error: Exception) -> None:
+        self.words = str(error)
+        self._redraw()
+
+
+def view_of(context: Any, depsgraph: Any) -> View:
+    """View of a 3D region."""
+    region, shown = context.region, context.region_data
+    if shown.view_perspective == "CAMERA":
+        x, y, width, height = frame_of(context, depsgraph)
+        return View((max(1, round(width)), max(1, round(height))), (x, y, width, height))
+    if not shown.is_perspective:
+        raise UsageError("viewport: wanted a perspective or camera view, got an orthographic one")
+    size = region.width, region.height
+    numbers = [
+        x for matrix in (shown.view_matrix, shown.window_matrix) for row in matrix for x in row
+    ]
+    return View(size, (0, 0, *size), tuple(numbers))
+
+
+def frame_of(context: Any, depsgraph: Any) -> Rectangle:
+    """Where the camera's frame stands in the region: x, y, width, height, px."""
+    from bpy_extras.view3d_utils import location_3d_to_region_2d
+
+    scene = depsgraph.scene
+    camera = scene.camera
+    corners = [camera.matrix_world @ corner for corner in camera.data.view_frame(scene=scene)]
+    points = np.array(
+        [location_3d_to_region_2d(context.region, context.region_data, c) for c in corners]
+    )
+    (x, y), (right, top) = points.min(0), points.max(0)
+    return float(x), float(y), float(right - x), float(top - y)
+
+
+def camera_of(view: View, camera: Camera, scene: Any) -> Camera:
+    """Camera of a view: the scene's own, or a pinhole that sees what the user sees."""
+    if not view.matrix:
+        return camera
+    world, projection = np.array(view.matrix).reshape(2, 4, 4)
+    return free_camera(world, projection, view.size, scene.unit_settings.scale_length)
+
+
+def free_camera(
+    view: NDArray[Any], projection: NDArray[Any], size: tuple[int, int], unit_m: float
+) -> Camera:
+    """Pinhole with the view of a perspective region.
+
+    Args:
+        view: View from world, shape (4, 4), Blender's axes and units.
+        projection: Projection of OpenGL, shape (4, 4).
+        size: Size of the region, px.
+        unit_m: One unit of Blender, m.
+    """
+    transform: NDArray[np.float64] = Y_UP @ np.linalg.inv(view)
+    transform[:3, 3] *= unit_m
+    return Camera(
+        transform=transform,
+        lens="pinhole",
+        focal_length=FILM_MM / 2 * float(projection[0, 0]),
+        sensor_size=(FILM_MM, FILM_MM * size[1] / size[0]),
+    )
+
+
+def show(engine: Any, scene: Any, pixels: NDArray[np.float32], where: Rectangle) -> None:
+    """Draws pixels, shape (H, W, 4), into the region, through Blender's colour management."""
+    import gpu
+    from gpu_extras.presets import draw_texture_2d
+
+    height, width = pixels.shape[:2]
+    values = passes.flat(pixels)
+    buffer = gpu.types.Buffer("FLOAT", len(values), values)
+    texture = gpu.types.GPUTexture((width, height), format="RGBA16F", data=buffer)
+    gpu.state.blend_set("ALPHA_PREMULT")
+    engine.bind_display_space_shader(scene)
+    draw_texture_2d(texture, where[:2], *where[2:])
+    engine.unbind_display_space_shader()
+    gpu.state.blend_set("NONE")
