@@ -3,7 +3,7 @@
 
 import math
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -31,9 +31,15 @@ def command(scene: Path, name: str, camera: Camera, settings: RenderSettings) ->
     Raises:
         UsageError: A value has no text that its flag understands.
     """
-    words = [*_camera(camera), *_given(settings.values(), RenderSettings().values(), TABLE)]
+    words = [*_camera(camera), *_settings(settings)]
     output = str(scene.with_suffix(".exr"))
     return shlex.join(["daguerre", "render", str(scene), f"--camera={name}", *words, "-o", output])
+
+
+def _settings(settings: RenderSettings) -> Iterator[str]:
+    width, height = settings.film.resolution
+    yield f"--res={width}x{height}"
+    yield from _given(settings.values(), RenderSettings().values(), TABLE.values())
 
 
 def _camera(camera: Camera) -> Iterator[str]:
@@ -45,7 +51,9 @@ def _camera(camera: Camera) -> Iterator[str]:
     yield from _given(values, plain, [*CAMERA_FLAGS, *SHUTTER])
 
 
-def _given(values: dict[str, Any], plain: dict[str, Any], rows: Any) -> Iterator[str]:
+def _given(
+    values: dict[str, Any], plain: dict[str, Any], rows: Iterable[Parameter]
+) -> Iterator[str]:
     """Words of the values that are not the defaults."""
     for row in rows:
         if not row.flags or row.name not in values:
@@ -65,7 +73,9 @@ def _same(one: Any, other: Any) -> bool:
 
 
 def _text(row: Parameter, value: Any) -> str:
-    """First text of a value that its flag reads back to the bit."""
+    """First text of a value that its flag reads back to the bit; a name is its own text."""
+    if isinstance(value, str):
+        return value
     for text in _texts(row, value):
         try:
             if _read(row, text) == value:
@@ -93,6 +103,7 @@ def _texts(row: Parameter, value: Any) -> Iterator[str]:
         )
     elif isinstance(value, tuple | list):
         yield from (mark.join(map(_number, value)) for mark in ("x", ","))
+        yield ",".join(map(_number, (*value[::2], *value[1::2])))  # of a crop
     else:
         yield from (_number(value) + row.unit, _number(value))
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The render engine: final pictures by F12, and pictures in the viewport."""
 
-import logging
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
@@ -9,16 +8,16 @@ from typing import Any
 import bpy
 import numpy as np
 
-from daguerre.errors import DaguerreError
+from daguerre.errors import DaguerreError, InputError
 from daguerre.frame.frame import Frame
 from daguerre.rendering import Cancelled
 
 from . import passes, photograph, translation
 from .drawing import Drawing, check_denoiser
+from .reports import told
 from .viewport import Viewport
 
 ENGINE = "DAGUERRE"
-_log = logging.getLogger("daguerre.blender")
 
 
 class DaguerreEngine(bpy.types.RenderEngine):
@@ -53,17 +52,12 @@ class DaguerreEngine(bpy.types.RenderEngine):
             step()
         except Cancelled:
             pass
-        except DaguerreError as error:
-            self._refuse(str(error))
-        except MemoryError:
-            self._refuse("picture: wanted more memory than there is")
-        except Exception as error:  # a fault of ours must not fill the user's console
-            _log.debug("internal error", exc_info=True)
-            self._refuse(f"internal error ({type(error).__name__}: {error}); please report it")
+        except Exception as error:  # whatever it is, the user gets a sentence
+            self._refuse(told(error))
 
     def _refuse(self, text: str) -> None:
-        self.report({"ERROR"}, f"Daguerre: {text}")
-        self.error_set(f"Daguerre: {text}")
+        self.report({"ERROR"}, text)
+        self.error_set(text)
 
     def _render(self, depsgraph: Any) -> None:
         self.update_stats("", "Reading the scene")
@@ -94,8 +88,7 @@ class DaguerreEngine(bpy.types.RenderEngine):
         """Draws one eye of the picture, or all of it."""
         camera = self.camera_override or depsgraph.scene.camera
         if camera is None:
-            self._refuse("scene: wanted a camera, got none")
-            return
+            raise InputError("scene: wanted a camera, got none")
         eye = np.array(self.camera_model_matrix(camera)) if view else None
         shot = translation.shot_of(depsgraph, scene, camera, eye)
         layer = depsgraph.view_layer_eval.name

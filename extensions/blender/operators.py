@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
-from daguerre.errors import DaguerreError, InputError
+from daguerre.errors import InputError
 from daguerre.files.atomic import write_bytes
 
 from . import choices, translation
 from .command import command
 from .engine import ENGINE
+from .reports import told
 
 
 class DAGUERRE_OT_choose_lens(bpy.types.Operator):
@@ -62,8 +63,8 @@ class _OnScene:
     def execute(self, context: Any) -> set[str]:
         try:
             self.work(context, _shot(context))
-        except (DaguerreError, OSError) as error:
-            self.report({"ERROR"}, f"Daguerre: {error}")
+        except Exception as error:  # whatever it is, the user gets a sentence
+            self.report({"ERROR"}, told(error))
             return {"CANCELLED"}
         return {"FINISHED"}
 
