@@ -44,7 +44,7 @@ class Watch(Reporter, Control):
     """Tells Blender how a picture goes, and stops it if the user cancels."""
 
     def __init__(self, engine: Engine) -> None:
-        self.engine, self.peak = engine, 0.0
+        self.engine, self.peak, self.fraction = engine, 0.0, 0.0
 
     def poll(self) -> None:
         """Stops at once if the user cancelled."""
@@ -53,7 +53,8 @@ class Watch(Reporter, Control):
 
     def progress(self, status: Status) -> None:
         """Shows samples, time left and memory."""
-        self.engine.update_progress(status.fraction)
+        self.fraction = max(self.fraction, status.fraction)  # an estimate, which may fall
+        self.engine.update_progress(self.fraction)
         used = memory.own_bytes()
         self.peak = max(self.peak, used)
         self.engine.update_memory_stats(memory_used=used / 1e6, memory_peak=self.peak / 1e6)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The render engine: final pictures by F12, and pictures in the viewport."""
 
+import weakref
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
@@ -31,11 +32,6 @@ class DaguerreEngine(bpy.types.RenderEngine):
     bl_use_postprocess = True
 
     viewport: Viewport | None = None
-
-    def __del__(self) -> None:
-        """Ends the viewport's thread."""
-        if self.viewport is not None:
-            self.viewport.close()
 
     def update_render_passes(self, scene: Any, renderlayer: Any) -> None:
         """Names the passes of the picture."""
@@ -109,7 +105,8 @@ class DaguerreEngine(bpy.types.RenderEngine):
         finally:
             self.end_result(result, cancel=not finished)
         if depsgraph.scene.daguerre.photograph:
-            photograph.write(frame, shot.camera, depsgraph.scene, camera.data.daguerre)
+            files = photograph.paths(depsgraph.scene, numbered=self.is_animation)
+            photograph.write(frame, shot.camera, depsgraph.scene, camera.data.daguerre, files)
 
     def _begin(self, shot: translation.Shot, layer: str, view: str) -> Any:
         """Result of the picture's size."""
@@ -128,6 +125,7 @@ class DaguerreEngine(bpy.types.RenderEngine):
         """Takes over a changed scene."""
         if self.viewport is None:
             self.viewport = Viewport(self.tag_redraw)
+            weakref.finalize(self, self.viewport.close)  # Blender frees its part of self first
         viewport = self.viewport
         self._guarded(lambda: viewport.update(context, depsgraph))
 

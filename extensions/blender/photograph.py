@@ -15,11 +15,13 @@ from daguerre.sensors import load
 PICTURE, RAW = "_photograph.png", "_photograph.dng"
 
 
-def paths(scene: Any) -> list[Path]:
-    """Files beside the render of the scene's frame."""
-    render = Path(bpy.path.abspath(scene.render.frame_path(frame=scene.frame_current)))
+def paths(scene: Any, *, numbered: bool) -> list[Path]:
+    """Files beside the render of a scene; ``numbered``: beside that of its frame."""
+    render = scene.render
+    name = render.frame_path(frame=scene.frame_current) if numbered else render.filepath
+    path = Path(bpy.path.abspath(name))
     ends = (PICTURE, RAW) if scene.daguerre.raw else (PICTURE,)
-    return [render.with_name(render.stem + end) for end in ends]
+    return [path.with_name((path.stem or "render") + end) for end in ends]
 
 
 def photograph_of(camera: Camera, look: str, group: Any) -> Photograph:
@@ -35,13 +37,13 @@ def photograph_of(camera: Camera, look: str, group: Any) -> Photograph:
     )
 
 
-def write(frame: Frame, camera: Camera, scene: Any, group: Any) -> None:
-    """Writes the photograph of a frame.
+def write(frame: Frame, camera: Camera, scene: Any, group: Any, files: list[Path]) -> None:
+    """Writes the photograph of a frame into files.
 
     Raises:
         DaguerreError: It cannot be exposed, or a file cannot be written.
     """
-    files, silent = paths(scene), Reporter()
+    silent = Reporter()
     for file in files:
         file.parent.mkdir(parents=True, exist_ok=True)
     asked = photograph_of(camera, scene.daguerre.look, group)

@@ -61,8 +61,9 @@ def stand_in(monkeypatch: Any, made: dg.Scene | None = None, **more: Any) -> Non
         group = blender.daguerre
         settings = dg.RenderSettings.of(resolution=size, spp=group.spp, light_paths="off")
         ours = camera(**more)
-        if eye is not None:
-            ours = ours.with_(shift=(2.0 if eye[0][3] > 0 else -2.0, 0.0))
+        if eye is not None:  # as far beside the camera as Blender's, in camera's axes
+            beside = np.linalg.inv(np.array(camera_object.matrix_world)) @ eye
+            ours = ours.with_(transform=ours.transform @ np.asarray(beside, float))
         return module.Shot(scene, ours, settings, FACTOR)
 
     monkeypatch.setattr(module, "scene_of", lambda depsgraph, frame_set=None: shown)
