@@ -57,7 +57,7 @@ def shot_of(depsgraph: Any, scene: Scene, camera: Any, eye: Any = None) -> Shot:
 
     shot = depsgraph.scene
     ours = scene.camera(camera.name_full) if eye is None else _eye(shot, camera, eye, scene)
-    return Shot(scene, ours, settings.settings_of(shot), settings.factor_of(shot))
+    return Shot(scene, ours, settings.settings_of(shot, camera), settings.factor_of(shot))
 
 
 def _eye(shot: Any, camera: Any, eye: Any, scene: Scene) -> Camera:

@@ -149,7 +149,7 @@ def free_camera(
         size: Size of the region, px.
         unit_m: One unit of Blender, m.
     """
-    transform: NDArray[np.float64] = Y_UP @ np.linalg.inv(view)
+    transform = np.asarray(Y_UP @ np.linalg.inv(view), np.float64)
     transform[:3, 3] *= unit_m
     return Camera(
         transform=transform,

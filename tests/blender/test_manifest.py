@@ -1,5 +1,8 @@
 """The manifest of the extension for Blender, and the zip that users install."""
 
+import io
+import json
+import os
 import shutil
 import subprocess
 import sys
@@ -10,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import daguerre as dg
-from tests.support.blender_extension import FOLDER, ROOT
+from tests.support.blender_extension import FOLDER, ROOT, wheel_of_this
 
 sys.path.insert(0, str(ROOT / "packaging"))
 import blender_manifest
@@ -169,3 +172,46 @@ def test_the_made_zip_is_small_enough():
 
 def test_the_script_is_executable():
     assert shutil.which(str(SCRIPT))
+
+
+def test_the_zip_installs_in_blender(tmp_path):
+    """Blender unpacks the wheels of its Python and turns the extension on."""
+    pytest.importorskip("bpy", reason="no bpy here, in which the zip is installed")
+    others = tmp_path / "wheels"
+    others.mkdir()
+    own = wheel_of_this(tmp_path)
+    (others / WHEEL).write_bytes(small_wheel())
+    found = make(own, others, tmp_path)
+    assert found.returncode == 0, found.stderr
+    (path,) = tmp_path.glob("*.zip")
+    home = tmp_path / "home"
+    home.mkdir()
+    script = ROOT / "tests" / "support" / "blender_install.py"
+    found = subprocess.run(
+        [sys.executable, script, path], capture_output=True, text=True, check=False, timeout=300,
+        env={**os.environ, "BLENDER_USER_RESOURCES": str(home)},
+    )  # fmt: skip
+    lines = [line for line in found.stdout.splitlines() if line.startswith("FACTS ")]
+    assert lines, found.stdout + found.stderr
+    facts = json.loads(lines[0].removeprefix("FACTS "))
+    assert facts["done"] == ["FINISHED"]
+    assert facts["engine"] == "DAGUERRE"
+    assert facts["lens"] == "blender"
+    for place in (facts["package"], facts["core"]):
+        assert Path(place).is_relative_to(home), place
+
+
+def small_wheel():
+    """Bytes of a wheel with one empty module."""
+    info = "some-1.0.dist-info"
+    files = {
+        "some.py": "",
+        f"{info}/METADATA": "Metadata-Version: 2.1\nName: some\nVersion: 1.0\n",
+        f"{info}/WHEEL": "Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n",
+    }
+    files[f"{info}/RECORD"] = "".join(f"{name},,\n" for name in files)
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w") as archive:
+        for name, text in files.items():
+            archive.writestr(name, text)
+    return data.getvalue()

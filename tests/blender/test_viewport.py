@@ -94,7 +94,7 @@ def test_a_free_view_is_the_projection_of_the_region(module, unit_m):
     world_from_view[:3, 3] = 1, -5, 2
     view = np.linalg.inv(world_from_view)
     found = module.viewport.free_camera(view, projection, size, unit_m)
-    point = np.array([2.0, 1.5, 2.8, 1.0])
+    point = np.array([-0.4, 1.5, 2.8, 1.0])
     clip = projection @ view @ point
     wanted = clip[:2] / clip[3]
     ours = np.linalg.inv(found.transform) @ [

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import sys
 import zipfile
+from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -73,7 +74,7 @@ def stand_in(monkeypatch: Any, made: dg.Scene | None = None, **more: Any) -> Non
 def wheel_of_this(folder: Path) -> Path:
     """Packs the package that runs here as a wheel for this Python alone."""
     tag = f"cp3{sys.version_info.minor}"
-    core = Path(str(sys.modules["daguerre._core"].__file__))
+    core = Path(str(import_module("daguerre._core").__file__))
     package, info = Path(dg.__file__).parent, f"daguerre-{dg.__version__}.dist-info"
     files = {f"daguerre/{core.name}": core.read_bytes()}
     for path in package.rglob("*"):
