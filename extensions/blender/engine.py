@@ -95,7 +95,7 @@ class DaguerreEngine(bpy.types.RenderEngine):
         result = self._begin(shot, layer, view)
 
         def show(frame: Frame) -> None:
-            self._write(result, passes.planes(frame, rows, shot.factor))
+            self._write(result, passes.planes(frame, rows, shot))
             self.update_result(result)
 
         finished = False

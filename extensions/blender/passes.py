@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from daguerre.frame.aovs import BY_NAME, Aov
 from daguerre.frame.frame import Frame
 
+from .translation import Shot
+
 COMBINED = "Combined"
 
 
@@ -27,10 +29,14 @@ def registered(scene: Any) -> Iterator[tuple[str, int, str, str]]:
         yield row.name, len(letters), letters, kind
 
 
-def combined(frame: Frame, factor: float) -> NDArray[np.float32]:
-    """Picture in Blender's brightness, premultiplied, shape (H, W, 4)."""
-    alpha = frame.alpha if frame.alpha.size else np.ones(frame.rgb.shape[:2], np.float32)
-    return np.dstack([frame.rgb * np.float32(factor), alpha]).astype(np.float32)
+def combined(frame: Frame, shot: Shot) -> NDArray[np.float32]:
+    """Picture in Blender's brightness, premultiplied, shape (H, W, 4).
+
+    Blender's film is opaque unless it is set to transparent.
+    """
+    has_holes = shot.is_transparent and frame.alpha.size > 0
+    alpha = frame.alpha if has_holes else np.ones_like(frame.rgb[..., 0])
+    return np.dstack([frame.rgb * np.float32(shot.factor), alpha]).astype(np.float32)
 
 
 def plane(frame: Frame, row: Aov) -> NDArray[np.float32] | None:
@@ -40,9 +46,9 @@ def plane(frame: Frame, row: Aov) -> NDArray[np.float32] | None:
     return np.dstack([frame.aovs[channel] for channel in row.channels]).astype(np.float32)
 
 
-def planes(frame: Frame, rows: Iterable[Aov], factor: float) -> Iterator[tuple[str, Any]]:
+def planes(frame: Frame, rows: Iterable[Aov], shot: Shot) -> Iterator[tuple[str, Any]]:
     """All passes of a frame, by name."""
-    yield COMBINED, combined(frame, factor)
+    yield COMBINED, combined(frame, shot)
     for row in rows:
         if (found := plane(frame, row)) is not None:
             yield row.name, found

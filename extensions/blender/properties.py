@@ -4,10 +4,11 @@
 Units are those of ``daguerre.Camera``: mm for lens and sensor, s for time, degrees for angles.
 """
 
+from functools import partial
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy import props
 
 from daguerre.camera.parameters import CAMERA
 from daguerre.parameters.parameter import Parameter
@@ -15,6 +16,22 @@ from daguerre.rendering.parameters import TABLE
 
 from . import choices
 
+
+def _changed(group: Any, context: Any) -> None:
+    """Tells Blender that camera or scene changed, which renders the viewport again."""
+    group.id_data.update_tag()
+
+
+BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty = (
+    partial(kind, update=_changed)
+    for kind in (
+        props.BoolProperty,
+        props.EnumProperty,
+        props.FloatProperty,
+        props.IntProperty,
+        props.StringProperty,
+    )
+)
 #: Widest range of a number in Blender.
 _MOST = 1e9
 
@@ -126,8 +143,8 @@ def register() -> None:
     """Adds the groups ``camera.data.daguerre`` and ``scene.daguerre``."""
     for one in _CLASSES:
         bpy.utils.register_class(one)
-    bpy.types.Camera.daguerre = bpy.props.PointerProperty(type=DaguerreCamera)
-    bpy.types.Scene.daguerre = bpy.props.PointerProperty(type=DaguerreScene)
+    bpy.types.Camera.daguerre = props.PointerProperty(type=DaguerreCamera)
+    bpy.types.Scene.daguerre = props.PointerProperty(type=DaguerreScene)
 
 
 def unregister() -> None:

@@ -30,6 +30,11 @@ class Shot:
     settings: RenderSettings
     factor: float
 
+    @property
+    def is_transparent(self) -> bool:
+        """Whether the picture has no background."""
+        return self.settings.backdrop.background == "transparent"
+
 
 def scene_of(depsgraph: Any, frame_set: FrameSet | None = None) -> Scene:
     """Translates the evaluated scene.

@@ -79,7 +79,7 @@ class Viewport:
             self._view = view
             self.ask(self._shot, camera_of(view, self._shot.camera, depsgraph.scene), view.size)
         if self.newest is not None:
-            pixels = passes.combined(self.newest.frame, self._shot.factor)
+            pixels = passes.combined(self.newest.frame, self._shot)
             show(engine, depsgraph.scene, pixels, view.rectangle)
 
     def ask(self, shot: translation.Shot, camera: Camera, size: tuple[int, int]) -> None:

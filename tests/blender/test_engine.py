@@ -60,7 +60,17 @@ def test_f12_gives_the_bits_of_a_render(shot, tmp_path):
     assert bpy.ops.render.render(write_still=True) == {"FINISHED"}
     frame, found = ours(), drawn(tmp_path)
     np.testing.assert_array_equal(found[..., :3], frame.rgb * np.float32(FACTOR))
+    np.testing.assert_array_equal(found[..., 3], 1)
     assert found[: SIZE[1] // 4].mean() > found[-SIZE[1] // 4 :].mean()  # the sky is bright on top
+
+
+def test_a_transparent_film_has_our_alpha(shot, tmp_path):
+    shot.render.film_transparent = True
+    bpy.ops.render.render(write_still=True)
+    frame, found = ours(background="transparent"), drawn(tmp_path)
+    np.testing.assert_array_equal(found[..., 3], frame.alpha)
+    np.testing.assert_array_equal(found[..., :3], frame.rgb * np.float32(FACTOR))
+    assert 0 < frame.alpha.mean() < 1
 
 
 def test_the_last_frame_is_shown_after_those_on_the_way(shot, tmp_path, monkeypatch, module):
@@ -68,9 +78,9 @@ def test_the_last_frame_is_shown_after_those_on_the_way(shot, tmp_path, monkeypa
     seen = []
     real = module.passes.combined
 
-    def watched(frame, factor):
+    def watched(frame, shot):
         seen.append(int(frame.samples.min()))
-        return real(frame, factor)
+        return real(frame, shot)
 
     monkeypatch.setattr(module.passes, "combined", watched)
     bpy.ops.render.render()
@@ -94,7 +104,6 @@ def test_passes_have_our_names_and_values(shot, tmp_path):
     np.testing.assert_array_equal(planes["object_id.X"], frame.aovs["object_id"])
     for part in "XYZ":
         np.testing.assert_array_equal(planes[f"N.{part}"], frame.aovs[f"N.{part}"])
-    np.testing.assert_array_equal(planes["Combined.A"], frame.alpha)
     np.testing.assert_array_equal(planes["Combined.R"], frame.rgb[..., 0] * np.float32(FACTOR))
 
 
@@ -116,7 +125,7 @@ def test_a_render_region_is_drawn_where_it_stands(shot, tmp_path, edges, cuts):
 
 
 def test_two_eyes_see_two_pictures(shot, tmp_path):
-    shot.render.use_multiview = True
+    shot.render.use_multiview = shot.render.film_transparent = True
     shot.render.image_settings.views_format = "INDIVIDUAL"
     bpy.ops.render.render(write_still=True)
     left, right = drawn(tmp_path, name="out_L.exr"), drawn(tmp_path, name="out_R.exr")
@@ -323,4 +332,7 @@ def test_a_group_without_channels_in_the_frame_has_no_pass(module):
     rows = [row for row in module.passes.BY_NAME.values() if row.name in ("depth", "N")]
     frame = ours(aovs=True)
     without = replace(frame, aovs={"depth.Z": frame.aovs["depth.Z"]})
-    assert [name for name, _ in module.passes.planes(without, rows, 1.0)] == ["Combined", "depth"]
+    assert [name for name, _ in module.passes.planes(without, rows, shot_of(module))] == [
+        "Combined",
+        "depth",
+    ]

@@ -82,6 +82,18 @@ def test_the_search_sets_a_lens_and_takes_it_back(extension):
     assert not camera_group().is_property_set("lens")
 
 
+def test_a_change_reaches_the_evaluated_camera_and_scene(extension):
+    """Translators read evaluated data."""
+    context = bpy.context
+    seen = context.scene.camera.evaluated_get(context.evaluated_depsgraph_get()).data.daguerre
+    assert seen.lens == "blender"
+    camera_group().lens, camera_group().f_stop = "thin", 2.5
+    camera_group().use_t_stop, camera_group().blades = True, 9
+    seen = context.scene.camera.evaluated_get(context.evaluated_depsgraph_get()).data.daguerre
+    assert (seen.lens, seen.f_stop, seen.use_t_stop, seen.blades) == ("thin", 2.5, True, 9)
+    assert seen.is_property_set("lens")
+
+
 def panels(extension):
     return extension.panels._CLASSES
 

@@ -60,7 +60,10 @@ def stand_in(monkeypatch: Any, made: dg.Scene | None = None, **more: Any) -> Non
         blender = depsgraph.scene
         size = blender.render.resolution_x, blender.render.resolution_y
         group = blender.daguerre
-        settings = dg.RenderSettings.of(resolution=size, spp=group.spp, light_paths="off")
+        behind = "transparent" if blender.render.film_transparent else "environment"
+        settings = dg.RenderSettings.of(
+            resolution=size, spp=group.spp, light_paths="off", background=behind
+        )
         ours = camera(**more)
         if eye is not None:  # as far beside the camera as Blender's, in camera's axes
             beside = np.linalg.inv(np.array(camera_object.matrix_world)) @ eye
