@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operators: the search for a lens, the export of the scene, and the copied command line."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -100,6 +101,8 @@ class DAGUERRE_OT_export_scene(_OnScene, bpy.types.Operator):
         path = Path(bpy.path.abspath(self.filepath)).with_suffix(".glb")
         text = command(path, context.scene.camera.name, shot.camera, shot.settings)
         write_glb(path)
+        for loss in left_out(context.scene):
+            self.report({"WARNING"}, f"Daguerre: {loss}")
         write_bytes(path.with_suffix(".sh"), f"#!/bin/sh\n{text}\n".encode())
         self.report({"INFO"}, f"Daguerre: wrote {path} and {path.with_suffix('.sh').name}")
 
@@ -139,6 +142,15 @@ def write_glb(path: Path) -> None:
         )
     except RuntimeError as error:
         raise InputError(f"{path}: wanted a scene that glTF can hold: {error}") from None
+
+
+def left_out(scene: Any) -> Iterator[str]:
+    """Light of a scene that no glTF file holds, so that its picture is another one."""
+    if scene.world is not None:
+        yield "glTF holds no world: the exported scene has no light from it"
+    areas = [one for one in scene.objects if one.type == "LIGHT" and one.data.type == "AREA"]
+    if areas:
+        yield f"glTF holds no area lights: {len(areas)} left out"
 
 
 def _menu(menu: Any, context: Any) -> None:

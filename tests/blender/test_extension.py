@@ -215,6 +215,15 @@ def test_the_export_writes_scene_and_command(extension, tmp_path, monkeypatch):
     assert "--f-stop=4.0" in text
 
 
+def test_light_that_gltf_does_not_hold_is_told(extension):
+    scene, left_out = bpy.context.scene, extension.operators.left_out
+    assert len(list(left_out(scene))) == 1  # the world of the default scene
+    bpy.data.lights[0].type = "AREA"
+    assert [text for text in left_out(scene) if "area lights: 1 left out" in text]
+    scene.world, bpy.data.lights[0].type = None, "POINT"
+    assert not list(left_out(scene))
+
+
 def test_the_command_is_copied_and_errors_become_reports(extension, monkeypatch):
     blender_extension.stand_in(monkeypatch, lens="double-gauss-50mm-f2")
     assert bpy.ops.daguerre.copy_command() == {"FINISHED"}
