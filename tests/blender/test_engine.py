@@ -308,17 +308,19 @@ def test_the_photograph_is_metered_if_asked(module):
 
 
 def test_twenty_renders_leave_no_memory_and_no_thread_behind(shot):
+    """A leak grows in every batch; the pools of the allocator grow in some."""
+
     def rendered(count):
         for _ in range(count):
             bpy.ops.render.render()
         gc.collect()
         return memory.own_bytes()
 
-    shot.render.resolution_x, shot.render.resolution_y = 320, 240  # 1.2 MB a plane of four
+    shot.render.resolution_x, shot.render.resolution_y = 320, 240  # 1.2 MB for one picture
     shot.daguerre.spp = 1
-    before, threads = rendered(5), threading.active_count()
-    after = rendered(20)
-    assert after - before < 10e6
+    used, threads = [rendered(5)], threading.active_count()
+    used += [rendered(20) for _ in range(3)]
+    assert np.diff(used).min() < 2e6  # a picture each would be 24.6 MB
     assert threading.active_count() == threads
 
 
