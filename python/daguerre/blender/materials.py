@@ -18,6 +18,7 @@ from daguerre.io.shading.textures import Packer
 from daguerre.scene.materials import Diffuse, Gltf, Material
 from daguerre.scene.scene import Scene
 
+from .meshes import Needs
 from .shading.closures import Closure
 from .shading.network import Networks
 from .shading.operations import operations
@@ -83,6 +84,10 @@ class Materials:
         """
         name = self._of(material).colors
         return "" if name == ACTIVE else name
+
+    def needs(self, material: Any) -> Needs:
+        """Layers that a mesh with a material must hold."""
+        return Needs(self.uv_sets(material), self.color_attribute(material))
 
     def _of(self, material: Any) -> _Made:
         key = None if material is None else str(material.name_full)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib import import_module
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,14 +15,18 @@ from daguerre.files.notes import Notes, Silence
 from daguerre.motion.values import keys
 from daguerre.scene.scene import Scene
 
+from . import materials
+from .cameras import camera_of
 from .frames import check_size, world_from_blender
 from .hair import Hair
+from .lights import add_light, note_visibility
 from .meshes import Materials, Meshes
 from .motion import FrameSet, Motion, motion_of, shutter_of
 from .objects import UNDRAWN, Seen, descendants, walk
 from .over_time import move_lights, moving_camera
 from .particles import ParticleHair
 from .placing import Placing
+from .world import set_world
 
 Matrix = NDArray[np.float64]
 
@@ -44,11 +48,10 @@ class Rooms:
     camera_of: Callable[[Any, Any, Matrix, Notes], Camera]
 
 
-def rooms() -> Rooms:
-    """Translators of this room."""
-    names = ("materials", "lights", "world", "cameras")
-    materials, lights, world, cameras = (import_module(f"{__package__}.{n}") for n in names)
-    return Rooms(materials.Materials, lights.add_light, world.set_world, cameras.camera_of)
+def rooms(metres_per_unit: float) -> Rooms:
+    """Translators of this room, for scenes whose unit has this length, m."""
+    lamps = partial(add_light, metres_per_unit=metres_per_unit)
+    return Rooms(materials.Materials, lamps, set_world, camera_of)
 
 
 def scene_of(
@@ -77,7 +80,8 @@ def scene_of(
         InputError: Something has numbers that cannot be drawn; the message names it.
     """
     scene, notes = Scene(time=time), Notes()
-    work = _Translation(scene, depsgraph, by or rooms(), notes)
+    unit_m = float(depsgraph.scene.unit_settings.scale_length)
+    work = _Translation(scene, depsgraph, by or rooms(unit_m), notes)
     opened = shutter_of(depsgraph.scene) if shutter is None else shutter
     if opened is not None and opened[1] > opened[0]:
         work.motion = motion_of(depsgraph, opened, time, work.probe, notes, frame_set)
@@ -163,6 +167,7 @@ class _Translation:
         scene = self._scene
         first = len(scene.lights), len(scene.instances)
         self._by.add_light(scene, world, seen.object.data, seen.name, self._notes)
+        note_visibility(seen.object, self._notes)
         moments = self.motion.probed.get(seen.identity) if self.motion.probed else None
         if moments and not move_lights(scene, first, moments):
             self._notes.add("a light that becomes another kind while the shutter is open rests")

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from daguerre.blender.settings import LUMENS_PER_WATT
 from daguerre.io.shading.channels import Value
 from daguerre.io.shading.inputs import refraction_index, stretched
 from daguerre.io.shading.layers import coated, is_set, with_film
@@ -17,9 +18,6 @@ from daguerre.io.shading.surface import Surface
 from .closures import WHITE, Closure
 from .sockets import Sockets
 
-#: Luminance of a radiance of 1 W/(m2 sr), cd/m2: 683 lm/W, the same at all colours (the rule of the
-#: glTF exporter for lamps); Blender's "strength" is a radiance in these units.
-CD_PER_W = 683.0
 _COAT_IOR = 1.5
 #: Distance between the anisotropies 1 and that of endless stretching (Burley 2012).
 _STRETCH = 0.9
@@ -59,7 +57,7 @@ def emitted(sockets: Sockets, prefix: str = "") -> Value:
     if not is_set(strength):
         return (0.0, 0.0, 0.0)
     light = sockets.math.multiply(sockets.value(f"{prefix}Color"), strength)
-    return sockets.math.multiply(light, (CD_PER_W,))
+    return sockets.math.multiply(light, (LUMENS_PER_WATT,))
 
 
 def normal_of(sockets: Sockets, name: str = "Normal") -> Value | None:

@@ -9,13 +9,14 @@ from collections.abc import Callable
 
 import numpy as np
 
+from daguerre.blender.settings import LUMENS_PER_WATT
 from daguerre.io.shading.channels import numbers_of
 from daguerre.io.shading.inputs import refraction_index
 from daguerre.io.shading.layers import is_set, with_film
 from daguerre.io.shading.surface import Surface
 
 from .closures import BLACK, WHITE, Closure, mirror
-from .principled import CD_PER_W, anisotropic, emitted, normal_of, principled
+from .principled import anisotropic, emitted, normal_of, principled
 from .sockets import Sockets
 
 Shader = Callable[[Sockets], Closure]
@@ -121,7 +122,7 @@ def specular(sockets: Sockets) -> Closure:
     surface.clearcoat = math.fraction(sockets.one("Clear Coat"))
     surface.clearcoat_roughness = math.fraction(sockets.one("Clear Coat Roughness"))
     surface.normal = normal_of(sockets)
-    light = math.multiply(sockets.value("Emissive Color"), (CD_PER_W,))
+    light = math.multiply(sockets.value("Emissive Color"), (LUMENS_PER_WATT,))
     cover = math.subtract((1.0,), math.fraction(sockets.one("Transparency")))
     return Closure(surface, light, cover)
 
