@@ -88,7 +88,7 @@ def _normal(values: Array, lie: Lie, scale: float, strength: float) -> tuple[Arr
 def _difference(values: Array, axis: int, wrap: str) -> Array:
     """Central difference along an axis; that of one side at the border of a clamped picture."""
     if wrap == "repeat":
-        return (np.roll(values, -1, axis) - np.roll(values, 1, axis)) / 2
+        return np.asarray((np.roll(values, -1, axis) - np.roll(values, 1, axis)) / 2, np.float32)
     if values.shape[axis] == 1:
         return values * 0
     return np.asarray(np.gradient(values, axis=axis), np.float32)
