@@ -89,7 +89,7 @@ class DaguerreEngine(bpy.types.RenderEngine):
         shot = translation.shot_of(depsgraph, scene, camera, eye)
         layer = depsgraph.view_layer_eval.name
         rows = passes.asked(depsgraph.scene)
-        crop = region_of(depsgraph.scene.render, shot.settings.film.resolution)
+        crop = translation.region_of(depsgraph.scene.render, shot.settings.film.resolution)
         settings = shot.settings.with_(aovs=bool(rows) or denoises, crop=crop)
         shot = replace(shot, settings=settings)
         result = self._begin(shot, layer, view)
@@ -136,19 +136,6 @@ class DaguerreEngine(bpy.types.RenderEngine):
             return
         self._guarded(lambda: viewport.draw(self, context, depsgraph))
         self.update_stats("Daguerre", viewport.words)
-
-
-def region_of(render: Any, size: tuple[int, int]) -> tuple[int, int, int, int] | None:
-    """Render region: left, top, right, bottom, px; None: the whole picture.
-
-    Blender counts rows from the bottom, and rounds the edges down in single precision.
-    """
-    if not render.use_border:
-        return None
-    width, height = map(np.float32, size)
-    left, right = int(render.border_min_x * width), int(render.border_max_x * width)
-    bottom, top = int(render.border_min_y * height), int(render.border_max_y * height)
-    return left, size[1] - top, right, size[1] - bottom
 
 
 def _views(render: Any) -> list[str]:

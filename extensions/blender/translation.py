@@ -65,6 +65,14 @@ def shot_of(depsgraph: Any, scene: Scene, camera: Any, eye: Any = None) -> Shot:
     return Shot(scene, ours, settings.settings_of(shot, camera), settings.factor_of(shot))
 
 
+def region_of(render: Any, size: tuple[int, int]) -> tuple[int, int, int, int] | None:
+    """Render region, px, from the top left; None: the whole picture."""
+    from daguerre.blender import settings
+
+    found: tuple[int, int, int, int] | None = settings.region_of(render, size)
+    return found
+
+
 def _eye(shot: Any, camera: Any, eye: Any, scene: Scene) -> Camera:
     """Camera of one eye of a stereo pair, which rests while the shutter is open."""
     from daguerre.blender import cameras, frames

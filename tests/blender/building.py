@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.blender.meshes import Needs
 from daguerre.blender.translate import Rooms, scene_of
 
 bpy = pytest.importorskip("bpy", reason="needs bpy, the wheel of Blender")
@@ -20,6 +21,9 @@ class Grey:
         if name not in self.made:
             self.made[name] = self.scene.add_material(dg.Material(dg.Diffuse(), name=name))
         return self.made[name]
+
+    def needs(self, material):
+        return Needs()
 
 
 def add_light(scene, matrix, light, name, notes):

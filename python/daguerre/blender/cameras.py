@@ -22,6 +22,7 @@ from daguerre.sensors import load
 
 from .camera_panel import CameraPanel
 from .film import Film, film_of
+from .frames import metres_per_unit
 from .panoramas import panorama_of
 from .shutters import shutter_of
 
@@ -59,7 +60,7 @@ def camera_of(
     data, panel = thing.data, CameraPanel(thing.data)
     if data.type not in ("PERSP", "PANO"):
         raise InputError(f"{where}: type: wanted PERSP or PANO, got {data.type}")
-    metres = float(render.id_data.unit_settings.scale_length)
+    metres = metres_per_unit(render.id_data)
     film = film_of(data, render, shift_x)
     lens = _lens_of(data, panel, where)
     values = _optics(data, film, lens, panel, where, notes) | _body(panel)

@@ -17,9 +17,14 @@ MAX_SIZE = 1e18
 _AXES: Matrix = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 
 
+def metres_per_unit(scene: Any) -> float:
+    """Length of a unit of a Blender scene, m."""
+    return float(scene.unit_settings.scale_length)
+
+
 def world_from_blender(scene: Any) -> Matrix:
     """World (m, y-up) from the world of a Blender scene, shape (4, 4)."""
-    scale = float(scene.unit_settings.scale_length)
+    scale = metres_per_unit(scene)
     return np.asarray(_AXES @ np.diag([scale, scale, scale, 1.0]))
 
 

@@ -36,21 +36,18 @@ class Needs(NamedTuple):
 
 
 class Materials(Protocol):
-    """Materials of the scene. They may tell by ``needs(material) -> Needs`` what they read."""
+    """Materials of the scene."""
 
     def index(self, material: Any) -> int:
         """Index in the scene of a ``bpy.types.Material``; None: the default."""
+
+    def needs(self, material: Any) -> Needs:
+        """Layers of a mesh that a material reads."""
 
 
 def slots_of(thing: Any) -> tuple[Any, ...]:
     """Materials of an object, by slot; at least one, which may be None."""
     return tuple(slot.material for slot in thing.material_slots) or (None,)
-
-
-def needs_of(materials: Materials, material: Any) -> Needs:
-    """Layers that a material reads; those that renders use if it cannot tell."""
-    tell = getattr(materials, "needs", None)
-    return Needs() if tell is None else tell(material)
 
 
 @dataclass(frozen=True)
@@ -131,7 +128,7 @@ class Meshes:
             steps: Points over time. Copies share those of the first.
         """
         materials = slots_of(thing)
-        needs = tuple(needs_of(self._materials, material) for material in materials)
+        needs = tuple(self._materials.needs(material) for material in materials)
         key = (thing.data.as_pointer(), needs)
         if key not in self._made:
             self._made[key] = self._add(thing.data, needs, steps)

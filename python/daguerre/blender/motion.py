@@ -20,6 +20,7 @@ from .arrays import points_of
 from .frames import seconds_per_frame
 from .meshes import Steps
 from .objects import Identity, Seen, walk
+from .shutters import OPENS
 
 #: Goes to a frame and a fraction of one: ``Scene.frame_set`` or ``RenderEngine.frame_set``.
 FrameSet = Callable[[int, float], None]
@@ -36,7 +37,7 @@ def shutter_of(scene: Any) -> tuple[float, float] | None:
     if not render.use_motion_blur or render.motion_blur_shutter <= 0:
         return None
     length = render.motion_blur_shutter * seconds_per_frame(scene)
-    begin = {"START": 0.0, "CENTER": -0.5, "END": -1.0}[render.motion_blur_position] * length
+    begin = OPENS[render.motion_blur_position] * length
     return begin, begin + length
 
 

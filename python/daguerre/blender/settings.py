@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from daguerre.rendering.settings import RenderSettings
 
 from .camera_panel import CameraPanel
@@ -47,8 +49,7 @@ def settings_of(scene: bpy.types.Scene, camera: bpy.types.Object | None = None) 
     render = scene.render
     size = resolution_of(render)
     values: dict[str, Any] = {"resolution": size, "threads": _threads(render)}
-    if render.use_border:
-        values["crop"] = _crop(render, size)
+    values["crop"] = region_of(render, size)
     if render.film_transparent:
         values["background"] = "transparent"
     return RenderSettings.of(**values, **_sampling(scene, panel), **_light(panel, switches))
@@ -59,14 +60,19 @@ def _threads(render: Any) -> int:
     return int(render.threads) if render.threads_mode == "FIXED" else 0
 
 
-def _crop(render: Any, size: tuple[int, int]) -> tuple[int, int, int, int]:
-    """Region of the picture, px, from the top left, ends exclusive; at least a pixel.
+def region_of(render: Any, size: tuple[int, int]) -> tuple[int, int, int, int] | None:
+    """Render region, px, from the top left, ends exclusive; None: the whole picture.
 
-    Blender counts whole pixels from the lower left.
+    It has at least a pixel.
+
+    Blender counts from the lower left, and rounds the edges down in single precision.
     """
+    if not render.use_border:
+        return None
     columns, rows = size
-    left, right = (int(v * columns) for v in (render.border_min_x, render.border_max_x))
-    bottom, top = (int(v * rows) for v in (render.border_min_y, render.border_max_y))
+    width, height = map(np.float32, size)
+    left, right = (int(v * width) for v in (render.border_min_x, render.border_max_x))
+    bottom, top = (int(v * height) for v in (render.border_min_y, render.border_max_y))
     left, bottom = min(max(left, 0), columns - 1), min(max(bottom, 0), rows - 1)
     right, top = min(max(right, left + 1), columns), min(max(top, bottom + 1), rows)
     return left, rows - top, right, rows - bottom

@@ -14,7 +14,7 @@ from daguerre.files.notes import Notes
 from .camera_panel import CameraPanel
 
 #: When a shutter of one frame opens, frames.
-_OPENS = {"START": 0.0, "CENTER": -0.5, "END": -1.0}
+OPENS = {"START": 0.0, "CENTER": -0.5, "END": -1.0}
 #: Points of a shutter's curve.
 _POINTS = 33
 
@@ -47,7 +47,7 @@ def _of_blender(render: Any, fps: float, notes: Notes) -> dict[str, Any]:
     share = float(render.motion_blur_shutter)
     if not render.use_motion_blur or share <= 0:
         return {"shutter_time": 0.0}
-    opens = _OPENS[render.motion_blur_position] * share
+    opens = OPENS[render.motion_blur_position] * share
     cycles = getattr(render.id_data, "cycles", None)
     if getattr(cycles, "rolling_shutter_type", "NONE") != "NONE":
         notes.add("the rolling shutter of Cycles is left out: Daguerre's panel has one")

@@ -17,7 +17,7 @@ from daguerre.scene.scene import Scene
 
 from . import materials
 from .cameras import camera_of
-from .frames import check_size, world_from_blender
+from .frames import check_size, metres_per_unit, world_from_blender
 from .hair import Hair
 from .lights import add_light, note_visibility
 from .meshes import Materials, Meshes
@@ -48,9 +48,9 @@ class Rooms:
     camera_of: Callable[[Any, Any, Matrix, Notes], Camera]
 
 
-def rooms(metres_per_unit: float) -> Rooms:
+def rooms(unit_m: float) -> Rooms:
     """Translators of this room, for scenes whose unit has this length, m."""
-    lamps = partial(add_light, metres_per_unit=metres_per_unit)
+    lamps = partial(add_light, metres_per_unit=unit_m)
     return Rooms(materials.Materials, lamps, set_world, camera_of)
 
 
@@ -80,8 +80,7 @@ def scene_of(
         InputError: Something has numbers that cannot be drawn; the message names it.
     """
     scene, notes = Scene(time=time), Notes()
-    unit_m = float(depsgraph.scene.unit_settings.scale_length)
-    work = _Translation(scene, depsgraph, by or rooms(unit_m), notes)
+    work = _Translation(scene, depsgraph, by or rooms(metres_per_unit(depsgraph.scene)), notes)
     opened = shutter_of(depsgraph.scene) if shutter is None else shutter
     if opened is not None and opened[1] > opened[0]:
         work.motion = motion_of(depsgraph, opened, time, work.probe, notes, frame_set)

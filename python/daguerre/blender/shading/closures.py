@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from daguerre.io.shading.arithmetic import Arithmetic
+from daguerre.io.shading.assemble import LAYERS
 from daguerre.io.shading.channels import Texel, Value, broadcast, numbers_of
 from daguerre.io.shading.layers import is_set
 from daguerre.io.shading.surface import Surface
@@ -22,12 +23,7 @@ WHITE: Value = (1.0, 1.0, 1.0)
 #: Share that a transparent surface covers so that it can shine.
 _LEAST_COVER = 0.1
 #: Parameters that count only where their weight does.
-_LAYERS = {
-    "clearcoat": ("clearcoat_roughness", "clearcoat_normal"),
-    "sheen_color": ("sheen_roughness",),
-    "iridescence": ("iridescence_ior", "iridescence_thickness_nm"),
-    "diffuse_transmission": ("diffuse_transmission_color",),
-    "anisotropy": ("anisotropy_rotation",),
+_LAYERS = LAYERS | {
     "transmission": ("volume", "attenuation_distance", "attenuation_color", "dispersion"),
 }
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre import memory
+from daguerre.blender.pictures import raw_pixels
 from daguerre.checks import freeze_in_place
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
@@ -128,18 +129,13 @@ def _pixels(image: Any) -> NDArray[Any] | None:
 
     Colours of floats are divided by their opacity, which Blender has multiplied them with.
     """
-    count = len(image.pixels)  # loads the image
-    width, height = (int(n) for n in image.size)
-    channels = int(image.channels)
-    if not count or count != width * height * channels:
+    pixels = raw_pixels(image)
+    if pixels is None:
         return None
-    flat = np.empty(count, np.float32)
-    image.pixels.foreach_get(flat)
     if not image.is_float:  # in place, as pictures are large
-        np.rint(np.multiply(np.clip(flat, 0, 1, out=flat), 255, out=flat), out=flat)
-    pixels = flat.reshape(height, width, channels)[::-1]
+        np.rint(np.multiply(np.clip(pixels, 0, 1, out=pixels), 255, out=pixels), out=pixels)
     opaque = 1 if image.is_float else 255
-    if channels == 4 and pixels[:, :, 3].min() >= opaque:
+    if pixels.shape[2] == 4 and pixels[:, :, 3].min() >= opaque:
         pixels = pixels[:, :, :3]
     if not image.is_float:
         return np.ascontiguousarray(pixels.astype(np.uint8))

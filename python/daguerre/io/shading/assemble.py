@@ -32,7 +32,7 @@ _COLORS = {
     "diffuse_transmission_color": 1.0,
 }
 #: Parameters of layers by the weight of each.
-_LAYERS = {
+LAYERS = {
     "clearcoat": ("clearcoat_roughness", "clearcoat_normal"),
     "sheen_color": ("sheen_roughness",),
     "iridescence": ("iridescence_ior", "iridescence_thickness_nm"),
@@ -158,7 +158,7 @@ class Assembler:
 def _drop_weightless(surface: Surface) -> None:
     """Resets the parameters of layers that have no weight."""
     plain = Surface()
-    for weight, parameters in _LAYERS.items():
+    for weight, parameters in LAYERS.items():
         if getattr(surface, weight) == getattr(plain, weight):
             for name in parameters:
                 setattr(surface, name, getattr(plain, name))
