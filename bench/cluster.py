@@ -94,7 +94,7 @@ def start() -> dict[str, float]:
         return {"workers_s": reached, "first_sums_s": time.monotonic() - began}
 
 
-def sequence(frames: int = 8, spp: int = 4) -> dict[str, float]:
+def sequence(frames: int = 8, spp: int = 8) -> dict[str, float]:
     """Frames of 4K by two workers, against one process of two threads."""
     from daguerre import cli
 

@@ -341,7 +341,12 @@ def test_tasks_are_long_if_their_answers_are_work() -> None:
     assert one.size(1e9) == 2 * sharing.WORTH * 3
     crew.answer_s = 100.0
     assert one.size(1e9) == 2 * sharing.LONG_S
+    crew.answer_s = 0.1
     assert one.size(20) == 5  # two for each worker
+    crew.answer_s = 0.4
+    assert one.size(20) == 2 * sharing.LAST_WORTH * 0.4  # a shorter one would not pay
+    crew.answer_s = 3.0
+    assert one.size(20) == 10  # none is idle
 
 
 def test_a_remnant_is_no_task_of_its_own() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -206,3 +207,25 @@ def test_a_checkpoint_is_not_written_again_while_nothing_arrives(tmp_path: Path)
     checkpoint = Checkpoint(tmp_path / "a.checkpoint.exr", interval_s=1e-6)
     assert Loop(session, Waits(session, 20), checkpoint, Saves(), Control()).run()
     assert told == [1.0]
+
+
+@pytest.mark.parametrize(("save_s", "least", "most"), [(0.0, 5, 64), (0.2, 1, 1)])
+def test_checkpoints_take_a_small_share_of_the_time(
+    tmp_path: Path, save_s: float, least: int, most: int
+) -> None:
+    saves: list[float] = []
+
+    class Slow(Checkpoint):
+        def save(self, session: Session) -> None:
+            saves.append(session.ranges[-1][-1])
+            time.sleep(save_s)
+
+    class Drawn(Range):
+        def prepare(self, limit: float) -> float:
+            time.sleep(0.01)
+            return super().prepare(1.0)
+
+    session = Session(sky(), None, settings=RenderSettings.of(resolution=(12, 8), spp=64))
+    checkpoint = Slow(tmp_path / "a.checkpoint.exr", interval_s=1e-6)
+    assert Loop(session, Drawn(session, (0, 64)), checkpoint, Reporter(), Control()).run()
+    assert least <= len(saves) <= most

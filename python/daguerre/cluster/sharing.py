@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 AHEAD = 2
 #: Length of a task, s, once it is known how fast workers are; and at most, if its sums take long.
 TASK_S, LONG_S = 15.0, 120.0
-#: A task takes at least so many times as long as the work with its answer.
-WORTH = 40.0
+#: A task takes at least so many times as long as the work with its answer; and toward the end.
+WORTH, LAST_WORTH = 40.0, 10.0
 #: Time that a step waits for results, s.
 STEP_S = 0.5
 #: Answers that a worker adds at once.
@@ -65,9 +65,10 @@ class Sharing:
         """Samples of the next task, by what is known of workers; fewer toward the end."""
         if not self.crew.per_second:
             return 1.0
-        fair = left / (2 * max(1, len(self.crew.workers.good)))
+        share = left / max(1, len(self.crew.workers.good))
+        least = min(LAST_WORTH * self.crew.answer_s * self.crew.per_second, share)
         length = min(max(TASK_S, WORTH * self.crew.answer_s), LONG_S)
-        return max(1.0, min(length * self.crew.per_second, fair))
+        return max(1.0, min(length * self.crew.per_second, max(share / 2, least)))
 
     def take(self, first: int | None = None) -> tuple[Task, Sums] | None:
         """A task that has landed and its sums, after waiting a little; None: none.

@@ -45,7 +45,8 @@ class Job:
         pictures: Pictures, each with its camera, settings and files.
         reporter: Receives progress and messages.
         control: Decides when to stop.
-        interval_s: Time between checkpoints, s; 0: only when the job stops.
+        interval_s: Time between checkpoints, s, longer where a checkpoint would take more than 5 %
+            of it; 0: only when the job stops.
 
     Attributes:
         name: Name of the scene, for messages.

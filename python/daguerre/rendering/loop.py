@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 #: Approximate length of a pass, so that stops and checkpoints need not wait.
 PASS_S = 3.0
+#: Largest share of the time that goes into checkpoints.
+SAVING = 0.05
 
 
 class Loop:
@@ -52,7 +54,7 @@ class Loop:
         self.snapshot, self.preview = snapshot, preview
         self.started = time.monotonic()
         self.drawn_here = 0.0
-        self._saved = 0.0
+        self._saved = self._save_s = 0.0
 
     def run(self) -> bool:
         """Draws until the work is complete or the control stops it; True: complete."""
@@ -77,10 +79,13 @@ class Loop:
             if self.work.done() < self.work.total():
                 self.preview()
             interval = self.checkpoint.interval_s
-            due = interval > 0 and time.monotonic() - saved_at >= interval
+            since = time.monotonic() - saved_at
+            due = interval > 0 and since >= max(interval, self._save_s / SAVING)
             if due and self._saved < self.work.done() < self.work.total():
+                began = time.monotonic()
                 self.save()
                 saved_at = time.monotonic()
+                self._save_s = saved_at - began
 
     def save(self, *, rescued: bool = False) -> bool:
         """Writes the checkpoint; returns False, with a warning, if that fails."""

@@ -177,7 +177,13 @@ class JobFlags(ClusterFlags):
     ] = None
     checkpoint: Annotated[
         str,
-        option("--checkpoint", metavar="S", help="Time between checkpoints, s [60].", panel=FILES),
+        option(
+            "--checkpoint",
+            metavar="S",
+            help="Time between checkpoints, s [60]; "
+            "longer where a checkpoint would take more than 5 % of it.",
+            panel=FILES,
+        ),
     ] = "60"
     preview: Annotated[
         bool,
