@@ -19,7 +19,15 @@ from daguerre.rendering.settings import RenderSettings
 _BY_SENSOR = "sensor_size"
 
 
-def command(scene: Path, name: str, camera: Camera, settings: RenderSettings) -> str:
+def command(
+    scene: Path,
+    name: str,
+    camera: Camera,
+    settings: RenderSettings,
+    held: Camera | None = None,
+    *,
+    denoises: bool = False,
+) -> str:
     """Command line that renders a camera of a scene file into an .exr beside it.
 
     Args:
@@ -27,13 +35,17 @@ def command(scene: Path, name: str, camera: Camera, settings: RenderSettings) ->
         name: Name of the camera in it.
         camera: The camera.
         settings: Render settings.
+        held: Camera that the file holds; default: one without parameters of Daguerre.
+        denoises: Whether the picture is denoised.
 
     Raises:
         UsageError: A value has no text that its flag understands.
     """
-    words = [*_camera(camera), *_settings(settings)]
+    words = [*_camera(camera, Camera() if held is None else held), *_settings(settings)]
+    words += ["--denoise"] if denoises else []
+    seen = name.replace(",", "\\,")  # as commas stand between names
     output = str(scene.with_suffix(".exr"))
-    return shlex.join(["daguerre", "render", str(scene), f"--camera={name}", *words, "-o", output])
+    return shlex.join(["daguerre", "render", str(scene), f"--camera={seen}", *words, "-o", output])
 
 
 def _settings(settings: RenderSettings) -> Iterator[str]:
@@ -42,8 +54,12 @@ def _settings(settings: RenderSettings) -> Iterator[str]:
     yield from _given(settings.values(), RenderSettings().values(), TABLE.values())
 
 
-def _camera(camera: Camera) -> Iterator[str]:
-    values, plain = dict(vars(camera)), vars(Camera())
+def _camera(camera: Camera, held: Camera) -> Iterator[str]:
+    """Words of the values in which a camera is another one than that of the file."""
+    new = {name: getattr(camera, name) for name in ("lens", "sensor")}
+    new = {name: value for name, value in new.items() if not _same(value, getattr(held, name))}
+    values, plain = dict(vars(camera)), dict(vars(held.with_(**new) if new else held))
+    plain |= {name: getattr(held, name) for name in new}
     if camera.sensor is not None:
         values.pop(_BY_SENSOR)
     elif camera.sensor_size != plain[_BY_SENSOR]:

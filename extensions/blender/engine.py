@@ -13,7 +13,7 @@ from daguerre.errors import DaguerreError, InputError
 from daguerre.frame.frame import Frame
 from daguerre.rendering import Cancelled
 
-from . import passes, photograph, translation
+from . import passes, photograph, taking, translation
 from .drawing import Drawing, check_denoiser
 from .reports import told
 from .viewport import Viewport
@@ -39,8 +39,12 @@ class DaguerreEngine(bpy.types.RenderEngine):
             self.register_pass(scene, renderlayer, name, count, letters, kind)
 
     def render(self, depsgraph: Any) -> None:
-        """Draws the final picture."""
-        self._guarded(lambda: self._render(depsgraph))
+        """Draws the final picture, or gives it to who takes it."""
+        taker = taking.taker
+        if taker is None:
+            self._guarded(lambda: self._render(depsgraph))
+        else:
+            taker.take(depsgraph, self._go)
 
     def _guarded(self, step: Callable[[], None]) -> None:
         """Runs a step; its error becomes a report."""

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operators: the search for a lens, the export of the scene, and the copied command line."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,8 +9,10 @@ from bpy.props import EnumProperty, StringProperty
 
 from daguerre.errors import InputError
 from daguerre.files.atomic import write_bytes
+from daguerre.io.packed.chunk import embed
+from daguerre.io.packed.parts import packable
 
-from . import choices, translation
+from . import choices, taking, translation
 from .command import command
 from .engine import ENGINE
 from .reports import told
@@ -63,7 +64,7 @@ class _OnScene:
 
     def execute(self, context: Any) -> set[str]:
         try:
-            self.work(context, _shot(context))
+            self.work(context, taking.shot_of(context, ENGINE))
         except Exception as error:  # whatever it is, the user gets a sentence
             self.report({"ERROR"}, told(error))
             return {"CANCELLED"}
@@ -74,14 +75,8 @@ class _OnScene:
         raise NotImplementedError
 
 
-def _shot(context: Any) -> translation.Shot:
-    """Picture of the scene's camera, as F12 would draw it."""
-    depsgraph = context.evaluated_depsgraph_get()
-    return translation.shot_of(depsgraph, translation.scene_of(depsgraph), context.scene.camera)
-
-
 class DAGUERRE_OT_export_scene(_OnScene, bpy.types.Operator):
-    """Write the scene as .glb, and the command line that renders it through this camera."""
+    """Write the scene as .glb, and the command line that draws the picture of F12."""
 
     bl_idname = "daguerre.export_scene"
     bl_label = "Daguerre scene (.glb + camera)"
@@ -99,9 +94,10 @@ class DAGUERRE_OT_export_scene(_OnScene, bpy.types.Operator):
 
     def work(self, context: Any, shot: translation.Shot) -> None:
         path = Path(bpy.path.abspath(self.filepath)).with_suffix(".glb")
-        text = command(path, context.scene.camera.name, shot.camera, shot.settings)
+        text = _command(path, context.scene, shot)
         write_glb(path)
-        for loss in left_out(context.scene):
+        embed(path, shot.scene)
+        for loss in shot.scene.warnings:
             self.report({"WARNING"}, f"Daguerre: {loss}")
         write_bytes(path.with_suffix(".sh"), f"#!/bin/sh\n{text}\n".encode())
         self.report({"INFO"}, f"Daguerre: wrote {path} and {path.with_suffix('.sh').name}")
@@ -114,10 +110,16 @@ class DAGUERRE_OT_copy_command(_OnScene, bpy.types.Operator):
     bl_label = "Copy command line"
 
     def work(self, context: Any, shot: translation.Shot) -> None:
-        name = context.scene.camera.name
-        text = command(_scene_file(), name, shot.camera, shot.settings)
+        text = _command(_scene_file(), context.scene, shot)
         context.window_manager.clipboard = text
         self.report({"INFO"}, f"Daguerre: copied: {text}")
+
+
+def _command(path: Path, scene: Any, shot: translation.Shot) -> str:
+    """Command line that draws a shot from the file that the export writes."""
+    name, held = scene.camera.name_full, packable(shot.camera)
+    denoises = scene.daguerre.denoise
+    return command(path, name, shot.camera, shot.settings, held, denoises=denoises)
 
 
 def _scene_file() -> Path:
@@ -142,15 +144,6 @@ def write_glb(path: Path) -> None:
         )
     except RuntimeError as error:
         raise InputError(f"{path}: wanted a scene that glTF can hold: {error}") from None
-
-
-def left_out(scene: Any) -> Iterator[str]:
-    """Light of a scene that no glTF file holds, so that its picture is another one."""
-    if scene.world is not None:
-        yield "glTF holds no world: the exported scene has no light from it"
-    areas = [one for one in scene.objects if one.type == "LIGHT" and one.data.type == "AREA"]
-    if areas:
-        yield f"glTF holds no area lights: {len(areas)} left out"
 
 
 def _menu(menu: Any, context: Any) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.cluster import packing
+from daguerre.files import packing
 from daguerre.errors import DaguerreError, InputError
 from daguerre.scene.light_profile import ProfileTable
 from daguerre.setup.scene import content_hash

@@ -13,7 +13,7 @@ from daguerre.errors import InputError, OutputError
 from daguerre.files.atomic import write_bytes
 from daguerre.files.limited_folder import drop_oldest
 
-from .packing import hash_of, large_of, unpack
+from daguerre.files.packing import hash_of, large_of, unpack
 
 #: Environment variable with the folder; default: one in the system's temporary folder.
 FOLDER = "DAGUERRE_CLUSTER_CACHE"

@@ -7,7 +7,7 @@ from collections import Counter
 from typing import Any
 
 from . import task as on_worker
-from .packing import hash_of, large_of, pack
+from daguerre.files.packing import hash_of, large_of, pack
 
 
 class Values:

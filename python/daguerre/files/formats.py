@@ -59,7 +59,7 @@ _READ_EXR = "daguerre.io.exr.read:load_frame"
 _SHOWN, _CODED = ("tone",), ("quality", "bits")
 _FORMATS = [
     Format("glTF 2.0", "scene", (".glb", ".gltf"), f"{_GLTF}:read",
-           takes=("variant", "allow_dirs", "scene_index")),
+           takes=("variant", "allow_dirs", "scene_index", "animated")),
     Format("OpenUSD", "scene", (".usd", ".usda", ".usdc", ".usdz"), "daguerre.io.usd.reader:read",
            takes=("variant", "allow_dirs", "purpose", "camera_units"),
            needs=("pxr", extras.hint("pxr")),
@@ -126,6 +126,12 @@ def read(kind: Kind, path: str | os.PathLike[str], **options: Any) -> Any:
         known = _either([s for row in rows for s in row.suffixes])
         raise InputError(f"{path}: format: wanted {known}, got {suffix or 'no suffix'}")
     return _ready(row, row.reads, path, options)(path, **options)
+
+
+def takes(kind: Kind, path: str | os.PathLike[str], option: str) -> bool:
+    """Whether the format of a file's suffix has an option."""
+    row = _row(formats(kind), Path(path).suffix.lower())
+    return row is not None and row.takes is not None and option in row.takes
 
 
 def time_of_code(path: str | os.PathLike[str], code: float) -> float:

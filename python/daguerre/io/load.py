@@ -38,7 +38,7 @@ def load(
         **options: Options of the format; None and empty ones count as absent. USD has ``purpose``,
             names of purposes to draw besides ``default`` (default: ``("render",)``), and
             ``camera_units``, the unit of focal lengths and apertures in mm (default: a tenth of a
-            scene unit).
+            scene unit). glTF has ``animated``: other moments than ``time`` will be drawn, too.
 
     Raises:
         InputError: The file cannot be used; the message names the file and the place in it. Or

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.cached import cached_property
 from daguerre.files.value import FixedArrays
 
 Array = NDArray[np.float64]
@@ -121,6 +122,26 @@ def bezier_form(counts: Counts, basis: str, wrap: str) -> BezierForm:
         basis, first, base + toward, mirrored, windows,
         starts.astype(np.uint32), ends.astype(np.uint32),
     )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Layout(FixedArrays):
+    """What the segments of curves follow from.
+
+    Attributes:
+        counts: Number of control points of each curve, shape (C,).
+        basis: One of ``BASES``.
+        wrap: One of ``WRAPS``.
+    """
+
+    counts: Counts
+    basis: str
+    wrap: str
+
+    @cached_property
+    def form(self) -> BezierForm:
+        """The way to the control points of the segments."""
+        return bezier_form(self.counts, self.basis, self.wrap)
 
 
 def _wrapped_points(basis: str) -> int:

@@ -9,14 +9,14 @@ from typing import Any, TypedDict
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from daguerre.checks import MAX_NUMBERS, array, freeze_in_place, to_numbers
+from daguerre.checks import MAX_NUMBERS, array, freeze_in_place, short, to_numbers
 from daguerre.errors import InputError
 from daguerre.files.value import Value
 from daguerre.motion.values import Dynamic
 from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
 
-from .curve_bases import BASES, WRAPS, BezierForm, are_counts, bezier_form, wanted_count
+from .curve_bases import BASES, WRAPS, BezierForm, Layout, are_counts, wanted_count
 from .mesh import with_alpha
 from .motion import Vertices
 from .parts import Curves, vertices_of
@@ -69,22 +69,21 @@ class MovingCurves(Value):
 
     Attributes:
         points: Control points over time, shape (N, 3), m.
-        form: Layout of the segments.
+        layout: What their segments follow from.
         rest: Vertices of one moment.
-        count: Number N of control points.
         where: Owner, for messages.
     """
 
     points: Dynamic
-    form: BezierForm
+    layout: Layout
     rest: Vertices
-    count: int
     where: str
 
     def at(self, time_s: float) -> Vertices:
         """Returns the vertices at a time, s."""
-        points = _rows(self.points.at(time_s), self.where, "points", 3, self.count)
-        return replace(self.rest, positions=_positions(self.form, points, self.where))
+        count = int(self.layout.counts.sum())
+        points = _rows(self.points.at(time_s), self.where, "points", 3, count)
+        return replace(self.rest, positions=_positions(self.layout.form, points, self.where))
 
     def breaks(self, begin: float, end: float) -> Sequence[float]:
         """Breaks of the points, s."""
@@ -93,11 +92,11 @@ class MovingCurves(Value):
 
 def curves_of(
     points: Any, counts: Any, widths: Any, given: Mapping[str, Any], where: str
-) -> tuple[Curves, BezierForm, int]:
+) -> tuple[Curves, Layout]:
     """Makes curves from arrays.
 
     Returns:
-        The curves, the layout of their segments, and the number of control points.
+        The curves, and what the layout of their segments follows from.
 
     Raises:
         InputError: A shape, a count or a number is wrong; the message names it.
@@ -110,7 +109,8 @@ def curves_of(
             f"{where}: counts: wanted a sum of {len(control)}, the number of points, "
             f"got {each.sum()}"
         )
-    form = bezier_form(each, basis, wrap)
+    layout = Layout(freeze_in_place(each), basis, wrap)
+    form = layout.form
     size = len(each), len(control)
     colors = with_alpha(given["colors"], where)
     made = Curves(
@@ -125,12 +125,24 @@ def curves_of(
         cubic=basis != "linear",
         closed=wrap == "periodic",
     )
-    return made, form, len(control)
+    return made, layout
 
 
-def moving_curves(path: Dynamic, curves: Curves, form: BezierForm, count: int) -> MovingCurves:
+def moving_curves(path: Dynamic, curves: Curves, layout: Layout) -> MovingCurves:
     """Makes the vertices over time of curves whose control points follow a path."""
-    return MovingCurves(path, form, vertices_of(curves), count, f"curves {curves.name!r}")
+    return MovingCurves(path, layout, vertices_of(curves), f"curves {curves.name!r}")
+
+
+def layout_of(counts: Any, basis: str, wrap: str, where: str) -> Layout:
+    """Checks what the layout of curves follows from.
+
+    Raises:
+        InputError: No such basis or wrap, or a count that is wrong.
+    """
+    for value, names, what in ((basis, BASES, "basis"), (wrap, WRAPS, "wrap")):
+        if value not in names:
+            raise InputError(f"{where}: {what}: wanted {', '.join(names)}, got {short(value)}")
+    return Layout(freeze_in_place(_counts(counts, where, basis, wrap)), basis, wrap)
 
 
 def balls_along(curves: Curves) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -339,9 +339,9 @@ class Scene(Value):
         where = f"curves {given['name'] or len(self.meshes)!r}"
         steps = given.pop("steps")
         path = _dynamic(points) if steps is None else steps_of(steps, where)
-        curves, form, count = curves_of(self._now(points), counts, widths, given, where)
+        curves, layout = curves_of(self._now(points), counts, widths, given, where)
         if path is not None:
-            motion = moving_curves(path, curves, form, count)
+            motion = moving_curves(path, curves, layout)
             curves = replace(curves, **vars(motion.at(self.time)))
             self.motion.meshes[len(self.meshes)] = motion
         self.meshes.append(curves)

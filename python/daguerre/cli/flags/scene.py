@@ -106,15 +106,16 @@ class SceneFlags(SceneFileFlags):
         ),
     ] = None
 
-    def load(self, path: Path, taken: Any = None) -> Any:
+    def load(self, path: Path, taken: Any = None, *, animated: bool = False) -> Any:
         """Reads the scene and adds environment, catchers and plate.
 
         Args:
             path: Scene file.
             taken: Camera of ``--like-plate``, which took the plate; None: there is none.
+            animated: Whether other moments of its animation will be drawn, too.
         """
         lux, environment = self._lux(), self._environment()
-        scene = self.read(path)
+        scene = self.read(path, animated=animated)
         if environment:
             scene.set_environment(**environment)
         elif self.env_scale is not None or self.env_rotation is not None:

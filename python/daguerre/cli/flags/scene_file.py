@@ -90,11 +90,15 @@ class SceneFileFlags:
             raise UsageError("--time-code: wanted either --time or --time-code, got both")
         return float(formats.time_of_code(path, self.time_code))
 
-    def read(self, path: Path) -> Any:
-        """Reads the scene."""
+    def read(self, path: Path, *, animated: bool = False) -> Any:
+        """Reads the scene; ``animated``: other moments of its animation will be drawn, too."""
         import daguerre
+        from daguerre.files import formats
 
-        return daguerre.load(path, time=self.start(path), **self._options)
+        options = self._options
+        if animated and formats.takes("scene", path, "animated"):
+            options["animated"] = True
+        return daguerre.load(path, time=self.start(path), **options)
 
     @property
     def _options(self) -> dict[str, Any]:

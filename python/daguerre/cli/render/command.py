@@ -69,7 +69,8 @@ def render(
     launched = time.monotonic()
     try:
         taken = None if plate is None else plate.camera
-        scene = scene_flags.load(scene_path, taken)
+        moves = any(picture.frame for picture in plan.pictures)
+        scene = scene_flags.load(scene_path, taken, animated=moves)
     except KeyboardInterrupt:
         return interrupted_early()
     for warning in scene.warnings:

@@ -18,6 +18,7 @@ from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, short
 from daguerre.files.json_text import parse
 from daguerre.files.uris import Folder, data_bytes, is_data
+from daguerre.io.packed.chunk import CHUNK as PACKED_CHUNK
 
 from .meshopt import placeholders
 
@@ -36,12 +37,14 @@ class Document:
         binary: The BIN chunk of a .glb; None: there is none.
         folder: Folders that URIs may point to.
         trailing: Number of bytes after the stated end of a .glb.
+        packed: The chunk of a .glb that holds a scene of Daguerre as it is; None: there is none.
     """
 
     root: Item
     binary: memoryview | None
     folder: Folder
     trailing: int = 0
+    packed: memoryview | None = None
 
 
 def open_document(path: Path, folder: Folder) -> Document:
@@ -59,8 +62,9 @@ def open_document(path: Path, folder: Folder) -> Document:
             raise
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"{path}: cannot be read: {reason}") from None
+    packed = None
     if data[:4] == b"glTF":
-        text, binary = _split_chunks(path, data)
+        text, binary, packed = _split_chunks(path, data)
     elif path.suffix.lower() == ".glb" or data.lstrip()[:1] not in (b"{", b"\xef"):
         wanted = "b'glTF'" if path.suffix.lower() == ".glb" else "b'glTF' or a JSON object"
         raise InputError(
@@ -72,7 +76,7 @@ def open_document(path: Path, folder: Folder) -> Document:
     root = parse(bytes(text), str(path))
     root.members()
     _check_asset(root)
-    return Document(root, binary, folder, trailing)
+    return Document(root, binary, folder, trailing, packed)
 
 
 def _read(path: Path) -> tuple[bytes, int]:
@@ -88,7 +92,11 @@ def _read(path: Path) -> tuple[bytes, int]:
         return start + stream.read(max(wanted - 12, 0)), max(size - max(wanted, 12), 0)
 
 
-def _split_chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
+def _split_chunks(
+    path: Path, data: bytes
+) -> tuple[memoryview, memoryview | None, memoryview | None]:
+    """Chunks with JSON, with the buffer, and with a scene of Daguerre."""
+
     def fail(where: str, message: str) -> NoReturn:
         raise InputError(f"{path}: {where}: {message}")
 
@@ -116,7 +124,8 @@ def _split_chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | Non
     if chunks[0][0] != _JSON_CHUNK:
         fail("chunk 0.type", f"wanted 0x{_JSON_CHUNK:08x} (JSON), got 0x{chunks[0][0]:08x}")
     binary = chunks[1][1] if len(chunks) > 1 and chunks[1][0] == _BIN_CHUNK else None
-    return chunks[0][1], binary
+    packed = next((held for kind, held in chunks[1:] if kind == PACKED_CHUNK), None)
+    return chunks[0][1], binary, packed
 
 
 def _check_asset(root: Item) -> None:

@@ -15,11 +15,12 @@ from pathlib import Path
 import numpy as np
 
 from daguerre.checks import short
-from daguerre.errors import InputError, UsageError
+from daguerre.errors import InputError, MismatchError, UsageError
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item
 from daguerre.files.notes import Notes, Silence
 from daguerre.files.uris import Folder
+from daguerre.io.packed.chunk import scene_of
 from daguerre.scene.scene import Scene
 from daguerre.scene.transforms import without_scale
 
@@ -28,7 +29,7 @@ from .animation import Animations
 from .cameras import read_camera
 from .catchers import mark_catcher
 from .extensions import check_extensions
-from .file import load_buffers, open_document
+from .file import Document, load_buffers, open_document
 from .images import Images
 from .instancing import instance_transforms
 from .lights import light_items, read_light
@@ -56,8 +57,12 @@ def read(
     scene_index: int | None = None,
     variant: str | None = None,
     allow_dirs: Iterable[str | os.PathLike[str]] = (),
+    animated: bool = False,
 ) -> Scene:
     """Reads a .glb or .gltf file.
+
+    A .glb may also hold a scene of Daguerre as it is (``io/packed``), at the moment of its export,
+    0 s. It is read in place of glTF's content, unless something else is asked for.
 
     Args:
         path: The file.
@@ -65,6 +70,7 @@ def read(
         scene_index: Index of the scene in the file; default: the file's default scene.
         variant: Name of a variant of the materials (KHR_materials_variants); default: none.
         allow_dirs: Folders for buffers and images, in addition to the file's own.
+        animated: Whether other moments of the animation will be drawn, too.
 
     Returns:
         The scene; ``warnings`` has notes on unsupported content.
@@ -79,15 +85,34 @@ def read(
     file = Path(path)
     # Huge finite numbers may overflow in between; results are checked.
     with np.errstate(all="ignore"):
-        folder = Folder(file, allow_dirs)
-        return _Reader(file, float(time), variant, folder).read(scene_index)
+        document, notes = open_document(file, Folder(file, allow_dirs)), Notes()
+        if document.packed is not None:
+            other = animated or time != 0 or (variant, scene_index) != (None, None)
+            found = _packed(document.packed, file, notes, other=other)
+            if found is not None:
+                return found
+        return _Reader(file, float(time), variant, document, notes).read(scene_index)
+
+
+def _packed(chunk: memoryview, path: Path, notes: Notes, *, other: bool) -> Scene | None:
+    """Reads a scene as it is; None, with a note, if it is another version's, or not asked for."""
+    if other:
+        notes.add("the exact scene holds the moment of its export alone: plain glTF is read")
+        return None
+    try:
+        return scene_of(chunk, path)
+    except MismatchError as error:
+        notes.add(f"exact scene: {error}: plain glTF is read")
+        return None
 
 
 class _Reader:
-    def __init__(self, path: Path, time: float, variant: str | None, folder: Folder) -> None:
-        self.notes = Notes()
+    def __init__(
+        self, path: Path, time: float, variant: str | None, document: Document, notes: Notes
+    ) -> None:
+        self.notes = notes
         self.scene = Scene(path=path, time=time)
-        self.document = open_document(path, folder)
+        self.document = document
         self.root = self.document.root
         check_extensions(self.root, self.notes)
         if self.document.trailing:

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.cluster import packing
-from daguerre.cluster.packing import LARGE, Packed, large_of, pack
+from daguerre.files import packing
+from daguerre.files.packing import LARGE, Packed, large_of, pack
 from daguerre.errors import InputError, MismatchError, UsageError
 from daguerre.files.json_item import Item
 from daguerre.files.value import same

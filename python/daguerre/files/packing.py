@@ -1,10 +1,13 @@
-"""Packing: scenes, cameras and settings as JSON and plain arrays, for another machine.
+"""Packing: scenes, cameras and settings as JSON and plain arrays, for another machine or a file.
 
 Unlike a pickle, a packed value can name no code: a reader makes values of Daguerre's own classes
 and nothing else. Parts that are shared stay shared, so that a scene is as small as in memory.
+Attributes of values are not checked; a reader of bytes from strangers makes values by a function of
+its own (``make``), which checks them.
 
 Large arrays travel by themselves, under their hash: scenes of a sequence share most of them. A
-packed value is two lines of JSON, and the bytes of its small arrays::
+packed value is two lines of JSON, and the bytes of its small arrays, each filled up to a multiple
+of 8::
 
     {"version": ..., "large": [hash, ...]}
     {"root": ..., "parts": [...], "arrays": [[dtype, shape, hash or null], ...]}
@@ -38,6 +41,10 @@ _OURS = "daguerre."
 _KINDS = "biufc?"
 #: Size from which an array travels by itself, bytes.
 LARGE = 1 << 16
+#: Arrays begin at multiples of this, bytes.
+_ALIGNED = 8
+#: Makes a value from the name of its class and its attributes.
+Make = Callable[[str, dict[str, Any]], Any]
 
 
 @dataclass(frozen=True)
@@ -58,17 +65,20 @@ def hash_of(data: Any) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
-def pack(value: Any, name: Callable[[NDArray[Any]], str] = hash_of) -> Packed:
+def pack(
+    value: Any, name: Callable[[NDArray[Any]], str] = hash_of, *, large: float = LARGE
+) -> Packed:
     """Packs a value.
 
     Args:
         value: The value.
         name: Hash of an array in C order; :func:`hash_of`, perhaps with a memory.
+        large: Size from which an array travels by itself, bytes; ``math.inf``: none does.
 
     Raises:
         UsageError: It has a part that is neither plain nor of Daguerre, such as a function.
     """
-    writer = _Writer(name)
+    writer = _Writer(name, large)
     root = writer.of(value)
     head = {"version": __version__, "large": sorted(writer.large)}
     body = {"root": root, "parts": writer.parts, "arrays": writer.facts}
@@ -85,7 +95,7 @@ def large_of(data: bytes) -> list[str]:
         MismatchError: Another version of Daguerre packed it.
         InputError: It is damaged.
     """
-    with _damage():
+    with damage():
         head = json.loads(data[: data.index(b"\n")])
         if head["version"] != __version__:
             raise MismatchError(
@@ -95,35 +105,43 @@ def large_of(data: bytes) -> list[str]:
         return [str(one) for one in head["large"]]
 
 
-def unpack(data: bytes, large: Callable[[str], bytes]) -> Any:
+def unpack(data: bytes, large: Callable[[str], bytes], make: Make | None = None) -> Any:
     """Unpacks what :func:`pack` packed.
 
     Args:
         data: ``Packed.data``.
         large: Returns the bytes of a large array by its hash.
+        make: Makes values of classes, whose parts are made before, so that none can hold itself;
+            default: any of Daguerre's, with their attributes as they were packed.
 
     Raises:
         MismatchError: Another version of Daguerre packed it.
         InputError: It is damaged.
     """
     large_of(data)
-    with _damage():
+    with damage():
         _, line, rest = data.split(b"\n", 2)
         body = json.loads(line)
-        return _Reader(body["parts"], _arrays(body["arrays"], rest, large)).of(body["root"])
+        arrays = _arrays(body["arrays"], rest, large)
+        return _Reader(body["parts"], arrays, make).of(body["root"])
 
 
-_WRONG = (ImportError, LookupError, ValueError, TypeError, AttributeError, RecursionError)
+_WRONG = (
+    *(ImportError, LookupError, ValueError, TypeError, AttributeError, RecursionError),
+    *(ArithmeticError, MemoryError),
+)
 
 
 @contextmanager
-def _damage() -> Iterator[None]:
+def damage() -> Iterator[None]:
+    """Makes an ``InputError`` of errors that damaged bytes cause; those of Daguerre pass."""
     try:
         yield
     except DaguerreError:
         raise
     except _WRONG as error:
-        raise InputError(f"packed value: damaged: {type(error).__name__}: {error}") from None
+        what = " ".join(str(error).split())[:200]
+        raise InputError(f"packed value: damaged: {type(error).__name__}: {what}") from None
 
 
 def _arrays(facts: Any, data: bytes, large: Callable[[str], bytes]) -> list[NDArray[Any]]:
@@ -143,21 +161,26 @@ def _arrays(facts: Any, data: bytes, large: Callable[[str], bytes]) -> list[NDAr
             if count
             else np.zeros(shape, kind)
         )
-        begin += count * kind.itemsize if name is None else 0
+        begin += _padded(count * kind.itemsize) if name is None else 0
     if begin != len(data):
         raise ValueError("bytes are left over")
     return found
 
 
+def _padded(size: int) -> int:
+    """Size with the bytes that fill it up."""
+    return size + -size % _ALIGNED
+
+
 class _Writer:
     """Parts of a value, each once."""
 
-    def __init__(self, name: Callable[[NDArray[Any]], str]) -> None:
+    def __init__(self, name: Callable[[NDArray[Any]], str], least: float) -> None:
         self.parts: list[Any] = []
         self.facts: list[Any] = []  # of arrays
         self.small: list[bytes] = []
         self.large: dict[str, NDArray[Any]] = {}
-        self._name = name
+        self._name, self._least = name, least
         self._numbers: dict[int, Any] = {}
         self._alive: list[Any] = []  # so that no id is used twice
 
@@ -185,8 +208,8 @@ class _Writer:
         if array.dtype.kind not in _KINDS:
             raise UsageError(f"packing: wanted an array of numbers, got one of {array.dtype}")
         plain, name = np.ascontiguousarray(array).reshape(array.shape), None
-        if plain.nbytes < LARGE:
-            self.small.append(plain.tobytes())
+        if plain.nbytes < self._least:
+            self.small += [plain.tobytes(), bytes(-plain.nbytes % _ALIGNED)]
         else:
             name = self._name(plain)
             self.large[name] = plain
@@ -248,8 +271,10 @@ def _class_of(name: str) -> type[Any] | None:
 class _Reader:
     """Values of packed parts."""
 
-    def __init__(self, parts: list[Any], arrays: list[NDArray[Any]]) -> None:
-        self._parts, self._arrays = parts, arrays
+    def __init__(
+        self, parts: list[Any], arrays: list[NDArray[Any]], make: Make | None = None
+    ) -> None:
+        self._parts, self._arrays, self._make_value = parts, arrays, make
         self._made: dict[int, Any] = {}
 
     def of(self, given: Any) -> Any:
@@ -298,6 +323,9 @@ class _Reader:
                 raise ValueError(f"no kind of part {short(key)}")
 
     def _make_object(self, number: int, given: dict[str, Any]) -> None:
+        if self._make_value is not None:
+            self._made[number] = self._make_value(given["class"], self.of(given["state"]))
+            return
         kind = _class_of(given["class"])
         if kind is None:
             raise ValueError(f"no class of values {short(given['class'])}")

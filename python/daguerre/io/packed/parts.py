@@ -1,0 +1,133 @@
+"""Takes a scene apart: plain lists, arrays, and values of the classes in ``values.py``."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+
+from daguerre.camera.camera import Camera
+from daguerre.errors import UsageError
+from daguerre.motion.values import Composite, Keys, Spin
+from daguerre.scene.curves import MovingCurves
+from daguerre.scene.parts import Curves, Mesh
+from daguerre.scene.point_cache import PointCache
+from daguerre.scene.scene import Scene
+
+#: Arrays of a mesh, and those of one moment of a mesh whose points move.
+ARRAYS = ("positions", "indices", "normals", "uv", "uv1", "tangents", "colors")
+OF_MOMENT = ("positions", "normals", "tangents")
+#: What a mesh of curves has besides.
+OF_CURVES = ("radii", "starts", "ends", "cubic", "closed")
+
+
+def parts_of(scene: Scene) -> dict[str, Any]:
+    """Parts of a scene, from which ``rebuild.py`` makes one that has the bits of its pictures.
+
+    Lenses and sensors from files are left out of cameras: a scene file may name none.
+
+    Raises:
+        UsageError: Something moves in a way that cannot be packed, or there is a plate.
+    """
+    if scene.plate is not None:
+        raise UsageError("packed scene: plate: wanted none, got one")
+    motion = scene.motion
+    return {
+        "time": scene.time,
+        "textures": [_fields(texture) for texture in scene.textures],
+        "materials": _with_motion(scene.materials, motion.materials, "materials"),
+        "meshes": [_mesh(mesh, motion.meshes.get(i)) for i, mesh in enumerate(scene.meshes)],
+        "instances": _instances(scene),
+        "lights": _with_motion(scene.lights, motion.lights, "lights"),
+        "cameras": [[name, packable(camera)] for name, camera in scene.cameras.items()],
+        "default camera": scene.default_camera,
+        "camera aliases": [list(pair) for pair in scene.camera_aliases.items()],
+        "environment": scene.environment,
+        "environment motion": _known(motion.environment, "environment"),
+        "nodes": _nodes(scene),
+        "duration": scene.duration,
+        "variants": list(scene.variants),
+        "warnings": list(scene.warnings),
+    }
+
+
+def packable(camera: Camera) -> Camera:
+    """A camera without what a scene file may not name: a lens or a sensor that is a file."""
+    from daguerre.camera.ideal import IDEAL
+    from daguerre.lenses import library
+    from daguerre.sensors import names
+
+    found = camera
+    if not _is_one_of(camera.lens, (*IDEAL, *library.names())):
+        found = replace(found, lens=None)
+    if not _is_one_of(camera.sensor, names()):
+        found = replace(found, sensor=None)
+    return found
+
+
+def _is_one_of(value: Any, names: Any) -> bool:
+    return value is None or (isinstance(value, str) and value in names)
+
+
+def _fields(value: Any) -> dict[str, Any]:
+    return {one.name: getattr(value, one.name) for one in fields(value)}
+
+
+def _with_motion(values: list[Any], motion: dict[int, Any], what: str) -> list[Any]:
+    """Pairs (value, its motion or None)."""
+    return [[one, _known(motion.get(i), f"{what}[{i}]")] for i, one in enumerate(values)]
+
+
+def _known(motion: Any, where: str) -> Any:
+    if not isinstance(motion, Keys | Spin | Composite | None):
+        raise UsageError(
+            f"packed scene: {where}: motion: wanted keys or spins, got {type(motion).__name__}"
+        )
+    return motion
+
+
+def _mesh(mesh: Mesh, motion: Any) -> dict[str, Any]:
+    found = {"name": mesh.name, **{name: getattr(mesh, name) for name in ARRAYS}}
+    if isinstance(mesh, Curves):
+        found["curves"] = {name: getattr(mesh, name) for name in OF_CURVES}
+    if motion is None:
+        return found
+    where = f"mesh {mesh.name!r}"
+    if isinstance(motion, MovingCurves):
+        path = _known(motion.points, where)
+        return found | {"motion": {"path": path, "layout": _fields(motion.layout)}}
+    if not isinstance(motion, PointCache):
+        raise UsageError(
+            f"packed scene: {where}: wanted vertices at steps, got {type(motion).__name__}"
+        )
+    rest = {name: getattr(motion.rest, name) for name in OF_MOMENT}
+    path, normals = _known(motion.positions, where), _known(motion.normals, where)
+    return found | {"motion": {"path": path, "normals": normals, "rest": rest}}
+
+
+def _instances(scene: Scene) -> dict[str, Any]:
+    placed = scene.instances
+    motion = scene.motion
+    return {
+        "meshes": np.array([one.mesh for one in placed], np.int64),
+        "materials": np.array([one.material for one in placed], np.int64),
+        "transforms": np.array([one.transform for one in placed], np.float64).reshape(-1, 4, 4),
+        "names": [one.name for one in placed],
+        "hidden": [i for i, one in enumerate(placed) if not one.shown],
+        "catchers": [[i, one.catcher] for i, one in enumerate(placed) if one.catcher is not None],
+        "motion": [[i, _known(one, f"instances[{i}]")] for i, one in motion.instances.items()],
+        "shown": [[i, _known(one, f"instances[{i}]")] for i, one in motion.shown.items()],
+    }
+
+
+def _nodes(scene: Scene) -> list[Any]:
+    """Rows (name, position or None, its motion or None, instances)."""
+    places, motion = scene.node_positions, scene.motion.node_positions
+    return [
+        [
+            *(name, places.get(name), _known(motion.get(name), f"node {name!r}")),
+            np.array(members, np.int64),
+        ]
+        for name, members in scene.nodes.items()
+    ]

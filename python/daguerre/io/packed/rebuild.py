@@ -1,0 +1,337 @@
+"""Puts a scene together from its parts, by the public methods of ``Scene``, which check them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.camera.camera import Camera
+from daguerre.checks import matrix, number, short
+from daguerre.errors import InputError
+from daguerre.motion.values import Composite, Dynamic, Keys, Spin
+from daguerre.scene.catcher import check_effects
+from daguerre.scene.curves import MovingCurves, layout_of
+from daguerre.scene.lights import check_light
+from daguerre.scene.materials import check_material
+from daguerre.scene.mesh import mesh_of
+from daguerre.scene.parts import Environment, vertices_of
+from daguerre.scene.point_cache import PointCache
+from daguerre.scene.scene import Scene
+
+from .parts import ARRAYS, OF_MOMENT
+
+#: Bytes of all uses of arrays for each byte of the file: parts share some, hostile ones far more.
+_USES, _FREE = 8, 1 << 26
+
+
+class Rebuild:
+    """One scene, part by part.
+
+    Args:
+        parts: What ``parts.parts_of`` made, from a file.
+        size: Size of the file's packed bytes.
+    """
+
+    def __init__(self, parts: Mapping[str, Any], size: int) -> None:
+        self._parts, self._left = parts, _USES * size + _FREE
+        time = number(parts["time"], "time", -1e12, 1e12, error=InputError)
+        self.scene = Scene(time=time)
+
+    def run(self) -> Scene:
+        """Makes the scene.
+
+        Raises:
+            InputError: A part is wrong; the message names it.
+        """
+        self._textures()
+        self._materials()
+        for k, given in enumerate(self._parts["meshes"]):
+            self._mesh(given, f"meshes[{k}]")
+        self._instances(self._parts["instances"])
+        for k, (light, motion) in enumerate(self._parts["lights"]):
+            self._light(light, motion, f"lights[{k}]")
+        self._cameras()
+        self._environment()
+        self._nodes()
+        self._rest()
+        return self.scene
+
+    def _array(self, value: Any, where: str) -> NDArray[Any]:
+        """An array, within the budget of the file."""
+        if not isinstance(value, np.ndarray):
+            raise InputError(f"{where}: wanted an array, got {short(value)}")
+        self._left -= value.nbytes
+        if self._left < 0:
+            raise InputError(f"{where}: wanted arrays that fit the file, got far larger ones")
+        return value
+
+    def _path(self, value: Any, where: str) -> Keys:
+        """Keys of arrays, within the budget of the file."""
+        if not isinstance(value, Keys):
+            raise InputError(f"{where}: wanted keys, got {short(value)}")
+        for one in value.values:
+            self._array(one, where)
+        return value
+
+    def _textures(self) -> None:
+        for k, given in enumerate(self._parts["textures"]):
+            pixels = self._array(given["pixels"], f"textures[{k}]: pixels")
+            wrap = given["wrap"]
+            if not isinstance(wrap, tuple) or len(wrap) != 2:
+                raise InputError(f"textures[{k}]: wrap: wanted two names, got {short(wrap)}")
+            names = [text(one, f"textures[{k}]") for one in wrap]
+            self.scene.add_texture(
+                pixels,
+                srgb=bool(given["srgb"]),
+                wrap=(names[0], names[1]),
+                filter=text(given["filter"], f"textures[{k}]: filter"),
+                min_filter=text(given["min_filter"], f"textures[{k}]: min_filter"),
+                name=text(given["name"], f"textures[{k}]: name"),
+            )
+
+    def _materials(self) -> None:
+        for k, (material, motion) in enumerate(self._parts["materials"]):
+            where = f"materials[{k}]"
+            check_material(material, where)
+            if motion is not None:
+                check_material(_composite(motion, where).at(self.scene.time), where)
+            self.scene.add_material(material, motion=motion)
+
+    def _mesh(self, given: Mapping[str, Any], where: str) -> None:
+        arrays = {
+            name: None if given[name] is None else self._array(given[name], f"{where}: {name}")
+            for name in ARRAYS
+        }
+        name, motion = text(given["name"], f"{where}: name"), given.get("motion")
+        if "curves" in given:
+            self._curves(given["curves"], arrays, name, where)
+            if motion is not None:
+                self._move_curves(motion, where)
+            return
+        moving = None if motion is None else self._moving(motion, arrays, name, where)
+        self.scene.add_mesh(**arrays, name=name, motion=moving)  # type: ignore[arg-type]
+
+    def _moving(
+        self, given: Mapping[str, Any], arrays: Mapping[str, Any], name: str, where: str
+    ) -> PointCache:
+        """Vertices of a mesh over time."""
+        path, normals = self._path(given["path"], f"{where}: motion"), given["normals"]
+        if normals is not None:
+            normals = self._path(normals, f"{where}: motion: normals")
+        moment = {
+            key: None if given["rest"][key] is None else self._array(given["rest"][key], where)
+            for key in OF_MOMENT
+        }
+        attributes = {key: arrays[key] for key in ARRAYS[2:]} | moment
+        mesh = mesh_of(attributes.pop("positions"), arrays["indices"], attributes, where, name)
+        for one in (arrays["positions"], *path.values, *(normals.values if normals else ())):
+            if one.shape != mesh.positions.shape:
+                raise InputError(
+                    f"{where}: motion: wanted shape {mesh.positions.shape}, got {one.shape}"
+                )
+        return PointCache(path, normals, vertices_of(mesh), mesh.indices, f"mesh {name!r}")
+
+    def _curves(
+        self, given: Mapping[str, Any], arrays: dict[str, Any], name: str, where: str
+    ) -> None:
+        """Curves, whose segments are control points of Bezier curves or of straight lines."""
+        radii = self._array(given["radii"], f"{where}: radii")
+        ends = self._array(given["ends"], f"{where}: ends").astype(np.int64)
+        if ends.ndim != 1 or not (np.diff(ends, prepend=0) > 0).all():
+            raise InputError(f"{where}: ends: wanted whole numbers that rise, got others")
+        cubic, closed = given["cubic"] is True, given["closed"] is True
+        counts = np.diff(ends, prepend=0) * (3 if cubic else 1) + 1
+        last = np.cumsum(counts) - 1
+        points = arrays["positions"]
+        if radii.ndim != 1 or not len(points) == len(radii) == counts.sum():
+            raise InputError(f"{where}: wanted {counts.sum()} positions, got {len(points)}")
+        rows = {key: arrays[key] for key in ("uv", "colors")}
+        if closed:  # the point that ends a curve begins it
+            points, radii = np.delete(points, last, axis=0), np.delete(radii, last)
+            rows = {
+                key: np.delete(value, last, axis=0)
+                if value is not None and len(value) == counts.sum()
+                else value
+                for key, value in rows.items()
+            }
+        self.scene.add_curves(
+            points,
+            counts - closed,
+            2 * radii,
+            basis="bezier" if cubic else "linear",
+            wrap="periodic" if closed else "nonperiodic",
+            name=name,
+            **rows,
+        )
+
+    def _move_curves(self, given: Mapping[str, Any], where: str) -> None:
+        path, made = self._path(given["path"], f"{where}: motion"), self.scene.meshes[-1]
+        stated = given["layout"]
+        counts = self._array(stated["counts"], f"{where}: counts")
+        layout = layout_of(counts, stated["basis"], stated["wrap"], where)
+        wanted = (int(layout.counts.sum()), 3)
+        if wanted[0] > len(made.positions) + 3 * len(counts):  # before it is laid out
+            raise InputError(f"{where}: motion: wanted as many points as the curves, got more")
+        same = all(
+            np.array_equal(getattr(layout.form, key), getattr(made, key))
+            for key in ("starts", "ends")
+        )
+        if not same or any(one.shape != wanted for one in path.values):
+            raise InputError(f"{where}: motion: wanted that of these curves, got another")
+        index = len(self.scene.meshes) - 1
+        moving = MovingCurves(path, layout, vertices_of(made), f"curves {made.name!r}")
+        self.scene.motion.meshes[index] = moving
+
+    def _instances(self, given: Mapping[str, Any]) -> None:
+        meshes, materials = (
+            self._array(given[key], f"instances: {key}") for key in ("meshes", "materials")
+        )
+        transforms, names = self._array(given["transforms"], "instances"), given["names"]
+        count = len(names)
+        if not meshes.shape == materials.shape == (count,) or transforms.shape != (count, 4, 4):
+            raise InputError("instances: wanted lists of one length, got others")
+        rows = zip(meshes.tolist(), materials.tolist(), names, strict=True)
+        begin = 0
+        for (mesh, material, name), run in groupby(rows):
+            end = begin + sum(1 for _ in run)
+            self.scene.add_instances(
+                mesh, material, transforms[begin:end], name=text(name, "instances: names")
+            )
+            begin = end
+        self._single(given)
+
+    def _single(self, given: Mapping[str, Any]) -> None:
+        """What some instances have of their own."""
+        scene = self.scene
+        for k in given["hidden"]:
+            i = self._index(k, "instances: hidden")
+            scene.instances[i] = replace(scene.instances[i], shown=False)
+        for k, effects in given["catchers"]:
+            i = self._index(k, "instances: catchers")
+            found = check_effects(effects, f"instances[{i}]: catcher")
+            scene.instances[i] = replace(scene.instances[i], catcher=found)
+        for k, motion in given["motion"]:
+            i = self._index(k, "instances: motion")
+            scene.motion.instances[i] = _transform(motion, f"instances[{i}]: motion")
+        for k, motion in given["shown"]:
+            i = self._index(k, "instances: shown")
+            values = motion.values if isinstance(motion, Keys) else [None]
+            if not all(isinstance(one, bool | int | float) for one in values):
+                raise InputError(f"instances[{i}]: shown: wanted keys of flags, got others")
+            scene.motion.shown[i] = motion
+
+    def _index(self, value: Any, where: str) -> int:
+        if type(value) is not int or not 0 <= value < len(self.scene.instances):
+            raise InputError(f"{where}: wanted an instance, got {short(value)}")
+        return value
+
+    def _light(self, light: Any, motion: Any, where: str) -> None:
+        lamp, transform = light
+        if motion is not None:
+            shown, place = _composite(motion, where).at(self.scene.time)
+            check_light(shown)
+            matrix(place, where)
+        self.scene.add_light(lamp, matrix(transform, where), motion=motion)
+
+    def _cameras(self) -> None:
+        scene, chosen = self.scene, self._parts["default camera"]
+        for name, camera in self._parts["cameras"]:
+            if isinstance(camera, Camera):
+                matrix(camera.transform, f"camera {short(name)}")
+            scene.add_camera(text(name, "cameras"), camera)
+        if chosen is not None:
+            if chosen not in scene.cameras:
+                raise InputError(f"default camera: wanted a camera, got {short(chosen)}")
+            scene.default_camera = chosen
+        for alias, name in self._parts["camera aliases"]:
+            scene.camera_aliases[text(alias, "camera aliases")] = text(name, "camera aliases")
+
+    def _environment(self) -> None:
+        now, motion = self._parts["environment"], self._parts["environment motion"]
+        given = now if motion is None else _composite(motion, "environment").value
+        if given is None and now is None:
+            return
+        if not isinstance(given, Environment):
+            raise InputError(f"environment: wanted one, got {short(given)}")
+        image = None if given.image is None else self._array(given.image, "environment: image")
+        self.scene.set_environment(
+            image, color=given.color, scale=given.scale, rotation=given.rotation
+        )
+
+    def _nodes(self) -> None:
+        scene = self.scene
+        found = dict(scene.nodes)
+        scene.nodes.clear()  # so that they come in their order
+        for name, position, motion, members in self._parts["nodes"]:
+            name = text(name, "nodes")
+            where = f"node {name!r}"
+            mine = self._array(members, where).tolist()
+            if mine and not 0 <= min(mine) <= max(mine) < len(scene.instances):
+                raise InputError(f"{where}: wanted its instances, got others")
+            if position is not None:
+                if motion is not None:
+                    _point(motion.at(scene.time), where)
+                scene.add_node(name, _point(position, where), motion=motion)
+            scene.group_instances(name, mine)
+        for name, mine in found.items():
+            scene.nodes.setdefault(name, mine)
+
+    def _rest(self) -> None:
+        duration = self._parts["duration"]
+        if duration is not None:
+            duration = number(duration, "duration", 0, error=InputError)
+        self.scene.set_clock(duration)
+        for name in self._parts["variants"]:
+            self.scene.add_variant(text(name, "variants"))
+        self.scene.note(*(text(one, "warnings") for one in self._parts["warnings"]))
+
+
+def text(value: Any, where: str) -> str:
+    """A text; control characters, which a terminal might obey, are replaced."""
+    if not isinstance(value, str):
+        raise InputError(f"{where}: wanted a text, got {short(value)}")
+    if value.isprintable():
+        return value
+    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in value)
+
+
+def _composite(motion: Any, where: str) -> Composite:
+    if not isinstance(motion, Composite):
+        raise InputError(f"{where}: motion: wanted values over time, got {short(motion)}")
+    return motion
+
+
+def _transform(motion: Any, where: str) -> Dynamic:
+    """Checks a transform over time."""
+    if isinstance(motion, Spin) or (isinstance(motion, Keys) and motion.moves_matrices):
+        return motion
+    raise InputError(f"{where}: wanted transforms over time, got {short(motion)}")
+
+
+def _point(value: Any, where: str) -> NDArray[Any]:
+    """Checks a point, shape (3,)."""
+    if not isinstance(value, np.ndarray) or value.shape != (3,) or value.dtype.kind != "f":
+        raise InputError(f"{where}: position: wanted three numbers, got {short(value)}")
+    if not np.isfinite(value).all():
+        raise InputError(f"{where}: position: wanted finite numbers, got {short(value)}")
+    return value
+
+
+def rebuilt(parts: Mapping[str, Any], size: int) -> Scene:
+    """Makes a scene from its parts.
+
+    Args:
+        parts: What ``parts.parts_of`` made, from a file.
+        size: Size of the file's packed bytes.
+
+    Raises:
+        InputError: A part is wrong; the message names it.
+    """
+    return Rebuild(parts, size).run()
+
+

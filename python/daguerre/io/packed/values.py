@@ -1,0 +1,76 @@
+"""Values that a packed scene may name, each made and checked by its own constructor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from daguerre.camera.camera import Camera
+from daguerre.camera.ideal import IDEAL
+from daguerre.camera.lens_scatter import LensScatter
+from daguerre.camera.projection import Projection
+from daguerre.camera.rolling_shutter import RollingShutter
+from daguerre.checks import short
+from daguerre.errors import InputError
+from daguerre.files.value import MADE_BY
+from daguerre.lenses import library
+from daguerre.motion.values import Composite, Keys, Spin, is_dynamic, keys, spin
+from daguerre.scene.light_profile import LightProfile, ProfileCone, ProfileFocus, ProfileTable
+from daguerre.scene.lights import DirectionalLight, PointLight, SphereLight, SpotLight
+from daguerre.scene.materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
+from daguerre.scene.parts import Environment
+from daguerre.sensors import names as sensor_names
+
+
+def make(name: str, state: Any) -> Any:
+    """Makes a value from the name of its class and its attributes.
+
+    Raises:
+        ValueError: A scene holds no values of this class.
+        InputError: An attribute is wrong.
+    """
+    maker = _MAKERS.get(name) if isinstance(name, str) else None
+    if maker is None:
+        raise ValueError(f"no value of scenes is a {short(name)}")
+    return maker(**{key: part for key, part in state.items() if key != MADE_BY})
+
+
+def _keys(times: Any, values: Any, interpolation: str, pivot: Any = None) -> Keys:
+    return keys(zip(np.asarray(times).tolist(), values, strict=True), interpolation, pivot)
+
+
+def _camera(**given: Any) -> Camera:
+    """A camera; for safety a file may name a lens or a sensor of the library, but no file."""
+    _listed("lens", given.get("lens"), (*IDEAL, *library.names()))
+    _listed("sensor", given.get("sensor"), sensor_names())
+    motion = given.get("motion", {})
+    if not isinstance(motion, Mapping) or not all(map(is_dynamic, motion.values())):
+        raise InputError("camera: motion: wanted values over time, got others")
+    if given.get("sensor_size") is None:
+        given.pop("sensor_size", None)  # nobody chose one
+    return Camera(**given)
+
+
+def _listed(what: str, name: Any, names: Any) -> None:
+    if name is not None and not (isinstance(name, str) and name in names):
+        raise InputError(
+            f"camera: {what}: refused: wanted the name of a {what} in the library, got "
+            f"{short(name)}"
+        )
+
+
+_PLAIN: tuple[type[Any], ...] = (
+    *(Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot),
+    *(DirectionalLight, PointLight, SphereLight, SpotLight, Environment),
+    *(LightProfile, ProfileCone, ProfileFocus, ProfileTable),
+    *(Composite, LensScatter, Projection, RollingShutter),
+)
+_OTHERS: dict[type[Any], Callable[..., Any]] = {Camera: _camera, Keys: _keys, Spin: spin}
+_MAKERS: dict[str, Callable[..., Any]] = {
+    f"{kind.__module__}:{kind.__qualname__}": maker
+    for kind, maker in ({kind: kind for kind in _PLAIN} | _OTHERS).items()
+}
+#: Classes that a packed scene may hold.
+KINDS = (*_PLAIN, *_OTHERS)
