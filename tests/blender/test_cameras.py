@@ -248,6 +248,15 @@ def test_the_panel_takes_precedence():
     assert (other.f_stop, other.t_stop) == (None, 8.0)
 
 
+def test_blenders_lens_is_no_choice_even_if_a_script_sets_it():
+    blender.empty()
+    thing = blender.camera()
+    plain = made(thing)
+    assert made(with_panel(thing, lens="blender")) == plain
+    found = made(with_panel(thing, lens="blender", iso=800.0))
+    assert (found.lens, found.iso) == (plain.lens, 800.0)
+
+
 def test_properties_that_nobody_set_leave_blenders_values():
     blender.empty()
 

@@ -207,21 +207,31 @@ def test_the_export_writes_scene_and_command(extension, tmp_path, monkeypatch):
     blender_extension.stand_in(monkeypatch, lens="double-gauss-50mm-f2", f_stop=4.0)
     path = tmp_path / "out.glb"
     assert bpy.ops.daguerre.export_scene("EXEC_DEFAULT", filepath=str(path)) == {"FINISHED"}
-    scene = dg.load(path)
-    assert "Camera" in scene.cameras
-    assert scene.instances
+    exact, plain = dg.load(path), dg.load(path, animated=True)
+    assert exact.environment == blender_extension.scene().environment
+    assert "Camera" in plain.cameras
+    assert plain.instances
     text = path.with_suffix(".sh").read_text()
-    assert f"daguerre render {path} --camera=Camera --lens=double-gauss-50mm-f2" in text
-    assert "--f-stop=4.0" in text
+    assert f"daguerre render {path} --camera=Camera --res=" in text
+    assert "--lens" not in text  # the file has it
 
 
-def test_light_that_gltf_does_not_hold_is_told(extension):
-    scene, left_out = bpy.context.scene, extension.operators.left_out
-    assert len(list(left_out(scene))) == 1  # the world of the default scene
-    bpy.data.lights[0].type = "AREA"
-    assert [text for text in left_out(scene) if "area lights: 1 left out" in text]
-    scene.world, bpy.data.lights[0].type = None, "POINT"
-    assert not list(left_out(scene))
+def test_the_command_has_what_the_file_has_not(extension, tmp_path):
+    held = dg.Camera(lens="double-gauss-50mm-f2", f_stop=4.0)
+    settings = dg.RenderSettings.of(resolution=(8, 6))
+
+    def words(camera, name="A, B", **more):
+        return shlex.split(
+            extension.command.command(tmp_path / "a.glb", name, camera, settings, held, **more)
+        )[3:-2]
+
+    assert words(held) == ["--camera=A\\, B", "--res=8x6"]
+    assert words(held, "C", denoises=True) == ["--camera=C", "--res=8x6", "--denoise"]
+    assert words(held.with_(f_stop=8.0), "C") == ["--camera=C", "--f-stop=8.0", "--res=8x6"]
+    other = held.with_(lens="nikon-af-s-70-200mm-f2.8", zoom=100.0)
+    found = words(other, "C")
+    assert "--lens=nikon-af-s-70-200mm-f2.8" in found
+    assert [word for word in found if word.startswith("--zoom=100.0")]
 
 
 def test_the_command_is_copied_and_errors_become_reports(extension, monkeypatch):

@@ -1,10 +1,12 @@
 """Motion of Blender's objects while the shutter is open, from sub-frames."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.blender.motion import shutter_of
+from daguerre.blender.motion import exposure_of
 from tests.support import blur
 
 from .building import (
@@ -82,8 +84,35 @@ def test_no_blur():
     (path,) = translated(shutter=(-1 / FPS, 0.5 / FPS)).motion.instances.values()
     np.testing.assert_allclose(path.times * FPS, [-1, -0.25, 0.5])
     bscene.render.use_motion_blur = False
-    assert shutter_of(bscene) is None
+    assert exposure_of(bscene, None) is None
     assert not translated().motion
+
+
+@pytest.mark.parametrize(
+    ("panel", "frames"),
+    [
+        ({}, (-0.25, 0.25)),
+        ({"shutter_mode": "blender"}, (-0.25, 0.25)),
+        ({"shutter_mode": "angle", "shutter_angle": 360.0}, (-0.5, 0.5)),
+        ({"shutter_mode": "time", "shutter_time": 0.25}, (-3, 3)),
+        ({"shutter_mode": "time", "shutter_time": 0.0}, None),
+        (
+            {"shutter_mode": "time", "shutter_time": 1 / FPS, "rolling_side": "top",
+             "rolling_time": 1 / FPS},
+            (-1, 1),
+        ),
+    ],
+)  # fmt: skip
+def test_the_exposure_is_that_of_the_panel(panel, frames):
+    """Else of Blender's motion blur; lines that are read in turn make it longer."""
+    bscene = opened()
+    bscene.render.resolution_y = 1000
+    data = SimpleNamespace(daguerre=SimpleNamespace(**panel))
+    found = exposure_of(bscene, SimpleNamespace(data=data))
+    if frames is None:
+        assert found is None
+    else:
+        np.testing.assert_allclose(np.array(found) * FPS, frames, atol=2e-3)
 
 
 def test_what_rests_costs_no_frames():

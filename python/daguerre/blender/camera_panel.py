@@ -1,12 +1,17 @@
 """Daguerre's own properties of a camera or a scene, ``daguerre``, which the extension declares.
 
 A property counts if the user set it, or if the user chose a lens: then the panel shows all values
-that rule. What does not count has Blender's own value. Without the extension nothing counts.
+that rule. ``BLENDER`` as the lens is no choice, whoever set it. Properties of a scene always count,
+as its panel shows them. What does not count has Blender's own value. Without the extension nothing
+counts.
 """
 
 from __future__ import annotations
 
 from typing import Any
+
+#: Lens of a camera that keeps Blender's own.
+BLENDER = "blender"
 
 
 class CameraPanel:
@@ -25,7 +30,7 @@ class CameraPanel:
         """Value of a property; None if it does not count, or names nothing."""
         if self._group is None:
             return None
-        if not (self._always or self._is_set("lens") or self._is_set(name)):
+        if not (self._always or self._has_lens or self._is_set(name)):
             return None
         value = getattr(self._group, name, None)
         return None if value == "" else value
@@ -35,6 +40,10 @@ class CameraPanel:
         value = self.chosen(name)
         found = None if value is None else str(value)
         return None if found is None or found.lower() in others else found
+
+    @property
+    def _has_lens(self) -> bool:
+        return self._is_set("lens") and self._group.lens != BLENDER
 
     def _is_set(self, name: str) -> bool:
         """Whether the user set a property; of an object that is no group: whether it is there."""

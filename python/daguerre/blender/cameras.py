@@ -20,7 +20,7 @@ from daguerre.files.notes import Notes
 from daguerre.scene.transforms import without_scale
 from daguerre.sensors import load
 
-from .camera_panel import CameraPanel
+from .camera_panel import BLENDER, CameraPanel
 from .film import Film, film_of
 from .frames import metres_per_unit
 from .panoramas import panorama_of
@@ -76,11 +76,11 @@ def camera_of(
 
 def _lens_of(data: Any, panel: CameraPanel, where: str) -> str:
     """Name or file of the lens; without one of the panel, Blender's own switch of blur decides."""
-    lens = panel.chosen("lens")
+    lens = panel.named("lens", BLENDER)
     if lens is None:
         return "thin" if data.dof.use_dof else "pinhole"
     if lens != "file":
-        return str(lens)
+        return lens
     name = panel.chosen("lens_file")
     if not name:
         raise InputError(f"{where}: lens_file: wanted a lens file, got none")

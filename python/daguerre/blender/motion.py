@@ -14,13 +14,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.files.notes import Notes
+from daguerre.camera.camera import Camera
+from daguerre.camera.shutter import interval
+from daguerre.files.notes import Notes, Silence
 
 from .arrays import points_of
+from .camera_panel import CameraPanel
+from .film import resolution_of
 from .frames import seconds_per_frame
 from .meshes import Steps
 from .objects import Identity, Seen, walk
-from .shutters import OPENS
+from .shutters import shutter_of
 
 #: Goes to a frame and a fraction of one: ``Scene.frame_set`` or ``RenderEngine.frame_set``.
 FrameSet = Callable[[int, float], None]
@@ -31,14 +35,18 @@ USUAL_STEPS, MOST_STEPS = 1, 7
 _SHAPES = ("MESH", "CURVES")
 
 
-def shutter_of(scene: Any) -> tuple[float, float] | None:
-    """When Blender's shutter opens and closes, s from the frame; None: it freezes motion."""
-    render = scene.render
-    if not render.use_motion_blur or render.motion_blur_shutter <= 0:
-        return None
-    length = render.motion_blur_shutter * seconds_per_frame(scene)
-    begin = OPENS[render.motion_blur_position] * length
-    return begin, begin + length
+def exposure_of(scene: Any, camera: Any) -> tuple[float, float] | None:
+    """When a camera's exposure begins and ends, s from the frame; None: it freezes motion.
+
+    Args:
+        scene: ``bpy.types.Scene``.
+        camera: Camera object, whose panel takes precedence over Blender's shutter; None: there is
+            none, and Blender's counts.
+    """
+    panel = CameraPanel(None if camera is None else camera.data)
+    shutter = Camera(**shutter_of(scene.render, panel, Silence()))
+    begin, end = interval(shutter, 0.0, resolution_of(scene.render))
+    return (begin, end) if end > begin else None
 
 
 @contextmanager

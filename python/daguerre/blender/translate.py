@@ -21,7 +21,7 @@ from .frames import check_size, metres_per_unit, world_from_blender
 from .hair import Hair
 from .lights import add_light, note_visibility
 from .meshes import Materials, Meshes
-from .motion import FrameSet, Motion, motion_of, shutter_of
+from .motion import FrameSet, Motion, exposure_of, motion_of
 from .objects import UNDRAWN, Seen, descendants, walk
 from .over_time import move_lights, moving_camera
 from .particles import ParticleHair
@@ -68,7 +68,7 @@ def scene_of(
         depsgraph: Evaluated ``bpy.types.Depsgraph``.
         time: Time of the frame, s.
         shutter: When the shutter opens and closes, s from the frame, for motion between; both 0:
-            nothing moves. Default: Blender's motion blur.
+            nothing moves. Default: the exposure of the scene's camera.
         frame_set: Goes to a frame and a fraction of one; default: ``Scene.frame_set``. Inside of a
             render pass ``RenderEngine.frame_set``.
         by: Translators of parts; default: those of this room.
@@ -81,7 +81,8 @@ def scene_of(
     """
     scene, notes = Scene(time=time), Notes()
     work = _Translation(scene, depsgraph, by or rooms(metres_per_unit(depsgraph.scene)), notes)
-    opened = shutter_of(depsgraph.scene) if shutter is None else shutter
+    shot = depsgraph.scene_eval
+    opened = exposure_of(shot, shot.camera) if shutter is None else shutter
     if opened is not None and opened[1] > opened[0]:
         work.motion = motion_of(depsgraph, opened, time, work.probe, notes, frame_set)
     for seen in walk(depsgraph):
@@ -181,6 +182,8 @@ class _Translation:
 
     def _note_effects(self, seen: Seen) -> None:
         thing = seen.object
+        if thing.type == "LIGHT":
+            return  # its flags choose the shadows that catchers take, not what it looks like
         if thing.is_holdout:
             self._effects[seen.name] = "holdout"
         elif thing.is_shadow_catcher:
