@@ -108,7 +108,7 @@ def test_hair_instances_and_a_picture_on_a_surface(made, tmp_path):
         made.collection.objects.link(copy)
     curves = bpy.data.hair_curves.new("fur")
     curves.add_curves([6] * 40)
-    points = np.random.default_rng(3).normal(scale=1.2, size=(240, 3)) + (1.5, -1.5, 0.5)
+    points = np.random.default_rng(3).normal((1.5, -1.5, 0.5), 1.2, (240, 3))
     curves.position_data.foreach_set("vector", points.astype(np.float32).ravel())
     made.collection.objects.link(bpy.data.objects.new("fur", curves))
     check_same(made, tmp_path)

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from daguerre.files.packing import hash_of, pack
 from daguerre.cluster.store import FOLDER, Store
 from daguerre.errors import InputError, OutputError
+from daguerre.files.packing import hash_of, pack
 from daguerre.files.value import same
 
 

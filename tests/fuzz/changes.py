@@ -174,6 +174,22 @@ def in_glb(rng: Random, data: bytes, buffers: float) -> bytes:
     return data[:8] + struct.pack("<I", 12 + len(body)) + body
 
 
+def in_exact(rng: Random, data: bytes) -> bytes:
+    """A GLB with the tree or the arrays of the scene in its last chunk changed."""
+    at = 12
+    while at + 8 + (size := struct.unpack_from("<I", data, at)[0]) < len(data):
+        at += 8 + size
+    head, body, arrays = data[at + 8 :].split(b"\n", 2)
+    if rng.random() < 0.3:
+        arrays = in_bytes(rng, arrays)
+    else:
+        body = dumped(rng, in_tree(rng, json.loads(body)))
+    chunk = b"\n".join([head, body, arrays])
+    chunk = b" " * (-len(chunk) % 4) + chunk
+    made = data[12:at] + struct.pack("<I", len(chunk)) + data[at + 4 : at + 8] + chunk
+    return data[:8] + struct.pack("<I", 12 + len(made)) + made
+
+
 def in_png(rng: Random, data: bytes) -> bytes:
     """A PNG with a chunk changed, whose check sum is right again; of pixels what was packed."""
     chunks, at = [], 8

@@ -43,6 +43,7 @@ class Reader:
 READERS = {
     "gltf": Reader("scenes", "scene"),
     "packed": Reader("packed", "scene"),
+    "exact": Reader("exact", "scene"),
     "lenses": Reader("lenses", "lens"),
     "exr": Reader("exrs", "exr"),
     "pass": Reader("passes", "samples"),
@@ -60,6 +61,8 @@ def changed(rng: Random, name: str, data: bytes) -> bytes:
     suffix = Path(name).suffix
     if rng.random() < 0.1:
         return changes.in_bytes(rng, data)
+    if name == "exact.glb":
+        return changes.in_exact(rng, data)
     if suffix == ".glb":
         return changes.in_glb(rng, data, 0.8 if name == "packed.glb" else 0.2)
     if suffix == ".png":

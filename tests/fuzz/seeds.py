@@ -12,15 +12,18 @@ import daguerre as dg
 from daguerre import calibration
 from daguerre.calibration import Calibration
 from daguerre.camera.projection import Projection
+from daguerre.io.packed.chunk import embed
 from daguerre.rendering.passes import pass_of, write_pass
 from daguerre.rendering.session import Session
 from tests.bad_files import bases
 from tests.bad_files.exr_files import LIE, READ
+from tests.faults.scene import write_scene
 from tests.io.gltf import test_gltf_compressed_images as ktx2
 from tests.io.gltf import test_gltf_draco as draco
 from tests.io.gltf import test_gltf_meshopt as meshopt
 from tests.lenses.test_lens_fuzz import SEEDS as LENSES
 from tests.support import tracked
+from tests.support.packed_scenes import everything
 from tests.support.plate_frames import of_light
 
 #: A file's name and bytes.
@@ -30,13 +33,20 @@ LIBRARY = Path(dg.__file__).parent
 POINTS = ("opencv", (520.0, 515.0), (331.3, 236.8), (-0.28, 0.09, 1e-3, -2e-3, -0.01))
 
 
-def small(**settings: object) -> Session:
-    """A drawn picture of a few pixels, with an object in it."""
+def small_scene() -> dg.Scene:
+    """An object below an even sky."""
     scene = dg.Scene()
     mesh = scene.add_mesh([[-1, -1, -3], [1, -1, -3], [0, 1, -3]], [[0, 1, 2]])
     scene.add_instance(mesh, dg.Diffuse((0.5, 0.4, 0.3)), name="sail")
     scene.set_environment(color=(1, 0.9, 0.8))
-    session = Session(scene, dg.Camera(lens_model="pinhole"), resolution=(12, 8), **settings)
+    return scene
+
+
+def small(**settings: object) -> Session:
+    """A drawn picture of a few pixels, with an object in it."""
+    session = Session(
+        small_scene(), dg.Camera(lens_model="pinhole"), resolution=(12, 8), **settings
+    )
     session.draw(0, 4)
     return session
 
@@ -62,6 +72,14 @@ def packed(folder: Path) -> Iterator[Seed]:
     made.append(ktx2.scene("EXT_texture_webp", ktx2.webp(folder), plain=False, required=True))
     for one in made:
         yield "packed.glb", one.glb(folder / "a.glb").read_bytes()
+
+
+def exact(folder: Path) -> Iterator[Seed]:
+    """Files with a scene as it is."""
+    for scene in (everything(), small_scene()):
+        path = write_scene(folder / "a.glb")
+        embed(path, scene)
+        yield "exact.glb", path.read_bytes()
 
 
 def lenses(folder: Path) -> Iterator[Seed]:

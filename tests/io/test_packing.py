@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.files import packing
-from daguerre.files.packing import LARGE, Packed, large_of, pack
 from daguerre.errors import InputError, MismatchError, UsageError
+from daguerre.files import packing
 from daguerre.files.json_item import Item
+from daguerre.files.packing import LARGE, Packed, large_of, pack
 from daguerre.files.value import same
 from tests.faults.scene import write_scene
 

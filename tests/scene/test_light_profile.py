@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.files import packing
 from daguerre.errors import DaguerreError, InputError
+from daguerre.files import packing
 from daguerre.scene.light_profile import ProfileTable
 from daguerre.setup.scene import content_hash
 

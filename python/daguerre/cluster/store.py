@@ -12,7 +12,6 @@ from typing import Any
 from daguerre.errors import InputError, OutputError
 from daguerre.files.atomic import write_bytes
 from daguerre.files.limited_folder import drop_oldest
-
 from daguerre.files.packing import hash_of, large_of, unpack
 
 #: Environment variable with the folder; default: one in the system's temporary folder.

@@ -6,8 +6,9 @@ import time
 from collections import Counter
 from typing import Any
 
-from . import task as on_worker
 from daguerre.files.packing import hash_of, large_of, pack
+
+from . import task as on_worker
 
 
 class Values:

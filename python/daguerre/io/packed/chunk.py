@@ -61,9 +61,8 @@ def scene_of(chunk: memoryview, path: Path) -> Scene:
     """
     data = bytes(chunk)
     try:
-        with np.errstate(all="ignore"):
-            with damage():
-                scene = rebuilt(unpack(data, _elsewhere, make), len(data))
+        with np.errstate(all="ignore"), damage():
+            scene = rebuilt(unpack(data, _elsewhere, make), len(data))
     except MismatchError:
         raise
     except DaguerreError as error:

@@ -24,6 +24,7 @@ from daguerre.scene.point_cache import PointCache
 from daguerre.scene.scene import Scene
 
 from .parts import ARRAYS, OF_MOMENT
+from .values import printable
 
 #: Bytes of all uses of arrays for each byte of the file: parts share some, hostile ones far more.
 _USES, _FREE = 8, 1 << 26
@@ -275,7 +276,7 @@ class Rebuild:
                 raise InputError(f"{where}: wanted its instances, got others")
             if position is not None:
                 if motion is not None:
-                    _point(motion.at(scene.time), where)
+                    _point(np.asarray(motion.at(scene.time), np.float64), where)
                 scene.add_node(name, _point(position, where), motion=motion)
             scene.group_instances(name, mine)
         for name, mine in found.items():
@@ -292,12 +293,10 @@ class Rebuild:
 
 
 def text(value: Any, where: str) -> str:
-    """A text; control characters, which a terminal might obey, are replaced."""
+    """Checks a text; control characters are replaced."""
     if not isinstance(value, str):
         raise InputError(f"{where}: wanted a text, got {short(value)}")
-    if value.isprintable():
-        return value
-    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in value)
+    return printable(value)
 
 
 def _composite(motion: Any, where: str) -> Composite:
@@ -333,5 +332,3 @@ def rebuilt(parts: Mapping[str, Any], size: int) -> Scene:
         InputError: A part is wrong; the message names it.
     """
     return Rebuild(parts, size).run()
-
-

@@ -24,7 +24,7 @@ from daguerre.scene.parts import Environment
 from daguerre.sensors import names as sensor_names
 
 
-def make(name: str, state: Any) -> Any:
+def make(name: Any, state: Any) -> Any:
     """Makes a value from the name of its class and its attributes.
 
     Raises:
@@ -34,11 +34,23 @@ def make(name: str, state: Any) -> Any:
     maker = _MAKERS.get(name) if isinstance(name, str) else None
     if maker is None:
         raise ValueError(f"no value of scenes is a {short(name)}")
-    return maker(**{key: part for key, part in state.items() if key != MADE_BY})
+    return maker(**{key: _safe(part) for key, part in state.items() if key != MADE_BY})
+
+
+def printable(text: str) -> str:
+    """A text without control characters, which a terminal might obey, and halves of others."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+
+
+def _safe(part: Any) -> Any:
+    return printable(part) if isinstance(part, str) else part
 
 
 def _keys(times: Any, values: Any, interpolation: str, pivot: Any = None) -> Keys:
-    return keys(zip(np.asarray(times).tolist(), values, strict=True), interpolation, pivot)
+    pairs = zip(np.asarray(times).tolist(), map(_safe, values), strict=True)
+    return keys(pairs, interpolation, pivot)
 
 
 def _camera(**given: Any) -> Camera:
