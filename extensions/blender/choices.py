@@ -20,6 +20,14 @@ def _lens(entry: lenses.library.Entry) -> Item:
     return entry.name, entry.title + year, "; ".join([*facts, entry.patent])
 
 
+def _searched(entry: lenses.library.Entry) -> Item:
+    """One lens as the search shows it, in one line."""
+    name, title, words = _lens(entry)
+    circle = image_circle(entry)
+    facts = [title, f"f/{entry.f_number:.3g}", *([f"circle {circle:.3g} mm"] if circle else [])]
+    return name, ", ".join(facts), words
+
+
 def image_circle(entry: lenses.library.Entry) -> float | None:
     """Diameter of the circle around a lens's format, mm; None: its format is unknown."""
     sides = [float(side) for side in entry.format.split("x") if side]
@@ -30,13 +38,15 @@ def _named(*names: str) -> list[Item]:
     return [(name, name.replace("_", " ").capitalize(), "") for name in names]
 
 
-LENSES: list[Item] = [
+_PLAIN: list[Item] = [
     ("blender", "Blender's lens", "Thin lens with Blender's depth of field, or else a pinhole"),
     ("thin", "Thin lens", "Lens without thickness, of the focal length in Blender's Lens panel"),
     ("pinhole", "Pinhole", "Camera without depth of field"),
     ("file", "Lens file", "Lens from a file: Daguerre, Zemax, CODE V, Optical Bench or pbrt"),
-    *map(_lens, lenses.library.entries()),
 ]
+LENSES = [*_PLAIN, *map(_lens, lenses.library.entries())]
+#: The same lenses, with all that matters in the name.
+SEARCHED = [*_PLAIN, *map(_searched, lenses.library.entries())]
 MODELS: list[Item] = [
     ("auto", "Automatic", "Exact if the lens has a prescription"),
     *_named(*CAMERA["lens_model"].choices),

@@ -25,7 +25,7 @@ class DAGUERRE_OT_choose_lens(bpy.types.Operator):
     bl_label = "Choose a Lens"
     bl_options = {"REGISTER", "UNDO"}
     bl_property = "lens"
-    __annotations__ = {"lens": EnumProperty(name="Lens", items=choices.LENSES)}
+    __annotations__ = {"lens": EnumProperty(name="Lens", items=choices.SEARCHED)}
     if TYPE_CHECKING:
         lens: str
 

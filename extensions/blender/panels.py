@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from . import choices
+from . import choices, lens_facts, lens_picture, translation
 from .engine import ENGINE
 
 #: Blender's panels that show for its simplest engine, but set what Daguerre does not have.
@@ -17,6 +17,8 @@ _OURS_TOO = {
     "EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface", "EEVEE_WORLD_PT_surface",
     "MATERIAL_PT_preview", "RENDER_PT_eevee_film", "RENDER_PT_eevee_motion_blur",
 }  # fmt: skip
+#: Side of the picture of a lens, in lines of the panel.
+PICTURE_SCALE = 12.0
 
 
 class _Panel:
@@ -39,9 +41,19 @@ class _Panel:
 
     def draw(self, context: Any) -> None:
         self.layout.use_property_split = True
-        group = self.group(context)
+        self.head(context)
+        group, warnings = self.group(context), self.warnings(context)
         for name in self.shown(group):
             self.layout.prop(group, name)
+            if name in warnings:
+                self.layout.label(text=warnings[name], icon="ERROR")
+
+    def head(self, context: Any) -> None:
+        """Draws what stands above the properties."""
+
+    def warnings(self, context: Any) -> dict[str, str]:
+        """Sentences below properties that cannot work, by their names."""
+        return {}
 
     def shown(self, group: Any) -> Iterator[str]:
         """Names of the properties that matter now."""
@@ -55,19 +67,37 @@ class _CameraPanel(_Panel):
     def group(cls, context: Any) -> Any:
         return context.camera.daguerre if context.camera else None
 
+    def warnings(self, context: Any) -> dict[str, str]:
+        reach = translation.film_reach_mm(context.camera, context.scene.render)
+        return lens_facts.warnings(self.group(context), reach)
+
 
 class DAGUERRE_PT_lens(_CameraPanel, bpy.types.Panel):
     """Lens of the camera."""
 
     bl_label = "Lens (Daguerre)"
 
-    def draw(self, context: Any) -> None:
+    def head(self, context: Any) -> None:
         group = self.group(context)
-        name, words = _told(group.lens)
+        name = next(name for key, name, _ in choices.LENSES if key == group.lens)
         self.layout.operator("daguerre.choose_lens", text=name, icon="VIEWZOOM")
-        if words:
-            self.layout.label(text=words)
-        super().draw(context)
+        facts = lens_facts.of(group)
+        if isinstance(facts, lens_facts.Facts):
+            self._draw_facts(group, facts)
+        elif facts:
+            self.layout.label(text=facts, icon="ERROR")
+
+    def _draw_facts(self, group: Any, facts: lens_facts.Facts) -> None:
+        picture = lens_picture.shown(group, facts)
+        if isinstance(picture, int):
+            self.layout.template_icon(icon_value=picture, scale=PICTURE_SCALE)
+        else:
+            self.layout.label(text=picture, icon="ERROR")
+        rows = self.layout.column(align=True)
+        for name, value in facts.lines():
+            row = rows.split(factor=0.4)
+            row.label(text=name)
+            row.label(text=value)
 
     def shown(self, group: Any) -> Iterator[str]:
         if group.lens == "file":
@@ -152,11 +182,6 @@ class DAGUERRE_PT_passes(_Panel, bpy.types.Panel):
     rows = ("passes",)
 
 
-def _told(lens: str) -> tuple[str, str]:
-    """Name of a lens, and its facts."""
-    return next((name, words) for key, name, words in choices.LENSES if key == lens)
-
-
 def compatible() -> Iterator[Any]:
     """Blender's own panels whose values Daguerre reads."""
     for panel in bpy.types.Panel.__subclasses__():
@@ -174,6 +199,7 @@ _CLASSES = (
 
 def register() -> None:
     """Adds the panels."""
+    lens_picture.register()
     for one in _CLASSES:
         bpy.utils.register_class(one)
     for panel in compatible():
@@ -186,3 +212,4 @@ def unregister() -> None:
         panel.COMPAT_ENGINES.discard(ENGINE)
     for one in reversed(_CLASSES):
         bpy.utils.unregister_class(one)
+    lens_picture.unregister()

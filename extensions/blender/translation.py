@@ -73,6 +73,14 @@ def region_of(render: Any, size: tuple[int, int]) -> tuple[int, int, int, int] |
     return found
 
 
+def film_reach_mm(data: Any, render: Any) -> float:
+    """Largest distance of a camera's film from the axis of its lens, mm."""
+    from daguerre.blender import cameras
+
+    found: float = cameras.film_reach_mm(data, render)
+    return found
+
+
 def _eye(shot: Any, camera: Any, eye: Any, scene: Scene) -> Camera:
     """Camera of one eye of a stereo pair, which rests while the shutter is open."""
     from daguerre.blender import cameras, frames

@@ -74,6 +74,13 @@ def camera_of(
         raise InputError(f"{where}: {str(error).removeprefix('camera: ')}") from None
 
 
+def film_reach_mm(data: bpy.types.Camera, render: bpy.types.RenderSettings) -> float:
+    """Largest distance of a camera's film from the axis of its lens, mm."""
+    film = film_of(data, render)
+    size = _body(CameraPanel(data)).get("sensor_size", film.size)
+    return math.hypot(*(abs(s) + side / 2 for s, side in zip(film.shift, size, strict=True)))
+
+
 def _lens_of(data: Any, panel: CameraPanel, where: str) -> str:
     """Name or file of the lens; without one of the panel, Blender's own switch of blur decides."""
     lens = panel.named("lens", BLENDER)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -51,7 +53,7 @@ def _stroke(points: FloatArray, width: float, shape: tuple[int, int]) -> FloatAr
     """Share of each pixel under a polyline (x, y), px."""
     cover = np.zeros(shape)
     reach = width / 2 + 0.5
-    for a, b in zip(points[:-1], points[1:], strict=True):
+    for a, b in pairwise(points):
         if not np.isfinite([a, b]).all():
             continue
         x, y = _near(a, b, reach, shape)
