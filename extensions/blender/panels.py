@@ -150,8 +150,8 @@ class DAGUERRE_PT_shutter(_CameraPanel, bpy.types.Panel):
 class DAGUERRE_PT_stray(_CameraPanel, bpy.types.Panel):
     """Light that the lens adds."""
 
-    bl_label = "Flare and Diffraction"
-    rows = ("flare", "scatter", "diffraction")
+    bl_label = "Flare, Diffraction and Dispersion"
+    rows = ("flare", "scatter", "diffraction", "dispersion")
 
 
 class DAGUERRE_PT_sampling(_Panel, bpy.types.Panel):

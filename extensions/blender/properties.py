@@ -103,6 +103,7 @@ _STRAY = {
     "flare": _switch(TABLE["flare"], "Flare"),
     "scatter": _switch(TABLE["scatter"], "Scatter"),
     "diffraction": _switch(TABLE["diffraction"], "Diffraction"),
+    "dispersion": _switch(CAMERA["dispersion"], "Dispersion", default=True),
 }
 _SCENE = {
     "spp": _number(TABLE["spp"], "Samples", 64),

@@ -244,6 +244,8 @@ def test_the_panel_takes_precedence():
     assert (camera.shutter_angle, camera.shutter_time) == (90.0, None)
     assert camera.rolling_shutter.readout_time == 0.01
     assert camera.focal_length is None
+    assert camera.dispersion
+    assert not made(with_panel(blender.camera(), **panel, dispersion=False)).dispersion
     other = made(with_panel(blender.camera(), **panel | {"use_t_stop": True}))
     assert (other.f_stop, other.t_stop) == (None, 8.0)
 

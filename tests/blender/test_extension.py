@@ -17,7 +17,7 @@ LENS_NAMES = {"lens", "lens_file", "lens_model", "zoom", "focus_mode", "tilt_x",
 IRIS_NAMES = {"f_stop", "t_stop", "use_t_stop", "blades", "blade_rotation", "blade_curvature"}
 BODY_NAMES = {"sensor", "iso", "exposure_mode", "ev", "shutter_mode", "shutter_time"}
 SHUTTER_NAMES = {"shutter_angle", "shutter_type", "rolling_side", "rolling_time"}
-STRAY_NAMES = {"flare", "scatter", "diffraction"}
+STRAY_NAMES = {"flare", "scatter", "diffraction", "dispersion"}
 NAMES = LENS_NAMES | IRIS_NAMES | BODY_NAMES | SHUTTER_NAMES | STRAY_NAMES
 SCENE_NAMES = ["light_paths", "spp", "noise", "denoise", "look", "photograph", "raw", "passes"]
 
@@ -195,6 +195,14 @@ def test_the_command_line_has_the_camera_to_the_bit(extension, values, tmp_path)
         camera if camera.sensor is None else camera.with_(sensor=dg.sensors.load(camera.sensor))
     )
     assert Dials.of(texts).camera(dg.Camera()) == wanted
+
+
+def test_a_switch_has_its_word_in_the_command_line(extension, tmp_path):
+    path, settings = tmp_path / "a.glb", dg.RenderSettings()
+    for dispersion, words in ((True, 0), (False, 1)):
+        camera = dg.Camera(lens="double-gauss-50mm-f2", dispersion=dispersion)
+        text = extension.command.command(path, "C", camera, settings)
+        assert shlex.split(text).count("--no-dispersion") == words
 
 
 def test_a_value_without_a_text_is_an_error(extension, tmp_path):

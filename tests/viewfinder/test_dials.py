@@ -23,6 +23,7 @@ TEXTS = {
     "fit_tolerance": "0.5",
     "focal_length": "35",
     "zoom": "85",
+    "dispersion": "0",
     "decenter": "0-1:0.1,0",
     "f_stop": "2.8",
     "t_stop": "3.1",

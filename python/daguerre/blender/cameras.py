@@ -120,6 +120,8 @@ def _glass(data: Any, film: Film, lens: str, panel: CameraPanel, notes: Notes) -
         found["lens_model"] = model
     if zoom := panel.chosen("zoom"):
         found["zoom"] = float(zoom)
+    if panel.chosen("dispersion") is False:
+        found["dispersion"] = False
     if data.type == "PANO":
         notes.add("a lens with a prescription takes the place of a panoramic projection")
     if not film.square:

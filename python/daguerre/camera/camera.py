@@ -137,6 +137,9 @@ class Camera(Value):
         near_clip: Near clipping plane: what is nearer along the axis, m, is not seen; 0: nothing is
             clipped; default: 0. What is clipped still casts shadows and is seen in mirrors. A lens
             that sees to the side has a sphere instead.
+        dispersion: Whether glass bends colours differently; without it a lens has no colour
+            fringes. Without it each glass has its index at 587.56 nm at all wavelengths. Its
+            absorption and its coatings keep their colours.
     """
 
     transform: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
@@ -188,6 +191,7 @@ class Camera(Value):
     white_balance: float | tuple[float, float] | None = None
     motion: dict[str, Dynamic] = field(default_factory=dict)
     near_clip: float = _default("near_clip")
+    dispersion: bool = _default("dispersion")
 
     def __post_init__(self) -> None:
         if self.sensor is not None and self.sensor_size is FULL_FRAME:

@@ -17,6 +17,7 @@ from daguerre.camera.parameters import CAMERA, OPTICS
 from daguerre.camera.parameters.needs import LENS_ITSELF, TRACED
 from daguerre.checks import short
 from daguerre.errors import UsageError
+from daguerre.lenses.dispersion import without_dispersion
 from daguerre.parameters.parameter import Parameter
 
 #: Trait of a camera's lens, without and with a prescription.
@@ -53,7 +54,13 @@ def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
                 f"camera: lens_model {model}: wanted the name or file of a lens, got none"
             )
         return None, model or kind
-    return lenses.load(camera.lens), model or "exact"
+    return prescription_of(camera), model or "exact"
+
+
+def prescription_of(camera: Camera) -> lenses.Lens:
+    """Loads the lens of a camera that has one with a prescription."""
+    lens = lenses.load(camera.lens or "")
+    return lens if camera.dispersion else without_dispersion(lens)
 
 
 def _projection(camera: Camera) -> str:

@@ -179,6 +179,7 @@ def any_lens(draw: random.Random) -> dict[str, Any]:
         return draw.choice(
             [
                 {"lens": "double-gauss-50mm-f2", "f_stop": draw.uniform(2, 16), **film},
+                {"lens": "double-gauss-50mm-f2", "dispersion": False},
                 {**glass, "fit_tolerance": 0.25, "t_stop": draw.uniform(2.5, 16)},
                 {
                     **{"lens": "double-gauss-50mm-f2", "cover_glass": (2.0, 1.0, 1.5)},

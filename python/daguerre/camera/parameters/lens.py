@@ -110,4 +110,15 @@ LENS = (
         needs=(needs.OF_LENSES, needs.ZOOM),
         movable=True,
     ),
+    LensRow(
+        "dispersion",
+        "Whether glass bends colours differently; without it a lens has no colour fringes",
+        default=True,
+        kind="flag",
+        flags=("--dispersion/--no-dispersion",),
+        more="Without it each glass has its index at 587.56 nm at all wavelengths. Its absorption "
+        "and its coatings keep their colours",
+        explained=("lens-models.md#dispersion",),
+        needs=(needs.OF_LENSES, needs.PRESCRIPTION),
+    ),
 )

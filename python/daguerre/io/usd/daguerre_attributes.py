@@ -55,6 +55,7 @@ PLAIN = (
     Plain("t_stop", "lens:tStop", "double"),
     Plain("aperture_diameter", "lens:apertureDiameter", "double"),
     Plain("natural_vignetting", "lens:naturalVignetting", "bool"),
+    Plain("dispersion", "lens:dispersion", "bool"),
     Plain("tilt", "tilt", "double2"),
     Plain("focus_distance", "focus:distance", "double"),
     Plain("focus_at", "focus:at", "double2"),

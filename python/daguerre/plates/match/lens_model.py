@@ -7,7 +7,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre import lenses
 from daguerre.analysis.bench import Bench, set_up
 from daguerre.analysis.illumination import relative_illumination
 from daguerre.analysis.mtf import geometric_mtf
@@ -15,6 +14,7 @@ from daguerre.analysis.pencils import pencil
 from daguerre.analysis.spots import spot
 from daguerre.camera.camera import Camera
 from daguerre.camera.ideal import IDEAL
+from daguerre.setup.checks import prescription_of
 
 from .falloff import Terms, fitted
 
@@ -31,9 +31,7 @@ def bench_of(camera: Camera) -> Bench | None:
     if camera.lens is None or camera.lens in IDEAL:
         return None
     focus = camera.focus_distance or math.inf
-    return set_up(
-        lenses.load(camera.lens), f_stop=camera.f_stop, focus_m=focus, zoom_mm=camera.zoom
-    )
+    return set_up(prescription_of(camera), f_stop=camera.f_stop, focus_m=focus, zoom_mm=camera.zoom)
 
 
 def lens_response(bench: Bench, pitch_mm: float, frequency: FloatArray) -> FloatArray:
