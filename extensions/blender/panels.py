@@ -47,9 +47,13 @@ class _Panel:
             self.layout.prop(group, name)
             if name in warnings:
                 self.layout.label(text=warnings[name], icon="ERROR")
+        self.foot(context)
 
     def head(self, context: Any) -> None:
         """Draws what stands above the properties."""
+
+    def foot(self, context: Any) -> None:
+        """Draws what stands below them."""
 
     def warnings(self, context: Any) -> dict[str, str]:
         """Sentences below properties that cannot work, by their names."""
@@ -72,10 +76,8 @@ class _CameraPanel(_Panel):
         return lens_facts.warnings(self.group(context), reach)
 
 
-class DAGUERRE_PT_lens(_CameraPanel, bpy.types.Panel):
-    """Lens of the camera."""
-
-    bl_label = "Lens (Daguerre)"
+class LensPanel(_CameraPanel):
+    """A panel below the chosen lens, its picture and its facts."""
 
     def head(self, context: Any) -> None:
         group = self.group(context)
@@ -98,6 +100,12 @@ class DAGUERRE_PT_lens(_CameraPanel, bpy.types.Panel):
             row = rows.split(factor=0.4)
             row.label(text=name)
             row.label(text=value)
+
+
+class DAGUERRE_PT_lens(LensPanel, bpy.types.Panel):
+    """Lens of the camera."""
+
+    bl_label = "Lens (Daguerre)"
 
     def shown(self, group: Any) -> Iterator[str]:
         if group.lens == "file":

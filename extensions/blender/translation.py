@@ -5,6 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from daguerre.camera.camera import Camera
 from daguerre.files.notes import Notes
 from daguerre.rendering.settings import RenderSettings
@@ -70,6 +72,15 @@ def region_of(render: Any, size: tuple[int, int]) -> tuple[int, int, int, int] |
     from daguerre.blender import settings
 
     found: tuple[int, int, int, int] | None = settings.region_of(render, size)
+    return found
+
+
+def camera_of(thing: Any, scene: Any) -> Camera:
+    """Translates a camera object by itself, at rest."""
+    from daguerre.blender import cameras, frames
+
+    matrix = frames.world_from_blender(scene) @ np.array(thing.matrix_world)
+    found: Camera = cameras.camera_of(thing, scene.render, matrix, Notes())
     return found
 
 

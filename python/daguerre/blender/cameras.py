@@ -58,11 +58,10 @@ def camera_of(
     if placed is None:
         raise InputError(f"{where}: scale: wanted one above 0, got 0")
     data, panel = thing.data, CameraPanel(thing.data)
-    if data.type not in ("PERSP", "PANO"):
-        raise InputError(f"{where}: type: wanted PERSP or PANO, got {data.type}")
     metres = metres_per_unit(render.id_data)
     film = film_of(data, render, shift_x)
     lens = _lens_of(data, panel, where)
+    _check_type(data.type, lens, where)
     values = _optics(data, film, lens, panel, where, notes) | _body(panel)
     if "pinhole" not in (lens, values.get("lens_model")):
         values |= _iris(data, values, panel, metres, notes) | _focus(thing, panel, metres)
@@ -79,6 +78,13 @@ def film_reach_mm(data: bpy.types.Camera, render: bpy.types.RenderSettings) -> f
     film = film_of(data, render)
     size = _body(CameraPanel(data)).get("sensor_size", film.size)
     return math.hypot(*(abs(s) + side / 2 for s, side in zip(film.shift, size, strict=True)))
+
+
+def _check_type(kind: str, lens: str, where: str) -> None:
+    """Refuses kinds of cameras that no lens can be; a camera shader gives way to a real lens."""
+    if kind in ("PERSP", "PANO") or (kind == "CUSTOM" and lens not in IDEAL):
+        return
+    raise InputError(f"{where}: type: wanted PERSP or PANO, got {kind}")
 
 
 def _lens_of(data: Any, panel: CameraPanel, where: str) -> str:

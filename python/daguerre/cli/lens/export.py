@@ -21,11 +21,6 @@ if TYPE_CHECKING:
     from daguerre.lenses import Lens
     from daguerre.polynomial import LensFit
 
-#: RMS error on the film above which a note is printed, um: half a pixel of 960 over 36 mm.
-WORTH_TELLING = 20.0
-#: Numbers of film segments by radius to try: the fewest that keep the error below that.
-SEGMENTS = (1, 2, 4)
-
 _BLADES = ("blades", "blade_rotation", "blade_curvature")
 # fmt: off
 _FIT = (
@@ -94,10 +89,9 @@ class FileFlags(TableFlags):
 
     def write(self, item: Lens, path: Path, setting: dict[str, Any]) -> None:
         """Fits the lens and writes the file; prints the error of the fit on stderr."""
-        for segments in SEGMENTS:
-            fitted = self._fitted(item, setting, segments)
-            if weak_region(fitted) is None:
-                break
+        from daguerre.polynomial.segments import fewest, weak_region
+
+        fitted = fewest(lambda segments: self._fitted(item, setting, segments))
         fitted.save(path)
         error = fitted.error
         console.say(
@@ -105,7 +99,7 @@ class FileFlags(TableFlags):
             f"{error.direction_rad[1]:.2g} at most; {error.film_um[0]:.2g} um RMS on the film"
         )
         if weak := weak_region(fitted):
-            console.say(f"{path}: {weak}")
+            console.say(f"{path}: note: {weak}: a higher --degree fits better")
 
     def _fitted(self, item: Lens, setting: dict[str, Any], segments: int) -> LensFit:
         from daguerre.polynomial import fit
@@ -134,19 +128,3 @@ def _iris(given: dict[str, Any]) -> Iris:
     from daguerre.setup.iris import iris_of
 
     return iris_of(Camera(**{name: given[name] for name in _BLADES if name in given}))
-
-
-def weak_region(fitted: LensFit) -> str | None:
-    """Note on the region of the film where the fit is poor, if any.
-
-    A file has no exact lens to fall back to.
-    """
-    weak = [z for z in fitted.zones if z.rays and z.film_um[0] > WORTH_TELLING]
-    if not weak:
-        return None
-    worst = max(z.film_um[0] for z in weak)
-    return (
-        f"note: the fit is off by more than {WORTH_TELLING:g} um RMS from {weak[0].low:.3g} to "
-        f"{weak[-1].high:.3g} mm off the middle, up to {worst:.2g} um: a higher --degree fits "
-        "better"
-    )
