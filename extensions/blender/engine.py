@@ -89,8 +89,7 @@ class DaguerreEngine(bpy.types.RenderEngine):
         camera = self.camera_override or depsgraph.scene.camera
         if camera is None:
             raise InputError("scene: wanted a camera, got none")
-        eye = np.array(self.camera_model_matrix(camera)) if view else None
-        shot = translation.shot_of(depsgraph, scene, camera, eye)
+        shot = translation.shot_of(depsgraph, scene, camera, self._eye(camera) if view else None)
         layer = depsgraph.view_layer_eval.name
         rows = passes.asked(depsgraph.scene)
         crop = translation.region_of(depsgraph.scene.render, shot.settings.film.resolution)
@@ -111,6 +110,11 @@ class DaguerreEngine(bpy.types.RenderEngine):
         if depsgraph.scene.daguerre.photograph:
             files = photograph.paths(depsgraph.scene, numbered=self.is_animation)
             photograph.write(frame, shot.camera, depsgraph.scene, camera.data.daguerre, files)
+
+    def _eye(self, camera: Any) -> translation.Eye:
+        """Eye of the active view."""
+        matrix = np.array(self.camera_model_matrix(camera), np.float64)
+        return translation.Eye(matrix, float(self.camera_shift_x(camera)))
 
     def _begin(self, shot: translation.Shot, layer: str, view: str) -> Any:
         """Result of the picture's size."""

@@ -38,6 +38,19 @@ class Shot:
         return self.settings.backdrop.background == "transparent"
 
 
+@dataclass(frozen=True)
+class Eye:
+    """One eye of a stereo pair.
+
+    Attributes:
+        matrix: Blender's world from the eye, shape (4, 4).
+        shift_x: Shift of its film to the right, as Blender counts it.
+    """
+
+    matrix: Any
+    shift_x: float
+
+
 def scene_of(depsgraph: Any, frame_set: FrameSet | None = None) -> Scene:
     """Translates the evaluated scene.
 
@@ -51,14 +64,14 @@ def scene_of(depsgraph: Any, frame_set: FrameSet | None = None) -> Scene:
     return made
 
 
-def shot_of(depsgraph: Any, scene: Scene, camera: Any, eye: Any = None) -> Shot:
+def shot_of(depsgraph: Any, scene: Scene, camera: Any, eye: Eye | None = None) -> Shot:
     """Makes the picture of one camera.
 
     Args:
         depsgraph: Evaluated data.
         scene: Its translation.
         camera: Camera object of Blender.
-        eye: World matrix of one eye of a stereo pair, shape (4, 4); None: the camera's own.
+        eye: One eye of a stereo pair; None: the camera itself.
     """
     from daguerre.blender import settings
 
@@ -92,13 +105,13 @@ def film_reach_mm(data: Any, render: Any) -> float:
     return found
 
 
-def _eye(shot: Any, camera: Any, eye: Any, scene: Scene) -> Camera:
-    """Camera of one eye of a stereo pair, which rests while the shutter is open."""
-    from daguerre.blender import cameras, frames
+def _eye(shot: Any, camera: Any, eye: Eye, scene: Scene) -> Camera:
+    """Camera of one eye of a stereo pair, which moves as the camera does."""
+    from daguerre.blender import cameras, eyes, frames
 
     notes = Notes()
-    found: Camera = cameras.camera_of(
-        camera, shot.render, frames.world_from_blender(shot) @ eye, notes
-    )
+    place = frames.world_from_blender(shot) @ eye.matrix
+    still = cameras.camera_of(camera, shot.render, place, notes, shift_x=eye.shift_x)
     scene.note(*notes.sentences())
+    found: Camera = eyes.eye_of(scene.camera(camera.name_full), still, scene.time)
     return found

@@ -66,7 +66,7 @@ def stand_in(monkeypatch: Any, made: dg.Scene | None = None, **more: Any) -> Non
         )
         ours = camera(**more)
         if eye is not None:  # as far beside the camera as Blender's, in camera's axes
-            beside = np.linalg.inv(np.array(camera_object.matrix_world)) @ eye
+            beside = np.linalg.inv(np.array(camera_object.matrix_world)) @ eye.matrix
             ours = ours.with_(transform=ours.transform @ np.asarray(beside, float))
         return module.Shot(scene, ours, settings, FACTOR)
 
