@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+import tarfile
 import tomllib
+import zipfile
 from pathlib import Path
 from typing import Any
 
+import pytest
 import yaml
 
 import daguerre as dg
@@ -48,3 +51,28 @@ def test_wheels_of_all_systems_are_of_the_stable_abi() -> None:
     assert abi == f"cp3{lowest}"
     assert wheels["build"][0] == f"cp3{lowest}-*"
     assert (ROOT / wheels["linux"]["before-all"].split()[0]).exists()
+
+
+def test_the_source_package_has_no_file_of_the_extension(tmp_path: Path, monkeypatch: Any) -> None:
+    build = pytest.importorskip("scikit_build_core.build", reason="no scikit-build-core here")
+    if not (ROOT / ".git").exists():
+        pytest.skip("no checkout here, of which a source package is made")
+    monkeypatch.chdir(ROOT)
+    with tarfile.open(tmp_path / build.build_sdist(str(tmp_path))) as archive:
+        names = {name.partition("/")[2] for name in archive.getnames()}
+    assert {"LICENSE", "core/version.h", "scenes/extensions/glass.py"} <= names
+    assert not [name for name in names if name.startswith("extensions/")]
+
+
+def test_the_made_wheel_has_the_licence_and_the_package_alone() -> None:
+    wheels = sorted((ROOT / "dist").glob("daguerre-*.whl"))
+    if not wheels:
+        pytest.skip("no dist/daguerre-*.whl; script/make-wheels makes it")
+    for wheel in wheels:
+        with zipfile.ZipFile(wheel) as archive:
+            texts = {name: archive.read(name) for name in archive.namelist()}
+        assert {name.split("/")[0].partition("-")[0] for name in texts} <= {
+            "daguerre", "daguerre.libs",
+        }  # fmt: skip
+        assert any(name.endswith(".dist-info/licenses/LICENSE") for name in texts)
+        assert not [name for name, text in texts.items() if b"GPL-3.0-or-later" in text]

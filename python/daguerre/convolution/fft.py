@@ -2,11 +2,13 @@
 
 NumPy's own transforms (pocketfft) keep float32 and let other threads run since NumPy 2. All are
 orthonormal, with a factor of 1 / sqrt(n) each way: with a factor of 1, NumPy computes in double,
-which takes three times as long (seen in 2.4).
+which takes three times as long (seen in 2.4). NumPy 1.26 computes in double always and cannot write
+into a given array; the result is then rounded.
 """
 
 from __future__ import annotations
 
+import inspect
 import math
 import os
 from collections.abc import Callable
@@ -21,19 +23,30 @@ from numpy.typing import NDArray
 Real = NDArray[np.float32]
 Complex = NDArray[np.complex64]
 LINES = 64  # rows of a spectrum multiplied at a time, so that they stay in the cache
-_fft: Any = np.fft  # the type stubs of np.fft have no float32
+_WRITES = "out" in inspect.signature(np.fft.fft).parameters  # NumPy 2
 
 
 def fft(values: NDArray[Any], count: int, axis: int, out: Complex | None = None) -> Complex:
     """Transforms values along an axis, zero-padded to ``count``; orthonormal."""
-    made: Complex = _fft.fft(values, count, axis=axis, norm="ortho", out=out)
-    return made
+    return _transformed(np.fft.fft, values, count, axis, out)
 
 
 def rfft(values: Real, count: int, out: Complex | None = None) -> Complex:
     """Transforms real rows, zero-padded to ``count``; returns the first half of the spectrum."""
-    made: Complex = _fft.rfft(values, count, axis=1, norm="ortho", out=out)
-    return made
+    return _transformed(np.fft.rfft, values, count, 1, out)
+
+
+def _transformed(
+    transform: Any, values: NDArray[Any], count: int, axis: int, out: NDArray[Any] | None
+) -> NDArray[Any]:
+    """Calls one of NumPy's transforms, orthonormal; the result is ``out`` if that is given."""
+    if _WRITES:
+        return np.asarray(transform(values, count, axis=axis, norm="ortho", out=out))
+    made = transform(values, count, axis=axis, norm="ortho")
+    if out is None:
+        return np.asarray(made, np.result_type(values, np.complex64))
+    out[...] = made
+    return out
 
 
 def thread_count(threads: int) -> int:
@@ -136,7 +149,7 @@ class Fft2:
 
         def along_columns(part: slice) -> None:
             some = spectrum[:, part]
-            _fft.ifft(some, self.shape[0], axis=0, norm="ortho", out=some)
+            _transformed(np.fft.ifft, some, self.shape[0], 0, some)
 
         in_parallel(self.threads, self.spectrum_shape[1], along_columns)
         for at, piece in around(rows.start, count, self.shape[0]):
@@ -145,7 +158,7 @@ class Fft2:
 
     def _inverse_rows(self, spectrum: Complex, out: Real) -> None:
         def along_rows(part: slice) -> None:
-            _fft.irfft(spectrum[part], self.shape[1], axis=1, norm="ortho", out=out[part])
+            _transformed(np.fft.irfft, spectrum[part], self.shape[1], 1, out[part])
 
         in_parallel(self.threads, len(out), along_rows)
 

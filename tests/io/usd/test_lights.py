@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux
+from scipy.integrate import trapezoid
 
 import daguerre as dg
 from daguerre.io.usd.lighting import glows, unlit
@@ -217,8 +218,8 @@ def test_a_distant_light_shines_along_minus_z(stage: Usd.Stage) -> None:
 def test_the_cone_of_a_distant_light(degrees: float) -> None:
     half = math.radians(min(max(degrees, 0), 360)) / 2
     theta = np.linspace(0, half, 200_001)
-    facing = np.trapezoid(2 * math.pi * np.sin(theta) * np.maximum(np.cos(theta), 0), theta)
-    both = np.trapezoid(2 * math.pi * np.sin(theta) * np.abs(np.cos(theta)), theta)
+    facing = trapezoid(2 * math.pi * np.sin(theta) * np.maximum(np.cos(theta), 0), theta)
+    both = trapezoid(2 * math.pi * np.sin(theta) * np.abs(np.cos(theta)), theta)
     expected = (facing, both) if half > 0 else (1, 1)
     assert np.allclose(cone_size(degrees), expected, rtol=1e-6)
 
