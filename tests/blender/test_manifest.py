@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import sysconfig
 import tomllib
 import zipfile
 from pathlib import Path
@@ -184,21 +185,61 @@ def test_the_zip_installs_in_blender(tmp_path):
     found = make(own, others, tmp_path)
     assert found.returncode == 0, found.stderr
     (path,) = tmp_path.glob("*.zip")
-    home = tmp_path / "home"
+    facts, home = installed(tmp_path, path)
+    assert facts["lens"] == "blender"
+    for place in (facts["package"], facts["core"]):
+        assert Path(place).is_relative_to(home), place
+
+
+def test_the_made_zip_draws_in_a_blender_that_has_nothing_else(tmp_path):
+    """F12 in a Python with Blender and its NumPy alone: all else comes out of the zip."""
+    pytest.importorskip("bpy", reason="no bpy here, in which the zip is installed")
+    zips = sorted((ROOT / "dist").glob("daguerre-*-linux-x64.zip"), key=os.path.getmtime)
+    if not zips:
+        pytest.skip(
+            "no dist/daguerre-VERSION-linux-x64.zip; script/make-blender-extension makes it"
+        )
+    bare = tmp_path / "bare"
+    bare.mkdir()
+    for one in Path(sysconfig.get_path("platlib")).iterdir():
+        if one.name.split("-")[0].removesuffix(".libs") in OF_BLENDER:
+            (bare / one.name).symlink_to(one)
+    # OpenImageIO and more, which lie in the folder of Python where Blender is a program
+    paths = [bare, *bare.glob("bpy/*/python/lib/python*/site-packages")]
+    facts, home = installed(
+        tmp_path, zips[-1], "-S", picture=tmp_path / "a.exr",
+        PYTHONPATH=os.pathsep.join(map(str, paths)),
+    )  # fmt: skip
+    for name in ("daguerre", "nanobind_backend", "mmh3"):
+        assert Path(facts["modules"][name]).is_relative_to(home), facts["modules"][name]
+    others = [place for place in facts["modules"].values() if "site-packages" in place]
+    assert not [place for place in others if place.startswith(str(ROOT))], others
+    corner, middle = facts["colours"]
+    assert min(corner) > 0
+    assert min(middle) > 1.5 * max(corner)  # the lit cube before the grey world
+
+
+#: What Blender's own Python has, and what its network access needs.
+OF_BLENDER = {"bpy", "numpy", "requests", "urllib3", "idna", "charset_normalizer", "certifi"}
+
+
+def installed(folder, path, *options, picture=None, **variables):
+    """Facts of a Blender with a fresh home in which the zip is installed, and that home."""
+    home = folder / "home"
     home.mkdir()
     script = ROOT / "tests" / "support" / "blender_install.py"
+    words = [sys.executable, *options, script, path, *([picture] if picture else [])]
+    settings = {"BLENDER_USER_RESOURCES": str(home), **variables}
     found = subprocess.run(
-        [sys.executable, script, path], capture_output=True, text=True, check=False, timeout=300,
-        env={**os.environ, "BLENDER_USER_RESOURCES": str(home)},
+        words, capture_output=True, text=True, check=False, timeout=300, cwd=folder,
+        env={**os.environ, **settings},
     )  # fmt: skip
     lines = [line for line in found.stdout.splitlines() if line.startswith("FACTS ")]
     assert lines, found.stdout + found.stderr
     facts = json.loads(lines[0].removeprefix("FACTS "))
     assert facts["done"] == ["FINISHED"]
     assert facts["engine"] == "DAGUERRE"
-    assert facts["lens"] == "blender"
-    for place in (facts["package"], facts["core"]):
-        assert Path(place).is_relative_to(home), place
+    return facts, home
 
 
 def small_wheel():

@@ -59,18 +59,17 @@ def by_cycles(above, below):
     return picture().mean(axis=(0, 1))
 
 
-def by_daguerre(material, above, below):
+def by_daguerre(material, over, under):
     """Colour of the same sheet by the renderer, in Blender's values."""
     found = Read(material)
     corners = [[-2, 0, 2], [2, 0, 2], [2, 0, -2], [-2, 0, -2]]
     mesh = found.scene.add_mesh(np.array(corners, float), [[0, 1, 2], [0, 2, 3]])
     found.scene.add_instance(mesh, found.index)
-    sky = np.full((64, 8, 3), CD_PER_W * below, np.float32)
-    sky[:32] = CD_PER_W * above
+    sky = np.full((64, 8, 3), CD_PER_W * under, np.float32)
+    sky[:32] = CD_PER_W * over
     found.scene.set_environment(sky)
-    seen = dg.Camera(
-        dg.look_at((0, 2, 0), (0, 0, 0), up=(0, 0, -1)), focal_length=500.0, sensor_size=(36, 36)
-    )
+    above = dg.look_at((0, 2, 0.001), (0, 0, 0))
+    seen = dg.Camera(above, focal_length=500.0, sensor_size=(36.0, 36.0))
     frame = dg.render(found.scene, seen, resolution=(8, 8), spp=256, threads=1)
     return frame.xyz.mean((0, 1)) @ np.linalg.inv(RGB_TO_XYZ).T / CD_PER_W
 

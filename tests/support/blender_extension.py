@@ -80,9 +80,10 @@ def wheel_of_this(folder: Path) -> Path:
     core = Path(str(import_module("daguerre._core").__file__))
     package, info = Path(dg.__file__).parent, f"daguerre-{dg.__version__}.dist-info"
     files = {f"daguerre/{core.name}": core.read_bytes()}
-    for path in package.rglob("*"):
+    bundled = package.with_name("daguerre.libs")  # libraries that an installed wheel has
+    for path in (*package.rglob("*"), *bundled.glob("*")):
         if path.is_file() and path.suffix != ".pyc":
-            files[f"daguerre/{path.relative_to(package).as_posix()}"] = path.read_bytes()
+            files[path.relative_to(package.parent).as_posix()] = path.read_bytes()
     files[f"{info}/METADATA"] = (
         f"Metadata-Version: 2.1\nName: daguerre\nVersion: {dg.__version__}\n".encode()
     )
