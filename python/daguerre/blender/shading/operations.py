@@ -6,10 +6,10 @@ from collections.abc import Callable
 
 from daguerre.io.shading.evaluate import Operation
 
-from . import color_nodes, math_nodes, normal_nodes, texture_nodes
+from . import color_nodes, math_nodes, normal_nodes, pattern_nodes, texture_nodes
 from .network import GREY, MEAN
 
-_PATTERNS = ("Noise", "Voronoi", "Wave", "Gradient", "Magic", "Brick", "WhiteNoise", "Gabor")
+_PATTERNS = ("Wave", "Gradient", "Magic", "Brick", "Gabor")
 
 
 def operations(size_of: Callable[[], float]) -> dict[str, Operation]:
@@ -31,6 +31,9 @@ _FIXED: dict[str, Operation] = {
     "ShaderNodeVertexColor": texture_nodes.color_attribute,
     "ShaderNodeAttribute": texture_nodes.color_attribute,
     "ShaderNodeMapping": texture_nodes.mapping,
+    "ShaderNodeTexNoise": pattern_nodes.noise,
+    "ShaderNodeTexWhiteNoise": pattern_nodes.white_noise,
+    "ShaderNodeTexVoronoi": pattern_nodes.voronoi_texture,
     "ShaderNodeTexChecker": texture_nodes.checker,
     **{f"ShaderNodeTex{name}": texture_nodes.pattern for name in _PATTERNS},
     "ShaderNodeFresnel": texture_nodes.fresnel,

@@ -48,6 +48,12 @@ class Baker:
         Raises:
             UnsupportedError: A channel is no number and no picture.
         """
+        return self.several(lambda *values: (function(*values),), 1, *channels)[0]
+
+    def several(
+        self, function: Callable[..., Any], count: int, *channels: Channel
+    ) -> tuple[Channel, ...]:
+        """Applies a function with several results; see ``combined``."""
         for channel in channels:
             if isinstance(channel, Coordinate):
                 raise UnsupportedError("arithmetic on texture coordinates that is not affine")
@@ -55,19 +61,18 @@ class Baker:
                 raise UnsupportedError("arithmetic on colours of vertices")
         pictures = [channel for channel in channels if isinstance(channel, Texel)]
         if not pictures:
-            return _number(
+            return _numbers(
                 function, [channel for channel in channels if isinstance(channel, float)]
             )
         mapping = pictures[0].mapping
         size = _largest([one for one in pictures if one.mapping == mapping])
-        if not self._affords(size):
-            return _number(function, [self._mean(channel, None) for channel in channels])
+        if not self._affords(size, count):
+            return _numbers(function, [self._mean(channel, None) for channel in channels])
         arguments = [self._values(channel, mapping, size) for channel in channels]
         with np.errstate(all="ignore"):
-            found = np.asarray(function(*arguments), np.float32)
-        finite = np.nan_to_num(np.broadcast_to(found, size), nan=0.0, posinf=0.0, neginf=0.0)
+            results = function(*arguments)
         name = pictures[0].plane.name
-        return Texel(Plane(freeze_in_place(np.ascontiguousarray(finite)), name=name), mapping)
+        return tuple(Texel(Plane(_finite(one, size), name=name), mapping) for one in results)
 
     def resampled(self, channel: Channel, mapping: Mapping, size: tuple[int, int]) -> Channel:
         """Picture of a given size that lies on the surface in a given way; a number stays one."""
@@ -93,8 +98,8 @@ class Baker:
             return channel.mean()
         return channel if isinstance(channel, float) else 0.0
 
-    def _affords(self, size: tuple[int, int]) -> bool:
-        needed = size[0] * size[1] * 4
+    def _affords(self, size: tuple[int, int], count: int = 1) -> bool:
+        needed = size[0] * size[1] * 4 * count
         if needed > self._left:
             self.notes.add(_TOO_LARGE)
             return False
@@ -130,7 +135,14 @@ def _largest(pictures: list[Texel]) -> tuple[int, int]:
     return max(heights), max(widths)
 
 
-def _number(function: Callable[..., Any], numbers: list[float]) -> float:
+def _finite(values: Any, size: tuple[int, int]) -> NDArray[np.float32]:
+    """Picture of values, 0 where they are not finite."""
+    whole = np.broadcast_to(np.asarray(values, np.float32), size)
+    finite = np.nan_to_num(whole, nan=0.0, posinf=0.0, neginf=0.0)
+    return freeze_in_place(np.ascontiguousarray(finite))
+
+
+def _numbers(function: Callable[..., Any], numbers: list[float]) -> tuple[float, ...]:
     with np.errstate(all="ignore"):
-        found = float(function(*(np.float64(number) for number in numbers)))
-    return found if np.isfinite(found) else 0.0
+        found = [float(one) for one in function(*(np.float64(number) for number in numbers))]
+    return tuple(one if np.isfinite(one) else 0.0 for one in found)

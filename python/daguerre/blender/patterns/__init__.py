@@ -1,0 +1,1 @@
+"""Formulas of Blender's pattern textures in numpy, on coordinates of single precision."""

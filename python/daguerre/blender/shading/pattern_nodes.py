@@ -1,0 +1,209 @@
+"""Noise, White Noise and Voronoi textures: computed for each texel.
+
+Patterns are functions of coordinates. Where these are known for each texel, so is the pattern;
+else its mean stands for it, with a note.
+
+Source: Blender 5.0 Manual, "Texture Nodes"; see :mod:`daguerre.blender.patterns` for formulas.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from daguerre.blender.patterns import hashes, voronoi
+from daguerre.blender.patterns.blocks import in_blocks
+from daguerre.blender.patterns.cells import METRICS
+from daguerre.blender.patterns.fractals import FRACTALS, Octaves
+from daguerre.blender.patterns.noise import noise as noise_of
+from daguerre.io.shading.channels import Channel, Coordinate, Value, broadcast, fit
+from daguerre.io.shading.evaluate import Arguments
+
+from .outputs import Outputs
+from .sockets import Sockets
+
+#: Octaves that Blender computes at most.
+_MOST_DETAIL = 15.0
+_MIDDLE: Value = (0.5,)
+
+
+class Pattern:
+    """Reads what all patterns share: coordinates and their number.
+
+    Args:
+        given: Inputs of the node.
+        dimensions: Number of axes, "1D" .. "4D"; the last of "4D" and that of "1D" is ``W``.
+    """
+
+    def __init__(self, given: Arguments, dimensions: str = "3D") -> None:
+        self.sockets = Sockets(given)
+        self.axes = int(dimensions[0])
+        self._point: Value | None = None
+
+    def point(self, *, scaled: bool = True) -> Value | None:
+        """Coordinates; None: they are not known for each texel."""
+        found: Value | None = ()
+        if self.axes > 1:
+            found = self.sockets.linked("Vector")
+            if found is None:
+                return None
+            found = fit(found, 3)[: min(self.axes, 3)]
+        if self.axes in (1, 4):
+            found = (*found, *self.sockets.one("W"))
+        if any(isinstance(channel, Coordinate) for channel in found):
+            return None
+        return self.sockets.math.multiply(found, self.sockets.one("Scale")) if scaled else found
+
+    def detail(self) -> float:
+        """Number of octaves after the first."""
+        return min(max(self.sockets.number("Detail"), 0.0), _MOST_DETAIL)
+
+    def computed(
+        self, function: Callable[..., Sequence[Any]], count: int, point: Value, *values: Value
+    ) -> Value:
+        """Results of a function of coordinates and of numbers, for each texel."""
+        channels: list[Channel] = [*point, *(value[0] for value in values)]
+        apply = in_blocks(function, len(point), count)
+        return self.sockets.math.baker.several(apply, count, *channels)
+
+
+def averaged(sockets: Sockets, names: Sequence[str]) -> Mapping[str, Value]:
+    """A middle value in place of each output, with a note."""
+    sockets.note("the pattern is replaced by its mean")
+    return {name: broadcast(_MIDDLE, 3 if name in _COLORS else 1) for name in names}
+
+
+_COLORS = ("Color", "Position")
+
+
+def noise(given: Arguments) -> Mapping[str, Value]:
+    """Noise Texture."""
+    pattern = Pattern(given, given.text(".noise_dimensions", "3D"))
+    sockets, point = pattern.sockets, pattern.point()
+    if point is None:
+        return averaged(sockets, ("Fac", "Color"))
+    fractal = FRACTALS[sockets.text("noise_type", "FBM")]
+    detail, normalize = pattern.detail(), sockets.flag("normalize")
+    names = ("Roughness", "Lacunarity", "Offset", "Gain", "Distortion")
+
+    def made(colored: bool) -> Value:
+        def apply(*values: Any) -> list[Any]:
+            roughness, lacunarity, offset, gain, distortion = values[pattern.axes :]
+            octaves = Octaves(detail, np.maximum(roughness, 0), lacunarity, offset, gain, normalize)
+            at = values[: pattern.axes]
+            return noise_of(at, fractal, octaves, distortion, colored=colored)
+
+        parameters = (sockets.one(name) for name in names)
+        return pattern.computed(apply, 3 if colored else 1, point, *parameters)
+
+    return Outputs({"Fac": lambda: made(False), "Color": lambda: made(True)})
+
+
+def white_noise(given: Arguments) -> Mapping[str, Value]:
+    """White Noise Texture; without a link its vector is 0."""
+    pattern = Pattern(given, given.text(".noise_dimensions", "3D"))
+    point = pattern.point(scaled=False)
+    if point is None:
+        if pattern.sockets.is_linked("Vector"):
+            return averaged(pattern.sockets, ("Value", "Color"))
+        zeros: Value = (0.0,) * min(pattern.axes, 3)
+        point = (*zeros, *pattern.sockets.one("W")) if pattern.axes == 4 else zeros
+    at = point
+    return Outputs(
+        {
+            "Value": lambda: pattern.computed(lambda *v: [hashes.of_numbers(*v)], 1, at),
+            "Color": lambda: pattern.computed(lambda *v: hashes.color_of_numbers(v), 3, at),
+        }
+    )
+
+
+_FEATURES = {"F1": voronoi.nearest, "F2": voronoi.second, "SMOOTH_F1": voronoi.smooth}
+_VORONOI = ("Distance", "Color", "Position", "W", "Radius")
+
+
+def voronoi_texture(given: Arguments) -> Mapping[str, Value]:
+    """Voronoi Texture."""
+    pattern = Pattern(given, given.text(".voronoi_dimensions", "3D"))
+    sockets, point = pattern.sockets, pattern.point()
+    if point is None:
+        return averaged(sockets, _VORONOI)
+    feature = sockets.text("feature", "F1")
+    black: Value = (0.0, 0.0, 0.0)
+    nothing = {"Distance": black[:1], "Color": black, "Position": black, "W": black[:1]}
+    nothing["Radius"] = black[:1]
+    if feature == "N_SPHERE_RADIUS":
+        return Outputs(_kept(nothing) | {"Radius": lambda: _cells(pattern, point, _radius, 1)})
+    if feature == "DISTANCE_TO_EDGE":
+        return Outputs(_kept(nothing) | {"Distance": lambda: _cells(pattern, point, _edge, 1)})
+    return Outputs(_kept(nothing) | _of_points(pattern, point, feature))
+
+
+def _kept(values: Mapping[str, Value]) -> dict[str, Callable[[], Value]]:
+    return {name: lambda value=value: value for name, value in values.items()}  # type: ignore[misc]
+
+
+def _of_points(pattern: Pattern, point: Value, feature: str) -> dict[str, Callable[[], Value]]:
+    """Outputs of the features that are about the nearest points."""
+    axes, sockets = pattern.axes, pattern.sockets
+    done: list[Value] = []
+
+    def apply(at: list[Any], cells: voronoi.Cells) -> list[Any]:
+        sharp = feature == "SMOOTH_F1" and not np.any(cells.smoothness)
+        widest = cells.widest(axes) * np.float32(2 if feature == "F2" else 1)
+        which = _FEATURES["F1" if sharp else feature]
+        found = voronoi.fractal(at, cells, which, widest)
+        return [found.distance, *found.color, *found.position]
+
+    def all_() -> Value:
+        if not done:
+            done.append(_cells(pattern, point, apply, 4 + axes))
+        return done[0]
+
+    def position() -> Value:
+        return sockets.math.divide(all_()[4:], sockets.one("Scale"))
+
+    found: dict[str, Callable[[], Value]] = {
+        "Distance": lambda: all_()[:1],
+        "Color": lambda: all_()[1:4],
+    }
+    if axes > 1:
+        found["Position"] = lambda: fit(position()[:3], 3)
+    if axes in (1, 4):
+        found["W"] = lambda: position()[-1:]
+    return found
+
+
+def _radius(at: list[Any], cells: voronoi.Cells) -> list[Any]:
+    return [voronoi.sphere_radius(at, cells)]
+
+
+def _edge(at: list[Any], cells: voronoi.Cells) -> list[Any]:
+    return [voronoi.fractal_edge(at, cells)]
+
+
+def _cells(
+    pattern: Pattern, point: Value, function: Callable[[list[Any], Any], list[Any]], count: int
+) -> Value:
+    """Results of a function of coordinates and of the parameters of cells."""
+    sockets, axes = pattern.sockets, pattern.axes
+    detail, normalize = pattern.detail(), sockets.flag("normalize")
+    metric = METRICS[sockets.text("distance", "EUCLIDEAN")]
+    names = ("Randomness", "Exponent", "Smoothness", "Roughness", "Lacunarity")
+
+    def apply(*values: Any) -> list[Any]:
+        randomness, exponent, smoothness, roughness, lacunarity = values[axes:]
+        cells = voronoi.Cells(
+            np.clip(randomness, 0, 1),
+            metric,
+            exponent,
+            np.clip(smoothness / np.float32(2), 0, np.float32(0.5)),
+            detail,
+            np.clip(roughness, 0, 1),
+            lacunarity,
+            normalize,
+        )
+        return function(list(values[:axes]), cells)
+
+    return pattern.computed(apply, count, point, *(sockets.one(name) for name in names))
