@@ -25,6 +25,9 @@ class Grey:
     def needs(self, material):
         return Needs()
 
+    def binding(self, material, world):
+        return None
+
 
 def add_light(scene, matrix, light, name, notes):
     """A point light of the light's energy as its intensity."""

@@ -5,28 +5,40 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from functools import partial
+from math import isqrt
 from typing import Any
 
-from daguerre.files.notes import Notes
+import numpy as np
+
+from daguerre.files.notes import Notes, Silence
+from daguerre.io.materialx.graph import Graph
 from daguerre.io.shading.arithmetic import Arithmetic
 from daguerre.io.shading.assemble import Assembler
 from daguerre.io.shading.bake import Baker
 from daguerre.io.shading.channels import Texel, UnsupportedError, Value, VertexColor, numbers_of
 from daguerre.io.shading.evaluate import Context, Evaluator
-from daguerre.io.shading.surface import Surface
+from daguerre.io.shading.surface import Surface as Look
 from daguerre.io.shading.textures import Packer
 from daguerre.scene.materials import Diffuse, Gltf, Material
 from daguerre.scene.scene import Scene
 
 from .meshes import Needs
+from .shading.canvas import Canvas, UvCanvas
 from .shading.closures import Closure
 from .shading.network import Networks
 from .shading.operations import operations
+from .shading.painting import LEAST, TRIAL, Reads, canvas_of, reads_of, side_of
 from .shading.pictures import Pictures
+from .shading.surfaces import ATLAS, Surface
 from .shading.texture_nodes import ACTIVE
 from .shading.tree import Tree
 from .shading.uv_size import uv_size
 
+#: Texels of all canvases on which patterns are computed, and the share of what is left of them that
+#: one may have.
+MAX_TEXELS, _SHARE = 1 << 25, 8
+#: Bytes of the pictures that the patterns of one material may need.
+_LIMIT = 1 << 30
 #: Colour of surfaces without a material in Blender.
 _PLAIN = (0.8, 0.8, 0.8)
 _BLACK: Value = (0.0, 0.0, 0.0)
@@ -57,9 +69,11 @@ class Materials:
         self._notes = notes
         self._pictures = Pictures(scene, notes)
         self._baker = Baker(notes)
-        self._math = Arithmetic(self._baker)
         self._cache: dict[Any, Any] = {}
         self._made: dict[str | None, _Made] = {}
+        self._painted: dict[Any, _Made] = {}
+        self._graphs: dict[str, Graph | None] = {}
+        self._texels = MAX_TEXELS
 
     def index(self, material: Any) -> int:
         """Index of a material (``bpy.types.Material``) in the scene; None: a plain grey one.
@@ -74,7 +88,7 @@ class Materials:
 
         An empty name is the layer that is active for rendering.
         """
-        return tuple("" if name == ACTIVE else name for name in self._of(material).uv_sets[:2])
+        return _names(self._of(material).uv_sets)
 
     def color_attribute(self, material: Any) -> str | None:
         """Name of the colours of vertices that the base colour is multiplied with.
@@ -82,12 +96,68 @@ class Materials:
         An empty name is the attribute that is active for rendering. None: no colours; the mesh
         must hold none then, as the renderer always multiplies with them.
         """
-        name = self._of(material).colors
-        return "" if name == ACTIVE else name
+        return _name(self._of(material).colors)
 
     def needs(self, material: Any) -> Needs:
         """Layers that a mesh with a material must hold."""
         return Needs(self.uv_sets(material), self.color_attribute(material))
+
+    def binding(self, material: Any, world: Any) -> Any | None:
+        """Key of what a material depends on besides the mesh; None: it is the same on all meshes.
+
+        Args:
+            material: ``bpy.types.Material`` or None.
+            world: World from mesh in Blender's frame, shape (4, 4).
+        """
+        if material is None or material.node_tree is None:
+            return None
+        reads = self._reads(material)
+        if not reads.patterns:
+            return None
+        return str(material.name_full), np.asarray(world).tobytes() if reads.world else b""
+
+    def painted(self, material: Any, surface: Surface) -> tuple[int, Needs]:
+        """Index of a material whose patterns are computed for a surface, and layers that it reads.
+
+        Raises:
+            InputError: A tree of nodes or a picture is wrong; the message names the node.
+        """
+        made = self._paint(material, surface) or self._of(material)
+        return made.index, Needs(_names(made.uv_sets), _name(made.colors))
+
+    def _paint(self, material: Any, surface: Surface) -> _Made | None:
+        """Bakes the patterns of a material; None: the surface has no room for them."""
+        reads = self._reads(material)
+        trial = canvas_of(reads, surface, TRIAL)
+        most = isqrt(self._texels // _SHARE)
+        if trial is None or most < LEAST:
+            return None
+        alike = str(material.name_full), trial.mapping
+        if isinstance(trial, UvCanvas) and alike in self._painted:
+            return self._painted[alike]
+        with self._pictures.silent():
+            self._closure(material, surface, Baker(Silence(), _LIMIT, trial))
+        atlas = trial.mapping.primvar == ATLAS
+        canvas = canvas_of(reads, surface, side_of(trial.need, most, atlas))
+        assert canvas is not None
+        height, width = canvas.size
+        self._texels -= height * width
+        self._notes.add(
+            f"the patterns of a material are baked to textures of {width} x {height} texels"
+        )
+        self._painted[alike] = made = self._make(material, surface, canvas)
+        return made
+
+    def _reads(self, material: Any) -> Reads:
+        graph = self._graph(material)
+        return Reads() if graph is None else reads_of(graph)
+
+    def _graph(self, material: Any) -> Graph | None:
+        """Nodes of a material, read once."""
+        key = str(material.name_full)
+        if key not in self._graphs:
+            self._graphs[key] = Networks(self._notes).graph(material)
+        return self._graphs[key]
 
     def _of(self, material: Any) -> _Made:
         key = None if material is None else str(material.name_full)
@@ -98,38 +168,55 @@ class Materials:
     def _plain(self) -> _Made:
         return _Made(self._scene.add_material(Material(Diffuse(_PLAIN))))
 
-    def _make(self, material: Any) -> _Made:
+    def _make(
+        self, material: Any, on: Surface | None = None, canvas: Canvas | None = None
+    ) -> _Made:
         if material.node_tree is None:
             return _Made(self._scene.add_material(_displayed(material)))
+        baker = self._baker if canvas is None else Baker(self._notes, _LIMIT, canvas)
         try:
-            surface = _surface(self._closure(material))
-            return self._assembled(surface, str(material.name))
+            look = _look(self._closure(material, on, baker))
+            return self._assembled(look, str(material.name), baker)
         except UnsupportedError as error:
             self._notes.add(f"shading: {error} is not supported: the material is grey")
-            return self._assembled(Surface(base_color=_PLAIN), str(material.name))
+            return self._assembled(Look(base_color=_PLAIN), str(material.name), baker)
 
-    def _assembled(self, surface: Surface, name: str) -> _Made:
+    def _assembled(self, surface: Look, name: str, baker: Baker) -> _Made:
         """Adds the material of a surface."""
         sets = tuple(dict.fromkeys(_layers(surface, Texel)))
         if len(sets) > 2:
             self._notes.add("a material reads more than two UV layers")
         colors = next(iter(_layers(surface, VertexColor)), None)
-        assembler = Assembler(Packer(self._pictures, self._baker, sets), self._baker)
+        assembler = Assembler(Packer(self._pictures, baker, sets), baker)
         made = assembler.material(surface, name)
         return _Made(self._scene.add_material(made), sets, colors)
 
-    def _closure(self, material: Any) -> Closure:
+    def _closure(self, material: Any, on: Surface | None, baker: Baker) -> Closure:
         """Scattering and emission of a material's surface; black if it has none."""
-        graph = Networks(self._notes).graph(material)
+        graph = self._graph(material)
         if graph is None:
-            self._notes.add("a material without a surface is black")
+            baker.notes.add("a material without a surface is black")
             return Closure()
+        math = Arithmetic(baker)
         context = Context(
-            self._pictures, self._notes, self._math, time_s=self._scene.time, cache=self._cache
+            self._pictures, baker.notes, math, time_s=self._scene.time, cache=self._cache
         )
-        nodes = operations(partial(uv_size, material))
-        evaluator = Evaluator(graph, nodes, context)
-        return Tree(graph, evaluator, self._math).surface()
+        evaluator = Evaluator(graph, operations(partial(_unit, material, on)), context)
+        return Tree(graph, evaluator, math).surface()
+
+
+def _unit(material: Any, on: Surface | None, primvar: str) -> float:
+    """Length of one unit of texture coordinates, in units of the scene."""
+    length = None if on is None else on.length(primvar)
+    return uv_size(material) if length is None else length
+
+
+def _names(uv_sets: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple("" if name == ACTIVE else name for name in uv_sets[:2])
+
+
+def _name(colors: str | None) -> str | None:
+    return "" if colors == ACTIVE else colors
 
 
 def _displayed(material: Any) -> Material:
@@ -144,18 +231,18 @@ def _displayed(material: Any) -> Material:
     return Material(kind, name=str(material.name))
 
 
-def _surface(closure: Closure) -> Surface:
+def _look(closure: Closure) -> Look:
     """Surface with emission and opacity."""
     surface = closure.surface
     if surface is None:
-        surface = Surface(base_color=_BLACK, specular=(0.0,), roughness=(1.0,), double_sided=True)
+        surface = Look(base_color=_BLACK, specular=(0.0,), roughness=(1.0,), double_sided=True)
     numbers = numbers_of(closure.cover)
     is_whole = numbers is not None and numbers[0] >= 1
     mode = "opaque" if is_whole else "blend"
     return replace(surface, emissive=closure.emission, alpha=closure.cover[:1], alpha_mode=mode)
 
 
-def _layers(surface: Surface, kind: type[Texel | VertexColor]) -> Iterator[str]:
+def _layers(surface: Look, kind: type[Texel | VertexColor]) -> Iterator[str]:
     """Layers that the pictures, or the colours of vertices, of a surface are read by, in order."""
     for field in fields(surface):
         value = getattr(surface, field.name)

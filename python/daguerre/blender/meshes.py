@@ -16,10 +16,16 @@ from daguerre.scene.scene import Scene
 
 from .arrays import attribute, points_of, read
 from .frames import check_size
+from .shading.surfaces import Surface
 
 #: Times (S,) in s, and points of all vertices at each, shape (S, N, 3).
 Steps = tuple[Sequence[float], NDArray[np.float32]]
 Parts = list[tuple[int, int]]
+#: Mesh, slot, and the material that was made for the mesh; None: that of the slot.
+Added = list[tuple[int, int, int | None]]
+
+
+_STILL = np.eye(4)
 
 
 class Needs(NamedTuple):
@@ -44,6 +50,12 @@ class Materials(Protocol):
     def needs(self, material: Any) -> Needs:
         """Layers of a mesh that a material reads."""
 
+    def binding(self, material: Any, world: Any) -> Any | None:
+        """Key of what a material depends on besides the mesh; None: it is the same on all."""
+
+    def painted(self, material: Any, surface: Surface) -> tuple[int, Needs]:
+        """Index of a material that is made for a surface, and layers that it reads."""
+
 
 def slots_of(thing: Any) -> tuple[Any, ...]:
     """Materials of an object, by slot; at least one, which may be None."""
@@ -60,6 +72,7 @@ class Source:
         vertices: Vertex of each corner, shape (C,).
         triangles: Corners of each triangle, shape (T, 3).
         slots: Material slot of each triangle, shape (T,).
+        faces: Face of each triangle, shape (T,).
         normals: Unit normals of corners, shape (C, 3); None: the mesh is flat.
     """
 
@@ -68,6 +81,7 @@ class Source:
     vertices: NDArray[np.int32]
     triangles: NDArray[np.int32]
     slots: NDArray[np.int32]
+    faces: NDArray[np.int32]
     normals: NDArray[np.float32] | None
 
 
@@ -92,6 +106,7 @@ def source_of(mesh: Any, slots: int) -> Source:
         vertices,
         triangles,
         np.clip(chosen, 0, slots - 1),
+        faces,
         _normals(mesh, vertices),
     )
 
@@ -118,46 +133,62 @@ class Meshes:
         self._scene = scene
         self._materials = materials
         self._notes = notes
-        self._made: dict[tuple[int, tuple[Needs, ...]], Parts] = {}
+        self._made: dict[Any, Added] = {}
 
-    def index(self, thing: Any, steps: Steps | None = None) -> Parts:
+    def index(self, thing: Any, steps: Steps | None = None, world: Any = _STILL) -> Parts:
         """Pairs (mesh, material) of an evaluated object of type MESH; no pairs: no faces.
 
         Args:
             thing: ``bpy.types.Object``, evaluated.
             steps: Points over time. Copies share those of the first.
+            world: World from the object in Blender's frame, shape (4, 4).
         """
-        materials = slots_of(thing)
-        needs = tuple(self._materials.needs(material) for material in materials)
-        key = (thing.data.as_pointer(), needs)
+        slots = slots_of(thing)
+        plans = tuple(self._plan(material, world) for material in slots)
+        key = (thing.data.as_pointer(), plans)
         if key not in self._made:
-            self._made[key] = self._add(thing.data, needs, steps)
-        return [(mesh, self._materials.index(materials[slot])) for mesh, slot in self._made[key]]
+            self._made[key] = self._add(thing.data, slots, plans, steps, world)
+        return [
+            (mesh, self._materials.index(slots[slot]) if made is None else made)
+            for mesh, slot, made in self._made[key]
+        ]
 
-    def _add(self, mesh: Any, needs: Sequence[Needs], steps: Steps | None) -> Parts:
-        """Adds a mesh for each slot that some face has; returns pairs (mesh, slot)."""
-        source = source_of(mesh, len(needs))
+    def _plan(self, material: Any, world: Any) -> tuple[Any, Needs | None]:
+        """Key of a material that is made for the mesh, or what one for all meshes needs."""
+        key = self._materials.binding(material, world)
+        return (key, None) if key is not None else (None, self._materials.needs(material))
+
+    def _add(
+        self, mesh: Any, slots: Sequence[Any], plans: Sequence[Any], steps: Steps | None, world: Any
+    ) -> Added:
+        """Adds a mesh for each slot that some face has."""
+        source = source_of(mesh, len(slots))
         for points in (source.points, steps[1] if steps else source.points):
             check_size(points, f"mesh {mesh.name_full!r}: positions")
         used = np.unique(source.slots)
-        parts: Parts = []
+        parts: Added = []
         for slot in used.tolist():
             mine = source.slots == slot
-            triangles = source.triangles[mine] if len(used) > 1 else source.triangles
-            parts.append((self._part(source, triangles, needs[slot], steps), slot))
+            triangles, faces = source.triangles, source.faces
+            if len(used) > 1:
+                triangles, faces = triangles[mine], faces[mine]
+            surface = Surface(mesh, source.points, source.vertices, triangles, faces, world)
+            made, needs = None, plans[slot][1]
+            if needs is None:
+                made, needs = self._materials.painted(slots[slot], surface)
+            parts.append((self._part(source, surface, needs, steps), slot, made))
         return parts
 
-    def _part(
-        self, source: Source, triangles: NDArray[np.int32], needs: Needs, steps: Steps | None
-    ) -> int:
+    def _part(self, source: Source, surface: Surface, needs: Needs, steps: Steps | None) -> int:
         """Adds some triangles, with vertices for their corners."""
-        corners, index = triangles, None
+        triangles = corners = surface.triangles
+        index = None
         if len(triangles) < len(source.triangles):
             used = np.zeros(len(source.vertices), bool)
             used[triangles] = True
             index = np.flatnonzero(used)
             corners = (np.cumsum(used) - 1)[triangles]
-        values = self._layers(source, needs)
+        values = self._layers(source, surface, needs)
         if index is not None:
             values = {name: rows[index] for name, rows in values.items()}
         vertices = source.vertices if index is None else source.vertices[index]
@@ -173,26 +204,25 @@ class Meshes:
             **given,
         )
 
-    def _layers(self, source: Source, needs: Needs) -> dict[str, NDArray[np.float32]]:
+    def _layers(
+        self, source: Source, surface: Surface, needs: Needs
+    ) -> dict[str, NDArray[np.float32]]:
         """Values of corners, by argument of ``Scene.add_mesh``."""
         found = {"normals": source.normals}
         for key, name in zip(("uv", "uv1"), needs.uv, strict=False):
-            found[key] = self._uv(source.mesh, name)
+            found[key] = self._uv(surface, name)
         if needs.color is not None:
             found["colors"] = self._colors(source, needs.color)
         return {key: values for key, values in found.items() if values is not None}
 
-    def _uv(self, mesh: Any, name: str) -> NDArray[np.float32] | None:
+    def _uv(self, surface: Surface, name: str) -> NDArray[np.float32] | None:
         """Texture coordinates of corners, (0, 0) at the top left; None: there are none."""
-        layers = mesh.uv_layers
-        layer = layers.get(name) if name else next((x for x in layers if x.active_render), None)
-        if layer is None:
+        uv = surface.layer(name)
+        if uv is None:
             if name:
                 self._notes.add(f"UV map {name!r} is missing on a mesh")
             return None
-        uv = read(layer.uv, "vector", 2, np.float32)
-        np.subtract(1, uv[:, 1], out=uv[:, 1])
-        return uv
+        return np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1)
 
     def _colors(self, source: Source, name: str) -> NDArray[np.float32] | None:
         """Linear colours of corners; None: there are none."""

@@ -160,8 +160,11 @@ class _Translation:
         self, seen: Seen, world: Matrix, path: list[tuple[float, Matrix]] | None
     ) -> None:
         steps = self.motion.points.get(seen.identity) if self.motion.points else None
-        shapes = self._meshes if seen.object.type == "MESH" else self._hair
-        self._placing.add(shapes.index(seen.object, steps), seen.name, world, path)
+        if seen.object.type == "MESH":
+            parts = self._meshes.index(seen.object, steps, seen.matrix)
+        else:
+            parts = self._hair.index(seen.object, steps)
+        self._placing.add(parts, seen.name, world, path)
 
     def _add_light(self, seen: Seen, world: Matrix) -> None:
         scene = self._scene

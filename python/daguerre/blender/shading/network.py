@@ -203,6 +203,9 @@ def _special(node: Any) -> dict[str, Constant]:
         return {".value": Constant((float(node.outputs[0].default_value),))}
     if node.bl_idname == "ShaderNodeRGB":
         return {".value": Constant(tuple(float(c) for c in node.outputs[0].default_value[:3]))}
+    if node.bl_idname == "ShaderNodeTexCoord" and node.object is not None:
+        rows = [float(one) for row in node.object.matrix_world for one in row]
+        return {".object_matrix": Constant(tuple(rows))}
     image = getattr(node, "image", None)
     if image is None:
         return {}

@@ -39,11 +39,12 @@ def normal_map(given: Arguments) -> Value:
     return (*slopes, *arithmetic.mix((1.0,), (z,), arithmetic.fraction(strength)))
 
 
-def bump(size_of: Callable[[], float]) -> Any:
+def bump(size_of: Callable[[str], float]) -> Any:
     """Bump: the node's operation.
 
     Args:
-        size_of: Gives the length of one unit of texture coordinates on the surface, in scene units.
+        size_of: Gives the length of one unit of texture coordinates, by their name, on the surface,
+            in scene units.
     """
 
     def apply(given: Arguments) -> Value:
@@ -55,7 +56,7 @@ def bump(size_of: Callable[[], float]) -> Any:
             return FLAT
         scale = sockets.number("Distance") * (-1.0 if sockets.flag("invert") else 1.0)
         strength = max(sockets.number("Strength"), 0.0)
-        return _bumped(sockets, height, scale / size_of(), strength)
+        return _bumped(sockets, height, scale / size_of(height.mapping.primvar), strength)
 
     return apply
 

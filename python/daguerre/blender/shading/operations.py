@@ -12,12 +12,12 @@ from .network import GREY, MEAN
 _PATTERNS = ("Wave", "Gradient", "Magic", "Brick", "Gabor")
 
 
-def operations(size_of: Callable[[], float]) -> dict[str, Operation]:
+def operations(size_of: Callable[[str], float]) -> dict[str, Operation]:
     """Functions of the nodes by kind.
 
     Args:
-        size_of: Gives the length of one unit of texture coordinates on the surface of the
-            material, in scene units.
+        size_of: Gives the length of one unit of texture coordinates, by their name, on the surface
+            of the material, in scene units.
     """
     return {**_FIXED, "ShaderNodeBump": normal_nodes.bump(size_of)}
 
@@ -27,6 +27,7 @@ _FIXED: dict[str, Operation] = {
     MEAN: math_nodes.mean,
     "ShaderNodeTexImage": texture_nodes.image,
     "ShaderNodeTexCoord": texture_nodes.texture_coordinates,
+    "ShaderNodeNewGeometry": texture_nodes.geometry,
     "ShaderNodeUVMap": texture_nodes.uv_map,
     "ShaderNodeVertexColor": texture_nodes.color_attribute,
     "ShaderNodeAttribute": texture_nodes.color_attribute,

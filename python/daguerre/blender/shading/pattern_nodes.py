@@ -27,6 +27,19 @@ from .sockets import Sockets
 #: Octaves that Blender computes at most.
 _MOST_DETAIL = 15.0
 _MIDDLE: Value = (0.5,)
+#: Octaves that a texture resolves.
+_SEEN_DETAIL = 3.0
+#: Texels of a cell of noise, of a cell with sharp edges, and of white noise.
+_SMOOTH, _SHARP, _WHITE = 8.0, 16.0, 1.0
+
+
+def vector_of(sockets: Sockets, unlinked: Value | None = None) -> Value | None:
+    """Coordinates of a pattern; None: they are not known."""
+    found = sockets.linked("Vector")
+    if found is None and not sockets.is_linked("Vector"):
+        canvas = sockets.math.baker.canvas
+        found = unlinked if unlinked or canvas is None else canvas.vector("Generated")
+    return found
 
 
 class Pattern:
@@ -40,21 +53,38 @@ class Pattern:
     def __init__(self, given: Arguments, dimensions: str = "3D") -> None:
         self.sockets = Sockets(given)
         self.axes = int(dimensions[0])
-        self._point: Value | None = None
+        self.canvas = self.sockets.math.baker.canvas
 
-    def point(self, *, scaled: bool = True) -> Value | None:
-        """Coordinates; None: they are not known for each texel."""
-        found: Value | None = ()
+    def point(self, unlinked: Value | None = None) -> Value | None:
+        """Coordinates times the scale; None: they are not known for each texel.
+
+        Args:
+            unlinked: Coordinates without a link; default: "Generated" ones.
+        """
+        found: Value = ()
         if self.axes > 1:
-            found = self.sockets.linked("Vector")
-            if found is None:
+            vector = vector_of(self.sockets, unlinked)
+            if vector is None:
                 return None
-            found = fit(found, 3)[: min(self.axes, 3)]
+            found = fit(vector, 3)[: min(self.axes, 3)]
         if self.axes in (1, 4):
             found = (*found, *self.sockets.one("W"))
+        if self.canvas is not None:
+            found = tuple(self.canvas.placed(channel) for channel in found)
         if any(isinstance(channel, Coordinate) for channel in found):
             return None
-        return self.sockets.math.multiply(found, self.sockets.one("Scale")) if scaled else found
+        if "Scale" not in self.sockets.given.node.inputs:
+            return found
+        return self.sockets.math.multiply(found, self.sockets.one("Scale"))
+
+    def measure(self, point: Value, texels: float, detail: float = 0.0) -> None:
+        """Notes how many texels a cell needs; octaves after the third are too small to count."""
+        if self.canvas is None:
+            return
+        finer = 1.0
+        if detail:
+            finer = max(self.sockets.number("Lacunarity"), 1.0) ** min(detail, _SEEN_DETAIL)
+        self.canvas.measure(point, texels * finer)
 
     def detail(self) -> float:
         """Number of octaves after the first."""
@@ -86,6 +116,7 @@ def noise(given: Arguments) -> Mapping[str, Value]:
         return averaged(sockets, ("Fac", "Color"))
     fractal = FRACTALS[sockets.text("noise_type", "FBM")]
     detail, normalize = pattern.detail(), sockets.flag("normalize")
+    pattern.measure(point, _SMOOTH, detail)
     names = ("Roughness", "Lacunarity", "Offset", "Gain", "Distortion")
 
     def made(colored: bool) -> Value:
@@ -104,12 +135,10 @@ def noise(given: Arguments) -> Mapping[str, Value]:
 def white_noise(given: Arguments) -> Mapping[str, Value]:
     """White Noise Texture; without a link its vector is 0."""
     pattern = Pattern(given, given.text(".noise_dimensions", "3D"))
-    point = pattern.point(scaled=False)
+    point = pattern.point((0.0, 0.0, 0.0))
     if point is None:
-        if pattern.sockets.is_linked("Vector"):
-            return averaged(pattern.sockets, ("Value", "Color"))
-        zeros: Value = (0.0,) * min(pattern.axes, 3)
-        point = (*zeros, *pattern.sockets.one("W")) if pattern.axes == 4 else zeros
+        return averaged(pattern.sockets, ("Value", "Color"))
+    pattern.measure(point, _WHITE)
     at = point
     return Outputs(
         {
@@ -130,6 +159,7 @@ def voronoi_texture(given: Arguments) -> Mapping[str, Value]:
     if point is None:
         return averaged(sockets, _VORONOI)
     feature = sockets.text("feature", "F1")
+    pattern.measure(point, _SHARP, pattern.detail())
     black: Value = (0.0, 0.0, 0.0)
     nothing = {"Distance": black[:1], "Color": black, "Position": black, "W": black[:1]}
     nothing["Radius"] = black[:1]

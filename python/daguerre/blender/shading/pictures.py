@@ -7,6 +7,7 @@ are light in the working space.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from daguerre import memory
 from daguerre.blender.pictures import raw_pixels
 from daguerre.checks import freeze_in_place
 from daguerre.errors import InputError
-from daguerre.files.notes import Notes
+from daguerre.files.notes import Notes, Silence
 from daguerre.io.shading import udim
 from daguerre.io.shading.images import Picture, Textures
 from daguerre.io.shading.picture_bytes import bytes_of, decoded
@@ -73,6 +74,15 @@ class Pictures(Textures):
         most = MAX_BYTES if free is None else min(MAX_BYTES, int(_SHARE * free))
         self._limit = most if limit is None else limit
         self._left = self._limit
+
+    @contextmanager
+    def silent(self) -> Iterator[None]:
+        """Adds no notes for a while."""
+        notes, self._notes = self._notes, Silence()
+        try:
+            yield
+        finally:
+            self._notes = notes
 
     def picture(self, place: str, path: str) -> Picture | None:
         """Pixels of an image by its full name; None, and a note: it has none.

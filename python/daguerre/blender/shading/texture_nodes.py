@@ -11,7 +11,8 @@ Source: Blender 5.0 Manual, "Texture Nodes", "Input Nodes" and "Vector Nodes".
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,11 +20,23 @@ from numpy.typing import NDArray
 
 from daguerre.color import srgb
 from daguerre.io.materialx.graph import Constant
-from daguerre.io.shading.channels import Channel, Value, VertexColor, broadcast, coordinates, fit
+from daguerre.io.shading.bake import Canvas
+from daguerre.io.shading.channels import (
+    Channel,
+    Coordinate,
+    Texel,
+    Value,
+    VertexColor,
+    broadcast,
+    coordinates,
+    fit,
+)
 from daguerre.io.shading.color_spaces import Encoding
 from daguerre.io.shading.evaluate import Arguments, known_encoding
 from daguerre.io.shading.texture_nodes import file_of, sampled
 
+from .lookup import looked_up
+from .outputs import Outputs
 from .sockets import Sockets
 
 Matrix = NDArray[np.float64]
@@ -50,8 +63,12 @@ def image(given: Arguments) -> Mapping[str, Value]:
     wrap = _WRAPS.get(sockets.text("extension"), "repeat")
     filter = "nearest" if sockets.text("interpolation") == "Closest" else "linear"
     encoding = _encoding(given, picture)
-    found = sampled(given, uv, (wrap, wrap), filter, encoding, (0.0,) * 4)
+    moved = _is_computed(sockets, uv)
+    at = coordinates(ACTIVE) if moved else uv
+    found = sampled(given, at, (wrap, wrap), filter, encoding, (0.0,) * 4)
     assert found is not None  # the picture is there
+    if moved:
+        found = tuple(_looked_up(sockets, channel, fit(uv, 2)) for channel in found)
     color, alpha = found[:3], found[3:]
     mode = sockets.text("alpha")
     if mode == "NONE":
@@ -59,6 +76,27 @@ def image(given: Arguments) -> Mapping[str, Value]:
     elif mode != "CHANNEL_PACKED" and not sockets.flag("uses_alpha") and alpha != (1.0,):
         color = _over_black(sockets, color, alpha, encoded=encoding == _SRGB)
     return {"Color": color, "Alpha": alpha}
+
+
+def _is_computed(sockets: Sockets, uv: Value) -> bool:
+    """Whether coordinates are known for each texel only."""
+    pair = fit(uv, 2)
+    if any(isinstance(channel, Texel) for channel in pair):
+        return True
+    maps = {channel.primvar for channel in pair if isinstance(channel, Coordinate)}
+    return len(maps) > 1 and sockets.math.baker.canvas is not None
+
+
+def _looked_up(sockets: Sockets, channel: Channel, uv: Value) -> Channel:
+    """Channel of a picture at coordinates that differ from texel to texel."""
+    if not isinstance(channel, Texel):
+        return channel
+    baker = sockets.math.baker
+    if baker.canvas is not None:
+        height, width = channel.plane.pixels.shape
+        size = (float(width), float(height))
+        baker.canvas.measure(sockets.math.multiply(uv, size), 1.0)
+    return baker.combined(partial(looked_up, channel), *uv)
 
 
 def _over_black(sockets: Sockets, color: Value, alpha: Value, *, encoded: bool) -> Value:
@@ -79,31 +117,57 @@ def _encoding(given: Arguments, picture: Any) -> Encoding:
     return known_encoding(space, given.context.notes)
 
 
-class _Noted(Mapping[str, Value]):
-    """Outputs, some of which are stand-ins that add a note when they are read."""
-
-    def __init__(self, sockets: Sockets, values: Mapping[str, Value], notes: Mapping[str, str]):
-        self._sockets, self._values, self._notes = sockets, values, notes
-
-    def __getitem__(self, name: str) -> Value:
-        found = self._values[name]
-        if name in self._notes:
-            self._sockets.note(self._notes[name])
-        return found
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._values)
-
-    def __len__(self) -> int:
-        return len(self._values)
-
-
 def texture_coordinates(given: Arguments) -> Mapping[str, Value]:
-    """Texture Coordinate: UV; the others are stand-ins."""
+    """Texture Coordinate: UV; Generated and Object where a canvas knows them; else stand-ins."""
+    sockets = Sockets(given)
     uv = (*coordinates(ACTIVE), 0.0)
-    others = ("Generated", "Normal", "Object", "Camera", "Window", "Reflection")
-    notes = {name: f"{name!r} coordinates are read as 'UV'" for name in others}
-    return _Noted(Sockets(given), dict.fromkeys(("UV", *others), uv), notes)
+
+    def stand_in(name: str) -> Value:
+        sockets.note(f"{name!r} coordinates are read as 'UV'")
+        return uv
+
+    def known(name: str) -> Value:
+        canvas = sockets.math.baker.canvas
+        found = None if canvas is None else _on_canvas(sockets, canvas, name)
+        return stand_in(name) if found is None else found
+
+    others = ("Normal", "Camera", "Window", "Reflection")
+    makers = {name: partial(stand_in, name) for name in others}
+    makers |= {name: partial(known, name) for name in ("Generated", "Object")}
+    return Outputs({**makers, "UV": lambda: uv})
+
+
+def _on_canvas(sockets: Sockets, canvas: Canvas, name: str) -> Value | None:
+    """Coordinates at the texels of a canvas; those of another object are read in the world."""
+    place = sockets.given.node.inputs.get(".object_matrix")
+    if name != "Object" or not isinstance(place, Constant) or not isinstance(place.value, tuple):
+        return canvas.vector(name)
+    found = canvas.vector("Position")
+    world = np.array(place.value, np.float64).reshape(4, 4)
+    if found is None or not abs(np.linalg.det(world)) > 0:
+        return None
+    local = np.linalg.inv(world)
+    turned = _turned(sockets, found, local[:3, :3])
+    return sockets.math.add(turned, tuple(float(one) for one in local[:3, 3]))
+
+
+def geometry(given: Arguments) -> Mapping[str, Value]:
+    """Geometry: the position, where a canvas knows it."""
+    sockets = Sockets(given)
+
+    def position() -> Value:
+        canvas = sockets.math.baker.canvas
+        found = None if canvas is None else canvas.vector("Position")
+        return unknown("Position") if found is None else found
+
+    def unknown(name: str) -> Value:
+        sockets.note(f"{name!r} is not supported")
+        raise KeyError(name)
+
+    shape = ("Normal", "Tangent", "True Normal", "Incoming")
+    rest = ("Parametric", "Backfacing", "Pointiness", "Random Per Island")
+    makers = {name: partial(unknown, name) for name in (*shape, *rest)}
+    return Outputs({**makers, "Position": position})
 
 
 def uv_map(given: Arguments) -> Value:

@@ -118,7 +118,7 @@ class Arithmetic:
             ends = value.bias, value.bias + value.scale
             if value.plane.pixels.dtype == np.uint8 and low <= min(ends) and max(ends) <= high:
                 return value
-        if isinstance(value, Coordinate):
+        if isinstance(value, Coordinate) and self.baker.canvas is None:
             raise UnsupportedError("limits on texture coordinates")
         return self.baker.combined(
             lambda v, a, b: np.minimum(np.maximum(v, a), b), value, low, high

@@ -7,8 +7,8 @@ otherwise are replaced by their mean, with a note.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,16 @@ from numpy.typing import NDArray
 from daguerre.checks import freeze_in_place
 from daguerre.files.notes import Notes
 
-from .channels import Channel, Coordinate, Mapping, Plane, Texel, UnsupportedError, VertexColor
+from .channels import (
+    Channel,
+    Coordinate,
+    Mapping,
+    Plane,
+    Texel,
+    UnsupportedError,
+    Value,
+    VertexColor,
+)
 
 #: Limit on the bytes of all computed pictures of a stage, as a small graph could ask for many.
 MAX_BYTES = 2 << 30
@@ -26,16 +35,32 @@ _OTHER_MAPPING = (
 _TOO_LARGE = "a picture computed from others is too large: their means are combined"
 
 
+class Canvas(Protocol):
+    """Texels of a surface on which all that is known about it can be computed."""
+
+    def placed(self, channel: Channel) -> Channel:
+        """Coordinates, or a picture that lies otherwise, as texels of the canvas."""
+
+    def vector(self, name: str) -> Value | None:
+        """Coordinates of three axes by their name; None: they are not known."""
+
+    def measure(self, point: Value, texels: float) -> None:
+        """Notes that a cell of a pattern of these coordinates needs some texels."""
+
+
 class Baker:
     """Computes channels, and counts their bytes.
 
     Args:
         notes: Receives notes on what is not exact.
         limit: Most bytes of computed pictures.
+        canvas: Texels on which pictures that lie differently, and coordinates, are combined; None:
+            they are not.
     """
 
-    def __init__(self, notes: Notes, limit: int = MAX_BYTES) -> None:
+    def __init__(self, notes: Notes, limit: int = MAX_BYTES, canvas: Canvas | None = None) -> None:
         self.notes = notes
+        self.canvas = canvas
         self._left = limit
 
     def combined(self, function: Callable[..., Any], *channels: Channel) -> Channel:
@@ -54,6 +79,7 @@ class Baker:
         self, function: Callable[..., Any], count: int, *channels: Channel
     ) -> tuple[Channel, ...]:
         """Applies a function with several results; see ``combined``."""
+        channels = self.together(channels)
         for channel in channels:
             if isinstance(channel, Coordinate):
                 raise UnsupportedError("arithmetic on texture coordinates that is not affine")
@@ -73,6 +99,15 @@ class Baker:
             results = function(*arguments)
         name = pictures[0].plane.name
         return tuple(Texel(Plane(_finite(one, size), name=name), mapping) for one in results)
+
+    def together(self, channels: Sequence[Channel]) -> tuple[Channel, ...]:
+        """Channels that lie in one way on the surface, if there is a canvas."""
+        if self.canvas is None:
+            return tuple(channels)
+        ways = {one.mapping for one in channels if isinstance(one, Texel)}
+        if len(ways) < 2 and not any(isinstance(one, Coordinate) for one in channels):
+            return tuple(channels)
+        return tuple(self.canvas.placed(one) for one in channels)
 
     def resampled(self, channel: Channel, mapping: Mapping, size: tuple[int, int]) -> Channel:
         """Picture of a given size that lies on the surface in a given way; a number stays one."""

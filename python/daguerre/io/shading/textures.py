@@ -61,6 +61,7 @@ class Packer:
         if not by_vertices and any(isinstance(channel, VertexColor) for channel in channels):
             self._baker.notes.add(_ONLY_BASE)
         plain = [self._within_sets(self._without_vertices(channel)) for channel in channels]
+        plain = list(self._baker.together(plain))
         pictures = [channel for channel in plain if isinstance(channel, Texel)]
         if not pictures:
             return Packed(
