@@ -167,6 +167,69 @@ def test_smooth_voronoi_without_smoothness(tmp_path):
     compared(lambda tree: voronoi(tree, **options), "Distance", tmp_path)
 
 
+@pytest.mark.parametrize("profile", ["SIN", "SAW", "TRI"])
+@pytest.mark.parametrize(
+    ("kind", "direction"),
+    [
+        *(("BANDS", one) for one in ("X", "Y", "Z", "DIAGONAL")),
+        *(("RINGS", one) for one in ("X", "Y", "Z", "SPHERICAL")),
+    ],
+)
+def test_wave(kind, direction, profile, tmp_path):
+    options = {"wave_type": kind, f"{kind.lower()}_direction": direction, "wave_profile": profile}
+    inputs = {"Scale": 0.4, "Distortion": 0.7, "Detail": 1.5, "Detail Scale": 1.3}
+    inputs |= {"Detail Roughness": 0.6, "Phase Offset": 0.3}
+
+    def build(tree):
+        return tree.node("TexWave", {"Vector": random_numbers(tree, 1), **inputs}, **options)
+
+    compared(build, "Fac", tmp_path)
+
+
+KINDS = ["LINEAR", "QUADRATIC", "EASING", "DIAGONAL", "SPHERICAL", "QUADRATIC_SPHERE", "RADIAL"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_gradient(kind, tmp_path):
+    def build(tree):
+        vector = random_numbers(tree, 1, -0.7, 1.2)
+        return tree.node("TexGradient", {"Vector": vector}, gradient_type=kind)
+
+    compared(build, "Color", tmp_path)
+
+
+@pytest.mark.parametrize("depth", range(11))
+def test_magic(depth, tmp_path):
+    def build(tree):
+        inputs = {"Vector": random_numbers(tree, 1, -9, 9), "Scale": 0.7, "Distortion": 1.4}
+        return tree.node("TexMagic", inputs, turbulence_depth=depth)
+
+    compared(build, "Color" if depth % 2 else "Fac", tmp_path, 2e-4)
+
+
+@pytest.mark.parametrize("output", ["Color", "Fac"])
+@pytest.mark.parametrize("smooth", [0.0, 0.8])
+def test_brick(smooth, output, tmp_path):
+    def build(tree):
+        inputs = {"Vector": random_numbers(tree, 1), "Scale": 2.3, "Mortar Size": 0.07}
+        inputs |= {"Mortar Smooth": smooth, "Bias": 0.1, "Brick Width": 0.4, "Row Height": 0.3}
+        inputs |= {"Color1": (0.9, 0.1, 0.2), "Color2": (0.2, 0.7, 0.3), "Mortar": (0, 0, 1)}
+        options = {"offset": 0.3, "squash": 0.7, "offset_frequency": 3, "squash_frequency": 2}
+        return tree.node("TexBrick", inputs, **options)
+
+    compared(build, output, tmp_path)
+
+
+@pytest.mark.parametrize("output", ["Color", "Fac"])
+def test_checker(output, tmp_path):
+    def build(tree):
+        inputs = {"Vector": random_numbers(tree, 1), "Scale": 1.3}
+        inputs |= {"Color1": (0.9, 0.1, 0.2), "Color2": (0.2, 0.7, 0.3)}
+        return tree.node("TexChecker", inputs)
+
+    compared(build, output, tmp_path)
+
+
 def test_hash_of_words_is_that_of_its_author():
     """Words of zeros, and the value that follows from Jenkins' mixers by hand."""
     zero = np.zeros(1, np.uint32)

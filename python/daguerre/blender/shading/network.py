@@ -180,7 +180,7 @@ def default_of(socket: Any) -> Constant | None:
 
 
 def properties_of(node: Any) -> dict[str, Constant]:
-    """Choices of a node as texts, by ``.name``; its curves and ramp as tables of numbers."""
+    """Choices of a node as texts, by ``.name``; its numbers, curves and ramp as tables."""
     import bpy
 
     shared = bpy.types.ShaderNode.bl_rna.properties
@@ -192,6 +192,8 @@ def properties_of(node: Any) -> dict[str, Constant]:
             found[f".{one.identifier}"] = Constant(str(getattr(node, one.identifier)))
         elif one.type == "BOOLEAN" and not one.is_array:
             found[f".{one.identifier}"] = Constant("1" if getattr(node, one.identifier) else "")
+        elif one.type in ("INT", "FLOAT") and not one.is_array:
+            found[f".{one.identifier}"] = Constant((float(getattr(node, one.identifier)),))
     found |= {name: Constant(numbers) for name, numbers in table_of(node).items()}
     found |= _special(node)
     return found

@@ -6,10 +6,8 @@ from collections.abc import Callable
 
 from daguerre.io.shading.evaluate import Operation
 
-from . import color_nodes, math_nodes, normal_nodes, pattern_nodes, texture_nodes
+from . import color_nodes, math_nodes, normal_nodes, pattern_nodes, simple_nodes, texture_nodes
 from .network import GREY, MEAN
-
-_PATTERNS = ("Wave", "Gradient", "Magic", "Brick", "Gabor")
 
 
 def operations(size_of: Callable[[str], float]) -> dict[str, Operation]:
@@ -35,8 +33,12 @@ _FIXED: dict[str, Operation] = {
     "ShaderNodeTexNoise": pattern_nodes.noise,
     "ShaderNodeTexWhiteNoise": pattern_nodes.white_noise,
     "ShaderNodeTexVoronoi": pattern_nodes.voronoi_texture,
-    "ShaderNodeTexChecker": texture_nodes.checker,
-    **{f"ShaderNodeTex{name}": texture_nodes.pattern for name in _PATTERNS},
+    "ShaderNodeTexWave": simple_nodes.wave,
+    "ShaderNodeTexGradient": simple_nodes.gradient,
+    "ShaderNodeTexMagic": simple_nodes.magic,
+    "ShaderNodeTexBrick": simple_nodes.brick,
+    "ShaderNodeTexChecker": simple_nodes.checker,
+    "ShaderNodeTexGabor": pattern_nodes.unknown,
     "ShaderNodeFresnel": texture_nodes.fresnel,
     "ShaderNodeLayerWeight": texture_nodes.layer_weight,
     "ShaderNodeNormalMap": normal_nodes.normal_map,

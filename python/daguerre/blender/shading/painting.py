@@ -24,7 +24,10 @@ _LEAST_ATLAS = 512
 #: Side of the raster that tells whether a map overlaps itself, and the share that may.
 _PROBE, _OVERLAP = 256, 0.005
 #: Patterns that are computed.
-PATTERNS = ("ShaderNodeTexNoise", "ShaderNodeTexVoronoi", "ShaderNodeTexWhiteNoise")
+PATTERNS = tuple(
+    f"ShaderNodeTex{name}"
+    for name in ("Noise", "Voronoi", "WhiteNoise", "Wave", "Gradient", "Magic", "Brick", "Checker")
+)
 #: Patterns whose coordinates are 0 without a link, and not those of the surface.
 _UNPLACED = ("ShaderNodeTexWhiteNoise",)
 _COORDINATES, _GEOMETRY = "ShaderNodeTexCoord", "ShaderNodeNewGeometry"

@@ -55,11 +55,12 @@ class Pattern:
         self.axes = int(dimensions[0])
         self.canvas = self.sockets.math.baker.canvas
 
-    def point(self, unlinked: Value | None = None) -> Value | None:
+    def point(self, unlinked: Value | None = None, *, scaled: bool = True) -> Value | None:
         """Coordinates times the scale; None: they are not known for each texel.
 
         Args:
             unlinked: Coordinates without a link; default: "Generated" ones.
+            scaled: Whether they are multiplied with the scale.
         """
         found: Value = ()
         if self.axes > 1:
@@ -73,7 +74,7 @@ class Pattern:
             found = tuple(self.canvas.placed(channel) for channel in found)
         if any(isinstance(channel, Coordinate) for channel in found):
             return None
-        if "Scale" not in self.sockets.given.node.inputs:
+        if not scaled or not {"Scale", "=Scale"} & self.sockets.given.node.inputs.keys():
             return found
         return self.sockets.math.multiply(found, self.sockets.one("Scale"))
 
@@ -82,7 +83,7 @@ class Pattern:
         if self.canvas is None:
             return
         finer = 1.0
-        if detail:
+        if detail and "Lacunarity" in self.sockets.given.node.inputs:
             finer = max(self.sockets.number("Lacunarity"), 1.0) ** min(detail, _SEEN_DETAIL)
         self.canvas.measure(point, texels * finer)
 
@@ -103,6 +104,11 @@ def averaged(sockets: Sockets, names: Sequence[str]) -> Mapping[str, Value]:
     """A middle value in place of each output, with a note."""
     sockets.note("the pattern is replaced by its mean")
     return {name: broadcast(_MIDDLE, 3 if name in _COLORS else 1) for name in names}
+
+
+def unknown(given: Arguments) -> Mapping[str, Value]:
+    """Gabor Texture: a middle value."""
+    return averaged(Sockets(given), ("Value", "Phase", "Intensity"))
 
 
 _COLORS = ("Color", "Position")

@@ -62,8 +62,13 @@ class Sockets:
         """Property of the node that is on or off."""
         return bool(self.text(name))
 
+    def setting(self, name: str, default: float) -> float:
+        """Property of the node that is a number."""
+        found = self.table(name)
+        return found[0] if found else default
+
     def table(self, name: str) -> tuple[float, ...]:
-        """Row of a curve or ramp."""
+        """Row of a curve or ramp; a property that is a number has one entry."""
         found = self.given.node.inputs.get(f".{name}")
         numbers = found.value if isinstance(found, Constant) else ()
         return numbers if isinstance(numbers, tuple) else ()

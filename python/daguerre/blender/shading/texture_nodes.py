@@ -1,9 +1,4 @@
-"""Nodes of pictures and of texture coordinates, and stand-ins for computed patterns.
-
-Patterns that a formula makes (noise, Voronoi, waves, ...) have no counterpart in the renderer.
-Blender's own bake would need an operator, which it forbids while it renders, and changes to the
-user's scene; so a pattern is replaced by its mean, with a note. A user who wants it bakes it to an
-image in Blender.
+"""Nodes of pictures and of coordinates.
 
 Source: Blender 5.0 Manual, "Texture Nodes", "Input Nodes" and "Vector Nodes".
 """
@@ -27,7 +22,6 @@ from daguerre.io.shading.channels import (
     Texel,
     Value,
     VertexColor,
-    broadcast,
     coordinates,
     fit,
 )
@@ -229,27 +223,6 @@ def _turned(sockets: Sockets, vector: Value, matrix: Matrix) -> Value:
                 total = arithmetic.add(total, arithmetic.multiply((channel,), (float(factor),)))
         rows += total
     return tuple(rows)
-
-
-def checker(given: Arguments) -> Mapping[str, Value]:
-    """Checker Texture: the mean of its colours."""
-    sockets = Sockets(given)
-    sockets.note("the pattern is replaced by its mean")
-    mean = sockets.math.mix(sockets.value("Color1"), sockets.value("Color2"), (0.5,))
-    return {"Color": mean, "Fac": (0.5,)}
-
-
-def pattern(given: Arguments) -> Mapping[str, Value]:
-    """Other computed patterns: a middle value in place of each output."""
-    sockets = Sockets(given)
-    sockets.note("the pattern is replaced by its mean")
-    middle = (0.5,)
-    names = ("Fac", "Distance", "W", "Radius", "Height", "Value")
-    return {
-        **dict.fromkeys(names, middle),
-        "Color": broadcast(middle, 3),
-        "Position": broadcast(middle, 3),
-    }
 
 
 def fresnel(given: Arguments) -> Value:
