@@ -1,5 +1,7 @@
 """Scenes of Blender by script, and stand-ins for translators of materials, lights and cameras."""
 
+import importlib
+
 import numpy as np
 import pytest
 
@@ -99,6 +101,17 @@ def graph():
 def translated(**options):
     """The scene of the file, with stand-ins."""
     return scene_of(graph(), by=GREY, **options)
+
+
+def exported(folder, monkeypatch):
+    """File of Blender's own glTF exporter, without materials."""
+    exporter = importlib.import_module("io_scene_gltf2.blender.exp.primitive_extract")
+    monkeypatch.setattr(exporter, "ROUNDING_DIGIT", 9)  # it rounds normals to four digits
+    path = folder / "scene.glb"
+    bpy.ops.export_scene.gltf(
+        filepath=str(path), export_format="GLB", export_apply=True, export_materials="PLACEHOLDER"
+    )
+    return path
 
 
 def key(thing, path, frames):

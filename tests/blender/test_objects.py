@@ -261,6 +261,15 @@ def test_catchers_and_holdouts():
     assert found["mask"] not in (None, ("shadow",))
 
 
+def test_lamps_catch_no_shadows():
+    """Lamps have Blender's switch on, for the shadows that they cast; an area lamp stays a mesh."""
+    empty()
+    lamp = link(bpy.data.lights.new("lamp", "AREA"), "lamp")
+    assert lamp.is_shadow_catcher
+    found = {i.name: i.catcher for i in scene_of(graph()).instances}
+    assert found == {"lamp": None}
+
+
 def test_what_cannot_be_drawn_is_counted():
     """One note a kind; things without surfaces are none."""
     empty()
