@@ -58,7 +58,8 @@ def _views(corners: Array, face: Array) -> Array:
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal = np.stack([np.bincount(face, cross[:, i]) for i in range(3)], axis=1)
     axis = np.abs(normal).argmax(axis=1)
-    return 2 * axis + (np.take_along_axis(normal, axis[:, None], 1)[:, 0] >= 0)
+    positive = np.take_along_axis(normal, axis[:, None], 1)[:, 0] >= 0
+    return np.asarray(2 * axis + positive)
 
 
 def _seen(corners: Array, views: Array) -> Array:
@@ -112,7 +113,7 @@ def _packed(flat: Array, chart: Array) -> Array:
         if corner is not None:
             break
         scale *= _SHRINK
-    return (flat - low[chart][:, None]) * scale + (corner + gutter / 2)[chart][:, None]
+    return np.asarray((flat - low[chart][:, None]) * scale + (corner + gutter / 2)[chart][:, None])
 
 
 def _rows(size: Array) -> Array | None:
@@ -138,7 +139,7 @@ def _rows(size: Array) -> Array | None:
 
 def _folded(placed: Array, face: Array) -> Array:
     """Faces that share texels with others."""
-    raster = rasterized(placed * _PROBE, (_PROBE, _PROBE))
+    raster = rasterized(placed.astype(np.float64) * _PROBE, (_PROBE, _PROBE))
     twice = raster.covers > 1
     found = np.zeros(int(face.max()) + 1, bool)
     seen = raster.triangle[twice]

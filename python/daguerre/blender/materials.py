@@ -23,11 +23,11 @@ from daguerre.scene.materials import Diffuse, Gltf, Material
 from daguerre.scene.scene import Scene
 
 from .meshes import Needs
-from .shading.canvas import Canvas, UvCanvas
+from .shading.canvas import TRIAL, Canvas, UvCanvas
 from .shading.closures import Closure
 from .shading.network import Networks
 from .shading.operations import operations
-from .shading.painting import LEAST, TRIAL, Reads, canvas_of, reads_of, side_of
+from .shading.painting import LEAST, Reads, canvas_of, reads_of, side_of
 from .shading.pictures import Pictures
 from .shading.surfaces import ATLAS, Surface
 from .shading.texture_nodes import ACTIVE

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-#: Most texels that are tested at once.
-_MOST = 1 << 20
+#: Most texels of small triangles that are tested at once, and the least of a large one.
+_MOST, _LARGE = 1 << 18, 1 << 12
 #: Distance from the edges, in texels, beyond which two triangles on one texel overlap.
-_CLEAR = 0.25
+_CLEAR = np.float32(0.25)
 #: Distance around triangles, in texels, that belongs to them, so that filters see no seams.
-MARGIN = 2.0
+MARGIN = np.float32(2.0)
 
 
 @dataclass(frozen=True)
@@ -23,12 +23,13 @@ class Raster:
 
     Attributes:
         triangle: Number of the triangle at each texel, shape (H, W); -1: none.
-        weights: Barycentric coordinates, shape (H, W, 3); beyond 0 .. 1 in the margin.
+        weights: Barycentric coordinates of the first two corners, two arrays (H, W); beyond 0 .. 1
+            in the margin.
         covers: How many triangles cover the middle of each texel, shape (H, W).
     """
 
     triangle: NDArray[np.int32]
-    weights: NDArray[np.float32]
+    weights: tuple[NDArray[np.float32], NDArray[np.float32]]
     covers: NDArray[np.int32]
 
     @property
@@ -46,12 +47,45 @@ class Raster:
         """Values at all texels, shape (H, W, K), of those at corners, shape (T, 3, K)."""
         found = np.zeros((*self.triangle.shape, corners.shape[2]), np.float32)
         inside = self.inside
-        triangle, weights = self.triangle[inside], self.weights[inside]
-        total = np.zeros((len(triangle), corners.shape[2]))
-        for i in range(3):
-            total += weights[:, i, None] * corners[:, i].astype(np.float64)[triangle]
+        triangle = self.triangle[inside]
+        last = corners[:, 2]
+        total = last.astype(np.float32)[triangle]
+        for i in range(2):
+            side = (corners[:, i] - last).astype(np.float32)[triangle]
+            side *= self.weights[i][inside][:, None]
+            total += side
         found[inside] = total
         return found
+
+
+@dataclass(frozen=True)
+class _Planes:
+    """Barycentric coordinates of triangles as functions of texels.
+
+    Attributes:
+        low: Column and row of the box around each triangle, shape (T, 2).
+        extent: Columns and rows of the box, shape (T, 2).
+        factors: Coordinates of the first two corners at the middle of the box's first texel, and
+            their change from column to column and row to row, shape (T, 2, 3).
+        heights: Heights of the triangles over their three edges, in texels, shape (T, 3).
+    """
+
+    low: NDArray[np.int64]
+    extent: NDArray[np.int64]
+    factors: NDArray[np.float32]
+    heights: NDArray[np.float32]
+
+    def at(self, which: Any, column: Any, row: Any) -> tuple[Any, Any, Any]:
+        """Two coordinates, and the distance to the nearest edge, of texels of boxes."""
+        heights = self.heights[which]
+        found = []
+        for i in range(2):
+            start, across, down = np.moveaxis(self.factors[which, i], -1, 0)
+            found.append(start + across * column + down * row)
+        distance = (np.float32(1) - found[0] - found[1]) * heights[..., 2]
+        for i in range(2):
+            np.minimum(distance, found[i] * heights[..., i], out=distance)
+        return found[0], found[1], distance
 
 
 def rasterized(corners: NDArray[np.float64], size: tuple[int, int]) -> Raster:
@@ -61,70 +95,84 @@ def rasterized(corners: NDArray[np.float64], size: tuple[int, int]) -> Raster:
         corners: Corners in texels from the top left, shape (T, 3, 2), as (x, y).
         size: Rows and columns.
     """
-    raster = Raster(
-        np.full(size, -1, np.int32), np.zeros((*size, 3), np.float32), np.zeros(size, np.int32)
-    )
-    depth = np.full(size, -np.inf, np.float32)
-    for triangles, low, width, height in _chunks(corners, size):
-        _add(raster, depth, corners, _texels(triangles, low, width, height))
+    weights = np.zeros(size, np.float32), np.zeros(size, np.float32)
+    raster = Raster(np.full(size, -1, np.int32), weights, np.zeros(size, np.int32))
+    depth = np.full(size, -MARGIN, np.float32)
+    planes = _planes(corners, size)
+    texels = planes.extent.prod(axis=1)
+    for which in np.flatnonzero(texels >= _LARGE).tolist():
+        _add_large(raster, depth, planes, which)
+    for few in _portions(np.flatnonzero((texels > 0) & (texels < _LARGE)), texels):
+        _add_small(raster, depth, planes, few)
     return raster
 
 
-def _chunks(corners: NDArray[np.float64], size: tuple[int, int]) -> Iterator[tuple[Any, ...]]:
-    """Triangles with area, and the boxes around them in texels, in portions."""
+def _planes(corners: NDArray[np.float64], size: tuple[int, int]) -> _Planes:
+    """Planes of triangles; one without area has no box."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    area = _cross(b - a, c - a)
     limit = np.array([size[1], size[0]])
     low = np.clip(np.floor(corners.min(axis=1) - MARGIN), 0, limit).astype(np.int64)
     high = np.clip(np.ceil(corners.max(axis=1) + MARGIN), 0, limit).astype(np.int64)
-    extent = high - low
-    kept = np.flatnonzero((np.abs(area) > 1e-9) & (extent.min(axis=1) > 0))
-    sums = np.cumsum(extent[kept].prod(axis=1))
+    extent = np.where(np.abs(area)[:, None] > 1e-9, high - low, 0)
+    first = low + 0.5
+    with np.errstate(all="ignore"):
+        rows = [
+            np.stack([_cross(q - p, first - p), p[:, 1] - q[:, 1], q[:, 0] - p[:, 0]], axis=1)
+            for p, q in ((b, c), (c, a))
+        ]
+        factors = np.stack(rows, axis=1) / area[:, None, None]
+        edges = np.stack([c - b, a - c, b - a], axis=1)
+        heights = np.abs(area)[:, None] / np.hypot(edges[:, :, 0], edges[:, :, 1])
+    return _Planes(low, extent, factors.astype(np.float32), heights.astype(np.float32))
+
+
+def _cross(a: Any, b: Any) -> Any:
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+
+
+def _portions(chosen: NDArray[np.int64], texels: NDArray[np.int64]) -> Iterator[Any]:
+    """Triangles in portions of about ``_MOST`` texels."""
+    sums = np.cumsum(texels[chosen])
     start = 0
-    while start < len(kept):
+    while start < len(chosen):
         before = sums[start - 1] if start else 0
         end = max(int(np.searchsorted(sums, before + _MOST, "right")), start + 1)
-        chosen = kept[start:end]
-        yield chosen, low[chosen], extent[chosen, 0], extent[chosen, 1]
+        yield chosen[start:end]
         start = end
 
 
-def _texels(triangles: Any, low: Any, width: Any, height: Any) -> tuple[Any, Any, Any]:
-    """Triangle, column and row of all texels of boxes."""
-    count = width * height
-    which = np.repeat(np.arange(len(triangles)), count)
+def _add_large(raster: Raster, depth: Any, planes: _Planes, which: int) -> None:
+    """Adds one triangle, in all texels of its box."""
+    (left, top), (columns, rows) = planes.low[which], planes.extent[which]
+    part = slice(top, top + rows), slice(left, left + columns)
+    column = np.arange(columns, dtype=np.float32)
+    row = np.arange(rows, dtype=np.float32)[:, None]
+    one, two, distance = planes.at(which, column, row)
+    raster.covers[part] += distance > _CLEAR
+    deeper = distance > depth[part]
+    np.copyto(depth[part], distance, where=deeper)
+    np.copyto(raster.triangle[part], which, where=deeper)
+    np.copyto(raster.weights[0][part], one, where=deeper)
+    np.copyto(raster.weights[1][part], two, where=deeper)
+
+
+def _add_small(raster: Raster, depth: Any, planes: _Planes, few: NDArray[np.int64]) -> None:
+    """Adds many small triangles at once."""
+    extent = planes.extent[few]
+    count = extent.prod(axis=1)
+    which = np.repeat(np.arange(len(few)), count)
     within = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
-    column = low[which, 0] + within % width[which]
-    row = low[which, 1] + within // width[which]
-    return triangles[which], column, row
-
-
-def _add(raster: Raster, depth: Any, corners: Any, texels: tuple[Any, Any, Any]) -> None:
-    """Adds triangles at the texels where they lie deeper than those that are there."""
-    triangle, column, row = texels
-    weights, distance = _places(corners[triangle], column + 0.5, row + 0.5)
-    size = raster.covers.shape
-    place = row * size[1] + column
-    clear = distance > _CLEAR
-    raster.covers[...] += np.bincount(place[clear], minlength=size[0] * size[1]).reshape(size)
-    near = (distance >= -MARGIN) & (distance > depth[row, column])
-    order = np.flatnonzero(near)
+    row, column = np.divmod(within, extent[which, 0])
+    which = few[which]
+    one, two, distance = planes.at(which, column.astype(np.float32), row.astype(np.float32))
+    place = (planes.low[which, 1] + row) * depth.shape[1] + planes.low[which, 0] + column
+    np.add.at(raster.covers.reshape(-1), place[distance > _CLEAR], 1)
+    flat = depth.reshape(-1)
+    order = np.flatnonzero(distance > flat[place])
     order = order[np.argsort(distance[order], kind="stable")]  # the deepest is written last
-    row, column = row[order], column[order]
-    depth[row, column] = distance[order]
-    raster.triangle[row, column] = triangle[order]
-    raster.weights[row, column] = weights[order]
-
-
-def _places(corners: Any, x: Any, y: Any) -> tuple[Any, Any]:
-    """Barycentric coordinates (N, 3) of points, and distances to the nearest edge, in texels."""
-    crosses, lengths = [], []
-    for i in range(3):  # the edge across from corner i
-        p, q = corners[:, (i + 1) % 3], corners[:, (i + 2) % 3]
-        along = q - p
-        crosses.append(along[:, 0] * (y - p[:, 1]) - along[:, 1] * (x - p[:, 0]))
-        lengths.append(np.hypot(along[:, 0], along[:, 1]))
-    area = sum(crosses)
-    weights = np.stack([cross / area for cross in crosses], axis=1)
-    heights = np.abs(area)[:, None] / np.stack(lengths, axis=1)
-    return weights, (weights * heights).min(axis=1).astype(np.float32)
+    place = place[order]
+    flat[place] = distance[order]
+    raster.triangle.reshape(-1)[place] = which[order]
+    raster.weights[0].reshape(-1)[place] = one[order]
+    raster.weights[1].reshape(-1)[place] = two[order]

@@ -49,4 +49,4 @@ def _shifted(point: Point, seed: int) -> list[Array]:
 
 
 def _offset(*key: Array) -> np.float32:
-    return np.float32(100) + of_numbers(*key)[0] * np.float32(100)
+    return np.float32(100 + of_numbers(*key)[0] * np.float32(100))

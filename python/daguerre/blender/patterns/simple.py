@@ -6,6 +6,7 @@ Source: Cycles, ``kernel/svm/wave.h``, ``gradient.h``, ``magic.h``, ``brick.h`` 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -82,7 +83,7 @@ def gradient(point: list[Array], kind: str) -> Array:
     """Gradient Texture: 0 .. 1."""
     x, y, z = point
     ball = np.maximum(_SHRINK - np.sqrt(x * x + y * y + z * z), 0)
-    found = {
+    choices: dict[str, Callable[[], Any]] = {
         "LINEAR": lambda: x,
         "QUADRATIC": lambda: np.maximum(x, 0) ** 2,
         "EASING": lambda: _eased(np.clip(x, 0, 1)),
@@ -90,8 +91,8 @@ def gradient(point: list[Array], kind: str) -> Array:
         "RADIAL": lambda: np.arctan2(y, x) / _TURN + _HALF,
         "QUADRATIC_SPHERE": lambda: ball * ball,
         "SPHERICAL": lambda: ball,
-    }[kind]()
-    return np.asarray(np.clip(found, 0, 1))
+    }
+    return np.asarray(np.clip(choices[kind](), 0, 1))
 
 
 def _eased(t: Any) -> Any:

@@ -21,6 +21,8 @@ from .lookup import looked_up
 from .surfaces import Surface
 
 Array = NDArray[Any]
+#: Longer side of the canvas on which a material is tried; only such a one is measured.
+TRIAL = 128
 #: Share of the steps between texels that the size of a canvas is made for.
 _MOST_STEPS = 80
 #: Least extent of a range of coordinates.
@@ -39,7 +41,7 @@ class Canvas(ABC):
     Attributes:
         mapping: How the canvas lies on the surface.
         size: Rows and columns.
-        need: Texels that patterns and pictures want, per texel and axis.
+        need: Texels that patterns and pictures want, per texel and axis, if this is a trial.
     """
 
     def __init__(self, surface: Surface, primvar: str, span: Array, size: tuple[int, int]) -> None:
@@ -96,6 +98,8 @@ class Canvas(ABC):
         self._measured([one for one in arrays if one.shape == self.size], texels)
 
     def _measured(self, arrays: list[Array], texels: float) -> None:
+        if max(self.size) > TRIAL:
+            return
         inside = self.inside
         for values in arrays:
             for axis in (0, 1):

@@ -18,13 +18,14 @@ def looked_up(texel: Texel, u: Any, v: Any) -> Array:
     u, v = np.asarray(u, np.float64), np.asarray(v, np.float64)
     values = texel.values()
     height, width = values.shape
-    column = _finite(a * u + b * v + c) * width
-    row = (1 - _finite(d * u + e * v + f)) * height
+    column: Array = _finite(a * u + b * v + c) * width
+    row: Array = (1 - _finite(d * u + e * v + f)) * height
     across, down = texel.mapping.wrap
     if texel.mapping.filter == "nearest":
         return values[_index(np.floor(row), height, down), _index(np.floor(column), width, across)]
     column, row = column - 0.5, row - 0.5
-    left, top = np.floor(column), np.floor(row)
+    left: Array = np.floor(column)
+    top: Array = np.floor(row)
     share_x, share_y = (column - left).astype(np.float32), (row - top).astype(np.float32)
     columns = [_index(left + i, width, across) for i in (0, 1)]
     rows = [_index(top + i, height, down) for i in (0, 1)]

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from daguerre.blender.raster import Raster, rasterized
 from daguerre.io.materialx.graph import Constant, Graph, Link, Node
 
-from .canvas import Canvas, SurfaceCanvas, UvCanvas
+from .canvas import TRIAL, Canvas, SurfaceCanvas, UvCanvas
 from .surfaces import ATLAS, Surface
 from .texture_nodes import ACTIVE
 
 Array = NDArray[Any]
-#: Longer side of the canvas on which a material is tried, and of the smallest and the largest.
-TRIAL, LEAST, MOST = 128, 64, 2048
+#: Longer side of the smallest and the largest canvas.
+LEAST, MOST = 64, 2048
 #: Least side of an atlas, so that room is left between its charts.
 _LEAST_ATLAS = 512
 #: Side of the raster that tells whether a map overlaps itself, and the share that may.
@@ -124,7 +124,9 @@ def canvas_of(reads: Reads, surface: Surface, side: int) -> Canvas | None:
         return None if span is None else UvCanvas(surface, primvar, span, _size(span, side))
     primvar = reads.primvars[0] if reads.primvars else ACTIVE
     span = _span(surface, primvar)
-    if span is None or not _is_flat(surface, primvar, span):
+    if span is not None and primvar not in surface.flat:
+        surface.flat[primvar] = _is_flat(surface, primvar, span)
+    if span is None or not surface.flat[primvar]:
         primvar, span = ATLAS, np.array([[0.0, 0.0], [1.0, 1.0]])
     raster = _raster(surface, primvar, span, _size(span, side))
     return SurfaceCanvas(surface, primvar, span, raster)

@@ -92,7 +92,8 @@ def brick(given: Arguments) -> Mapping[str, Value]:
     names = ("Mortar Size", "Mortar Smooth", "Bias", "Brick Width", "Row Height")
 
     def apply(*values: Any) -> list[Any]:
-        wall = simple.Bricks(*values[3:], offset, rows[0], squash, rows[1])
+        size, smooth, bias, width, height = values[3:]
+        wall = simple.Bricks(size, smooth, bias, width, height, offset, rows[0], squash, rows[1])
         return list(simple.bricks(list(values[:3]), wall))
 
     tint, share = pattern.computed(apply, 2, point, *(sockets.one(name) for name in names))

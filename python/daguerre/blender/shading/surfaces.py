@@ -27,6 +27,7 @@ class Surface:
         triangles: Corners of the triangles of these faces, shape (T, 3).
         faces: Face of each of these triangles, shape (T,).
         world: World from mesh in Blender's frame, shape (4, 4).
+        flat: Whether maps do not overlap themselves, by name, as far as that is known.
     """
 
     mesh: Any
@@ -35,6 +36,7 @@ class Surface:
     triangles: Array
     faces: Array
     world: Array
+    flat: dict[str, bool] = field(default_factory=dict)
     _atlas: list[Array] = field(default_factory=list)
 
     def uv(self, primvar: str) -> Array:
@@ -75,11 +77,11 @@ class Surface:
         """
         rows = self.vertices[self.triangles]
         if name == "Object":
-            return self.points[rows]
+            return np.asarray(self.points[rows])
         if name == "Position":
-            return self.points[rows] @ self.world[:3, :3].T + self.world[:3, 3]
+            return np.asarray(self.points[rows] @ self.world[:3, :3].T + self.world[:3, 3])
         if name == "Generated":
-            return self._generated()[rows]
+            return np.asarray(self._generated()[rows])
         return None
 
     def _generated(self) -> Array:
@@ -87,7 +89,7 @@ class Surface:
         points = self._undeformed().astype(np.float64)
         size = np.array(self.mesh.texspace_size, np.float64)
         low = np.array(self.mesh.texspace_location, np.float64) - size
-        return (points - low) / np.where(size > 0, 2 * size, 1)
+        return np.asarray((points - low) / np.where(size > 0, 2 * size, 1))
 
     def _undeformed(self) -> Array:
         """Places of vertices before they are deformed; outside of renders without modifiers."""
