@@ -15,7 +15,7 @@ CYCLES = "CYCLES"
 
 def _camera(context: Any) -> Any:
     """Camera object of the panel, or of the scene; None: there is none."""
-    thing = getattr(context, "object", None)
+    thing: Any = getattr(context, "object", None)
     is_shown = getattr(context, "camera", None) is not None and thing is not None
     return thing if is_shown and thing.type == "CAMERA" else context.scene.camera
 

@@ -24,7 +24,7 @@ class CameraPanel:
 
     def __init__(self, data: Any, *, always: bool = False) -> None:
         self._always = always
-        self._group = getattr(data, "daguerre", None)
+        self._group: Any = getattr(data, "daguerre", None)
 
     def chosen(self, name: str) -> Any:
         """Value of a property; None if it does not count, or names nothing."""

@@ -32,11 +32,13 @@ def looked_up(texel: Texel, u: Any, v: Any) -> Array:
     upper, lower = (
         values[at, columns[0]] * (1 - share_x) + values[at, columns[1]] * share_x for at in rows
     )
-    return np.asarray(upper * (1 - share_y) + lower * share_y)
+    found: Array = upper * (1 - share_y) + lower * share_y
+    return found
 
 
 def _finite(values: Array) -> Array:
-    return np.clip(np.nan_to_num(values), -1e9, 1e9)
+    clipped: Array = np.clip(np.nan_to_num(values), -1e9, 1e9)
+    return clipped
 
 
 def _index(at: Array, count: int, wrap: str) -> NDArray[np.int64]:

@@ -140,7 +140,7 @@ def _on_canvas(sockets: Sockets, canvas: Canvas, name: str) -> Value | None:
     world = np.array(place.value, np.float64).reshape(4, 4)
     if found is None or not abs(np.linalg.det(world)) > 0:
         return None
-    local = np.linalg.inv(world)
+    local: Matrix = np.asarray(np.linalg.inv(world), np.float64)
     turned = _turned(sockets, found, local[:3, :3])
     return sockets.math.add(turned, tuple(float(one) for one in local[:3, 3]))
 
