@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import re
+import shutil
+import subprocess
+import sys
 import tarfile
 import tomllib
 import zipfile
@@ -15,6 +18,10 @@ import yaml
 import daguerre as dg
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "packaging"))
+
+import own_symbols  # noqa: E402
+
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 RECIPE = yaml.safe_load((ROOT / "packaging" / "conda-recipe.yaml").read_text())
 #: Names that differ in conda's channel; nanobind's library is linked there, so None.
@@ -76,3 +83,45 @@ def test_the_made_wheel_has_the_licence_and_the_package_alone() -> None:
         }  # fmt: skip
         assert any(name.endswith(".dist-info/licenses/LICENSE") for name in texts)
         assert not [name for name, text in texts.items() if b"GPL-3.0-or-later" in text]
+
+
+CORE_C = "int answer(void); int asked(void) { return answer(); }"
+ASKS = (
+    "import ctypes, sys; ctypes.CDLL(sys.argv[1], ctypes.RTLD_GLOBAL);"
+    "print(ctypes.CDLL(sys.argv[2]).asked())"
+)
+
+
+@pytest.fixture
+def linked(tmp_path: Path) -> tuple[Path, Path, Path]:
+    """Our library, which answers 1, a core that asks it, and a library of others: 2."""
+    if not all(map(shutil.which, ("gcc", "nm", "patchelf"))):
+        pytest.skip("wanted gcc, nm and patchelf")
+    ours, core, theirs = (tmp_path / name for name in ("libours.so", "core.so", "libtheirs.so"))
+    origin = [f"-L{tmp_path}", "-lours", f"-Wl,-rpath,{tmp_path}"]
+    build(ours, "int answer(void) { return 1; }", "-Wl,-soname,libours.so")
+    build(core, CORE_C, *origin)
+    build(theirs, "int answer(void) { return 2; }")
+    return ours, core, theirs
+
+
+def build(path: Path, text: str, *more: str) -> None:
+    source = path.with_suffix(".c")
+    source.write_text(text)
+    subprocess.run(["gcc", "-shared", "-fPIC", "-o", str(path), str(source), *more], check=True)
+
+
+def asked(core: Path, theirs: Path) -> str:
+    """What the core hears in a program that has loaded the library of others first."""
+    words = [sys.executable, "-c", ASKS, str(theirs), str(core)]
+    return subprocess.run(words, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def test_no_library_of_the_program_answers_for_that_of_the_wheel(
+    linked: tuple[Path, Path, Path],
+) -> None:
+    ours, core, theirs = linked
+    assert asked(core, theirs) == "2"  # the fault, without our step
+    own_symbols.rename(ours, core)
+    assert asked(core, theirs) == "1"
+    assert own_symbols.defined(ours) == ["daguerre_answer"]
