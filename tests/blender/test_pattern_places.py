@@ -280,3 +280,23 @@ def test_atlas_has_no_overlap():
     assert raster.overlap == 0
     assert len(np.unique(raster.triangle)) == len(triangles) + 1
     assert np.count_nonzero(raster.covers) > 0.3 * 1024**2
+
+
+@pytest.mark.parametrize("layers", [True, False])
+def test_bump_of_a_pattern_has_its_slope(layers):
+    """A height that rises by 1 over 2 m has the normal (-1/2, 0, 1) / sqrt(5/4)."""
+    tree = Tree()
+    height = tree.node("TexGradient", {"Vector": tree.node("TexCoord").outputs["Generated"]})
+    bump = tree.node("Bump", {"Height": height.outputs["Fac"], "Strength": 1.0, "Distance": 1.0})
+    tree.surface(tree.node("BsdfDiffuse", {"Normal": bump.outputs[0]}))
+    stage(tree.material)
+    if not layers:
+        data = bpy.context.object.data
+        data.uv_layers.remove(data.uv_layers[0])
+    scene = translated()
+    kind = scene.materials[scene.instances[0].material].kind
+    texture = scene.textures[kind.normal_texture.texture]
+    height, width = texture.pixels.shape[:2]
+    middle = np.asarray(texture.pixels)[height // 2, width // 2, :3] * 2.0 - 1
+    middle[:2] *= kind.normal_scale
+    np.testing.assert_allclose(middle, np.array([-0.5, 0, 1]) / np.sqrt(1.25), atol=2e-3)
