@@ -13,6 +13,7 @@ from daguerre.rendering.loop import Loop
 from daguerre.rendering.schedule import work_of
 from daguerre.rendering.session import Session
 
+from . import denoising
 from .translation import Shot
 
 #: Time between two questions whether to stop, s.
@@ -149,9 +150,10 @@ def _finished(session: Session, *, denoises: bool) -> Frame:
     frame = session.frame()
     if not denoises:
         return frame
-    from daguerre.rendering.denoise import denoise
+    from daguerre.rendering.denoise import denoise, denoised
 
-    return denoise(frame)
+    blenders = denoising.of_blender()
+    return denoise(frame) if blenders is None else denoised(frame, blenders)
 
 
 def check_denoiser() -> None:
@@ -162,4 +164,5 @@ def check_denoiser() -> None:
     """
     from daguerre.rendering.denoise import check_available
 
-    check_available()
+    if denoising.of_blender() is None:
+        check_available()

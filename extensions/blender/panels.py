@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from . import choices, lens_facts, lens_picture, translation
+from . import choices, denoising, lens_facts, lens_picture, translation
 from .engine import ENGINE
 
 #: Blender's panels that show for its simplest engine, but set what Daguerre does not have.
@@ -168,6 +168,11 @@ class DAGUERRE_PT_sampling(_Panel, bpy.types.Panel):
     bl_label = "Sampling"
     bl_context = "render"
     rows = ("spp", "noise", "light_paths", "denoise")
+
+    def warnings(self, context: Any) -> dict[str, str]:
+        if not self.group(context).denoise or denoising.is_there():
+            return {}
+        return {"denoise": "No denoiser here: use the compositor's Denoise node"}
 
 
 class DAGUERRE_PT_photograph(_Panel, bpy.types.Panel):

@@ -112,7 +112,11 @@ _SCENE = {
         description="Relative error at which a pixel is done; 0: all pixels get all samples",
     ),
     "light_paths": _choice("Light paths", choices.LIGHT_PATHS, _words(TABLE["light_paths"])),
-    "denoise": BoolProperty(name="Denoise", description="Denoise the picture at the end"),
+    "denoise": BoolProperty(
+        name="Denoise",
+        description="Denoise the picture at the end, by Open Image Denoise. The compositor's "
+        "Denoise node does the same, with the passes denoise_albedo and denoise_normal",
+    ),
     "photograph": BoolProperty(
         name="Photograph", description="Write an exposed and developed picture beside the render"
     ),

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from importlib import import_module
 from importlib.metadata import version
@@ -20,6 +20,7 @@ from daguerre.files import extras
 
 from .adaptive import DARK
 from .denoise_catchers import clean_catchers
+from .denoiser import Denoiser
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
@@ -66,25 +67,32 @@ def denoise(frame: Frame) -> Frame:
         InputError: The denoiser failed.
     """
     check_available()
-    cleaner = Cleaner.of(frame)
+    return denoised(frame, Denoiser(f"{PACKAGE} {version(PACKAGE)}", _run))
+
+
+def denoised(frame: Frame, by: Denoiser) -> Frame:
+    """Returns a copy of the frame that another denoiser made; see :func:`denoise`."""
+    cleaner = Cleaner.of(frame, by.run)
     clean, left = _cleaned(frame, cleaner)
-    facts: dict[str, Any] = {"denoised": f"{PACKAGE} {version(PACKAGE)}"}
+    facts: dict[str, Any] = {"denoised": by.name}
     if left is not None:
         facts["denoised_noise"] = left
         if "noise" in frame.metadata:
             facts |= {"noise": left, "noise_of": "denoised"}
-    rgb = clean if frame.flare is None else clean + _by_the_lens(frame.flare, frame.metadata)
+    rgb = (
+        clean if frame.flare is None else clean + _by_the_lens(frame.flare, frame.metadata, by.run)
+    )
     return replace(
         frame, rgb=rgb, xyz=xyz_of(rgb), channels=None, bands=None,
         metadata={**frame.metadata, **facts}, **clean_catchers(frame, cleaner),
     )  # fmt: skip
 
 
-def _by_the_lens(flare: Image, facts: Mapping[str, Any]) -> Image:
+def _by_the_lens(flare: Image, facts: Mapping[str, Any], run: Callable[..., Image]) -> Image:
     """Light that the lens added: ghosts as drawn, or scattered light alone, denoised."""
     drawn = np.asarray(flare, np.float32)
     alone = "scatter" in facts and "flare" not in facts
-    return _run(color=np.maximum(_finite(drawn), 0)) if alone else drawn
+    return run(color=np.maximum(_finite(drawn), 0)) if alone else drawn
 
 
 def noise_after(frame: Frame) -> float | None:
@@ -109,26 +117,26 @@ class Cleaner:
     Attributes:
         guides: Denoised albedo and normal; None: there are none.
         splats: Light that light paths added; None: there is none, or it is unknown.
+        run: Filter, as that of a ``Denoiser``; None: that of the package.
     """
 
     guides: tuple[Image, Image] | None = None
     splats: Image | None = None
+    run: Callable[..., Image] | None = None
 
     @classmethod
-    def of(cls, frame: Frame) -> Cleaner:
+    def of(cls, frame: Frame, run: Callable[..., Image] | None = None) -> Cleaner:
         """Makes the denoiser of a frame; denoises the guides once."""
+        run = run or _run
         albedo, normal = (
             _group(frame, "denoise_albedo", "RGB"),
             _group(frame, "denoise_normal", "XYZ"),
         )
         splats = None if frame.splats is None else np.maximum(_finite(frame.splats), 0)
         if albedo is None or normal is None:
-            return cls(splats=splats)
-        guides = (
-            _run(albedo=np.clip(albedo, 0, 1)),
-            _run(normal=np.clip(normal, -1, 1)),
-        )
-        return cls(guides, splats)
+            return cls(None, splats, run)
+        guides = run(albedo=np.clip(albedo, 0, 1)), run(normal=np.clip(normal, -1, 1))
+        return cls(guides, splats, run)
 
     def __call__(self, scene: Image) -> Image:
         """Denoises the scene."""
@@ -147,8 +155,9 @@ class Cleaner:
         images: dict[str, Image] = {"color": by_camera}
         if self.guides is not None:
             images |= dict(zip(("albedo", "normal"), self.guides, strict=True))
-        clean = _run(**images)
-        return clean if by_light is None else clean + _run(color=by_light)
+        run = self.run or _run
+        clean = run(**images)
+        return clean if by_light is None else clean + run(color=by_light)
 
 
 def _run(**images: Image) -> Image:
