@@ -34,8 +34,39 @@ def image_circle(entry: lenses.library.Entry) -> float | None:
     return sum(side**2 for side in sides) ** 0.5 if len(sides) == 2 else None
 
 
-def _named(*names: str) -> list[Item]:
-    return [(name, name.replace("_", " ").capitalize(), "") for name in names]
+def _named(words: dict[str, str]) -> list[Item]:
+    return [(name, name.replace("_", " ").capitalize(), text) for name, text in words.items()]
+
+
+def _sensor(name: str) -> Item:
+    """One sensor: its make and model, and the size of its film."""
+    made = sensors.load(name)
+    title = " ".join(part for part in (made.make, made.model) if part)
+    return name, title or name, "{:.3g} x {:.3g} mm".format(*made.size)
+
+
+#: What lens models compute.
+_MODELS = {
+    "exact": "Traces light through every surface of the glass",
+    "polynomial": "Exact, by polynomials fitted to it: faster for lenses of many surfaces",
+    "thick": "Focal length and pupils of the lens, without its aberrations",
+    "thin": "Focal length of the lens and depth of field, without its aberrations",
+    "pinhole": "Framing of the lens, with everything sharp",
+}
+#: How shutters open.
+_SHUTTERS = {
+    "box": "Opens and closes at once",
+    "leaf": "The iris itself opens and closes, so that blurred lamps have soft edges",
+    "focal_plane": "A slit between two curtains crosses the film",
+    "rotary": "The edge of a turning disc crosses the film, as in a film camera",
+    "electronic": "Lines are read out one after another, as in a phone",
+}
+_LOOKS = {
+    "neutral": "Light as it is, up to white",
+    "standard": "Contrast of a camera's own picture",
+    "film": "Contrast, faint blacks and calmer colours of a print",
+    "filmic": "Soft contrast that keeps bright lights",
+}
 
 
 _PLAIN: list[Item] = [
@@ -48,16 +79,16 @@ LENSES = [*_PLAIN, *map(_lens, lenses.library.entries())]
 #: The same lenses, with all that matters in the name.
 SEARCHED = [*_PLAIN, *map(_searched, lenses.library.entries())]
 MODELS: list[Item] = [
-    ("auto", "Automatic", "Exact if the lens has a prescription"),
-    *_named(*CAMERA["lens_model"].choices),
+    ("auto", "Automatic", "Exact, for a lens of the library or a file"),
+    *_named({name: _MODELS.get(name, "") for name in CAMERA["lens_model"].choices}),
 ]
 FOCUS: list[Item] = [
-    ("blender", "Distance or object", "Focus of Blender's Depth of Field panel"),
+    ("blender", "Blender's", "Distance or object of Blender's Depth of Field panel"),
     ("auto", "Autofocus", "Focus on the middle of the picture"),
 ]
 SENSORS: list[Item] = [
     ("blender", "Blender's size", "Perfect sensor of the size in Blender's Camera panel"),
-    *((name, name, "") for name in sensors.names()),
+    *map(_sensor, sensors.names()),
 ]
 EXPOSURE: list[Item] = [
     ("manual", "Manual", "Exposure by ISO, shutter and stop"),
@@ -68,18 +99,29 @@ SHUTTER: list[Item] = [
     ("time", "Time", "Exposure time in seconds"),
     ("angle", "Angle", "Exposure time as a shutter angle"),
 ]
-SHUTTER_TYPES: list[Item] = _named(*CAMERA["shutter_type"].choices)
+SHUTTER_TYPES: list[Item] = _named(
+    {name: _SHUTTERS.get(name, "") for name in CAMERA["shutter_type"].choices}
+)
 ROLLING: list[Item] = [
     ("off", "Global", "All lines are exposed at once"),
-    *((side, f"From the {side}", "") for side in ("top", "bottom", "left", "right")),
+    *(
+        (side, f"From the {side}", "Lines are exposed one after another")
+        for side in ("top", "bottom", "left", "right")
+    ),
 ]
 LIGHT_PATHS: list[Item] = [
-    ("auto", "Automatic", "As many as pay off"),
-    ("off", "Off", "Camera paths alone"),
+    ("auto", "Automatic", "As many as make the picture less noisy in the same time"),
+    ("off", "Off", "None: all paths start at the camera"),
 ]
-LOOK: list[Item] = _named(*LOOKS)
+LOOK: list[Item] = _named({name: _LOOKS.get(name, "") for name in LOOKS})
 #: Groups of channels of the film that may become passes, as flags.
 PASSES = [
-    (row.name, row.name, f"{row.unit or 'no unit'}: {'/'.join(row.channels)}", 0, 1 << bit)
+    (
+        row.name,
+        row.name,
+        f"Channels {', '.join(row.channels)}{row.unit and f'; {row.unit}'}",
+        0,
+        1 << bit,
+    )
     for bit, row in enumerate(made_by(Source.FILM, Source.GUIDES))
 ]

@@ -47,6 +47,9 @@ def test_properties_have_their_names_and_the_limits_of_the_parameters(extension)
             words = rna.properties[name].description
             assert words, name
             assert not {"{", "}"} & set(words), name
+            assert "spp" not in words.split(), name  # a word of the command line
+            for item in getattr(rna.properties[name], "enum_items", ()):
+                assert item.description, (name, item.identifier)
 
 
 def test_registering_twice_leaves_nothing_behind(extension):
