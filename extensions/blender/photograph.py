@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Photograph: the exposed and developed picture, and its raw file, beside the render."""
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +20,10 @@ def paths(scene: Any, *, numbered: bool) -> list[Path]:
     """Files beside the render of a scene; ``numbered``: beside that of its frame."""
     render = scene.render
     name = render.frame_path(frame=scene.frame_current) if numbered else render.filepath
-    path = Path(bpy.path.abspath(name))
+    folder, name = os.path.split(bpy.path.abspath(name))
+    stem = name.removesuffix(render.file_extension) or "render"
     ends = (PICTURE, RAW) if scene.daguerre.raw else (PICTURE,)
-    return [path.with_name((path.stem or "render") + end) for end in ends]
+    return [Path(folder, stem + end) for end in ends]
 
 
 def photograph_of(camera: Camera, look: str, group: Any) -> Photograph:

@@ -298,6 +298,13 @@ def test_a_photograph_and_its_raw_file_lie_beside_the_render(shot, tmp_path, mon
     assert oiio.ImageBuf(str(tmp_path / "out_photograph.png")).spec().width == SIZE[0]
 
 
+@pytest.mark.parametrize(("name", "stem"), [("", "render"), ("a.v2", "a.v2"), ("b.exr", "b")])
+def test_a_photograph_is_named_as_the_render(shot, module, tmp_path, name, stem):
+    shot.render.filepath = f"{tmp_path}/{name}"
+    found = module.photograph.paths(shot, numbered=False)
+    assert found == [tmp_path / f"{stem}_photograph.png"]
+
+
 def test_the_photograph_is_metered_if_asked(module):
     group = SimpleNamespace(exposure_mode="spot", iso=200.0, ev=1.5)
     asked = module.photograph.photograph_of(camera(sensor="nikon-d5100"), "film", group)
