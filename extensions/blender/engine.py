@@ -134,15 +134,20 @@ class DaguerreEngine(bpy.types.RenderEngine):
         if self.viewport is None:
             self.viewport = Viewport(self.tag_redraw)
             weakref.finalize(self, self.viewport.close)  # Blender frees its part of self first
-        viewport = self.viewport
-        self._guarded(lambda: viewport.update(context, depsgraph))
+        try:
+            self.viewport.update(context, depsgraph)
+        except Exception as error:  # whatever it is, the user gets a sentence
+            self.viewport.refuse(error)
 
     def view_draw(self, context: Any, depsgraph: Any) -> None:
         """Shows the newest picture, and asks for another one if the view changed."""
         viewport = self.viewport
         if viewport is None:
             return
-        self._guarded(lambda: viewport.draw(self, context, depsgraph))
+        try:
+            viewport.draw(self, context, depsgraph)
+        except Exception as error:  # whatever it is, the user gets a sentence
+            viewport.refuse(error)
         self.update_stats("Daguerre", viewport.words)
 
 

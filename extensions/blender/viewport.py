@@ -2,6 +2,7 @@
 """Pictures in the viewport: a thread draws the newest wish, coarse at first, then better."""
 
 import itertools
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -17,6 +18,7 @@ from daguerre.viewfinder.painter import Drawn, Painter, Wish
 from daguerre.viewfinder.stage import Shot, Stage
 
 from . import passes, translation
+from .reports import text_of
 
 #: Width of the film of a free view, mm.
 FILM_MM = 36.0
@@ -51,6 +53,7 @@ class Viewport:
     def __init__(self, redraw: Callable[[], None]) -> None:
         self._redraw = redraw
         self._numbers = itertools.count()
+        self._wished: int | None = None
         self._view: View | None = None
         self._stage: Stage | None = None
         self._shot: translation.Shot | None = None
@@ -64,11 +67,11 @@ class Viewport:
 
     def update(self, context: Any, depsgraph: Any) -> None:
         """Takes over a changed scene; the next ``draw`` asks for its picture."""
+        self._shot = self._view = self._stage = None
         scene, camera = translation.scene_of(depsgraph), depsgraph.scene.camera
         if camera is None:
             raise UsageError("scene: wanted a camera, got none")
         self._shot = translation.shot_of(depsgraph, scene, camera)
-        self._view = self._stage = None
 
     def draw(self, engine: Any, context: Any, depsgraph: Any) -> None:
         """Shows the newest picture, and asks for another one if the view changed."""
@@ -82,31 +85,41 @@ class Viewport:
             pixels = passes.combined(self.newest.frame, self._shot)
             show(engine, depsgraph.scene, pixels, view.rectangle)
 
+    def refuse(self, error: Exception) -> None:
+        """Tells in the viewport why there is no picture, until the view or the scene changes."""
+        self._view = self._wished = self.newest = None
+        self.words = text_of(error)
+
     def ask(self, shot: translation.Shot, camera: Camera, size: tuple[int, int]) -> None:
         """Asks for a picture instead of all before."""
         settings = shot.settings.with_(resolution=size, crop=None, overscan=None)
         if self._stage is None:
             self._stage = Stage(shot.scene, camera, settings)
         wished = Shot(shot.scene, camera, settings, Photograph())
-        self._painter.wish(Wish(next(self._numbers), self._stage, Dials(), wished))
+        self._wished = next(self._numbers)
+        self._painter.wish(Wish(self._wished, self._stage, Dials(), wished))
 
     def _show(self, drawn: Drawn) -> None:
+        if drawn.wish.number != self._wished:
+            return
         self.newest = drawn
         most = drawn.wish.shot.settings.sampling.most
         self.words = f"{drawn.samples}/{most} spp" if drawn.whole else "Preview"
         self._redraw()
 
     def _fail(self, wish: Wish, error: Exception) -> None:
-        self.words = str(error)
-        self._redraw()
+        if wish.number == self._wished:
+            self.words, self.newest = text_of(error), None
+            self._redraw()
 
 
 def view_of(context: Any, depsgraph: Any) -> View:
     """View of a 3D region."""
     region, shown = context.region, context.region_data
     if shown.view_perspective == "CAMERA":
-        x, y, width, height = frame_of(context, depsgraph)
-        return View((max(1, round(width)), max(1, round(height))), (x, y, width, height))
+        x, y, width, height = map(round, frame_of(context, depsgraph))
+        frame = max(1, width), max(1, height)
+        return View(fitted(frame, region.width * region.height), (x, y, *frame))
     if not shown.is_perspective:
         raise UsageError("viewport: wanted a perspective or camera view, got an orthographic one")
     size = region.width, region.height
@@ -114,6 +127,12 @@ def view_of(context: Any, depsgraph: Any) -> View:
         x for matrix in (shown.view_matrix, shown.window_matrix) for row in matrix for x in row
     ]
     return View(size, (0, 0, *size), tuple(numbers))
+
+
+def fitted(size: tuple[int, int], most: int) -> tuple[int, int]:
+    """Size of the picture of a frame: its pixels are those of the screen, unless it has more."""
+    factor = min(1.0, math.sqrt(most / (size[0] * size[1])))
+    return max(1, int(size[0] * factor)), max(1, int(size[1] * factor))
 
 
 def frame_of(context: Any, depsgraph: Any) -> Rectangle:

@@ -125,3 +125,48 @@ def test_equal_views_are_equal_and_others_are_not(module):
 def test_an_orthographic_view_is_refused(module):
     with pytest.raises(dg.UsageError, match="orthographic"):
         module.viewport.view_of(region("ORTHO", is_perspective=False), None)
+
+
+def test_a_pixel_of_the_camera_s_picture_is_one_of_the_screen(module, monkeypatch):
+    frame = (10.2, 4.75, 40.0, 30.5)
+    monkeypatch.setattr(module.viewport, "frame_of", lambda context, depsgraph: frame)
+    view = module.viewport.view_of(region("CAMERA"), None)
+    assert view.size == view.rectangle[2:] == (40, 30)
+    assert view.rectangle[:2] == (10, 5)
+
+
+def test_a_camera_s_frame_beyond_the_region_costs_no_more_pixels_than_the_region(
+    module, monkeypatch
+):
+    """A user zooms into the frame without limit."""
+    frame = (-6000, -4000, 16000, 8000)
+    monkeypatch.setattr(module.viewport, "frame_of", lambda context, depsgraph: frame)
+    view = module.viewport.view_of(region("CAMERA"), None)
+    assert view.rectangle == frame
+    assert view.size[0] * view.size[1] <= 64 * 48
+    assert view.size[0] / view.size[1] == pytest.approx(2, rel=0.05)
+
+
+def test_a_refused_view_says_why_and_no_older_picture_comes_back(module, viewport):
+    shot = shot_of(module, 1_000_000)
+    viewport.ask(shot, shot.camera, (400, 300))
+    until(lambda: viewport.newest is not None)
+    viewport.refuse(dg.UsageError("viewport: wanted a perspective view"))
+    time.sleep(1.5)  # the painter shows a picture at least so often
+    assert viewport.newest is None
+    assert viewport.words == "viewport: wanted a perspective view"
+
+
+def test_an_error_of_a_scene_leaves_nothing_to_draw(module, viewport, monkeypatch):
+    viewport._shot = shot_of(module, 1)
+
+    def broken(depsgraph):
+        raise dg.InputError("mesh Cube: points: wanted finite numbers, got nan")
+
+    monkeypatch.setattr(module.translation, "scene_of", broken)
+    engine = SimpleNamespace(viewport=viewport)
+    module.engine.DaguerreEngine.view_update(engine, None, None)
+    assert "mesh Cube" in viewport.words
+    viewport.draw(None, region(), None)
+    assert viewport.newest is None
+    assert "mesh Cube" in viewport.words
