@@ -169,10 +169,9 @@ def _add_small(raster: Raster, depth: Any, planes: _Planes, few: NDArray[np.int6
     place = (planes.low[which, 1] + row) * depth.shape[1] + planes.low[which, 0] + column
     np.add.at(raster.covers.reshape(-1), place[distance > _CLEAR], 1)
     flat = depth.reshape(-1)
-    order = np.flatnonzero(distance > flat[place])
-    order = order[np.argsort(distance[order], kind="stable")]  # the deepest is written last
-    place = place[order]
-    flat[place] = distance[order]
-    raster.triangle.reshape(-1)[place] = which[order]
-    raster.weights[0].reshape(-1)[place] = one[order]
-    raster.weights[1].reshape(-1)[place] = two[order]
+    np.maximum.at(flat, place, distance)
+    deepest = distance == flat[place]
+    place = place[deepest]
+    raster.triangle.reshape(-1)[place] = which[deepest]
+    raster.weights[0].reshape(-1)[place] = one[deepest]
+    raster.weights[1].reshape(-1)[place] = two[deepest]
