@@ -300,3 +300,21 @@ def test_bump_of_a_pattern_has_its_slope(layers):
     middle = np.asarray(texture.pixels)[height // 2, width // 2, :3] * 2.0 - 1
     middle[:2] *= kind.normal_scale
     np.testing.assert_allclose(middle, np.array([-0.5, 0, 1]) / np.sqrt(1.25), atol=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("inputs", "side"),
+    [
+        ({"Scale": 20.0, "Detail": 0.0}, 256),  # 8 texels for each of 20 cells
+        ({"Scale": 20.0, "Detail": 2.0}, 1024),  # the second octave has 80
+        ({"Scale": 1.0, "Detail": 0.0}, 64),
+        ({"Scale": 1e9, "Detail": 0.0}, 2048),
+    ],
+)
+def test_size_follows_the_scale_of_a_pattern(inputs, side):
+    tree = Tree()
+    uv = tree.node("TexCoord").outputs["UV"]
+    tree.shine(tree.node("TexNoise", {"Vector": uv, **inputs}).outputs[0])
+    stage(tree.material)
+    scene = translated()
+    assert scene.textures[0].pixels.shape[:2] == (side, side)
