@@ -92,14 +92,13 @@ def test_pictures_of_many_samples_are_those_of_cycles(make):
     ("make", "change"),
     [
         (twelve_scenes.deep_rows, {"f_stop": 0.14}),
-        (twelve_scenes.deep_rows, {"focus_distance": 1.0}),
         (twelve_scenes.sliding_boxes, {"shutter_offset": 0.0}),
         (twelve_scenes.travelling_camera, {"shutter_offset": 0.0}),
         (twelve_scenes.travelling_camera, {"shutter_time": 0.005}),
     ],
 )
 def test_the_comparison_knows_another_blur(make, change):
-    """Another stop, focus or shutter is farther from Cycles than the right one, by far."""
+    """Another stop or shutter is farther from Cycles than the right one, by far."""
     twelve_scenes.stage(samples=64)
     make()
     theirs = blender.picture()
