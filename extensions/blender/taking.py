@@ -52,7 +52,7 @@ def shot_of(context: Any, engine: str) -> translation.Shot:
     taker = found = Taker(context.view_layer.name)
     render = context.scene.render
     try:
-        with _set(render, engine=engine, use_sequencer=False, use_compositing=False):
+        with _set(render, engine=engine, use_sequencer=False, use_compositing=False), _aside():
             bpy.ops.render.render()
     finally:
         taker = None
@@ -61,6 +61,22 @@ def shot_of(context: Any, engine: str) -> translation.Shot:
     if found.shot is None:
         raise InputError("scene: wanted a view layer that is rendered, got none")
     return found.shot
+
+
+@contextmanager
+def _aside() -> Iterator[None]:
+    """Lets a render go to the last slot of Blender's pictures, so that the one shown stays."""
+    shown = next((one for one in bpy.data.images if one.type == "RENDER_RESULT"), None)
+    slots = None if shown is None else shown.render_slots
+    if slots is None or len(slots) < 2:
+        yield
+        return
+    before = slots.active_index
+    slots.active_index = len(slots) - 1 if before < len(slots) - 1 else 0
+    try:
+        yield
+    finally:
+        slots.active_index = before
 
 
 @contextmanager

@@ -220,6 +220,21 @@ def test_the_state_of_blender_is_as_before(made, tmp_path):
     assert blender_extension.extension().taking.taker is None
 
 
+def test_the_picture_that_is_shown_stays(made, tmp_path):
+    """Until the export has drawn nothing, F12's picture is in the slot that is shown."""
+
+    def saved(name):
+        shown = next(one for one in bpy.data.images if one.type == "RENDER_RESULT")
+        shown.save_render(str(tmp_path / name), scene=made)
+        return drawn(tmp_path / name)
+
+    bpy.ops.render.render()
+    before = saved("before.exr")
+    assert before.std() > 0
+    exported(tmp_path)
+    np.testing.assert_array_equal(saved("after.exr"), before)
+
+
 def test_the_file_is_plain_gltf_for_other_programs(made, tmp_path):
     path, _ = exported(tmp_path)
     exact, plain = dg.load(path), read(path, animated=True)
