@@ -1,4 +1,4 @@
-"""What the camera's panels show of the chosen lens, and where they warn."""
+"""Facts of the chosen lens on the camera's panels, and warnings of what does not fit it."""
 
 import json
 from contextlib import nullcontext

@@ -10,7 +10,7 @@ import numpy as np
 from daguerre.camera.camera import Camera
 from daguerre.motion.values import Keys, keys
 
-#: What belongs to the eye itself, so that the camera's own changes do not fit.
+#: Parameters of the eye itself, for which the camera's own changes do not serve.
 _OWN = ("transform", "shift", "projection")
 
 
