@@ -35,7 +35,7 @@ def put_on(thing: Any, scene: Any) -> str:
     """
     camera, data = translation.camera_of(thing, scene), thing.data
     fitted, f_stop = _fitted(camera)
-    code = export.code(fitted.to_dict(), ".osl")
+    code = _with_film(export.code(fitted.to_dict(), ".osl"), camera.sensor_size)
     compiled = _compiled(code)
     data.type, data.custom_mode = "CUSTOM", "INTERNAL"
     text = _text(f"{fitted.lens}.osl", code)
@@ -63,13 +63,20 @@ def _fitted(camera: Camera) -> tuple[LensFit, float]:
     lens = lenses.load(name)
     if camera.zoom is not None:
         lens = lens.at_zoom(camera.zoom)
+    film = [side + 2 * abs(s) for side, s in zip(camera.sensor_size, camera.shift, strict=True)]
     made = fewest(
         lambda count: fit(
-            lens, DEGREE, focus=distance, focus_by="best", film=camera.sensor_size,
+            lens, DEGREE, focus=distance, focus_by="best", film=(film[0], film[1]),
             segments=count, iris=iris_of(camera),
         )
     )  # fmt: skip
     return made, _f_stop(camera, lens)
+
+
+def _with_film(code: str, size: tuple[float, float]) -> str:
+    """Code whose film has a size, mm, where Cycles hands its own on to no shader (5.0 does not)."""
+    usual = "float sensor[2] = {36.0, 24.0};"
+    return code.replace(usual, f"float sensor[2] = {{{float(size[0])!r}, {float(size[1])!r}}};")
 
 
 def _f_stop(camera: Camera, lens: lenses.Lens) -> float:
@@ -113,7 +120,7 @@ def _compiled(code: str) -> str:
 
 
 def _set_film(data: Any, camera: Camera) -> None:
-    """Gives Blender's camera the film of a sensor of the library."""
-    if camera.sensor is not None:
-        data.sensor_fit = "HORIZONTAL"
-        data.sensor_width, data.sensor_height = camera.sensor_size
+    """Gives Blender's camera the film and its shift; a shader's film spans the picture's width."""
+    width, height = camera.sensor_size
+    data.sensor_fit, data.sensor_width, data.sensor_height = "HORIZONTAL", width, height
+    data.shift_x, data.shift_y = (shift / width for shift in camera.shift)

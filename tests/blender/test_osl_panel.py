@@ -44,7 +44,7 @@ def lamp(x, depth, radius=0.004):
     bpy.context.object.data.materials.append(material)
 
 
-def picture(tmp_path, spp=64):
+def picture(tmp_path, spp=64, size=SIZE):
     """Picture of Cycles, shape (H, W), row 0 on top."""
     import OpenImageIO as oiio
 
@@ -52,7 +52,7 @@ def picture(tmp_path, spp=64):
     scene.cycles.device, scene.cycles.samples = "CPU", spp
     scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
     render = scene.render
-    render.resolution_x, render.resolution_y = SIZE
+    render.resolution_x, render.resolution_y = size
     render.image_settings.file_format, render.filepath = "OPEN_EXR", str(path)
     render.image_settings.color_depth = "32"
     render.threads_mode, render.threads = "FIXED", 1
@@ -113,6 +113,24 @@ def test_a_lamp_out_of_focus_has_the_blur_of_the_stop(camera, tmp_path):
         image = radius * efl / near
         wanted = math.sqrt((disc**2 / 8 + image**2 / 2) * (SIZE[0] / 36) ** 2 + PIXELS)
         assert spread == pytest.approx(wanted, rel=0.07), f_stop
+
+
+def test_a_picture_on_end_with_a_shift_has_the_framing_of_blender_s_camera(camera, tmp_path):
+    lamp(0.3, 2.0)
+    camera.shift_x = 0.1
+    camera.lens, camera.sensor_width = 51.2, 36
+    render = bpy.context.scene.render
+    render.resolution_x, render.resolution_y = size = SIZE[::-1]
+    wanted = middle_and_spread(picture(tmp_path, size=size))[0]
+    assert use(lens=LENS, f_stop=4.0) == {"FINISHED"}
+    for _ in range(2):
+        assert middle_and_spread(picture(tmp_path, size=size))[0] == pytest.approx(wanted, abs=1)
+        film = blender_extension.extension().translation.camera_of(
+            bpy.context.scene.camera, bpy.context.scene
+        )
+        assert film.sensor_size == pytest.approx((24, 36))
+        assert film.shift == pytest.approx((3.6, 0))
+        camera.type = "PERSP"  # with the film that the shader got
 
 
 def test_units_sensor_and_dispersion_reach_the_shader(camera):
