@@ -29,6 +29,7 @@ def camera():
     scene.collection.objects.link(scene.camera)
     data.clip_start, data.dof.focus_distance = 1e-3, 2.0
     scene.render.engine = "CYCLES"
+    scene.render.resolution_x, scene.render.resolution_y = SIZE
     yield data
     extension.unregister()
 
