@@ -147,7 +147,7 @@ class Bricks:
     Attributes:
         mortar: Width of the mortar.
         smooth: Part of the mortar over which it fades.
-        bias: What is added to the tint.
+        bias: Amount that is added to the tint.
         width: Width of a brick.
         height: Height of a row.
         offset: Shift of every ``offset_rows``-th row, in bricks.

@@ -112,7 +112,7 @@ def canvas_of(reads: Reads, surface: Surface, side: int) -> Canvas | None:
     """Canvas of a surface; None: there is nothing to lie on.
 
     Args:
-        reads: What is read on it.
+        reads: Coordinates that are read on it.
         surface: The surface.
         side: Rows or columns, whichever are more.
     """
