@@ -131,6 +131,31 @@ This is Blender's default scene through a double Gauss at f/2 that Daguerre expo
 elsewhere](../export.md) has the commands, and the same scene through Blender's own camera.
 """
 
+ABOUT_BLENDER_ENGINE = """## Blender's scenes by F12
+
+The left half of each picture is by the render engine Daguerre in Blender, through a real lens. The
+right half is by Cycles, with Blender's own camera of the same focus and f-stop. Both have 32
+samples per pixel and are denoised. [The program](../../script/docs/gallery/blender_engine.py)
+builds the scenes; it needs `bpy` and `daguerre[denoise]`.
+"""
+#: Scenes of `blender_engine.py`: what is seen, and why.
+BLENDER_SHOTS = {
+    "cube": (
+        "Blender's default scene before a wall of far lamps, through a lens at f/0.95.",
+        "It darkens toward the corners, and its rims cut the discs to cat's eyes; those of "
+        "Blender's camera are round everywhere.",
+    ),
+    "arm": (
+        "An arm of six bones curls while a rolling shutter reads it line by line, at f/1.2.",
+        "The shutter opens for 1/48 s and reads from the top in 12 ms. Cycles exposes all lines at "
+        "once.",
+    ),
+    "nodes": (
+        "Painted and worn balls, whose surfaces are trees of Blender's nodes, at f/2.",
+        "Colours, roughness and bumps are pictures through ramps and mixes.",
+    ),
+}
+
 CREDITS = """
 ## Credits
 
@@ -189,6 +214,18 @@ def section(pictures: list[Picture]) -> list[str]:
     return parts
 
 
+def blender_shots() -> list[str]:
+    """Pictures of Blender's engine and their commands, of those that have been rendered."""
+    parts = []
+    for scene, (title, text) in BLENDER_SHOTS.items():
+        file = f"blender_{scene}.jpg"
+        if (PAGES / file).exists():
+            command = f"python script/docs/gallery/blender_engine.py {scene} docs/gallery/{file}"
+            shown = f'<a id="blender_{scene}"></a>\n\n![{title}]({file})'
+            parts.append(f"{shown}\n\n{title} {text}\n\n```\n{command}\n```\n")
+    return [ABOUT_BLENDER_ENGINE, *parts] if parts else []
+
+
 def scene_link(scene: str) -> str:
     """The program that makes a scene, where the repository has it."""
     place = Path(scene.replace("out/", "scenes/")).with_suffix(".py")
@@ -226,6 +263,7 @@ def main() -> None:
     page = [INTRODUCTION, *section(PICTURES), ABOUT_GLASS, *section(GLASS), ABOUT_WORDS]
     page += [ABOUT_PHOTOGRAPHS, ABOUT_CALIBRATED, ABOUT_PLATES]
     page += [ABOUT_LIGHT, *section(LIGHT), ABOUT_NOISE, ABOUT_BLENDER]
+    page += blender_shots()
     page += [ABOUT_MOTION, *section(MOTION)]
     (PAGES / "README.md").write_text("\n".join(page) + CREDITS)
     (PAGES / "imperfections.md").write_text(word_page.page())
