@@ -7,7 +7,7 @@
 
 Runs in a Python that has `bpy` and `daguerre[denoise]`. The left half is Daguerre's, by the engine
 of `extensions/blender`; the right half is by Cycles through Blender's own camera, of the same focal
-length, opening and focus. Both have the same samples, and Blender's denoiser is the same, too. The
+length, f-stop and focus. Both have the same samples and are denoised by Open Image Denoise. The
 scenes are in `blender_scenes.py`; nothing of them comes from elsewhere.
 """
 
