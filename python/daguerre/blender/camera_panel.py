@@ -43,7 +43,7 @@ class CameraPanel:
 
     @property
     def _has_lens(self) -> bool:
-        return self._is_set("lens") and self._group.lens != BLENDER
+        return self._is_set("lens") and getattr(self._group, "lens", BLENDER) != BLENDER
 
     def _is_set(self, name: str) -> bool:
         """Whether the user set a property; of an object that is no group: whether it is there."""
