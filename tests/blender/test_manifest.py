@@ -185,7 +185,7 @@ def test_the_zip_installs_in_blender(tmp_path):
     found = make(own, others, tmp_path)
     assert found.returncode == 0, found.stderr
     (path,) = tmp_path.glob("*.zip")
-    facts, home = installed(tmp_path, path)
+    facts, home = installed(tmp_path, path, lambda name: name != "daguerre")
     assert facts["lens"] == "blender"
     for place in (facts["package"], facts["core"]):
         assert Path(place).is_relative_to(home), place
@@ -199,17 +199,7 @@ def test_the_made_zip_draws_in_a_blender_that_has_nothing_else(tmp_path):
         pytest.skip(
             "no dist/daguerre-VERSION-linux-x64.zip; script/make-blender-extension makes it"
         )
-    bare = tmp_path / "bare"
-    bare.mkdir()
-    for one in Path(sysconfig.get_path("platlib")).iterdir():
-        if one.name.split("-")[0].removesuffix(".libs") in OF_BLENDER:
-            (bare / one.name).symlink_to(one)
-    # OpenImageIO and more, which lie in the folder of Python where Blender is a program
-    paths = [bare, *bare.glob("bpy/*/python/lib/python*/site-packages")]
-    facts, home = installed(
-        tmp_path, zips[-1], "-S", picture=tmp_path / "a.exr",
-        PYTHONPATH=os.pathsep.join(map(str, paths)),
-    )  # fmt: skip
+    facts, home = installed(tmp_path, zips[-1], OF_BLENDER.__contains__, tmp_path / "a.exr")
     for name in ("daguerre", "nanobind_backend", "mmh3"):
         assert Path(facts["modules"][name]).is_relative_to(home), facts["modules"][name]
     others = [place for place in facts["modules"].values() if "site-packages" in place]
@@ -223,15 +213,27 @@ def test_the_made_zip_draws_in_a_blender_that_has_nothing_else(tmp_path):
 OF_BLENDER = {"bpy", "numpy", "requests", "urllib3", "idna", "charset_normalizer", "certifi"}
 
 
-def installed(folder, path, *options, picture=None, **variables):
-    """Facts of a Blender with a fresh home in which the zip is installed, and that home."""
-    home = folder / "home"
+def installed(folder, path, is_kept, *picture):
+    """Facts of a Blender with a fresh home in which a zip is installed, and that home.
+
+    Its Python has the packages alone whose names are kept.
+    """
+    home, bare = folder / "home", folder / "bare"
     home.mkdir()
+    bare.mkdir()
+    for one in Path(sysconfig.get_path("platlib")).iterdir():
+        if is_kept(one.name.split("-")[0].removesuffix(".libs")):
+            (bare / one.name).symlink_to(one)
+    # OpenImageIO and more, which lie in the folder of Python where Blender is a program
+    paths = [bare, *bare.glob("bpy/*/python/lib/python*/site-packages")]
+    settings = {
+        "BLENDER_USER_RESOURCES": str(home),
+        "PYTHONPATH": os.pathsep.join(map(str, paths)),
+    }
     script = ROOT / "tests" / "support" / "blender_install.py"
-    words = [sys.executable, *options, script, path, *([picture] if picture else [])]
-    settings = {"BLENDER_USER_RESOURCES": str(home), **variables}
     found = subprocess.run(
-        words, capture_output=True, text=True, check=False, timeout=300, cwd=folder,
+        [sys.executable, "-S", script, path, *picture],
+        capture_output=True, text=True, check=False, timeout=300, cwd=folder,
         env={**os.environ, **settings},
     )  # fmt: skip
     lines = [line for line in found.stdout.splitlines() if line.startswith("FACTS ")]

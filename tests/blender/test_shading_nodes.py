@@ -288,6 +288,11 @@ def test_unknown_color_space_is_noted():
 @pytest.mark.parametrize("space", ["sRGB", "Linear Rec.709", "Non-Color"])
 @pytest.mark.parametrize("floats", [False, True])
 def test_opacity_of_pictures(floats, space, mode, linked, tmp_path):
+    if not floats and mode == "PREMUL" and bpy.app.version >= (5, 1):
+        pytest.skip(
+            "bytes that a script makes are premultiplied since Blender 5.2; files are alike"
+        )
+
     def build(tree):
         image = picture("p", some_bytes(opaque=False), space, floats=floats)
         image.alpha_mode = mode
