@@ -35,7 +35,7 @@ def put_on(thing: Any, scene: Any) -> str:
     """
     camera, data = translation.camera_of(thing, scene), thing.data
     fitted, f_stop = _fitted(camera)
-    code = _with_film(export.code(fitted.to_dict(), ".osl"), camera.sensor_size)
+    code = export.code(fitted.to_dict(), ".osl")
     compiled = _compiled(code)
     data.type, data.custom_mode = "CUSTOM", "INTERNAL"
     text = _text(f"{fitted.lens}.osl", code)
@@ -71,12 +71,6 @@ def _fitted(camera: Camera) -> tuple[LensFit, float]:
         )
     )  # fmt: skip
     return made, _f_stop(camera, lens)
-
-
-def _with_film(code: str, size: tuple[float, float]) -> str:
-    """Code whose film has a size, mm, where Cycles hands its own on to no shader (5.0 does not)."""
-    usual = "float sensor[2] = {36.0, 24.0};"
-    return code.replace(usual, f"float sensor[2] = {{{float(size[0])!r}, {float(size[1])!r}}};")
 
 
 def _f_stop(camera: Camera, lens: lenses.Lens) -> float:

@@ -56,11 +56,11 @@ def blender(path, tmp_path, **job):
     return oiio.ImageBuf(str(output)).get_pixels()[..., :3].astype(float)
 
 
-def means(data, f_stop, nm):
+def means(data, f_stop, nm, film=SENSOR, size=RESOLUTION):
     """Mean weight, and weighted mean direction (world, y up), of each pixel's middle."""
     _, sample = aim.callables(aim.with_aim(from_fit.plan_of(data)))
-    width, height = RESOLUTION
-    pitch = SENSOR / width
+    width, height = size
+    pitch = film / width
     total, direction = np.zeros((height, width)), np.zeros((height, width, 3))
     u1, u2 = np.random.default_rng(1).random((2, 2000, 1))
     film_x = (np.arange(width) + 0.5 - width / 2) * pitch
@@ -97,16 +97,18 @@ def test_colours_are_the_wavelengths(lens, tmp_path):
         assert picture[..., channel].mean() == pytest.approx(wanted, rel=0.004)
 
 
-def test_directions(lens, tmp_path):
-    """Upright, not mirrored, distorted as the lens: to a twentieth of a pixel."""
+@pytest.mark.parametrize(("film", "size"), [(SENSOR, RESOLUTION), (24.0, (48, 27))])
+def test_directions(lens, tmp_path, film, size):
+    """Upright, not mirrored, distorted as the lens, on any film: to a twentieth of a pixel."""
     data, path = lens
     f_stop = 8.0
-    parameters = {"f_stop": f_stop, "chromatic": 0}
-    white = blender(path, tmp_path, world="white", parameters=parameters)
-    seen = blender(path, tmp_path, world="direction", parameters=parameters)
+    job = {"sensor_width": film, "resolution": size}
+    job["parameters"] = {"f_stop": f_stop, "chromatic": 0}
+    white = blender(path, tmp_path, world="white", **job)
+    seen = blender(path, tmp_path, world="direction", **job)
     direction = 2 * seen / white - 1
-    _, wanted = means(data, f_stop, 549.0)
-    pixel = SENSOR / RESOLUTION[0] / 50
+    _, wanted = means(data, f_stop, 549.0, film, size)
+    pixel = film / size[0] / 50
     assert np.abs(direction - wanted).max() < 0.5 * pixel  # the pixel filter's noise
     assert np.abs((direction - wanted).mean(axis=(0, 1))).max() < 0.05 * pixel
 

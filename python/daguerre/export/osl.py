@@ -41,7 +41,7 @@ shader {name}(
     output vector dDdx = 0,
     output vector dDdy = 0)
 {{
-    float sensor[2] = {{36.0, 24.0}};
+    vector sensor = vector(36.0, 24.0, 0.0);
     getattribute("cam:sensor_size", sensor);
     point raster = camera_shader_raster_position();
     vector chance = camera_shader_random_sample();
