@@ -45,7 +45,7 @@ def _sensor(name: str) -> Item:
     return name, title or name, "{:.3g} x {:.3g} mm".format(*made.size)
 
 
-#: What lens models compute.
+#: Effects that lens models compute.
 _MODELS = {
     "exact": "Traces light through every surface of the glass",
     "polynomial": "Exact, by polynomials fitted to it: faster for lenses of many surfaces",

@@ -30,7 +30,7 @@ Rectangle = tuple[float, float, float, float]
 
 @dataclass(frozen=True)
 class View:
-    """What the viewport looks at; equal views have equal pictures.
+    """View of the viewport; equal views have equal pictures.
 
     Attributes:
         size: Size of the picture, px.

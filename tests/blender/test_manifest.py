@@ -209,7 +209,7 @@ def test_the_made_zip_draws_in_a_blender_that_has_nothing_else(tmp_path):
     assert min(middle) > 1.5 * max(corner)  # the lit cube before the grey world
 
 
-#: What Blender's own Python has, and what its network access needs.
+#: Packages of Blender's own Python, with those that its network access needs.
 OF_BLENDER = {"bpy", "numpy", "requests", "urllib3", "idna", "charset_normalizer", "certifi"}
 
 

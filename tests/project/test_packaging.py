@@ -114,7 +114,7 @@ def build(path: Path, text: str, *more: str) -> None:
 
 
 def asked(core: Path, theirs: Path) -> str:
-    """What the core hears in a program that has loaded the library of others first."""
+    """Answer that the core gets in a program that has loaded the library of others first."""
     words = [sys.executable, "-c", ASKS, str(theirs), str(core)]
     return subprocess.run(words, capture_output=True, text=True, check=True).stdout.strip()
 

@@ -126,7 +126,7 @@ def bezier_form(counts: Counts, basis: str, wrap: str) -> BezierForm:
 
 @dataclass(frozen=True, eq=False)
 class Layout(FixedArrays):
-    """What the segments of curves follow from.
+    """Counts, basis and wrap of curves, from which their segments follow.
 
     Attributes:
         counts: Number of control points of each curve, shape (C,).

@@ -69,7 +69,7 @@ class MovingCurves(Value):
 
     Attributes:
         points: Control points over time, shape (N, 3), m.
-        layout: What their segments follow from.
+        layout: Counts, basis and wrap.
         rest: Vertices of one moment.
         where: Owner, for messages.
     """

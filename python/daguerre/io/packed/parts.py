@@ -18,7 +18,7 @@ from daguerre.scene.scene import Scene
 #: Arrays of a mesh, and those of one moment of a mesh whose points move.
 ARRAYS = ("positions", "indices", "normals", "uv", "uv1", "tangents", "colors")
 OF_MOMENT = ("positions", "normals", "tangents")
-#: What a mesh of curves has besides.
+#: Further attributes of a mesh of curves.
 OF_CURVES = ("radii", "starts", "ends", "cubic", "closed")
 
 

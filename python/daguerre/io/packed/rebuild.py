@@ -34,7 +34,7 @@ class Rebuild:
     """One scene, part by part.
 
     Args:
-        parts: What ``parts.parts_of`` made, from a file.
+        parts: Result of ``parts.parts_of``, from a file.
         size: Size of the file's packed bytes.
     """
 
@@ -207,7 +207,7 @@ class Rebuild:
         self._single(given)
 
     def _single(self, given: Mapping[str, Any]) -> None:
-        """What some instances have of their own."""
+        """Values that some instances have of their own."""
         scene = self.scene
         for k in given["hidden"]:
             i = self._index(k, "instances: hidden")
@@ -325,7 +325,7 @@ def rebuilt(parts: Mapping[str, Any], size: int) -> Scene:
     """Makes a scene from its parts.
 
     Args:
-        parts: What ``parts.parts_of`` made, from a file.
+        parts: Result of ``parts.parts_of``, from a file.
         size: Size of the file's packed bytes.
 
     Raises:
