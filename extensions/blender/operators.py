@@ -9,8 +9,8 @@ from bpy.props import EnumProperty, StringProperty
 
 from daguerre.errors import InputError
 from daguerre.files.atomic import write_bytes
-from daguerre.io.packed.chunk import embed
-from daguerre.io.packed.parts import packable
+from daguerre.scene.packed.chunk import embed
+from daguerre.scene.packed.parts import packable
 
 from . import choices, taking, translation
 from .command import command

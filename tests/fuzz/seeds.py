@@ -12,9 +12,9 @@ import daguerre as dg
 from daguerre import calibration
 from daguerre.calibration import Calibration
 from daguerre.camera.projection import Projection
-from daguerre.io.packed.chunk import embed
 from daguerre.rendering.passes import pass_of, write_pass
 from daguerre.rendering.session import Session
+from daguerre.scene.packed.chunk import embed
 from tests.bad_files import bases
 from tests.bad_files.exr_files import LIE, READ
 from tests.faults.scene import write_scene

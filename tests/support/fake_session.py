@@ -139,7 +139,12 @@ class FakeSession:
 
 
 def load(
-    path: object, *, time: float = 0.0, variant: str | None = None, allow_dirs: object = ()
+    path: object,
+    *,
+    time: float = 0.0,
+    variant: str | None = None,
+    allow_dirs: object = (),
+    animated: bool = False,
 ) -> Scene:
     scene = Scene()
     scene.add_camera("Camera", Camera())

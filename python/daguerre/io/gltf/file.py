@@ -18,7 +18,7 @@ from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, short
 from daguerre.files.json_text import parse
 from daguerre.files.uris import Folder, data_bytes, is_data
-from daguerre.io.packed.chunk import CHUNK as PACKED_CHUNK
+from daguerre.scene.packed.chunk import CHUNK as PACKED_CHUNK
 
 from .meshopt import placeholders
 

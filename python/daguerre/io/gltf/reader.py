@@ -20,7 +20,7 @@ from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item
 from daguerre.files.notes import Notes, Silence
 from daguerre.files.uris import Folder
-from daguerre.io.packed.chunk import scene_of
+from daguerre.scene.packed.chunk import scene_of
 from daguerre.scene.scene import Scene
 from daguerre.scene.transforms import without_scale
 
@@ -61,7 +61,7 @@ def read(
 ) -> Scene:
     """Reads a .glb or .gltf file.
 
-    A .glb may also hold a scene of Daguerre as it is (``io/packed``), at the moment of its export,
+    A .glb may also hold a scene of Daguerre as it is (``scene/packed``), at its export's moment,
     0 s. It is read in place of glTF's content, unless something else is asked for.
 
     Args:

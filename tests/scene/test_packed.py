@@ -17,10 +17,10 @@ import daguerre as dg
 from daguerre.cli import main
 from daguerre.errors import InputError, UsageError
 from daguerre.files.value import same
-from daguerre.io.packed.chunk import CHUNK, embed
-from daguerre.io.packed.parts import packable, parts_of
-from daguerre.io.packed.rebuild import rebuilt
 from daguerre.motion.values import Composite
+from daguerre.scene.packed.chunk import CHUNK, embed
+from daguerre.scene.packed.parts import packable, parts_of
+from daguerre.scene.packed.rebuild import rebuilt
 from tests.faults.scene import write_scene
 from tests.fuzz import readers
 from tests.support.packed_scenes import everything
