@@ -77,20 +77,6 @@ def test_the_menu_has_every_lens_with_its_year_stop_and_image_circle(extension):
     assert "image circle 43.3 mm" in words  # sqrt(36^2 + 24^2)
 
 
-def test_the_panel_tells_facts_of_a_lens_on_lines_of_their_own(extension):
-    name, facts = extension.panels._told("asahi-super-takumar-50mm-f1.4")
-    assert name == "Super-Takumar 50 mm f/1.4 (1969)"
-    assert facts[:2] == ["double Gauss, 50 mm, f/1.4 wide open", "image circle 43.3 mm"]
-    assert (
-        max(
-            len(fact)
-            for key, *_ in extension.choices.LENSES
-            for fact in extension.panels._told(key)[1]
-        )
-        <= 80
-    )
-
-
 def test_the_search_sets_a_lens_and_takes_it_back(extension):
     bpy.ops.daguerre.choose_lens("EXEC_DEFAULT", lens="double-gauss-50mm-f2")
     assert camera_group().lens == "double-gauss-50mm-f2"
