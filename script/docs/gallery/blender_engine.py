@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Scenes of Blender, rendered by F12: by Daguerre through a real lens, and by Cycles.
 
-    python script/docs/gallery/blender_engine.py cube out/blender_cube.jpg [--spp 32] [--width 360]
+    python script/docs/gallery/blender_engine.py cube out/blender_cube.jpg [--spp 256] [--width 480]
     python script/docs/gallery/blender_engine.py arm out/blender_arm.jpg
     python script/docs/gallery/blender_engine.py nodes out/blender_nodes.jpg
 
@@ -34,8 +34,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("scene", choices=blender_scenes.SHOTS)
     parser.add_argument("output", type=Path)
-    parser.add_argument("--spp", type=int, default=32)
-    parser.add_argument("--width", type=int, default=360, help="of each half, px")
+    parser.add_argument("--spp", type=int, default=256)
+    parser.add_argument("--width", type=int, default=480, help="of each half, px")
     given = parser.parse_args()
     add_engine()
     bpy.ops.wm.read_factory_settings()

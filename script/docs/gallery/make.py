@@ -134,7 +134,7 @@ elsewhere](../export.md) has the commands, and the same scene through Blender's 
 ABOUT_BLENDER_ENGINE = """## Blender's scenes by F12
 
 The left half of each picture is by the render engine Daguerre in Blender, through a real lens. The
-right half is by Cycles, with Blender's own camera of the same focus and f-stop. Both have 32
+right half is by Cycles, with Blender's own camera of the same focus and f-stop. Both have 256
 samples per pixel and are denoised. [The program](../../script/docs/gallery/blender_engine.py)
 builds the scenes; it needs `bpy` and `daguerre[denoise]`.
 """
