@@ -2,7 +2,7 @@
 """The render engine: final pictures by F12, and pictures in the viewport."""
 
 import weakref
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -40,24 +40,16 @@ class DaguerreEngine(bpy.types.RenderEngine):
 
     def render(self, depsgraph: Any) -> None:
         """Draws the final picture, or gives it to who takes it."""
-        taker = taking.taker
-        if taker is None:
-            self._guarded(lambda: self._render(depsgraph))
-        else:
-            taker.take(depsgraph, self._go)
-
-    def _guarded(self, step: Callable[[], None]) -> None:
-        """Runs a step; its error becomes a report."""
+        if taking.taker is not None:
+            taking.taker.take(depsgraph, self._go)
+            return
         try:
-            step()
+            self._render(depsgraph)
         except Cancelled:
             pass
         except Exception as error:  # whatever it is, the user gets a sentence
-            self._refuse(told(error))
-
-    def _refuse(self, text: str) -> None:
-        self.report({"ERROR"}, text)
-        self.error_set(text)
+            self.report({"ERROR"}, told(error))
+            self.error_set(told(error))
 
     def _render(self, depsgraph: Any) -> None:
         self.update_stats("", "Reading the scene")

@@ -15,14 +15,15 @@ from daguerre.analysis.bench import half_image
 from daguerre.camera.ideal import IDEAL
 from daguerre.errors import InputError
 from daguerre.lenses.errors import LensError
+from daguerre.setup.lens import GRANTED
 
 from .choices import image_circle
 from .reports import told
 
 #: Lenses that a user can choose and that have no prescription.
 PLAIN = ("blender", *IDEAL)
-#: Share by which a film may exceed the image circle, and a stop the widest, as the core grants.
-GRANTED = 0.01
+#: Share by which a film may exceed the image circle.
+SPILL = 0.01
 
 
 @dataclass(frozen=True)
@@ -124,14 +125,14 @@ def warnings(group: Any, reach_mm: float) -> dict[str, str]:
 def _stop(group: Any, facts: Facts) -> tuple[str, str]:
     name = "t_stop" if group.use_t_stop else "f_stop"
     widest = facts.lens.t_stop() if group.use_t_stop else facts.f_number
-    if getattr(group, name) >= (1 - GRANTED) * widest:
+    if getattr(group, name) >= GRANTED * widest:
         return name, ""
     return name, f"Wider than the lens opens: {name[0]}/{widest:.3g}"
 
 
 def _film(facts: Facts, reach_mm: float) -> str:
     circle = facts.circle_mm or math.inf
-    if 2 * reach_mm <= (1 + GRANTED) * circle:
+    if 2 * reach_mm <= (1 + SPILL) * circle:
         return ""
     return (
         f"Needs an image circle of {2 * reach_mm:.3g} mm, the lens has {circle:.3g}: dark corners"

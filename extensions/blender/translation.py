@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from daguerre.blender.frames import AXES as AXES
 from daguerre.camera.camera import Camera
 from daguerre.files.notes import Notes
 from daguerre.rendering.settings import RenderSettings

@@ -22,8 +22,6 @@ from .reports import text_of
 
 #: Width of the film of a free view, mm.
 FILM_MM = 36.0
-#: Daguerre's axes from Blender's: y is up instead of z.
-Y_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], float)
 
 Rectangle = tuple[float, float, float, float]
 
@@ -168,7 +166,7 @@ def free_camera(
         size: Size of the region, px.
         unit_m: One unit of Blender, m.
     """
-    transform = np.asarray(Y_UP @ np.linalg.inv(view), np.float64)
+    transform = np.asarray(translation.AXES @ np.linalg.inv(view), np.float64)
     transform[:3, 3] *= unit_m
     return Camera(
         transform=transform,

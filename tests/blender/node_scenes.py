@@ -7,13 +7,13 @@ from typing import Any
 
 import bpy
 import numpy as np
-import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre.blender.materials import Materials
 from daguerre.files.notes import Notes
 from daguerre.scene.materials import Gltf
+from tests.support import blender_pictures
 
 SIZE = 8
 CD_PER_W = 683.0
@@ -152,11 +152,5 @@ def stage(material: Any, light: float = 0.0, size: int = SIZE) -> None:
 
 def cycles(folder: Path, samples: int = 1) -> Array:
     """Picture of the stage by Cycles (H, W, 3), row 0 on top."""
-    scene = bpy.context.scene
-    scene.cycles.samples = samples
-    scene.render.image_settings.file_format = "OPEN_EXR"
-    scene.render.image_settings.color_depth = "32"
-    scene.render.filepath = str(folder / "cycles.exr")
-    bpy.ops.render.render(write_still=True)
-    pixels = oiio.ImageBuf(scene.render.filepath).get_pixels()
-    return np.asarray(pixels[..., :3], float)
+    bpy.context.scene.cycles.samples = samples
+    return np.asarray(blender_pictures.drawn(folder / "cycles.exr"))

@@ -17,12 +17,10 @@ bpy = pytest.importorskip("bpy", reason="no bpy in this Python")
 @pytest.fixture
 def extension(monkeypatch):
     """The extension where the package is not installed."""
-    bpy.ops.wm.read_factory_settings()
-    found = blender_extension.extension()
-    monkeypatch.setattr(found.denoising.extras, "missing", lambda module: module == denoise.MODULE)
-    found.register()
-    yield found
-    found.unregister()
+    with blender_extension.registered() as found:
+        extras = found.denoising.extras
+        monkeypatch.setattr(extras, "missing", lambda module: module == denoise.MODULE)
+        yield found
     found.denoising._loaded.cache_clear()
 
 

@@ -23,27 +23,16 @@ SIZE = 40, 30
 
 @pytest.fixture(scope="module")
 def module():
-    found = blender_extension.extension()
-    bpy.ops.wm.read_factory_settings()
-    found.register()
-    yield found
-    found.unregister()
+    with blender_extension.registered() as found:
+        yield found
 
 
 @pytest.fixture
 def shot(module, tmp_path, monkeypatch):
     """Blender's default scene with the engine; a stand-in for the translation."""
     bpy.ops.wm.read_factory_settings()
-    made = bpy.context.scene
-    made.render.engine = "DAGUERRE"
-    made.render.resolution_x, made.render.resolution_y = SIZE
-    made.render.resolution_percentage = 100
-    made.render.filepath = str(tmp_path / "out.exr")
-    made.render.image_settings.file_format = "OPEN_EXR"
-    made.render.image_settings.color_depth = "32"
-    made.daguerre.spp = 4
     blender_extension.stand_in(monkeypatch, lens="pinhole")
-    return made
+    return blender_extension.staged(tmp_path, SIZE)
 
 
 def ours(crop=None, **more):

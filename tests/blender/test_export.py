@@ -23,19 +23,8 @@ SIZE = 48, 36
 @pytest.fixture
 def made(tmp_path):
     """Blender's default scene with the engine."""
-    bpy.ops.wm.read_factory_settings()
-    extension = blender_extension.extension()
-    extension.register()
-    scene = bpy.context.scene
-    scene.render.engine = "DAGUERRE"
-    scene.render.resolution_x, scene.render.resolution_y = SIZE
-    scene.render.resolution_percentage = 100
-    scene.render.filepath = str(tmp_path / "out.exr")
-    scene.render.image_settings.file_format = "OPEN_EXR"
-    scene.render.image_settings.color_depth = "32"
-    scene.daguerre.spp = 4
-    yield scene
-    extension.unregister()
+    with blender_extension.registered():
+        yield blender_extension.staged(tmp_path, SIZE)
 
 
 def drawn(path):

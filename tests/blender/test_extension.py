@@ -25,11 +25,8 @@ SCENE_NAMES = ["light_paths", "spp", "noise", "denoise", "look", "photograph", "
 @pytest.fixture
 def extension():
     """The extension, registered in an empty Blender with a camera."""
-    bpy.ops.wm.read_factory_settings()
-    found = blender_extension.extension()
-    found.register()
-    yield found
-    found.unregister()
+    with blender_extension.registered() as found:
+        yield found
 
 
 def camera_group():

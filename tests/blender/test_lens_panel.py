@@ -20,11 +20,8 @@ PRIME, ZOOM = "double-gauss-50mm-f2", "sony-fe-70-200mm-f2.8"
 
 @pytest.fixture
 def extension():
-    bpy.ops.wm.read_factory_settings()
-    found = blender_extension.extension()
-    found.register()
-    yield found
-    found.unregister()
+    with blender_extension.registered() as found:
+        yield found
 
 
 def group_of(**values):

@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib.util
 import sys
 import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -34,6 +36,35 @@ def extension() -> ModuleType:
     sys.modules[NAME] = module
     spec.loader.exec_module(module)
     return module
+
+
+@contextmanager
+def registered() -> Iterator[ModuleType]:
+    """The extension, in Blender's default scene."""
+    import bpy
+
+    bpy.ops.wm.read_factory_settings()
+    found = extension()
+    found.register()
+    try:
+        yield found
+    finally:
+        found.unregister()
+
+
+def staged(folder: Path, size: tuple[int, int]) -> Any:
+    """The scene of Blender, to be drawn by the extension with 4 samples into folder/out.exr."""
+    import bpy
+
+    made = bpy.context.scene
+    made.render.engine = "DAGUERRE"
+    made.render.resolution_x, made.render.resolution_y = size
+    made.render.resolution_percentage = 100
+    made.render.filepath = str(folder / "out.exr")
+    made.render.image_settings.file_format = "OPEN_EXR"
+    made.render.image_settings.color_depth = "32"
+    made.daguerre.spp = 4
+    return made
 
 
 def scene() -> dg.Scene:

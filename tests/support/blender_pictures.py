@@ -1,6 +1,5 @@
 """Small pictures by Blender's Cycles, in this process; tests that import this skip without bpy."""
 
-import os
 import tempfile
 from pathlib import Path
 
@@ -79,17 +78,18 @@ def camera(location=(0, 0, 2), rotation=(0, 0, 0), lens=50.0):
 
 def picture():
     """Scene-linear picture by Cycles, shape (H, W, 3), row 0 on top."""
+    with tempfile.TemporaryDirectory() as folder:
+        return drawn(Path(folder) / "out.exr")
+
+
+def drawn(path):
+    """Picture by the scene's engine, as :func:`picture`, by way of a file."""
     scene = bpy.context.scene
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.render.image_settings.color_depth = "32"
-    handle, name = tempfile.mkstemp(suffix=".exr")
-    os.close(handle)
-    try:
-        scene.render.filepath = name
-        bpy.ops.render.render(write_still=True)
-        return oiio.ImageBuf(name).get_pixels()[..., :3].astype(float)
-    finally:
-        Path(name).unlink(missing_ok=True)
+    scene.render.filepath = str(path)
+    bpy.ops.render.render(write_still=True)
+    return oiio.ImageBuf(str(path)).get_pixels()[..., :3].astype(float)
 
 
 def y_up(matrix, metres_per_unit=1.0):

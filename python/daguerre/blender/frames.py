@@ -14,7 +14,7 @@ Matrix = NDArray[np.float64]
 MAX_SIZE = 1e18
 
 #: (x, y, z) of Blender is (x, z, -y) here.
-_AXES: Matrix = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+AXES: Matrix = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 
 
 def metres_per_unit(scene: Any) -> float:
@@ -25,7 +25,7 @@ def metres_per_unit(scene: Any) -> float:
 def world_from_blender(scene: Any) -> Matrix:
     """World (m, y-up) from the world of a Blender scene, shape (4, 4)."""
     scale = metres_per_unit(scene)
-    return np.asarray(_AXES @ np.diag([scale, scale, scale, 1.0]))
+    return np.asarray(AXES @ np.diag([scale, scale, scale, 1.0]))
 
 
 def seconds_per_frame(scene: Any) -> float:

@@ -73,6 +73,7 @@ class Materials:
         self._made: dict[str | None, _Made] = {}
         self._painted: dict[Any, _Made] = {}
         self._graphs: dict[str, Graph | None] = {}
+        self._read: dict[str, Reads] = {}
         self._texels = MAX_TEXELS
 
     def index(self, material: Any) -> int:
@@ -149,8 +150,12 @@ class Materials:
         return made
 
     def _reads(self, material: Any) -> Reads:
-        graph = self._graph(material)
-        return Reads() if graph is None else reads_of(graph)
+        """Coordinates that patterns read, found once: each object asks for them."""
+        key = str(material.name_full)
+        if key not in self._read:
+            graph = self._graph(material)
+            self._read[key] = Reads() if graph is None else reads_of(graph)
+        return self._read[key]
 
     def _graph(self, material: Any) -> Graph | None:
         """Nodes of a material, read once."""

@@ -115,18 +115,18 @@ class Cleaner:
     guide shows, and other noise than the scene.
 
     Attributes:
+        run: Filter, as that of a ``Denoiser``.
         guides: Denoised albedo and normal; None: there are none.
         splats: Light that light paths added; None: there is none, or it is unknown.
-        run: Filter, as that of a ``Denoiser``; None: that of the package.
     """
 
+    run: Callable[..., Image]
     guides: tuple[Image, Image] | None = None
     splats: Image | None = None
-    run: Callable[..., Image] | None = None
 
     @classmethod
     def of(cls, frame: Frame, run: Callable[..., Image] | None = None) -> Cleaner:
-        """Makes the denoiser of a frame; denoises the guides once."""
+        """Makes the denoiser of a frame, by default of the package; denoises the guides once."""
         run = run or _run
         albedo, normal = (
             _group(frame, "denoise_albedo", "RGB"),
@@ -134,9 +134,9 @@ class Cleaner:
         )
         splats = None if frame.splats is None else np.maximum(_finite(frame.splats), 0)
         if albedo is None or normal is None:
-            return cls(None, splats, run)
+            return cls(run, None, splats)
         guides = run(albedo=np.clip(albedo, 0, 1)), run(normal=np.clip(normal, -1, 1))
-        return cls(guides, splats, run)
+        return cls(run, guides, splats)
 
     def __call__(self, scene: Image) -> Image:
         """Denoises the scene."""
@@ -155,9 +155,8 @@ class Cleaner:
         images: dict[str, Image] = {"color": by_camera}
         if self.guides is not None:
             images |= dict(zip(("albedo", "normal"), self.guides, strict=True))
-        run = self.run or _run
-        clean = run(**images)
-        return clean if by_light is None else clean + run(color=by_light)
+        clean = self.run(**images)
+        return clean if by_light is None else clean + self.run(color=by_light)
 
 
 def _run(**images: Image) -> Image:

@@ -33,6 +33,9 @@ from .iris import iris_of, mask_of
 from .near_clip import Directions
 from .resolved import Glass, ResolvedLens
 
+#: Share of the widest f-number that a stop may have, as in the core: stops are round numbers.
+GRANTED = 0.99
+
 
 @dataclass(frozen=True)
 class _Chosen:
@@ -195,7 +198,7 @@ def _f_stop(
         # A pinhole has no f-stop, so a scene's f-stop that the lens lacks is no error.
         return max(f_stop, order.f_number) if model in WITHOUT_IRIS else f_stop
     f_stop = camera.t_stop * math.sqrt(transmittance)
-    if f_stop < 0.99 * order.f_number:  # as the core grants
+    if f_stop < GRANTED * order.f_number:
         widest = order.f_number / math.sqrt(transmittance)
         raise LensError(
             f"{lens.source}: t-stop: wanted T/{widest:.3g} or narrower (f/{order.f_number:.3g} "

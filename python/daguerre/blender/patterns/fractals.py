@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import floor
+from math import ceil, floor
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from .gradient_noise import Array, Point, signed_noise
 
 #: Weight under which octaves of a hybrid add nothing.
 _LEAST_WEIGHT = np.float32(0.001)
+ONE = np.float32(1)
 
 
 @dataclass(frozen=True)
@@ -39,36 +40,34 @@ class Octaves:
     gain: Any = 1.0
     normalize: bool = True
 
-    @property
-    def rest(self) -> np.float32:
-        """Part of the last octave."""
-        return np.float32(self.detail - floor(self.detail))
+    def noises(self, point: Point) -> Iterator[tuple[np.float32, Any, Array]]:
+        """Share that counts, size and noise of each octave."""
+        for share, size, scale in octaves_of(self.detail, self.roughness, self.lacunarity):
+            yield share, size, signed_noise([axis * scale for axis in point])
 
-    def noises(self, point: Point) -> Iterator[Array]:
-        """Noise of all whole octaves, then that of the last part, if there is one."""
-        scale: Any = np.float32(1)
-        for _ in range(floor(self.detail) + 1 + (self.rest > 0)):
-            yield signed_noise([axis * scale for axis in point])
-            scale = scale * self.lacunarity
 
-    def is_part(self, index: int) -> bool:
-        """Whether an octave counts in part."""
-        return index > floor(self.detail)
+def octaves_of(
+    detail: float, roughness: Any, lacunarity: Any
+) -> Iterator[tuple[np.float32, Any, Any]]:
+    """Share that counts, size and frequency of each octave; the share of the last may be a part."""
+    size: Any = ONE
+    scale: Any = ONE
+    for i in range(ceil(detail) + 1):
+        yield ONE if i <= floor(detail) else np.float32(detail - floor(detail)), size, scale
+        size = size * roughness
+        scale = scale * lacunarity
 
 
 def fbm(point: Point, octaves: Octaves) -> Array:
     """Sum of octaves (fractal Brownian motion)."""
     total: Any = np.float32(0)
-    size: Any = np.float32(1)
     sizes: Any = np.float32(0)
-    for i, noise in enumerate(octaves.noises(point)):
-        if octaves.is_part(i):
-            more = total + noise * size
-            before, after = _level(total, sizes, octaves), _level(more, sizes + size, octaves)
-            return np.asarray(before + octaves.rest * (after - before))
-        total = total + noise * size
-        sizes = sizes + size
-        size = size * octaves.roughness
+    for share, size, noise in octaves.noises(point):
+        more, most = total + noise * size, sizes + size
+        if share < 1:
+            before, after = _level(total, sizes, octaves), _level(more, most, octaves)
+            return np.asarray(before + share * (after - before))
+        total, sizes = more, most
     return np.asarray(_level(total, sizes, octaves))
 
 
@@ -80,24 +79,19 @@ def _level(total: Any, sizes: Any, octaves: Octaves) -> Any:
 
 def multifractal(point: Point, octaves: Octaves) -> Array:
     """Product of octaves."""
-    value: Any = np.float32(1)
-    size: Any = np.float32(1)
-    for i, noise in enumerate(octaves.noises(point)):
-        share = octaves.rest if octaves.is_part(i) else np.float32(1)
-        value = value * (share * size * noise + np.float32(1))
-        size = size * octaves.roughness
+    value: Any = ONE
+    for share, size, noise in octaves.noises(point):
+        value = value * (share * size * noise + ONE)
     return np.asarray(value)
 
 
 def hetero_terrain(point: Point, octaves: Octaves) -> Array:
     """Terrain that is rougher where it is higher."""
     value: Any = np.float32(0)
-    size: Any = np.float32(1)
-    for i, noise in enumerate(octaves.noises(point)):
+    for i, (share, size, noise) in enumerate(octaves.noises(point)):
         raised = noise + octaves.offset
         step = raised * size * value if i else raised
-        value = value + (octaves.rest * step if octaves.is_part(i) else step)
-        size = size * octaves.roughness
+        value = value + share * step
     return np.asarray(value)
 
 
@@ -105,15 +99,12 @@ def hybrid_multifractal(point: Point, octaves: Octaves) -> Array:
     """Terrain whose octaves weigh what lies below them."""
     value: Any = np.zeros_like(point[0])
     weight: Any = np.ones_like(point[0])
-    size: Any = np.float32(1)
-    for i, noise in enumerate(octaves.noises(point)):
+    for share, size, noise in octaves.noises(point):
         alive = weight > _LEAST_WEIGHT
-        weight = np.minimum(weight, np.float32(1))
+        weight = np.minimum(weight, ONE)
         signal = (noise + octaves.offset) * size
-        share = octaves.rest if octaves.is_part(i) else np.float32(1)
         value = np.where(alive, value + share * weight * signal, value)
         weight = np.where(alive, weight * octaves.gain * signal, np.float32(0))
-        size = size * octaves.roughness
     return np.asarray(value)
 
 
@@ -121,14 +112,12 @@ def ridged_multifractal(point: Point, octaves: Octaves) -> Array:
     """Terrain with ridges; a part of an octave does not count."""
     value: Any = np.float32(0)
     signal: Any = np.float32(0)
-    size: Any = np.float32(1)
-    for i, noise in enumerate(octaves.noises(point)):
-        if octaves.is_part(i):
+    for i, (share, size, noise) in enumerate(octaves.noises(point)):
+        if share < 1:
             break
-        weight = np.clip(signal * octaves.gain, 0, 1) if i else np.float32(1)
+        weight = np.clip(signal * octaves.gain, 0, 1) if i else ONE
         signal = (octaves.offset - np.abs(noise)) ** 2 * weight
         value = value + signal * size
-        size = size * octaves.roughness
     return np.asarray(value)
 
 

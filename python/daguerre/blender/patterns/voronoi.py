@@ -6,20 +6,19 @@ Voronoi" (MIT).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from math import ceil, floor
 from typing import Any
 
 import numpy as np
 
 from .cells import Array, Grid, Metric, Point, euclidean, square
+from .fractals import ONE, octaves_of
 
 #: Square of the distance between two points below which they have no edge.
 _SAME = np.float32(0.0001)
 #: Distance to an edge before any octave.
 _FAR = np.float32(8)
-_ONE = np.float32(1)
 
 
 @dataclass(frozen=True)
@@ -45,6 +44,10 @@ class Cells:
     roughness: Any = 0.5
     lacunarity: Any = 2.0
     normalize: bool = False
+
+    def octaves(self) -> Iterator[tuple[np.float32, Any, Any]]:
+        """Share that counts, size and frequency of each octave."""
+        return octaves_of(self.detail, self.roughness, self.lacunarity)
 
     def widest(self, axes: int) -> Any:
         """Distance by which the nearest one is divided."""
@@ -142,8 +145,8 @@ def smooth(point: Point, cells: Cells) -> Found:
             values = here
             continue
         share = _step(np.float32(0.5) + np.float32(0.5) * (values[0] - distance) / width)
-        less = width * share * (_ONE - share)
-        little = less / (_ONE + np.float32(3) * width)
+        less = width * share * (ONE - share)
+        little = less / (ONE + np.float32(3) * width)
         values = [
             old + share * (new - old) - (little if i else less)
             for i, (old, new) in enumerate(zip(values, here, strict=True))
@@ -207,22 +210,17 @@ def fractal(point: Point, cells: Cells, feature: Feature, widest: Any) -> Found:
     """
     if cells.detail == 0 or not np.any(cells.roughness):
         found = feature(point, cells)
-        return _normalized(found, _ONE, widest) if cells.normalize else found
+        return _normalized(found, ONE, widest) if cells.normalize else found
     total: Any = np.float32(0)
-    size: Any = _ONE
-    scale: Any = _ONE
     sum_ = Found(np.zeros_like(point[0]), _zeros(point, 3), _zeros(point, len(point)))
-    for i in range(ceil(cells.detail) + 1):
+    for share, size, scale in cells.octaves():
         octave = feature([axis * scale for axis in point], cells)
-        share = _ONE if i <= floor(cells.detail) else np.float32(cells.detail - floor(cells.detail))
         total = total + share * size
         sum_.distance = sum_.distance + share * size * octave.distance
         pairs = zip(sum_.color, octave.color, strict=True)
         sum_.color = [old + share * size * new for old, new in pairs]
         places = zip(sum_.position, octave.position, strict=True)
         sum_.position = [old + share * size * (new / scale - old) for old, new in places]
-        scale = scale * cells.lacunarity
-        size = size * cells.roughness
     return _normalized(sum_, total, widest) if cells.normalize else sum_
 
 
@@ -243,18 +241,13 @@ def fractal_edge(point: Point, cells: Cells) -> Array:
         return np.asarray(found / widest) if cells.normalize else found
     most: Any = widest
     distance: Any = _FAR
-    size: Any = _ONE
-    scale: Any = _ONE
-    for i in range(ceil(cells.detail) + 1):
+    for share, size, scale in cells.octaves():
         least = np.minimum(distance, edge([axis * scale for axis in point], cells) / scale)
         mixed = distance + size * (least - distance)
         widened = most + size * (widest / scale - most)
-        if i <= floor(cells.detail):
-            distance, most = mixed, widened
+        if share < 1:
+            most = most + share * (widened - most)
+            distance = distance + share * (np.minimum(distance, mixed) - distance)
         else:
-            rest = np.float32(cells.detail - floor(cells.detail))
-            most = most + rest * (widened - most)
-            distance = distance + rest * (np.minimum(distance, mixed) - distance)
-        scale = scale * cells.lacunarity
-        size = size * cells.roughness
+            distance, most = mixed, widened
     return np.asarray(distance / most) if cells.normalize else np.asarray(distance)

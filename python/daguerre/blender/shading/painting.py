@@ -118,12 +118,10 @@ def canvas_of(reads: Reads, surface: Surface, side: int) -> Canvas | None:
     """
     if not len(surface.triangles):
         return None
-    if not reads.surface and len(reads.primvars) <= 1:
-        primvar = reads.primvars[0] if reads.primvars else ACTIVE
-        span = _span(surface, primvar)
-        return None if span is None else UvCanvas(surface, primvar, span, _size(span, side))
     primvar = reads.primvars[0] if reads.primvars else ACTIVE
     span = _span(surface, primvar)
+    if not reads.surface and len(reads.primvars) <= 1:
+        return None if span is None else UvCanvas(surface, primvar, span, _size(span, side))
     if span is not None and primvar not in surface.flat:
         surface.flat[primvar] = _is_flat(surface, primvar, span)
     if span is None or not surface.flat[primvar]:
@@ -151,10 +149,7 @@ def _size(span: Array, side: int) -> tuple[int, int]:
 
 def _is_flat(surface: Surface, primvar: str, span: Array) -> bool:
     """Whether a map does not overlap itself, and leaves no face out."""
-    corners = surface.uv(primvar).astype(np.float64)
-    sides = corners[:, 1:] - corners[:, :1]
-    area = np.abs(sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0])
-    if np.mean(area <= 1e-12) > _OVERLAP:
+    if np.mean(surface.uv_areas(primvar) <= 1e-12) > _OVERLAP:
         return False
     return _raster(surface, primvar, span, _size(span, _PROBE)).overlap <= _OVERLAP
 

@@ -46,6 +46,12 @@ class Surface:
             return np.zeros((len(self.triangles), 3, 2))
         return found[self.triangles]
 
+    def uv_areas(self, primvar: str) -> Array:
+        """Twice the area of each triangle in texture coordinates, shape (T,)."""
+        corners = self.uv(primvar).astype(np.float64)
+        sides = corners[:, 1:] - corners[:, :1]
+        return np.abs(sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0])
+
     def layer(self, primvar: str) -> Array | None:
         """Texture coordinates of all corners, shape (C, 2); None: there are none.
 
@@ -104,10 +110,7 @@ class Surface:
         corners = self.points[self.vertices[self.triangles]].astype(np.float64)
         sides = corners[:, 1:] - corners[:, :1]
         space = float(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum())
-        flat = self.uv(primvar).astype(np.float64)
-        sides = flat[:, 1:] - flat[:, :1]
-        cross = sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]
-        plane = float(np.abs(cross).sum())
+        plane = float(self.uv_areas(primvar).sum())
         if not space > 0 or not plane > 0:
             return None
         return float((space / plane) ** 0.5 * abs(x * y * z) ** (1 / 3))

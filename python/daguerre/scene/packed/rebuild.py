@@ -1,4 +1,4 @@
-"""Puts a scene together from its parts, by the public methods of ``Scene``, which check them."""
+"""Puts a scene together from its parts, each of which is checked."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from daguerre.checks import matrix, number, short
 from daguerre.errors import InputError
 from daguerre.motion.values import Composite, Dynamic, Keys, Spin
 from daguerre.scene.catcher import check_effects
-from daguerre.scene.curves import MovingCurves, layout_of
+from daguerre.scene.curves import layout_of, moving_curves
 from daguerre.scene.lights import check_light
 from daguerre.scene.materials import check_material
 from daguerre.scene.mesh import mesh_of
-from daguerre.scene.parts import Environment, vertices_of
+from daguerre.scene.parts import Curves, Environment, vertices_of
 from daguerre.scene.point_cache import PointCache
 from daguerre.scene.scene import Scene
 
@@ -172,6 +172,7 @@ class Rebuild:
 
     def _move_curves(self, given: Mapping[str, Any], where: str) -> None:
         path, made = self._path(given["path"], f"{where}: motion"), self.scene.meshes[-1]
+        assert isinstance(made, Curves)
         stated = given["layout"]
         counts = self._array(stated["counts"], f"{where}: counts")
         layout = layout_of(counts, stated["basis"], stated["wrap"], where)
@@ -185,8 +186,7 @@ class Rebuild:
         if not same or any(one.shape != wanted for one in path.values):
             raise InputError(f"{where}: motion: wanted that of these curves, got another")
         index = len(self.scene.meshes) - 1
-        moving = MovingCurves(path, layout, vertices_of(made), f"curves {made.name!r}")
-        self.scene.motion.meshes[index] = moving
+        self.scene.motion.meshes[index] = moving_curves(path, made, layout)
 
     def _instances(self, given: Mapping[str, Any]) -> None:
         meshes, materials = (
