@@ -3,11 +3,6 @@
 #include "motion/moving_bounds.h"
 
 namespace dg::embree {
-namespace {
-
-float largest(Vec3d v) { return float(std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)})); }
-
-}  // namespace
 
 MovingMesh::MovingMesh(RTCScene scene, std::uint32_t id, const Hull& hull,
                        const InstanceGeometry& instance)
@@ -17,7 +12,8 @@ MovingMesh::MovingMesh(RTCScene scene, std::uint32_t id, const Hull& hull,
       shown_(instance.shown) {
     const MovingBounds bounds = moving_bounds(hull, motion_);
     float far = 0;
-    for (const Box& b : bounds.boxes) far = std::max({far, largest(b.min), largest(b.max)});
+    for (const Box& b : bounds.boxes)
+        for (const Vec3d corner : {b.min, b.max}) far = std::max(far, float(largest_coordinate(corner)));
     const float slack = 16 * 0x1p-24f * far;  // the rounding of the ray, as for still ones
     const Vec3f grow{slack, slack, slack};
     for (const Box& b : bounds.boxes)

@@ -24,6 +24,13 @@ VisibleDisc visible_disc(const Sphere& sphere, Vec3f position) {
     return v;
 }
 
+/// Error of the distance along a ray that runs in the ball for twice this length: a line that is e off its place enters
+/// after sqrt(h^2 +- 2 r e) instead of h, which differs by less than 2 r e / h and than sqrt(2 r e).
+float along_ray(const Sphere& ball, float half_chord) {
+    const float e = lamp_error(largest_coordinate(ball.center) + ball.radius), square = 2 * ball.radius * e;
+    return std::min(square / half_chord, std::sqrt(square));
+}
+
 }  // namespace
 
 void narrow(LightBounds& bounds, const LampShape& lamp) {
@@ -97,8 +104,8 @@ std::optional<EmitterSample> sample_emitter(const SphereLight& light, Vec2f u,
         std::sqrt(std::max(0.f, r2 - length_squared(v.to_center - wi * along)));
     const float distance = v.inside ? along + half_chord : along - half_chord;
     if (!(distance > 0)) return std::nullopt;
-    return EmitterSample{wi, distance, light.luminance, emitter_pdf(light, position),
-                         false};
+    return EmitterSample{wi, distance, light.luminance, emitter_pdf(light, position), false, {},
+                         along_ray(light.shape, half_chord)};
 }
 
 float emitter_pdf(const SphereLight& light, Vec3f position) {

@@ -33,6 +33,7 @@ struct EmitterSample {
     float pdf;
     bool delta;
     Vec2f barycentric{};
+    float error = 0;  // m, along wi: how far from there a ray may meet the lamp
 };
 std::optional<EmitterSample> sample_emitter(const PointLight& light, Vec2f u,
                                             Vec3f position);
@@ -51,6 +52,10 @@ Vec3f toward_disc(const DirectionalLight& light, Vec2f u);
 /// angle h has the solid angle W = 2 pi (1 - cos h) and brings E = pi L sin^2 h to a surface that faces it, pi L from
 /// h = pi / 2 on; this is L W.
 Rgb disc_illuminance(const DirectionalLight& light);
+
+/// Bound of the distance (m) at which a ray tracer meets a lamp off its surface, by its largest coordinate: a few units
+/// in the last place, twice what rays that leave a surface are moved by.
+inline float lamp_error(float largest_coordinate) { return 16 * 0x1p-24f * largest_coordinate; }
 
 /// Solid-angle density of sample_emitter.
 float emitter_pdf(const SphereLight& light, Vec3f position);

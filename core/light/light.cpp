@@ -356,7 +356,8 @@ bool LightSet::sample_local(const LightTree::Choice& choice, float p_local, Vec2
            s.delta,
            std::int32_t(light),
            s.barycentric,
-           is_triangle && !triangle.even};
+           is_triangle && !triangle.even,
+           s.error};
     return true;
 }
 

@@ -98,6 +98,7 @@ struct LightSample {
     Vec2f barycentric;
     /// The triangle does not shine evenly: the scene evaluates the emission there.
     bool uneven = false;
+    float error = 0;  // m, along wi: how far from there a ray may meet the lamp
 };
 
 struct TriangleSampler;

@@ -10,6 +10,7 @@ struct alignas(64) TriangleSampler {   // a line of the cache: of many lamps eac
     Vec3f a, to_b, to_c;  // m
     Rgb luminance;        // cd/m2, mean
     float area = 0;       // m2; 0: not a triangle
+    float error = 0;      // m, across its plane: what rounding makes of the corners in a ray tracer
     std::uint32_t light = 0;   // number among all lights, for a list of some
     bool two_sided = false, even = false, mirrored = false;
     bool moves = false;  // and has no place of its own: area 0
@@ -24,6 +25,7 @@ struct alignas(64) TriangleSampler {   // a line of the cache: of many lamps eac
           even(t.even),
           mirrored(t.mirrored) {
         area = 0.5f * length(normal());
+        error = lamp_error(std::max({largest_coordinate(t.a), largest_coordinate(t.b), largest_coordinate(t.c)}));
     }
     /// Along the front side; twice the area long.
     Vec3f normal() const { return mirrored ? -cross(to_b, to_c) : cross(to_b, to_c); }
@@ -40,8 +42,14 @@ struct alignas(64) TriangleSampler {   // a line of the cache: of many lamps eac
         const Vec3f wi = to * (1 / d);
         const float pdf = d2 * d / (0.5f * std::abs(facing));
         if (!(pdf < std::numeric_limits<float>::infinity())) return false;
-        out = {wi, d, luminance, pdf, false, b};
+        out = {wi, d, luminance, pdf, false, b, along_ray(2 * area * d / std::abs(facing))};
         return true;
+    }
+    /// Error along a ray that meets the plane under a cosine, by its inverse. No ray runs in the triangle for longer than
+    /// its longest side.
+    float along_ray(float inverse_cos) const {
+        const float along = error * inverse_cos;
+        return along < 1e-3f ? along : std::min(along, length(to_b) + length(to_c));
     }
     /// Density per solid angle, for a point met at `t` metres.
     float pdf(float t, float cos_light) const {

@@ -59,6 +59,9 @@ template <typename T>
 Vec3<T> normalize(Vec3<T> a) { return a * (T(1) / length(a)); }
 template <typename T>
 T max_component(Vec3<T> a) { return std::max(a.x, std::max(a.y, a.z)); }
+/// Rounding in a ray tracer goes by it.
+template <typename T>
+T largest_coordinate(Vec3<T> a) { return max_component(Vec3<T>{std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 
 using Vec2f = Vec2<float>;
 using Vec3f = Vec3<float>;

@@ -17,8 +17,7 @@ namespace dg {
 /// clipped itself.
 inline Ray shadow_ray(Vec3f at, float cosine, const Ray& from_lens) {
     const Vec3f b = from_lens.origin;
-    const float largest = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z), std::abs(b.x),
-                                    std::abs(b.y), std::abs(b.z)});
+    const float largest = std::max(largest_coordinate(at), largest_coordinate(b));
     return {.origin = at,
             .direction = -from_lens.direction,
             .time = from_lens.time,

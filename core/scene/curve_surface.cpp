@@ -12,8 +12,6 @@ constexpr double kOfRadius = 2e-4, kOfLength = 8e-6;
 // Straight segments are met in double.
 constexpr double kOfStraightRadius = 1e-6;
 
-double largest(Vec3d v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
-
 /// How much the transform enlarges, along its axes.
 double growth(const Affine3d& m) { return std::max({length(m.x), length(m.y), length(m.z)}); }
 
@@ -25,7 +23,7 @@ double length_of(const CurveSegment& s) {
 
 float error_at(const Placement& place, const CurveSegment& s, const CurvePoint& p) {
     const double rounding =
-        double(place.error_scale) * largest(p.position) + double(place.error_base);
+        double(place.error_scale) * largest_coordinate(p.position) + double(place.error_base);
     const double search = s.cubic ? kOfRadius * p.radius + kOfLength * length_of(s)
                                   : kOfStraightRadius * p.radius;
     return float(rounding + search * growth(place.world_from_local));

@@ -22,11 +22,6 @@ Corners corners_of(const InstanceRecord& r, std::uint32_t primitive) {
     return {t[0], t[1], t[2]};
 }
 
-template <typename T>
-T largest(Vec3<T> v) {
-    return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
-}
-
 /// Largest row sum of |entries|: how much a linear map can enlarge a coordinate.
 double row_norm(Vec3d x, Vec3d y, Vec3d z) {
     double norm = 0;
@@ -129,7 +124,7 @@ Placement place(const Affine3d& m, bool flattened) {
     const double there = row_norm(m.x, m.y, m.z), back = row_norm(inv.x, inv.y, inv.z);
     const double growth = flattened ? 1 : 1 + there * back;
     p.error_scale = static_cast<float>(kUlps * growth * there);
-    p.error_base = static_cast<float>(kUlps * growth * largest(to_float(m.origin)));
+    p.error_base = static_cast<float>(kUlps * growth * largest_coordinate(to_float(m.origin)));
     return p;
 }
 
@@ -229,7 +224,8 @@ void surface_at(const InstanceRecord& r, const Placement& place, std::uint32_t p
     hit.position =
         to_float(place.world_from_local.point(a + e1 * double(u) + e2 * double(v)));
     hit.error =
-        place.error_scale * float(std::max(largest(a), std::max(largest(b), largest(c)))) +
+        place.error_scale *
+            float(std::max({largest_coordinate(a), largest_coordinate(b), largest_coordinate(c)})) +
         place.error_base;
     hit.ng = to_float(normalize(place.normal_matrix.vector(cross(e1, e2))));
 

@@ -64,8 +64,9 @@ Ray ray_to(const Affine3d& m, int i, float time) {
     return ray;
 }
 
-bool blocked(const Scene& scene, const Ray& ray, float distance) {
-    return scene.visibility(ray, distance, false, {}, Wavelengths::sample(0.5f)).is_black();
+bool blocked(const Scene& scene, Ray ray, float distance) {
+    ray.t_max = distance;
+    return scene.visibility(ray, false, {}, Wavelengths::sample(0.5f)).is_black();
 }
 
 }  // namespace

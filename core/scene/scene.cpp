@@ -236,4 +236,19 @@ Ray spawn_ray(const SurfaceHit& hit, Vec3f wi, float time) {
     return ray;
 }
 
+Ray ray_to(const SurfaceHit& hit, Vec3f wi, float distance, float time) {
+    Ray ray = spawn_ray(hit, wi, time);
+    if (!(distance < std::numeric_limits<float>::infinity())) return ray;
+    const Vec3f to = wi * distance - (ray.origin - hit.position);
+    ray.t_max = length(to);
+    if (ray.t_max > 0) ray.direction = to * (1 / ray.t_max);
+    return ray;
+}
+
+Ray ray_to_light(const SurfaceHit& hit, const LightSample& light, float time) {
+    Ray ray = ray_to(hit, light.wi, light.distance, time);
+    ray.t_max -= light.error;
+    return ray;
+}
+
 }  // namespace dg

@@ -80,14 +80,13 @@ class Scene {
     Vec3f world_from_sky(Vec3f direction, float time) const;
 
     /// Visibility of light that comes to `ray` (origin as spawn_ray moved it) from
-    /// `distance` metres along it, not counting what lies there: 0 or 1,
+    /// where it ends, not counting what lies there: 0 or 1,
     /// and between them where it passes clear surfaces. It goes through smooth sheets,
     /// which bend nothing, as a path does. The boundaries of volumes are passed only by the
     /// light of delta lights, which no path could find behind them, and as if they did not
     /// bend it: Fresnel's losses at each, and absorption along the straight way, which
     /// begins in `medium`.
-    Spectrum visibility(Ray ray, float distance, bool delta, const Interior& medium,
-                        const Wavelengths& wavelengths) const;
+    Spectrum visibility(Ray ray, bool delta, const Interior& medium, const Wavelengths& wavelengths) const;
 
     /// Visibility of light that runs along `ray` from t_min to t_max, all of it through air and sheets. None comes along
     /// a ray that ends before it starts (t_max < 0).
@@ -200,5 +199,11 @@ class Scene {
 /// A ray that leaves `hit` along `wi`, its origin moved off the surface to the proper
 /// side.
 Ray spawn_ray(const SurfaceHit& hit, Vec3f wi, float time);
+
+/// The same, aimed from there at the point that is `distance` metres from the hit along `wi`, where it ends. A lamp that
+/// is near and slant is missed along `wi` itself, or met too soon.
+Ray ray_to(const SurfaceHit& hit, Vec3f wi, float distance, float time);
+/// To what light sampling found; it ends short of the lamp by as much as the lamp is uncertain.
+Ray ray_to_light(const SurfaceHit& hit, const LightSample& light, float time);
 
 }  // namespace dg

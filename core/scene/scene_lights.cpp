@@ -129,8 +129,7 @@ Scene::Leaving Scene::leave(const EmissionRay& emitted, float time) const {
     } else if (std::holds_alternative<SphereLight>(light)) {
         const Sphere ball = lights_.sphere_light_at(emitted.light, time).shape;
         const Vec3f c = ball.center;
-        const float largest =
-            std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)}) + ball.radius;
+        const float largest = largest_coordinate(c) + ball.radius;
         out.ray.origin += (emitted.origin - c) * (0x1p-18f * largest / ball.radius);
     }
     return out;

@@ -24,7 +24,9 @@ inline Ray test_ray(Vec3f origin, Vec3f direction) {
 /// Whether anything lies between, as the light of a lamp of some size finds it.
 inline bool occluded(const Scene& scene, Vec3f from, Vec3f direction, float distance) {
     const Wavelengths wavelengths = Wavelengths::sample(0.5f);
-    return scene.visibility(test_ray(from, direction), distance, false, {}, wavelengths).is_black();
+    Ray ray = test_ray(from, direction);
+    ray.t_max = distance;
+    return scene.visibility(ray, false, {}, wavelengths).is_black();
 }
 
 /// Adds a mesh where it is, with a material of its own.

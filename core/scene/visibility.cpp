@@ -7,20 +7,18 @@
 namespace dg {
 namespace {
 
-/// Ends the ray short of a light by more than the light's position is uncertain.
+/// Ends the ray short of a light by more than the point on it is uncertain.
 void stop_before(Ray& ray, float distance) {
     if (!(distance < std::numeric_limits<float>::infinity())) return;
     const Vec3f from = ray.origin, end = from + ray.direction * distance;
-    const float largest =
-        std::max({std::abs(end.x), std::abs(end.y), std::abs(end.z), std::abs(from.x),
-                  std::abs(from.y), std::abs(from.z)});
+    const float largest = std::max(largest_coordinate(from), largest_coordinate(end));
     ray.t_max = distance - (1e-4f * distance + 0x1p-19f * largest);
 }
 
 }  // namespace
 
-Spectrum Scene::visibility(Ray ray, float distance, bool delta, const Interior& medium,
-                           const Wavelengths& wavelengths) const {
+Spectrum Scene::visibility(Ray ray, bool delta, const Interior& medium, const Wavelengths& wavelengths) const {
+    const float distance = ray.t_max;
     stop_before(ray, distance);
     if (ray.t_max <= 0) return 1.f;
     return transmission(ray, distance, delta, medium, wavelengths);

@@ -306,7 +306,7 @@ bool Path::show_plate_sky() {
     Ray from_eye{.origin = settings_.plate->eye(walk_.ray.time), .direction = direction, .time = walk_.ray.time};
     from_eye.of_set = true;
     ++rays_;
-    if (scene_.visibility(from_eye, kInfinity, false, {}, wavelengths_).max() < 1) return false;
+    if (scene_.visibility(from_eye, false, {}, wavelengths_).max() < 1) return false;
     gather(walk_.throughput * wavelengths_.emission(*shown), walk_.bent_alone, walk_.kept);
     return true;
 }
@@ -319,10 +319,10 @@ void Path::show_plate(const Material& material, const SurfaceHit& hit) {
     if (!shown) return;
     const Vec3f to_eye = settings_.plate->eye(hit.time) - hit.position;
     const float distance = length(to_eye);
-    Ray ray = spawn_ray(hit, to_eye * (1 / distance), hit.time);
+    Ray ray = ray_to(hit, to_eye * (1 / distance), distance, hit.time);
     ray.of_set = true;
     ++rays_;
-    if (scene_.visibility(ray, distance, false, {}, wavelengths_).max() < 1) return;   // it lies behind something else
+    if (scene_.visibility(ray, false, {}, wavelengths_).max() < 1) return;   // it lies behind something else
     walk_.share *= walk_.kept;
     walk_.change = false;
     gather(walk_.throughput * wavelengths_.emission(*shown), walk_.bent_alone, 1);
@@ -516,11 +516,11 @@ void Path::arriving(const BsdfKind& bsdf, const SurfaceHit& hit, const LightSamp
     const bool of_object = walk_.world != World::full && scene_.is_of_object(light.light);
     if (of_object && walk_.world == World::set) return;
     const Interior medium = medium_after(walk_, hit, bsdf, light.wi);
-    Ray ray = spawn_ray(hit, light.wi, walk_.ray.time);
+    Ray ray = ray_to_light(hit, light, walk_.ray.time);
     const auto visible = [&](bool of_set) {
         ++rays_;
         ray.of_set = of_set;
-        return scene_.visibility(ray, light.distance, light.delta, medium, wavelengths_);
+        return scene_.visibility(ray, light.delta, medium, wavelengths_);
     };
     if (both) weight *= walk_.bounces->of_sample(scene_, *both, light, wavelengths_);
     const auto bring = [&](Spectrum left, World world, float kept) {

@@ -62,8 +62,7 @@ float PathMis::of_sample(const Scene& scene, Vertex& vertex, const LightSample& 
     if (infinite && volume.where != VolumeWalk::Where::air) return 1;
     // The light of delta lights goes straight through volumes, as if they did not bend it. Light paths don't.
     if (light.delta && scene.has_clear() &&
-        scene.visibility(spawn_ray(hit, light.wi, hit.time), light.distance, false, {}, wavelengths)
-            .is_black())
+        scene.visibility(ray_to_light(hit, light, hit.time), false, {}, wavelengths).is_black())
         return 1;
     const float emission = first_.sharing().emission_rays().pdf(light.light, hit.position, light.wi,
                                                                light.distance, hit.time);

@@ -120,8 +120,7 @@ TEST_CASE("a pane lets light through as a picture hangs: texture, vertex colour,
         Ray ray;
         ray.origin = {float(hash_uniform(1, i)), 0.01f, float(hash_uniform(2, i))};
         ray.direction = {0, 1, 0};
-        values.push_back(scene->visibility(ray, std::numeric_limits<float>::infinity(),
-                                           true, {}, wl)[0]);
+        values.push_back(scene->visibility(ray, true, {}, wl)[0]);
     }
     check(moments(values), 0.5 + 0.5 * sheet(1));
 }
@@ -226,12 +225,14 @@ TEST_CASE(
     ray.direction = {0, 1, 0};
     const Interior inside{true, wl.reflectance(kGreen), 0.25f};
     const double normal = 1 - normal_reflectance(1.5f);
-    CHECK(scene->visibility(ray, 5, true, inside, wl)[0] ==
+    ray.t_max = 5;
+    CHECK(scene->visibility(ray, true, inside, wl)[0] ==
           doctest::Approx(normal * std::pow(green(), 0.1 / 0.25)).epsilon(1e-3));
     // Light that a path can find behind the boundary is not approximated; within, it is
     // dimmed.
-    CHECK(scene->visibility(ray, 5, false, inside, wl).is_black());
-    CHECK(scene->visibility(ray, 0.05f, false, inside, wl)[0] ==
+    CHECK(scene->visibility(ray, false, inside, wl).is_black());
+    ray.t_max = 0.05f;
+    CHECK(scene->visibility(ray, false, inside, wl)[0] ==
           doctest::Approx(std::pow(green(), 0.05 / 0.25)).epsilon(1e-3));
 }
 

@@ -323,7 +323,7 @@ def deep_rows() -> None:
     bead = surface("Emission", Color=(1.0, 0.7, 0.4), Strength=3.0)
     for row in range(5):
         for column in range(-2, 3):
-            place = (0.9 * column + 0.2 * row, 1.3 * row - 3, 0.6)
+            place = (0.9 * column + 0.2 * row, 1.3 * row - 3, 0.3)
             lit = (row + column) % 3 == 0
             ball(bead if lit else diffuse(0.6, 0.3, 0.2 + 0.1 * row), place, 0.25)
     sky(0.6, 0.7, 0.9)
