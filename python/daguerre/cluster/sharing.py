@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 #: Tasks that wait at each worker while it draws one.
 AHEAD = 2
 #: Length of a task, s, once it is known how fast workers are; and at most, if its sums take long.
-TASK_S, LONG_S = 15.0, 120.0
+TASK_S, LONG_S = 15.0, 240.0
 #: A task takes at least so many times as long as the work with its answer; and toward the end.
 WORTH, LAST_WORTH = 40.0, 10.0
 #: Time that a step waits for results, s.
