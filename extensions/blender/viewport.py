@@ -85,6 +85,7 @@ class Viewport:
 
     def refuse(self, error: Exception) -> None:
         """Tells in the viewport why there is no picture, until the view or the scene changes."""
+        self._painter.rest()
         self._view = self._wished = self.newest = None
         self.words = text_of(error)
 

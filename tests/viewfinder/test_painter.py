@@ -163,6 +163,21 @@ def test_three_models_of_a_lens_side_by_side(seen: Seen, stage: Stage) -> None:
         assert np.array_equal(panel.frame.rgb, alone.rgb)
 
 
+def test_a_painter_at_rest_draws_nothing_until_the_next_wish(seen: Seen, stage: Stage) -> None:
+    settings, stage.settings = stage.settings, stage.settings.with_(spp=1 << 20)
+    seen.wish(1)
+    seen.pictures.get(timeout=60)
+    seen.painter.rest()
+    time.sleep(0.5)
+    while not seen.pictures.empty():
+        seen.pictures.get()
+    time.sleep(painter.LONGEST_S + 0.5)
+    assert seen.pictures.empty()
+    stage.settings = settings
+    seen.wish(2)
+    seen.until_rest(2)
+
+
 def test_a_closed_painter_stops_at_once(stage: Stage) -> None:
     stage.settings = stage.settings.with_(spp=1 << 20)
     seen = Seen(stage)

@@ -110,6 +110,12 @@ class Painter:
             self._token.cancel()
             self._changed.notify()
 
+    def rest(self) -> None:
+        """Ends the work on the wish, and draws nothing until the next one."""
+        with self._changed:
+            self._wish = None
+            self._token.cancel()
+
     def close(self) -> None:
         """Ends the thread and waits for it."""
         with self._changed:
