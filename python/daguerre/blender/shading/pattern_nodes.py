@@ -17,7 +17,10 @@ from daguerre.blender.patterns import hashes, voronoi
 from daguerre.blender.patterns.blocks import in_blocks
 from daguerre.blender.patterns.cells import METRICS
 from daguerre.blender.patterns.fractals import FRACTALS, Octaves
+from daguerre.blender.patterns.kept import PATTERNS
 from daguerre.blender.patterns.noise import noise as noise_of
+from daguerre.cached import cached_property
+from daguerre.io.materialx.graph import Constant
 from daguerre.io.shading.channels import Channel, Coordinate, Value, broadcast, fit
 from daguerre.io.shading.evaluate import Arguments
 
@@ -87,6 +90,7 @@ class Pattern:
             finer = max(self.sockets.number("Lacunarity"), 1.0) ** min(detail, _SEEN_DETAIL)
         self.canvas.measure(point, texels * finer)
 
+    @cached_property
     def detail(self) -> float:
         """Number of octaves after the first."""
         return min(max(self.sockets.number("Detail"), 0.0), _MOST_DETAIL)
@@ -96,8 +100,14 @@ class Pattern:
     ) -> Value:
         """Results of a function of coordinates and of numbers, for each texel."""
         channels: list[Channel] = [*point, *(value[0] for value in values)]
-        apply = in_blocks(function, len(point), count)
+        apply = PATTERNS.kept(in_blocks(function, len(point), count), self._identity(count))
         return self.sockets.math.baker.several(apply, count, *channels)
+
+    def _identity(self, count: int) -> str:
+        """Text of all that a pattern depends on besides its arguments."""
+        node = self.sockets.given.node
+        fixed = {k: one.value for k, one in node.inputs.items() if isinstance(one, Constant)}
+        return f"{node.kind} {sorted(fixed.items())} {self.detail} {count}"
 
 
 def averaged(sockets: Sockets, names: Sequence[str]) -> Mapping[str, Value]:
@@ -121,7 +131,7 @@ def noise(given: Arguments) -> Mapping[str, Value]:
     if point is None:
         return averaged(sockets, ("Fac", "Color"))
     fractal = FRACTALS[sockets.text("noise_type", "FBM")]
-    detail, normalize = pattern.detail(), sockets.flag("normalize")
+    detail, normalize = pattern.detail, sockets.flag("normalize")
     pattern.measure(point, _SMOOTH, detail)
     names = ("Roughness", "Lacunarity", "Offset", "Gain", "Distortion")
 
@@ -165,7 +175,7 @@ def voronoi_texture(given: Arguments) -> Mapping[str, Value]:
     if point is None:
         return averaged(sockets, _VORONOI)
     feature = sockets.text("feature", "F1")
-    pattern.measure(point, _SHARP, pattern.detail())
+    pattern.measure(point, _SHARP, pattern.detail)
     black: Value = (0.0, 0.0, 0.0)
     nothing = {"Distance": black[:1], "Color": black, "Position": black, "W": black[:1]}
     nothing["Radius"] = black[:1]
@@ -224,7 +234,7 @@ def _cells(
 ) -> Value:
     """Results of a function of coordinates and of the parameters of cells."""
     sockets, axes = pattern.sockets, pattern.axes
-    detail, normalize = pattern.detail(), sockets.flag("normalize")
+    detail, normalize = pattern.detail, sockets.flag("normalize")
     metric = METRICS[sockets.text("distance", "EUCLIDEAN")]
     names = ("Randomness", "Exponent", "Smoothness", "Roughness", "Lacunarity")
 

@@ -38,7 +38,7 @@ def wave(given: Arguments) -> Mapping[str, Value]:
     if point is None:
         return averaged(sockets, _GREY)
     pattern.measure(point, _SMOOTH * _WAVES)
-    kind, detail = sockets.text("wave_type", "BANDS"), pattern.detail()
+    kind, detail = sockets.text("wave_type", "BANDS"), pattern.detail
     direction = sockets.text(f"{kind.lower()}_direction", "X")
     profile = sockets.text("wave_profile", "SIN")
     names = ("Phase Offset", "Distortion", "Detail Roughness", "Detail Scale")
