@@ -30,9 +30,13 @@ def file(tmp_path: Path) -> Path:
 
 @contextmanager
 def viewed(*words: str) -> Iterator[subprocess.Popen[str]]:
-    """The command while it runs."""
+    """The command while it runs; it hears Ctrl-C also where the tests run in the background."""
     process = subprocess.Popen(
-        [*COMMAND, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [*COMMAND, *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     try:
         yield process
