@@ -12,6 +12,7 @@ by Cycles 5.0 (``tests/blender/test_lights.py`` repeats that).
 from __future__ import annotations
 
 import math
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -182,9 +183,16 @@ def _add_area(
     scene.add_instance(mesh, material, matrix, name=name)
 
 
+def _has_nodes(light: bpy.types.Light) -> bool:
+    """Whether a lamp shines by its nodes; the switch is to go in Blender 6.0, and warns before."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)
+        return getattr(light, "use_nodes", True) and light.node_tree is not None
+
+
 def _emission_node(light: bpy.types.Light, notes: Notes) -> Color:
     """Factor of the emission node of a lamp; 1 without nodes, or with nodes that are not read."""
-    if not light.use_nodes or light.node_tree is None:
+    if not _has_nodes(light):
         return 1.0, 1.0, 1.0
     output = next(
         (n for n in light.node_tree.nodes if n.bl_idname == "ShaderNodeOutputLight"), None

@@ -63,12 +63,15 @@ def gradient(given: Arguments) -> Mapping[str, Value]:
 
 
 def magic(given: Arguments) -> Mapping[str, Value]:
-    """Magic Texture; the scale acts after coordinates are wrapped."""
-    pattern = Pattern(given)
-    sockets, point = pattern.sockets, pattern.point(scaled=False)
+    """Magic Texture; before Blender 5.2 the scale acts after coordinates are wrapped."""
+    import bpy
+
+    pattern, scaled = Pattern(given), bpy.app.version >= (5, 2)
+    sockets, point = pattern.sockets, pattern.point(scaled=scaled)
     if point is None:
         return averaged(sockets, _GREY)
-    scale, depth = sockets.one("Scale"), int(sockets.setting("turbulence_depth", 2))
+    scale: Value = (1.0,) if scaled else sockets.one("Scale")
+    depth = int(sockets.setting("turbulence_depth", 2))
     pattern.measure(sockets.math.multiply(point, scale), 2 * _SMOOTH)
 
     def apply(*values: Any) -> list[Any]:
