@@ -6,19 +6,17 @@
 
 namespace dg::bind {
 
-/// Counts a thread that works. Throws dg::Error where a fork has torn the core (math/forks.h).
-class Work {
-  public:
-    Work();
-    ~Work();
-    Work(const Work&) = delete;
-    Work& operator=(const Work&) = delete;
-};
-
-/// A scope of work without Python's lock; use it instead of nanobind::gil_scoped_release.
+/// A scope of work without Python's lock; use it instead of nanobind::gil_scoped_release. Throws dg::Error where
+/// a fork has torn the core (math/forks.h).
 class Unlocked {
-    nanobind::gil_scoped_release release_;   // first: a thread that waits for the lock works no more
-    Work work_;
+  public:
+    Unlocked();
+    ~Unlocked();
+    Unlocked(const Unlocked&) = delete;
+    Unlocked& operator=(const Unlocked&) = delete;
+
+  private:
+    PyThreadState* thread_;
 };
 
 /// Whether Python is about to end.

@@ -14,6 +14,7 @@ import threading
 import time
 from collections import Counter
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -115,7 +116,9 @@ def idle(folder: Path) -> None:
         return "".join(redrawn(given[key], wanted) for key, wanted in alone.items())
 
     alone = {key: jobs(folder)[key].draw() for key in ("plain", "moving", "lens")}
-    assert (said := forked(lambda: draws_alone(jobs(folder)["plain"]))) == "ok", said
+    with ThreadPoolExecutor(1) as pool:  # a thread that has drawn and lives on
+        pool.submit(jobs(folder)["lens"].draw).result()
+        assert (said := forked(lambda: draws_alone(jobs(folder)["plain"]))) == "ok", said
     work("parent")
     for leave in (False, True):
         assert (said := forked(lambda: work("child"), leave=leave)) == "ok", said
@@ -162,6 +165,8 @@ def drawing(folder: Path) -> None:
     assert heard, "the callback was not called"
     assert all(map(is_refusal, heard)), heard
     assert redrawn(job, wanted) == ""
+    with ThreadPoolExecutor(1) as pool:  # forks while the main thread, which has drawn, waits
+        assert is_refusal(said := pool.submit(forked, lambda: redrawn(job, wanted)).result()), said
 
 
 def draws_alone(job: Job) -> str:
