@@ -171,6 +171,7 @@ def test_a_file_is_read(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
+        ({"name": "a" * 5000}, "name: too long: wanted at most 200 characters, got 5000"),
         ({"quantum_efficiency": None}, "quantum_efficiency: .*an object"),
         (
             {"quantum_efficiency": {"R": [0, 1, 0], "G": [0, 1, 0]}},

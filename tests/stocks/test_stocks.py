@@ -165,6 +165,7 @@ def test_a_lamp_has_a_red_halo_on_film_without_backing() -> None:
     ("change", "message"),
     [
         ({"kind": "positive"}, "kind: wanted negative or reversal"),
+        ({"name": "a" * 201}, "name: too long: wanted at most 200 characters, got 201"),
         ({"iso": -5}, "iso"),
         ({"granularity": -1}, "granularity"),
         ({"grain": 1}, "grain: not known"),

@@ -11,6 +11,9 @@ from daguerre.errors import InputError
 #: Largest number; values are converted to single precision.
 MAX_NUMBER = 3.4e38
 
+#: Characters of a name that messages repeat whole.
+MAX_NAME = 200
+
 
 def short(value: object, limit: int = 60) -> str:
     """``repr`` of something from a file, at most ``limit`` characters long."""
@@ -166,10 +169,12 @@ class Item:
             self.fail(f"wrong length: wanted {count} numbers, got {len(self.value)}")
         return tuple(element.number(low, high) for element in self)
 
-    def text(self) -> str:
-        """Returns a string."""
+    def text(self, most: int | None = None) -> str:
+        """Returns a string, of at most ``most`` characters."""
         if not isinstance(self.value, str):
             self._type("a string")
+        if most is not None and len(self.value) > most:
+            self.fail(f"too long: wanted at most {most} characters, got {len(self.value)}")
         return str(self.value)
 
     def flag(self) -> bool:

@@ -7,7 +7,7 @@ from typing import Any
 
 from daguerre.doors import guarded
 from daguerre.files.json_file import read_json_file
-from daguerre.files.json_item import Item
+from daguerre.files.json_item import MAX_NAME, Item
 
 from .curve import Curve
 from .data import DarkCurrent, DualGain, HotPixels
@@ -37,7 +37,7 @@ def read(path: str | Path) -> Sensor:
 def _sensor(root: Item) -> Sensor:
     curves = root.need("quantum_efficiency").members()
     channels = tuple(str(curve.key) for curve in curves)
-    name = root.need("name").text()
+    name = root.need("name").text(MAX_NAME)
     size = root.get("size_mm")
     columns, rows = root.need("resolution").numbers(2, 1, 65536)
     low, high = root.need("iso_range").numbers(2)

@@ -8,7 +8,7 @@ from typing import Any
 from daguerre.color import illuminants
 from daguerre.doors import guarded
 from daguerre.files.json_file import read_json_file
-from daguerre.files.json_item import Item
+from daguerre.files.json_item import MAX_NAME, Item
 from daguerre.sensors.curve import rising
 
 from .curve import CharacteristicCurve
@@ -32,7 +32,7 @@ def read(path: str | Path) -> Stock:
 
 
 def _stock(root: Item) -> Stock:
-    name, paper = root.need("name").text(), root.get("paper")
+    name, paper = root.need("name").text(MAX_NAME), root.get("paper")
     nm = _list(root.need("wavelengths_nm"))
     return Stock(
         name=name,
