@@ -54,14 +54,27 @@ if TYPE_CHECKING:
     from .rendering.settings import RenderSettings
     from .scene.light_profile import LightProfile
     from .scene.lights import DirectionalLight, PointLight, SphereLight, SpotLight
-    from .scene.materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
+    from .scene.materials import (
+        Boundary,
+        Coated,
+        Conductor,
+        Dielectric,
+        Diffuse,
+        Gltf,
+        Material,
+        Mix,
+        TextureSlot,
+    )
     from .scene.scene import Scene
+    from .scene.spectrum import Spectrum
     from .viewfinder.notebook import view
 
 __all__ = [
+    "Boundary",
     "Camera",
     "Categories",
     "ClusterSession",
+    "Coated",
     "Conductor",
     "DaguerreError",
     "Dielectric",
@@ -76,6 +89,7 @@ __all__ = [
     "LightProfile",
     "Material",
     "MismatchError",
+    "Mix",
     "OutputError",
     "PlateCamera",
     "PointLight",
@@ -86,6 +100,7 @@ __all__ = [
     "RollingShutter",
     "Scene",
     "Session",
+    "Spectrum",
     "SphereLight",
     "Spin",
     "SpotLight",
@@ -146,11 +161,15 @@ _LAZY = {
     "PointLight": "scene.lights",
     "SphereLight": "scene.lights",
     "SpotLight": "scene.lights",
+    "Boundary": "scene.materials",
+    "Coated": "scene.materials",
     "Conductor": "scene.materials",
     "Dielectric": "scene.materials",
     "Diffuse": "scene.materials",
     "Gltf": "scene.materials",
     "Material": "scene.materials",
+    "Mix": "scene.materials",
+    "Spectrum": "scene.spectrum",
     "TextureSlot": "scene.materials",
     "Scene": "scene.scene",
     "Categories": "labels.categories",

@@ -31,7 +31,7 @@ from .catcher import EFFECTS, check_effects
 from .curves import CURVES, CurveKeywords, curves_of, moving_curves
 from .illuminance import scale_for
 from .lights import Light, check_light
-from .materials import Diffuse, Kind, Material, check_material
+from .materials import Diffuse, Kind, Material, check_material, check_parts
 from .mesh import MESH, MeshKeywords, mesh_of
 from .motion import SceneMotion
 from .node_names import find_node
@@ -255,9 +255,9 @@ class Scene(Value):
         elif isinstance(material, Kind):
             material = Material(material)
         shown = at(material, self.time)
-        check_material(
-            shown, f"material {str(getattr(shown, 'name', '')) or len(self.materials)!r}"
-        )
+        where = f"material {str(getattr(shown, 'name', '')) or len(self.materials)!r}"
+        check_material(shown, where)
+        check_parts(shown, len(self.materials), where)
         motion = _motion_of(material) if motion is None else motion
         if motion is not None:
             self.motion.materials[len(self.materials)] = motion

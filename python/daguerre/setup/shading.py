@@ -165,6 +165,7 @@ def _slot(slot: TextureSlot | None) -> tuple[Any, ...] | None:
 
 
 def _add_material(builder: _core.SceneBuilder, material: Material, profiles: Profiles) -> None:
+    _refuse_new(material)
     kind, profile = material.kind, profiles.index(material.profile)
     emission = (material.emission, material.two_sided_emission, profile)
     if isinstance(kind, Diffuse):
@@ -187,6 +188,37 @@ def _add_material(builder: _core.SceneBuilder, material: Material, profiles: Pro
             f"material {material.name!r}: kind: wanted Diffuse, Conductor, Dielectric or Gltf, "
             f"got {type(kind).__name__}"
         )
+
+
+#: Fields that the core draws; of glTF it draws all.
+_DRAWN = frozenset(("kind", "name", "emission", "two_sided_emission", "profile")) | {
+    "reflectance",
+    "alpha",
+    "ior",
+    "tint",
+    "dispersion",
+}
+
+
+def _refuse_new(material: Material) -> None:
+    """Refuses what the core does not draw yet."""
+    kind = material.kind
+    if isinstance(kind, Gltf):
+        pairs: list[tuple[Any, Any]] = [(material, Material(kind))]
+    elif isinstance(kind, Diffuse | Conductor | Dielectric):
+        pairs = [(material, Material(kind)), (kind, type(kind)())]
+    else:
+        name = type(kind).__name__
+        raise InputError(f"material {material.name!r}: kind: the core does not draw {name} yet")
+    for given, plain in pairs:
+        for field in dataclasses.fields(given):
+            name, value = field.name, getattr(given, field.name)
+            if name in _DRAWN or value == getattr(plain, name):
+                continue
+            raise InputError(
+                f"material {material.name!r}: {name}: wanted its default, as the core does not "
+                f"draw it yet, got {value!r}"
+            )
 
 
 def _add_light(builder: _core.SceneBuilder, light: CoreLight, profiles: Profiles) -> None:

@@ -19,7 +19,18 @@ from daguerre.lenses import library
 from daguerre.motion.values import Composite, Keys, Spin, is_dynamic, keys, spin
 from daguerre.scene.light_profile import LightProfile, ProfileCone, ProfileFocus, ProfileTable
 from daguerre.scene.lights import DirectionalLight, PointLight, SphereLight, SpotLight
-from daguerre.scene.materials import Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot
+from daguerre.scene.materials import (
+    Boundary,
+    Coated,
+    Conductor,
+    Dielectric,
+    Diffuse,
+    Gltf,
+    Material,
+    Mix,
+    Spectrum,
+    TextureSlot,
+)
 from daguerre.scene.parts import Environment
 from daguerre.sensors import names as sensor_names
 
@@ -74,7 +85,8 @@ def _listed(what: str, name: Any, names: Any) -> None:
 
 
 _PLAIN: tuple[type[Any], ...] = (
-    *(Conductor, Dielectric, Diffuse, Gltf, Material, TextureSlot),
+    *(Boundary, Coated, Conductor, Dielectric, Diffuse, Gltf, Mix),
+    *(Material, Spectrum, TextureSlot),
     *(DirectionalLight, PointLight, SphereLight, SpotLight, Environment),
     *(LightProfile, ProfileCone, ProfileFocus, ProfileTable),
     *(Composite, LensScatter, Projection, RollingShutter),

@@ -1,0 +1,1 @@
+"""Kinds of surfaces: one file each, plain values whose fields ``checks.py`` checks."""

@@ -1,0 +1,10 @@
+"""Surfaces that only bound a medium."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """An invisible surface: light goes straight through, and only the medium changes there."""

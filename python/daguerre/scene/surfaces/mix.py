@@ -1,0 +1,26 @@
+"""Mixtures of materials."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .texture_slot import TextureSlot
+
+
+@dataclass(frozen=True)
+class Mix:
+    """A mixture of two materials of the scene, each of which covers a share of every point.
+
+    The mixture has an emission of its own; its parts emit nothing.
+
+    Attributes:
+        first: Index from ``Scene.add_material``, of a material that was added before the mixture.
+        second: The same for the second material.
+        amount: Share of the second, 0 to 1.
+        amount_texture: R, a factor on ``amount``.
+    """
+
+    first: int = 0
+    second: int = 0
+    amount: float = 0.5
+    amount_texture: TextureSlot | None = None
