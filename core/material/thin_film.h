@@ -14,9 +14,6 @@
 
 namespace dg {
 
-inline Spectrum sqrt(Spectrum a) {
-    return {std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
-}
 inline Spectrum abs(Spectrum a) {
     return {std::abs(a[0]), std::abs(a[1]), std::abs(a[2]), std::abs(a[3])};
 }

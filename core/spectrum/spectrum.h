@@ -44,6 +44,9 @@ inline Spectrum lerp(float t, Spectrum a, Spectrum b) { return a + (b - a) * t; 
 inline Spectrum pow(Spectrum a, float e) {
     return {std::pow(a[0], e), std::pow(a[1], e), std::pow(a[2], e), std::pow(a[3], e)};
 }
+inline Spectrum sqrt(Spectrum a) {
+    return {std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+}
 inline Spectrum exp(Spectrum a) {
     return {std::exp(a[0]), std::exp(a[1]), std::exp(a[2]), std::exp(a[3])};
 }
