@@ -11,6 +11,8 @@
 #include <cstring>
 
 #include "bind/arrays.h"
+#include "bind/choose.h"
+#include "bind/material_values.h"
 #include "bind/unlocked.h"
 #include "math/error.h"
 #include "scene/scene.h"
@@ -24,95 +26,6 @@ namespace {
 using Triple = std::array<float, 3>;
 Vec3f vec(const Triple& v) { return {v[0], v[1], v[2]}; }
 Rgb to_rgb(const Triple& c) { return {c[0], c[1], c[2]}; }
-
-template <typename Enum>
-Enum choose(const std::string& what, const std::string& name,
-            std::initializer_list<std::pair<const char*, Enum>> known,
-            const char* where = "texture") {
-    std::string names;
-    for (const auto& [key, value] : known) {
-        if (name == key) return value;
-        names += (names.empty() ? "" : ", ") + std::string(key);
-    }
-    throw input_error(where, what, names, name);
-}
-
-/// A slot as (texture, uv_set, transform) or None.
-TextureSlot to_slot(nb::handle value) {
-    TextureSlot slot;
-    if (value.is_none()) return slot;
-    const auto [index, set, m] = nb::cast<std::tuple<int, int, std::array<float, 6>>>(value);
-    slot.index = index;
-    slot.uv_set = set;
-    std::copy(m.begin(), m.end(), slot.m);
-    return slot;
-}
-
-void set_layers(const nb::dict& d, GltfMaterial& m) {
-    const auto number = [&](const char* key) { return nb::cast<float>(d[key]); };
-    const auto slot = [&](const char* key) { return to_slot(d[key]); };
-    m.clearcoat = {number("clearcoat"),
-                   slot("clearcoat_texture"),
-                   number("clearcoat_roughness"),
-                   slot("clearcoat_roughness_texture"),
-                   number("clearcoat_normal_scale"),
-                   slot("clearcoat_normal_texture")};
-    m.sheen = {to_rgb(nb::cast<Triple>(d["sheen_color"])), slot("sheen_color_texture"),
-               number("sheen_roughness"), slot("sheen_roughness_texture")};
-    m.anisotropy = {number("anisotropy"), number("anisotropy_rotation"), slot("anisotropy_texture")};
-    m.iridescence = {number("iridescence"),
-                     slot("iridescence_texture"),
-                     number("iridescence_ior"),
-                     number("iridescence_thickness_min_nm"),
-                     number("iridescence_thickness_max_nm"),
-                     slot("iridescence_thickness_texture")};
-}
-
-GltfMaterial to_gltf(const nb::dict& d) {
-    const auto number = [&](const char* key) { return nb::cast<float>(d[key]); };
-    const auto rgb = [&](const char* key) { return to_rgb(nb::cast<Triple>(d[key])); };
-    const auto slot = [&](const char* key) { return to_slot(d[key]); };
-    GltfMaterial m;
-    m.base_color = rgb("base_color");
-    m.base_alpha = number("base_alpha");
-    m.base_color_texture = slot("base_color_texture");
-    m.metallic = number("metallic");
-    m.roughness = number("roughness");
-    m.metallic_roughness_texture = slot("metallic_roughness_texture");
-    m.normal_scale = number("normal_scale");
-    m.normal_texture = slot("normal_texture");
-    m.occlusion_texture = slot("occlusion_texture");
-    m.emissive = rgb("emissive");
-    m.emissive_texture = slot("emissive_texture");
-    m.alpha_mode = choose<GltfMaterial::AlphaMode>("alpha_mode",
-                                                   nb::cast<std::string>(d["alpha_mode"]),
-                                                   {{"opaque", GltfMaterial::AlphaMode::opaque},
-                                                    {"mask", GltfMaterial::AlphaMode::mask},
-                                                    {"blend", GltfMaterial::AlphaMode::blend}});
-    m.alpha_cutoff = number("alpha_cutoff");
-    m.double_sided = nb::cast<bool>(d["double_sided"]);
-    m.ior = number("ior");
-    m.specular = number("specular");
-    m.specular_texture = slot("specular_texture");
-    m.specular_color = rgb("specular_color");
-    m.specular_color_texture = slot("specular_color_texture");
-    m.transmission = number("transmission");
-    m.transmission_texture = slot("transmission_texture");
-    m.thickness = number("thickness");
-    m.attenuation_distance = number("attenuation_distance");
-    m.attenuation_color = rgb("attenuation_color");
-    m.dispersion = number("dispersion");
-    set_layers(d, m);
-    m.diffuse_transmission = number("diffuse_transmission");
-    m.diffuse_transmission_texture = slot("diffuse_transmission_texture");
-    m.diffuse_transmission_color = rgb("diffuse_transmission_color");
-    m.diffuse_transmission_color_texture = slot("diffuse_transmission_color_texture");
-    m.specular_glossiness = nb::cast<bool>(d["specular_glossiness"]);
-    m.glossiness = number("glossiness");
-    m.specular_glossiness_texture = slot("specular_glossiness_texture");
-    m.unlit = nb::cast<bool>(d["unlit"]);
-    return m;
-}
 
 using Pixels8 = nb::ndarray<const std::uint8_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 using PixelsF = nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
@@ -218,12 +131,9 @@ struct Builder {
         return int(description.textures.size()) - 1;
     }
 
-    /// Emission of a material: colour, whether the back emits too, and its profile.
-    using Emission = std::tuple<Triple, bool, int>;
-    template <typename Kind>
-    int add_material(const std::string& name, Kind kind, const Emission& emission) {
-        const auto& [color, two_sided, profile] = emission;
-        description.materials.push_back({name, std::move(kind), to_rgb(color), two_sided, profile});
+    int add_material(const std::string& name, const std::string& kind, const nb::dict& values,
+                     const nb::dict& common) {
+        description.materials.push_back(to_material(name, kind, values, common));
         return int(description.materials.size()) - 1;
     }
 
@@ -326,27 +236,6 @@ void def_shapes(nb::class_<Builder>& c) {
              "Makes an instance a part of the set: which effects of objects it catches.");
 }
 
-/// One maker for each kind of material.
-void def_materials(nb::class_<Builder>& c) {
-    using Emission = Builder::Emission;
-    c.def("add_diffuse",
-             [](Builder& b, const std::string& name, const Triple& reflectance, const Emission& emission) {
-                 return b.add_material(name, DiffuseMaterial{to_rgb(reflectance)}, emission);
-             })
-        .def("add_conductor",
-             [](Builder& b, const std::string& name, const Triple& reflectance, float alpha,
-                const Emission& emission) {
-                 return b.add_material(name, ConductorMaterial{to_rgb(reflectance), alpha}, emission);
-             })
-        .def("add_dielectric",
-             [](Builder& b, const std::string& name, float ior, float alpha, const Triple& tint,
-                float dispersion, const Emission& emission) {
-                 return b.add_material(name, DielectricMaterial{ior, alpha, to_rgb(tint), dispersion}, emission);
-             })
-        .def("add_gltf", [](Builder& b, const std::string& name, const nb::dict& values,
-                            const Emission& emission) { return b.add_material(name, to_gltf(values), emission); });
-}
-
 /// Index of a profile, -1 without, and the axes of the lamp in the world.
 using Lamp = std::tuple<int, Triple, Triple, Triple>;
 LampShape to_lamp(const Lamp& lamp) {
@@ -440,7 +329,8 @@ void bind_scene(nb::module_& m) {
     nb::class_<Builder> c(m, "SceneBuilder");
     c.def(nb::init<>());
     def_shapes(c);
-    def_materials(c);
+    c.def("add_material", &Builder::add_material, "name"_a, "kind"_a, "values"_a, "common"_a,
+          "values: fields of the kind; common: those of all materials, with the index of the profile.");
     def_lights(c);
     def_environment(c);
     def_time(c);

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "bind/arrays.h"
+#include "spectrum/sampled_spectrum.h"
 #include "spectrum/wavelengths.h"
 
 namespace nb = nanobind;
@@ -22,6 +23,12 @@ Row colour_row(double nm) {
 }  // namespace
 
 void bind_spectrum(nb::module_& m) {
+    nb::class_<dg::SampledSpectrum>(m, "SampledSpectrum", "A value by wavelength, in the core's form.")
+        .def("__init__",
+             [](dg::SampledSpectrum* s, const std::vector<double>& nm, const std::vector<double>& values) {
+                 new (s) dg::SampledSpectrum(nm, values);
+             },
+             "wavelengths_nm"_a, "values"_a);
     m.def("colour_tables",
           [](const std::vector<double>& nm) {
               std::vector<double> rows;

@@ -29,6 +29,7 @@ struct SurfaceHit {
     float time = 0;                 // that of the ray
     std::uint32_t instance = 0, primitive = 0;
     bool front = true;  // dot(ng, wo) > 0
+    float choice = 0;   // of a mixture: random number in [0, 1) that chooses the part
     float error =
         0;  // m; offset for rays that leave here (scaled to the magnitude of position)
 };

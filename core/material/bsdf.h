@@ -3,12 +3,16 @@
 #pragma once
 #include <variant>
 
+#include "material/bsdf_coated.h"
 #include "material/bsdf_conductor.h"
 #include "material/bsdf_dielectric.h"
 #include "material/bsdf_diffuse.h"
+#include "material/bsdf_glass.h"
 #include "material/bsdf_gltf.h"
 #include "material/bsdf_layered.h"
+#include "material/bsdf_metal.h"
 #include "material/bsdf_sample.h"
+#include "material/bsdf_translucent.h"
 
 namespace dg {
 
@@ -23,7 +27,8 @@ namespace dg {
 /// lobe from wi to wo has, 1 / eta^2 aside, over the same from wo to wi); float diffuse_share(wo,
 /// wi) const (of f that is not delta, 0 to 1).
 using Bsdf =
-    std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, GltfBsdf, LayeredBsdf>;
+    std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, GltfBsdf, LayeredBsdf, TranslucentBsdf,
+                 MetalBsdf, GlassBsdf, CoatedBsdf>;
 
 /// A BSDF as it looks from wo, for whoever asks for several wi: some know things of wo that take a while to find.
 /// To be given to evaluate_with_pdf() and sample() in place of wo.

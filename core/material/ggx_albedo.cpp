@@ -33,8 +33,10 @@ LobeAlbedo integrate(float cos_o, float alpha) {
             static_cast<float>(facets * scale), 1};
 }
 
-/// Integral of 2 cos dcos over the interpolant: with x = sqrt(cos) that is 4 x^3 dx, of
-/// degree 4 in each cell, for which three Gauss points are exact.
+}  // namespace
+
+// With x = sqrt(cos) that is 4 x^3 dx, of degree 4 in each cell, for which three Gauss points
+// are exact.
 LobeAlbedo cosine_mean(const LobeAlbedo* values) {
     constexpr float kNode = 0.77459667f, kOuter = 5 / 18.f, kInner = 8 / 18.f;
     LobeAlbedo sum(0.f);
@@ -49,8 +51,6 @@ LobeAlbedo cosine_mean(const LobeAlbedo* values) {
     }
     return sum;
 }
-
-}  // namespace
 
 GgxAlbedo::GgxAlbedo() {
     for (int r = 0; r < kRoughnesses; ++r) {

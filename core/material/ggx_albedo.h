@@ -51,6 +51,9 @@ class GgxAlbedo {
     LobeAlbedo mean_[kRoughnesses];
 };
 
+/// Integral of 2 cos dcos over what is interpolated between GgxAlbedo::kAngles values.
+LobeAlbedo cosine_mean(const LobeAlbedo* values);
+
 /// Weighted sum of the four lanes.
 inline float weigh(LobeAlbedo albedo, Spectrum coefficients) {
     return 4 * (albedo * coefficients).average();

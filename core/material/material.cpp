@@ -2,7 +2,9 @@
 #include "material/material.h"
 
 #include "material/gltf_surface.h"
+#include "material/material_keys.h"
 #include "material/material_read.h"
+#include "material/shade_surfaces.h"
 
 namespace dg {
 
@@ -40,27 +42,41 @@ Vec3f visible_normal(Vec3f ns, Vec3f ng, Vec3f wo) {
 
 namespace {
 
-Bsdf shade_kind(const DiffuseMaterial& m, const Textures&, SurfaceHit& hit,
-                const Wavelengths& wavelengths) {
-    const Rgb c = m.reflectance * Rgb{hit.color[0], hit.color[1], hit.color[2]};
-    return DiffuseBsdf{hit.ns, hit.ng, wavelengths.reflectance(clamped(c))};
+/// Of a mixture the share of its second part among what is there: rays that pass one part may be stopped by the other.
+float share_of_second(const MixMaterial& m, const Textures& textures, const SurfaceHit& hit) {
+    float share = m.amount;
+    if (m.amount_texture.used()) share *= clamped(read_point(m.amount_texture, textures, hit).r);
+    const auto there = [&](const MixPart& part) {
+        const MaterialAt now = part_at(part, hit.time);
+        return opacity(now, textures, hit.uv, hit.color[3], hit.time);
+    };
+    if (!has_cutout(m.parts[0].most(), textures) && !has_cutout(m.parts[1].most(), textures)) return share;
+    const float first = (1 - share) * there(m.parts[0]), second = share * there(m.parts[1]);
+    return first + second > 0 ? second / (first + second) : share;
 }
 
-Bsdf shade_kind(const ConductorMaterial& m, const Textures&, SurfaceHit& hit,
-                const Wavelengths& wavelengths) {
-    return ConductorBsdf{hit.ns, hit.ng, wavelengths.reflectance(clamped(m.reflectance)),
-                         m.alpha};
+/// Does what(part) with the part that the hit has chosen. What is left of the choice chooses within that.
+template <typename What>
+auto in_part(const MixMaterial& m, const Textures& textures, SurfaceHit& hit, What what) {
+    constexpr float kBelowOne = 0x1.fffffep-1f;
+    const float share = share_of_second(m, textures, hit), choice = hit.choice;
+    const bool second = choice < share;
+    hit.choice = std::min(kBelowOne, second ? choice / share : (choice - share) / (1 - share));
+    const MaterialAt part = part_at(m.parts[second], hit.time);
+    auto result = what(part);
+    hit.choice = choice;
+    return result;
 }
 
-Bsdf shade_kind(const DielectricMaterial& m, const Textures&, SurfaceHit& hit,
+Bsdf shade_kind(const MixMaterial& m, const Textures& textures, SurfaceHit& hit,
                 const Wavelengths& wavelengths) {
-    DielectricBsdf b{hit.ns, hit.ng, wavelengths.reflectance(clamped(m.tint)), m.ior,
-                     m.alpha};
-    if (m.dispersion <= 0) return b;
-    b.iors = dispersed_ior(m.ior, m.dispersion, wavelengths.nm);
-    b.ior = b.iors[0];
-    b.disperses = !wavelengths.secondary_ended;
-    return b;
+    return in_part(m, textures, hit,
+                   [&](const Material& part) { return shade(part, textures, hit, wavelengths); });
+}
+
+/// A window without glass.
+Bsdf shade_kind(const BoundaryMaterial&, const Textures&, const SurfaceHit& hit, const Wavelengths&) {
+    return DielectricBsdf{hit.ns, hit.ng, 1.f, 1, 0};
 }
 
 /// The coat follows the mesh and not the normal map of the base, so it is read first.
@@ -106,8 +122,12 @@ float masked(const GltfMaterial& m, float alpha) {
 
 Bsdf shade(const Material& material, const Textures& textures, SurfaceHit& hit,
            const Wavelengths& wavelengths) {
-    if (!std::holds_alternative<GltfMaterial>(material.kind))
-        hit.ns = visible_normal(hit.ns, hit.ng, hit.wo);
+    if (!material.two_sided && !hit.front) return DiffuseBsdf{hit.ns, hit.ng, 0.f};
+    if (material.normal_texture.used())
+        hit.ns = mapped_normal(material.normal_texture, material.normal_scale, textures, hit);
+    const bool own_normal = std::holds_alternative<GltfMaterial>(material.kind) ||
+                            std::holds_alternative<MixMaterial>(material.kind);
+    if (!own_normal) hit.ns = visible_normal(hit.ns, hit.ng, hit.wo);
     return std::visit(
         [&](const auto& m) { return shade_kind(m, textures, hit, wavelengths); },
         material.kind);
@@ -119,6 +139,7 @@ Rgb emitted_below_coat(const Material& material, const Textures& textures,
                        const SurfaceHit& hit) {
     Rgb sum{0, 0, 0};
     if (hit.front || material.two_sided_emission) sum = material.emission;
+    if (material.emission_texture.used()) sum = sum * rgb(read(material.emission_texture, textures, hit));
     const auto* m = std::get_if<GltfMaterial>(&material.kind);
     if (m && m->unlit) return sum + base_color(*m, textures, hit);
     if (!m || !(hit.front || m->double_sided) || m->emissive == Rgb{0, 0, 0}) return sum;
@@ -141,52 +162,130 @@ Rgb emitted(const Material& material, const Textures& textures, const SurfaceHit
     return sum * (1 - coat_share(coat_factor(m->clearcoat, textures, hit), cos_o));
 }
 
-Rgb emission_factor(const GltfMaterial& m) {
-    return m.unlit ? m.base_color : m.emissive;
+namespace {
+
+Rgb factor_of(const GltfMaterial& m) { return m.unlit ? m.base_color : m.emissive; }
+
+}  // namespace
+
+Rgb emission_factor(const Material& material) {
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    return m ? material.emission + factor_of(*m) : material.emission;
 }
-const TextureSlot& emission_texture(const GltfMaterial& m) {
-    return m.unlit ? m.base_color_texture : m.emissive_texture;
+
+std::array<TextureSlot, 2> emission_textures(const Material& material) {
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    if (!m) return {material.emission_texture, {}};
+    return {material.emission_texture, m->unlit ? m->base_color_texture : m->emissive_texture};
+}
+
+bool emits_from_behind(const Material& material) {
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    return material.two_sided_emission || (m && (m->double_sided || m->unlit));
 }
 
 bool emits(const Material& material) {
     const auto* m = std::get_if<GltfMaterial>(&material.kind);
     const Rgb none{0, 0, 0};
-    return material.emission != none || (m && emission_factor(*m) != none);
+    return material.emission != none || (m && factor_of(*m) != none);
 }
 
-float opacity(const Material& material, const Textures& textures, const Vec2f uv[2],
-              float vertex_alpha) {
-    const auto* m = std::get_if<GltfMaterial>(&material.kind);
-    if (!m || m->alpha_mode == GltfMaterial::AlphaMode::opaque) return 1;
-    const float alpha = m->base_alpha * vertex_alpha;
-    if (!m->base_color_texture.used()) return masked(*m, alpha);
+namespace {
+
+float opacity_of_kind(const GltfMaterial& m, const Textures& textures, const Vec2f uv[2], float vertex_alpha) {
+    if (m.alpha_mode == GltfMaterial::AlphaMode::opaque) return 1;
+    const float alpha = m.base_alpha * vertex_alpha;
+    if (!m.base_color_texture.used()) return masked(m, alpha);
     // At a point: the mean of what passes or not is the coverage, which a mean that is then
     // held against the cutoff would lose.
-    const TextureSlot& slot = m->base_color_texture;
+    const TextureSlot& slot = m.base_color_texture;
     const Vec2f at = slot.transform(uv[slot.uv_set]);
-    return masked(*m, alpha * textures[slot.index].lookup(at).a);
+    return masked(m, alpha * textures[slot.index].lookup(at).a);
 }
 
-Clear clearness(const Material& material) {
-    if (const auto* d = std::get_if<DielectricMaterial>(&material.kind)) {
-        if (!DielectricBsdf{{}, {}, 1.f, d->ior, d->alpha}.is_specular())
-            return Clear::no;
-        return d->ior == 1 ? Clear::sheet : Clear::volume;
+float opacity_of_parts(const MixMaterial& m, const Textures& textures, const Vec2f uv[2], float vertex_alpha,
+                       float time) {
+    float share = m.amount;
+    const TextureSlot& slot = m.amount_texture;
+    if (slot.used()) share *= clamped(textures[slot.index].lookup(slot.transform(uv[slot.uv_set])).r);
+    const auto of = [&](const MixPart& part) {
+        const MaterialAt now = part_at(part, time);
+        return opacity(now, textures, uv, vertex_alpha, time);
+    };
+    return (1 - share) * of(m.parts[0]) + share * of(m.parts[1]);
+}
+
+}  // namespace
+
+float opacity(const Material& material, const Textures& textures, const Vec2f uv[2],
+              float vertex_alpha, float time) {
+    float left = material.opacity;
+    const TextureSlot& slot = material.opacity_texture;
+    if (slot.used()) left *= clamped(textures[slot.index].lookup(slot.transform(uv[slot.uv_set])).r);
+    if (const auto* m = std::get_if<GltfMaterial>(&material.kind))
+        return left * opacity_of_kind(*m, textures, uv, vertex_alpha);
+    if (const auto* m = std::get_if<MixMaterial>(&material.kind))
+        return left * opacity_of_parts(*m, textures, uv, vertex_alpha, time);
+    return left;
+}
+
+namespace {
+
+Clear clearness_of(const DiffuseMaterial&) { return Clear::no; }
+Clear clearness_of(const ConductorMaterial&) { return Clear::no; }
+Clear clearness_of(const CoatedMaterial&) { return Clear::no; }
+Clear clearness_of(const BoundaryMaterial&) { return Clear::sheet; }
+
+Clear clearness_of(const DielectricMaterial& m) {
+    if (m.thin) return m.alpha.may_be_smooth() ? Clear::sheet : Clear::no;
+    const bool bends_nothing = std::abs(m.ior - 1) < 1e-3f || m.ior_by_wavelength;   // at some wavelength
+    if (!m.alpha.may_be_smooth() && !bends_nothing) return Clear::no;
+    return m.ior == 1 && !m.ior_by_wavelength ? Clear::sheet : Clear::volume;
+}
+
+Clear clearness_of(const GltfMaterial& m) {
+    if (m.transmission <= 0) return Clear::no;
+    const bool textured = m.metallic_roughness_texture.used();
+    const bool rough = m.roughness * m.roughness >= kSmoothAlpha;
+    if (!textured && (rough || m.metallic >= 1)) return Clear::no;
+    return m.thickness > 0 ? Clear::volume : Clear::sheet;
+}
+
+/// A sheet among its parts must be asked about by every ray; what bends light stops those that it must.
+Clear clearness_of(const MixMaterial& m) {
+    Clear clearest = Clear::no;
+    for (const MixPart& part : m.parts) {
+        const Clear c = part.change ? clearness(part.change->range) : clearness(*part.still);
+        if (c == Clear::sheet || clearest == Clear::no) clearest = c;
     }
-    const auto* m = std::get_if<GltfMaterial>(&material.kind);
-    if (!m || m->transmission <= 0) return Clear::no;
-    const bool textured = m->metallic_roughness_texture.used();
-    const bool rough = m->roughness * m->roughness >= kSmoothAlpha;
-    if (!textured && (rough || m->metallic >= 1)) return Clear::no;
-    return m->thickness > 0 ? Clear::volume : Clear::sheet;
+    return clearest;
+}
+
+template <typename Check>
+bool any_part(const Material& material, Check check) {
+    const auto* mix = std::get_if<MixMaterial>(&material.kind);
+    return mix && (check(mix->parts[0].most()) || check(mix->parts[1].most()));
+}
+
+}  // namespace
+
+Clear clearness(const Material& material) {
+    return std::visit([](const auto& m) { return clearness_of(m); }, material.kind);
 }
 
 bool has_normal_map(const Material& material) {
+    if (material.normal_texture.used() || any_part(material, has_normal_map)) return true;
     const auto* m = std::get_if<GltfMaterial>(&material.kind);
     return m && (m->normal_texture.used() || m->clearcoat.normal_texture.used());
 }
 
-bool has_cutout(const Material& material, const Textures&) {
+bool is_one_sided(const Material& material) {
+    return !material.two_sided || any_part(material, is_one_sided);
+}
+
+bool has_cutout(const Material& material, const Textures& textures) {
+    if (material.opacity < 1 || material.opacity_texture.used()) return true;
+    if (any_part(material, [&](const Material& part) { return has_cutout(part, textures); })) return true;
     // A mesh may bring its own alpha at the vertices, so factor and texture alone prove
     // nothing.
     const auto* m = std::get_if<GltfMaterial>(&material.kind);
@@ -212,15 +311,24 @@ Rgb layered_albedo(const GltfMaterial& m, const Textures& textures, const Surfac
 
 }  // namespace
 
-Rgb albedo(const Material& material, const Textures& textures, const SurfaceHit& hit) {
-    if (const auto* m = std::get_if<DiffuseMaterial>(&material.kind))
-        return clamped(m->reflectance * Rgb{hit.color[0], hit.color[1], hit.color[2]});
-    if (const auto* m = std::get_if<ConductorMaterial>(&material.kind))
-        return m->reflectance;
-    if (const auto* m = std::get_if<DielectricMaterial>(&material.kind)) return m->tint;
-    const auto& m = std::get<GltfMaterial>(material.kind);
+namespace {
+
+Rgb albedo_of(const BoundaryMaterial&, const Textures&, const SurfaceHit&) { return {1, 1, 1}; }
+
+Rgb albedo_of(const MixMaterial& m, const Textures& textures, const SurfaceHit& hit) {
+    SurfaceHit here = hit;
+    return in_part(m, textures, here, [&](const Material& part) { return albedo(part, textures, here); });
+}
+
+Rgb albedo_of(const GltfMaterial& m, const Textures& textures, const SurfaceHit& hit) {
     if (m.unlit) return base_color(m, textures, hit);
     return clamped(layered_albedo(m, textures, hit, surface_albedo(m, textures, hit)));
+}
+
+}  // namespace
+
+Rgb albedo(const Material& material, const Textures& textures, const SurfaceHit& hit) {
+    return std::visit([&](const auto& m) { return albedo_of(m, textures, hit); }, material.kind);
 }
 
 }  // namespace dg

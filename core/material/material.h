@@ -1,6 +1,7 @@
-// material.h -- what surfaces are made of. Adding a kind: a struct here, a bsdf_x.h/.cpp
-// with its BSDF, an alternative in both variants, and a line in material.cpp's shade().
+// material.h -- what surfaces are made of. Adding a kind: a struct in surfaces.h, a bsdf_x.h/.cpp
+// with its BSDF, an alternative in both variants, and a shade_kind() in shade_surfaces.cpp.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -11,30 +12,11 @@
 #include "geometry/hit.h"
 #include "material/bsdf.h"
 #include "material/gltf_layers.h"
+#include "material/surfaces.h"
 #include "material/texture.h"
 #include "spectrum/wavelengths.h"
 
 namespace dg {
-
-/// Lambert on both sides.
-struct DiffuseMaterial {
-    Rgb reflectance{0.5f, 0.5f, 0.5f};
-};
-
-/// GGX microfacets whose reflectance is `reflectance` at every angle (no Fresnel), both
-/// sides.
-struct ConductorMaterial {
-    Rgb reflectance{1, 1, 1};
-    float alpha = 0.1f;  // GGX alpha (roughness squared); < 1e-3 is a perfect mirror
-};
-
-/// Clear dielectric, smooth or GGX rough; the normal's side is outside.
-struct DielectricMaterial {
-    float ior = 1.5f;
-    float alpha = 0;       // < 1e-3 smooth
-    Rgb tint{1, 1, 1};     // multiplies transmission
-    float dispersion = 0;  // 20 / Abbe number (KHR_materials_dispersion); `ior` is n_d
-};
 
 /// glTF 2.0 metallic-roughness with KHR_materials_{anisotropy, clearcoat, dispersion,
 /// emissive_strength, ior, iridescence, sheen, specular, transmission, volume}; formulas
@@ -84,12 +66,19 @@ struct GltfMaterial {
 
 struct Material {
     std::string name;
-    std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, GltfMaterial>
+    std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, GltfMaterial, CoatedMaterial,
+                 MixMaterial, BoundaryMaterial>
         kind;
     /// Extra emission of any kind, cd/m2 (front side only, unless two_sided_emission).
     Rgb emission{0, 0, 0};
     bool two_sided_emission = false;
     std::int32_t profile = -1;  // of all emission, by direction; index, -1: none
+    float opacity = 1;          // share of it that is there; times R of the texture
+    TextureSlot opacity_texture = {};
+    TextureSlot normal_texture = {};   // of kinds that have none of their own
+    float normal_scale = 1;
+    bool two_sided = true;      // false: black from behind, emission aside
+    TextureSlot emission_texture = {};   // RGB, a factor on `emission`
 };
 
 /// Throws Error naming the material and the field: a factor that is not finite or out of
@@ -112,10 +101,12 @@ Rgb emitted(const Material& material, const std::vector<Texture>& textures,
 
 /// True when emission changes with the direction it is seen from.
 bool emission_is_coated(const Material& material);
-/// Factor of a glTF material's emission: that of KHR_materials_unlit is its base
+/// Factor of all emission, and its textures. Of a glTF material's that of KHR_materials_unlit is its base
 /// colour, and vertex colours count there too.
-Rgb emission_factor(const GltfMaterial& material);
-const TextureSlot& emission_texture(const GltfMaterial& material);
+Rgb emission_factor(const Material& material);
+std::array<TextureSlot, 2> emission_textures(const Material& material);
+/// From behind as well.
+bool emits_from_behind(const Material& material);
 
 /// True when the material emits at all; the mean over a triangle is light/'s business.
 bool emits(const Material& material);
@@ -126,13 +117,15 @@ Clear clearness(const Material& material);
 
 /// True when a texture bends its normals.
 bool has_normal_map(const Material& material);
+/// True when it is black from behind, or a part of it is.
+bool is_one_sided(const Material& material);
 
 /// False where the material is opaque everywhere, so that rays need not ask.
 bool has_cutout(const Material& material, const std::vector<Texture>& textures);
 /// Opacity in [0,1] at uv with vertex colour alpha; 1 for opaque materials. mask gives 0
-/// or 1.
+/// or 1. `time`: for parts of mixtures that change.
 float opacity(const Material& material, const std::vector<Texture>& textures,
-              const Vec2f uv[2], float vertex_alpha);
+              const Vec2f uv[2], float vertex_alpha, float time = 0);
 
 /// Diffuse + specular albedo for the `albedo` AOV (Rgb, first hit).
 Rgb albedo(const Material& material, const std::vector<Texture>& textures,

@@ -35,18 +35,35 @@ auto fields(Is<Iridescence> auto& l) {
     auto& [a, b, c, d, e, f] = l;
     return std::tie(a, b, c, d, e, f);
 }
+auto fields(Is<Roughness> auto& a) {
+    auto& [u, v, texture] = a;
+    return std::tie(u, v, texture);
+}
+auto fields(Is<SpectralColor> auto& c) {
+    auto& [rgb, sampled] = c;
+    return std::tie(rgb, sampled);
+}
 auto fields(Is<DiffuseMaterial> auto& m) {
-    auto& [a] = m;
-    return std::tie(a);
-}
-auto fields(Is<ConductorMaterial> auto& m) {
-    auto& [a, b] = m;
-    return std::tie(a, b);
-}
-auto fields(Is<DielectricMaterial> auto& m) {
     auto& [a, b, c, d] = m;
     return std::tie(a, b, c, d);
 }
+auto fields(Is<ConductorMaterial> auto& m) {
+    auto& [a, b, c, d, e, f] = m;
+    return std::tie(a, b, c, d, e, f);
+}
+auto fields(Is<DielectricMaterial> auto& m) {
+    auto& [a, b, c, d, e, f, g, h] = m;
+    return std::tie(a, b, c, d, e, f, g, h);
+}
+auto fields(Is<CoatedMaterial> auto& m) {
+    auto& [a, b, c, d, e, f, g, h, i] = m;
+    return std::tie(a, b, c, d, e, f, g, h, i);
+}
+auto fields(Is<MixMaterial> auto& m) {
+    auto& [first, second, amount, texture, parts] = m;
+    return std::tie(first, second, amount, texture, parts[0], parts[1]);
+}
+auto fields(Is<BoundaryMaterial> auto&) { return std::tie(); }
 auto fields(Is<GltfMaterial> auto& m) {
     auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, c0, c1,
            c2, c3, c4, c5, c6, c7, c8, c9, d0, d1, d2, d3, d4, d5, d6] = m;
@@ -54,8 +71,10 @@ auto fields(Is<GltfMaterial> auto& m) {
                     c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, d0, d1, d2, d3, d4, d5, d6);
 }
 
+/// No number, and nothing that has any.
 template <typename T>
-concept Scalar = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+concept Whole = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::same_as<T, SharedSpectrum> ||
+                std::same_as<T, MixPart>;
 
 /// Does `number(a, b)` to each pair of floats, `other(a, b)` to each pair of what is no number.
 template <typename Number, typename Other>
@@ -67,7 +86,7 @@ struct Pairs {
     void visit(Rgb& a, const Rgb& b) {
         for (int i = 0; i < 3; ++i) number(a[i], b[i]);
     }
-    template <Scalar T>
+    template <Whole T>
     void visit(T& a, const T& b) {
         other(a, b);
     }
@@ -85,11 +104,11 @@ struct Pairs {
 template <typename Number, typename Other>
 void each_pair(Material& a, const Material& b, Number number, Other other) {
     Pairs<Number, Other> pairs{number, other};
-    auto& [a_name, a_kind, a_emission, a_two_sided, a_profile] = a;
-    const auto& [b_name, b_kind, b_emission, b_two_sided, b_profile] = b;
-    pairs.visit(a_emission, b_emission);
-    pairs.visit(a_two_sided, b_two_sided);
-    pairs.visit(a_profile, b_profile);
+    auto& [a_name, a_kind, a0, a1, a2, a3, a4, a5, a6, a7, a8] = a;
+    const auto& [b_name, b_kind, b0, b1, b2, b3, b4, b5, b6, b7, b8] = b;
+    const auto visit = [&](auto& x, const auto& y) { pairs.visit(x, y); };
+    visit(a0, b0), visit(a1, b1), visit(a2, b2), visit(a3, b3), visit(a4, b4);
+    visit(a5, b5), visit(a6, b6), visit(a7, b7), visit(a8, b8);
     std::visit(
         [&](auto& kind) {
             const auto* same = std::get_if<std::remove_cvref_t<decltype(kind)>>(&b.kind);
@@ -101,7 +120,8 @@ void each_pair(Material& a, const Material& b, Number number, Other other) {
 constexpr auto kNothing = [](auto&, const auto&) {};
 
 Material without_name(const Material& m) {
-    return {{}, m.kind, m.emission, m.two_sided_emission, m.profile};
+    return {{}, m.kind, m.emission, m.two_sided_emission, m.profile, m.opacity, m.opacity_texture,
+            m.normal_texture, m.normal_scale, m.two_sided, m.emission_texture};
 }
 
 /// Never beyond the ends, whose ranges have been checked.
@@ -150,6 +170,7 @@ MaterialRange range_of(const Keyed<Material>& keys) {
 Material brightest(const Keyed<Material>& keys, const MaterialRange& range) {
     Material m = keys.values[0];
     m.emission = range.most.emission;
+    m.opacity = range.most.opacity;
     auto* gltf = std::get_if<GltfMaterial>(&m.kind);
     if (!gltf) return m;
     const auto &least = std::get<GltfMaterial>(range.least.kind),
@@ -170,6 +191,8 @@ Clear clearness(const MaterialRange& range) {
         if (d->ior <= 1 && std::get<DielectricMaterial>(range.most.kind).ior >= 1) d->ior = 1;
     return clearness(clearest);
 }
+
+const Material& MixPart::most() const { return change ? change->range.most : *still; }
 
 MaterialAt::MaterialAt(const Keyed<Material>& keys, float time)
     : now_(new Material(keys.at(time))), own_(now_) {}

@@ -24,6 +24,11 @@ struct MaterialRange {
 };
 MaterialRange range_of(const Keyed<Material>& keys);
 
+struct MaterialChange {
+    Keyed<Material> keys;
+    MaterialRange range;
+};
+
 /// Material that is as bright as it ever is, or brighter; its textures lie as they do at the first key.
 Material brightest(const Keyed<Material>& keys, const MaterialRange& range);
 
@@ -47,5 +52,11 @@ class MaterialAt {
     const Material* now_;
     std::unique_ptr<const Material, Delete> own_;
 };
+
+/// A part of a mixture at one time.
+inline MaterialAt part_at(const MixPart& part, float time) {
+    if (part.change) return MaterialAt(part.change->keys, time);
+    return MaterialAt(part.still);
+}
 
 }  // namespace dg

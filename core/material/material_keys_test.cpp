@@ -48,9 +48,9 @@ TEST_CASE("every number of a material goes half the way, and nothing else does")
     const Material m = blend(a, b, 0.25f);
     const auto& d = std::get<DielectricMaterial>(m.kind);
     CHECK(d.ior == doctest::Approx(1.25));
-    CHECK(d.alpha == doctest::Approx(0.25));
-    CHECK(d.tint.x == doctest::Approx(0.25));
-    CHECK(d.tint.z == doctest::Approx(0.45));
+    CHECK(d.alpha.u == doctest::Approx(0.25));
+    CHECK(d.tint.rgb.x == doctest::Approx(0.25));
+    CHECK(d.tint.rgb.z == doctest::Approx(0.45));
     CHECK(d.dispersion == doctest::Approx(1.5));
     CHECK(m.emission == Rgb{1.5f, 2.5f, 3.5f});
 }

@@ -21,6 +21,16 @@ struct Checker {
     void color(const char* field, Rgb c, float high) const {
         for (int i = 0; i < 3; ++i) number(field, c[i], 0, high);
     }
+    void color(const char* field, const SpectralColor& c, float high) const {
+        if (!c.sampled) return color(field, c.rgb, high);
+        number(field, c.sampled->least(), 0, high);
+        number(field, c.sampled->most(), 0, high);
+    }
+    void roughness(const char* field, const Roughness& a) const {
+        number(field, a.u, 0, 1);
+        number((std::string(field) + "_v").c_str(), a.v, 0, 1);
+        slot((std::string(field) + "_texture").c_str(), a.texture);
+    }
     void slot(const char* field, const TextureSlot& s) const {
         if (!s.used()) return;
         if (static_cast<std::size_t>(s.index) >= textures.size())
@@ -42,17 +52,45 @@ struct Checker {
 
 void check(const Checker& c, const DiffuseMaterial& m) {
     c.color("reflectance", m.reflectance, 1);
+    c.slot("reflectance_texture", m.reflectance_texture);
+    c.color("transmittance", m.transmittance, 1);
+    c.slot("transmittance_texture", m.transmittance_texture);
 }
 void check(const Checker& c, const ConductorMaterial& m) {
     c.color("reflectance", m.reflectance, 1);
-    c.number("alpha", m.alpha, 0, 1);
+    c.slot("reflectance_texture", m.reflectance_texture);
+    c.roughness("alpha", m.alpha);
+    c.color("eta", m.eta, 1000);
+    c.color("k", m.k, 1000);
 }
 void check(const Checker& c, const DielectricMaterial& m) {
     c.number("ior", m.ior, 0.1f, 10);
-    c.number("alpha", m.alpha, 0, 1);
+    if (m.ior_by_wavelength) {
+        c.number("ior", m.ior_by_wavelength->least(), 0.1f, 10);
+        c.number("ior", m.ior_by_wavelength->most(), 0.1f, 10);
+    }
+    c.roughness("alpha", m.alpha);
     c.color("tint", m.tint, 1);
     c.number("dispersion", m.dispersion, 0, Checker::kLargest);
+    c.color("reflection_tint", m.reflection_tint, 1);
 }
+void check(const Checker& c, const CoatedMaterial& m) {
+    if (m.metal) check(c, m.conductor);
+    else check(c, m.diffuse);
+    if (!m.diffuse.transmittance.is_black())
+        throw input_error(c.where, "base: transmittance", "0 under a coat", "more");
+    c.number("ior", m.ior, 1, 10);
+    c.roughness("alpha", m.alpha);
+    c.color("specular_tint", m.specular_tint, 1);
+    c.number("thickness", m.thickness, 0, Checker::kLargest);
+    c.color("absorption", m.absorption, Checker::kLargest);
+}
+void check(const Checker& c, const MixMaterial& m) {
+    c.number("amount", m.amount, 0, 1);
+    c.slot("amount_texture", m.amount_texture);
+}
+void check(const Checker&, const BoundaryMaterial&) {}
+
 void check_layers(const Checker& c, const GltfMaterial& m) {
     c.number("clearcoat", m.clearcoat.factor, 0, 1);
     c.slot("clearcoat_texture", m.clearcoat.texture);
@@ -118,6 +156,11 @@ void check(const Checker& c, const GltfMaterial& m) {
 void validate(const Material& material, const std::vector<Texture>& textures) {
     const Checker c{"material '" + material.name + "'", textures};
     c.color("emission", material.emission, Checker::kLargest);
+    c.number("opacity", material.opacity, 0, 1);
+    c.slot("opacity_texture", material.opacity_texture);
+    c.slot("normal_texture", material.normal_texture);
+    c.number("normal_scale", material.normal_scale, -Checker::kLargest, Checker::kLargest);
+    c.slot("emission_texture", material.emission_texture);
     std::visit([&](const auto& kind) { check(c, kind); }, material.kind);
 }
 

@@ -87,6 +87,46 @@ TEST_CASE("camera, light and both: a table with things of all materials on it") 
     leaf.diffuse_transmission = 0.5f;
     world("leaf", World({"leaf", leaf}).add(0, {"leaf", leaf}, placed({0, 0.3f, 0}, 0.15f, true))
                       .light(SphereLight{{{0, 0.6f, 0}, 0.08f}, {20, 20, 20}}));
+    DiffuseMaterial paper{{0.3f, 0.4f, 0.3f}, {}, {0.6f, 0.5f, 0.4f}};
+    world("paper", World().add(0, {"paper", paper}, placed({0, 0.3f, 0}, 0.15f, true)).light(kLamp));
+    CoatedMaterial plastic;
+    plastic.diffuse.reflectance = {0.8f, 0.5f, 0.3f};
+    world("smooth plastic", World({"table", plastic}).light(kLamp));
+    plastic.alpha = 0.3f;
+    world("rough plastic", World({"table", plastic}).light(kLamp));
+    ConductorMaterial copper{{1, 1, 1}, {0.2f, 0.5f}};
+    copper.fresnel = true;
+    copper.eta = {0.3f, 0.9f, 1.2f}, copper.k = {3.3f, 2.6f, 2.4f};
+    world("brushed copper", World({"table", copper}).light(kLamp));
+    CoatedMaterial lacquer;
+    lacquer.metal = true, lacquer.conductor = copper, lacquer.alpha = 0.2f;
+    lacquer.thickness = 1e-4f, lacquer.absorption = {500, 2000, 4000};
+    world("lacquer on copper", World({"table", lacquer}).light(kLamp));
+    DielectricMaterial even = kGlass;
+    even.alpha = {0.3f, 0.6f}, even.energy_compensation = true;
+    world("even frosted ball", World().add(1, {"glass", even}, kBallPlace).light(kLargeLamp));
+    DielectricMaterial pane = kGlass;
+    pane.thin = true;
+    world("pane", World().add(0, {"pane", pane}, kPane).light(kLamp));
+    pane.alpha = 0.3f;
+    world("frosted pane", World().add(0, {"pane", pane}, kPane).light(kLamp));
+    Material one_sided{"one-sided", plain()};
+    one_sided.two_sided = false;
+    one_sided.kind = paper;
+    world("one-sided", World().add(0, one_sided, placed({0, 0.3f, 0}, 0.15f, true)).light(kLamp));
+    world("boundary",
+          World().add(1, {"boundary", BoundaryMaterial{}}, placed({0.05f, 0.2f, 0.3f}, 0.3f)).light(kLamp));
+    Material mask{"mask", copper};
+    mask.opacity = 0.4f;
+    world("mask", World().add(1, mask, kBallPlace).light(kLamp));
+    // Of table and wall too, so that several vertices of a path choose.
+    World mixed({"table", plain()});
+    mixed.d.materials.push_back({"mirror", ConductorMaterial{{0.9f, 0.9f, 0.9f}, 0}});
+    mixed.d.materials.push_back({"glass", kGlass});
+    mixed.d.materials.push_back({"mix", MixMaterial{0, 2, 0.4f}});
+    mixed.d.materials.push_back({"mixture", MixMaterial{4, 3, 0.3f}});
+    mixed.d.instances[0].material = 4;
+    world("mixtures", std::move(mixed.add(1, {"ball", MixMaterial{0, 5, 0.8f}}, kBallPlace).light(kLargeLamp)));
     world("lamp in glass", World().add(1, {"glass", solid(0)}, kBallPlace)
                                .light(SphereLight{{{0.05f, 0.13f, 0.05f}, 0.05f}, {20, 20, 20}}));
     world("glass in glass", World().add(1, {"glass", solid(0)}, kBallPlace)

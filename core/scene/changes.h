@@ -12,12 +12,8 @@ namespace dg {
 
 struct SceneDescription;
 
-struct MaterialChange {
-    Keyed<Material> keys;
-    MaterialRange range;
-};
 /// By material, null where it stays as it is; empty: they all do.
-using MaterialChanges = std::vector<std::unique_ptr<const MaterialChange>>;
+using MaterialChanges = std::vector<std::unique_ptr<MaterialChange>>;
 
 /// Changes over time; those cut to a single key become plain again. In the description materials, lights and
 /// environment are left as they are when the shutter opens, the environment with its poses; the keys are gone.

@@ -1,4 +1,5 @@
 // emission_reach.cpp -- where light may go in a scene, and where it is worth sending more of it.
+#include "material/material_needs.h"
 #include "scene/scene.h"
 
 namespace dg {
@@ -8,17 +9,6 @@ namespace {
 constexpr std::size_t kMostAims = 16;
 // Larger things than this share of the scene are met anyway.
 constexpr float kLargeAim = 0.5f;
-// GGX alpha above which a lobe is too wide for a caustic to be seen.
-constexpr float kNarrowAlpha = 0.1f;
-
-bool makes_caustics(const Material& material) {
-    if (const auto* d = std::get_if<DielectricMaterial>(&material.kind))
-        return d->ior != 1 && d->alpha < kNarrowAlpha;
-    if (const auto* c = std::get_if<ConductorMaterial>(&material.kind)) return c->alpha < kNarrowAlpha;
-    const auto* m = std::get_if<GltfMaterial>(&material.kind);
-    if (!m || m->unlit || m->roughness * m->roughness >= kNarrowAlpha) return false;
-    return (m->transmission > 0 && m->thickness > 0) || m->metallic > 0.5f;
-}
 
 Sphere ball_around(Vec3f min, Vec3f max) {
     return {(min + max) * 0.5f, 0.5f * length(max - min)};

@@ -1,6 +1,9 @@
 // emission.cpp -- emissive meshes become triangle lights.
 #include "scene/emissive_mesh.h"
 
+#include <algorithm>
+
+#include "material/material_needs.h"
 #include "scene/footprint.h"
 
 namespace dg {
@@ -13,9 +16,8 @@ constexpr int kLargestLattice = 32;
 constexpr float kUnseenShare = 1e-3f;
 
 /// Steps along an edge that make neighbouring lattice points at most one texel apart.
-int texel_steps(const InstanceRecord& r, const GltfMaterial& m,
+int texel_steps(const InstanceRecord& r, const TextureSlot& slot,
                 const std::vector<Texture>& textures, std::uint32_t primitive) {
-    const TextureSlot& slot = emission_texture(m);
     const Texture& texture = textures[slot.index];
     const Vec2f* uv = r.uv[slot.uv_set];
     if (!uv) return 1;
@@ -35,19 +37,40 @@ struct Measured {
     bool even = false;  // the mean is what a ray finds, wherever light sampling looks
 };
 
-/// Neither emission nor opacity change from point to point or with direction.
-bool same_everywhere(const InstanceRecord& record, const Material& material) {
+bool has_emission_texture(const Material& material) {
+    return std::ranges::any_of(emission_textures(material), &TextureSlot::used);
+}
+
+/// Opacity is the same at every point.
+bool same_opacity(const InstanceRecord& record, const Material& material, const std::vector<Texture>& textures) {
+    if (!has_cutout(material, textures)) return true;
     const auto* m = std::get_if<GltfMaterial>(&material.kind);
-    if (!m) return true;
-    const bool opaque = m->alpha_mode == GltfMaterial::AlphaMode::opaque;
-    if (m->unlit && record.colors) return false;
-    return !emission_texture(*m).used() && !emission_is_coated(material) &&
-           (opaque || (!m->base_color_texture.used() && !record.colors));
+    if (material.opacity_texture.used() || is_mixture(material)) return false;
+    return !m || m->alpha_mode == GltfMaterial::AlphaMode::opaque ||
+           (!m->base_color_texture.used() && !record.colors);
+}
+
+/// Neither emission nor opacity change from point to point or with direction.
+bool same_everywhere(const InstanceRecord& record, const Material& material, const std::vector<Texture>& textures) {
+    const auto* m = std::get_if<GltfMaterial>(&material.kind);
+    if (m && m->unlit && record.colors) return false;
+    return !has_emission_texture(material) && !emission_is_coated(material) &&
+           same_opacity(record, material, textures);
+}
+
+/// Points per edge that show every texel, or 2.
+int wanted_steps(const InstanceRecord& record, const Material& material, const std::vector<Texture>& textures,
+                 std::uint32_t primitive) {
+    if (!has_emission_texture(material)) return 2;
+    int steps = 1;
+    for (const TextureSlot& slot : emission_textures(material))
+        if (slot.used()) steps = std::max(steps, texel_steps(record, slot, textures, primitive));
+    return steps;
 }
 
 Measured measure(const InstanceRecord& record, const Material& material, bool changes,
                  const std::vector<Texture>& textures, std::uint32_t primitive) {
-    if (!changes && same_everywhere(record, material)) {
+    if (!changes && same_everywhere(record, material, textures)) {
         const Vec2f anywhere{0, 0};
         const Rgb front =
             emission_at(record, material, textures, {primitive, anywhere, true});
@@ -58,9 +81,7 @@ Measured measure(const InstanceRecord& record, const Material& material, bool ch
         m.even = m.front && (!m.back || front == back);
         return m;
     }
-    const auto* gltf = std::get_if<GltfMaterial>(&material.kind);
-    const bool textured = gltf && emission_texture(*gltf).used();
-    const int wanted = textured ? texel_steps(record, *gltf, textures, primitive) : 2;
+    const int wanted = wanted_steps(record, material, textures, primitive);
     const int n = std::min(wanted, kLargestLattice);
     Rgb sums[2]{};
     int count = 0;
@@ -77,15 +98,13 @@ Measured measure(const InstanceRecord& record, const Material& material, bool ch
     m.front = max_component(sums[0]) > 0;
     m.back = max_component(sums[1]) > 0;
     if (wanted > n || changes) {
-        const Rgb factor = gltf ? emission_factor(*gltf) : Rgb{0, 0, 0};
-        const Rgb least = (material.emission + factor) * kUnseenShare;
+        const Rgb least = emission_factor(material) * kUnseenShare;
         for (Rgb& s : sums) {
             s = {std::max(s.x, least.x * count), std::max(s.y, least.y * count),
                  std::max(s.z, least.z * count)};
         }
         m.front = true;
-        m.back = m.back || material.two_sided_emission ||
-                 (gltf && (gltf->double_sided || gltf->unlit));
+        m.back = m.back || emits_from_behind(material);
     }
     const bool brighter_back = m.back && max_component(sums[1]) > max_component(sums[0]);
     m.mean = sums[brighter_back ? 1 : 0] / float(count);
@@ -113,7 +132,7 @@ Rgb emission_at(const InstanceRecord& record, const Material& material,
     }
     const Rgb full = emitted(material, textures, hit);
     if (max_component(full) <= 0) return {0, 0, 0};
-    return full * opacity(material, textures, hit.uv, hit.color[3]);
+    return full * opacity(material, textures, hit.uv, hit.color[3], time);
 }
 
 void append_emissive_triangles(const InstanceRecord& record, std::uint32_t instance,

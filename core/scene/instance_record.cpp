@@ -2,6 +2,7 @@
 // attributes.
 #include "scene/instance_record.h"
 
+#include "material/material_needs.h"
 #include "scene/curve_surface.h"
 
 namespace dg {
@@ -34,32 +35,6 @@ double row_norm(Vec3d x, Vec3d y, Vec3d z) {
 Vec3f unit_or(Vec3f v, Vec3f fallback) {
     const float l2 = length_squared(v);
     return l2 > 1e-30f ? v * (1 / std::sqrt(l2)) : fallback;  // false for NaN too
-}
-
-bool layers_use_textures(const GltfMaterial& m) {
-    return m.clearcoat.texture.used() || m.clearcoat.roughness_texture.used() ||
-           m.clearcoat.normal_texture.used() || m.sheen.color_texture.used() ||
-           m.sheen.roughness_texture.used() || m.anisotropy.texture.used() ||
-           m.iridescence.texture.used() || m.iridescence.thickness_texture.used();
-}
-
-bool uses_textures(const GltfMaterial& m) {
-    return m.base_color_texture.used() || m.metallic_roughness_texture.used() ||
-           m.normal_texture.used() || m.emissive_texture.used() ||
-           m.specular_texture.used() || m.specular_color_texture.used() ||
-           m.transmission_texture.used() || m.diffuse_transmission_texture.used() ||
-           m.diffuse_transmission_color_texture.used() ||
-           m.specular_glossiness_texture.used() || layers_use_textures(m);
-}
-
-/// The texture set whose +u is the tangent, for a material that has need of one: that of
-/// the normal map (glTF 2.0, 3.7.2.1), or else of what takes its place. -1: no need.
-int tangent_set(const GltfMaterial& m) {
-    if (m.normal_texture.used()) return m.normal_texture.uv_set;
-    if (m.clearcoat.used() && m.clearcoat.normal_texture.used())
-        return m.clearcoat.normal_texture.uv_set;
-    if (!m.anisotropy.used()) return -1;
-    return m.anisotropy.texture.used() ? m.anisotropy.texture.uv_set : 0;
 }
 
 /// Direction of +u over the triangle, with the side of -v for the handedness (glTF: v
@@ -154,8 +129,7 @@ void InstanceRecord::set_step(Placement& p, float time) const {
 InstanceRecord make_record(const Mesh& mesh, const Material& material,
                            std::uint32_t material_index, const InstanceGeometry& geometry,
                            bool flattened) {
-    const auto* gltf = std::get_if<GltfMaterial>(&material.kind);
-    const bool textured = gltf && uses_textures(*gltf);
+    const bool textured = uses_textures(material);
     InstanceRecord r{};
     r.curves = mesh.curves.empty() ? nullptr : &mesh;
     r.positions = mesh.positions.data();
@@ -166,9 +140,10 @@ InstanceRecord make_record(const Mesh& mesh, const Material& material,
     for (int set = 0; set < 2; ++set) {
         if (textured && !mesh.uv[set].empty()) r.uv[set] = mesh.uv[set].data();
     }
-    const int set = gltf ? tangent_set(*gltf) : -1;
+    const int set = tangent_set(material);
     r.needs_frame = set >= 0;
     r.textured = textured;
+    r.mixed = is_mixture(material);
     if (r.needs_frame) {
         r.tangents = mesh.tangents.empty() ? nullptr : mesh.tangents.data();
         r.tangent_uv = mesh.uv[set].empty() ? nullptr : mesh.uv[set].data();

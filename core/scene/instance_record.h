@@ -43,6 +43,7 @@ struct InstanceRecord {
     std::size_t vertex_count;
     bool needs_frame;  // a normal map or anisotropy wants a tangent
     bool textured;     // the material looks at textures
+    bool mixed;        // a mixture: hits choose a part
     Placement still;   // of what neither moves nor deforms
     const Motion* motion = nullptr;  // over the scene's interval; null: stands still
     const Shown* shown = nullptr;    // null: always

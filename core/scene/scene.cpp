@@ -5,6 +5,7 @@
 #include <bit>
 #include <limits>
 
+#include "material/material_needs.h"
 #include "math/hash.h"
 #include "scene/footprint.h"
 #include "scene/memory_need.h"
@@ -20,7 +21,7 @@ bool may_be_transparent(const Material& material, const Mesh& mesh,
                         const std::vector<Texture>& textures) {
     if (!has_cutout(material, textures)) return false;
     const auto* gltf = std::get_if<GltfMaterial>(&material.kind);
-    if (!gltf || !mesh.colors.empty()) return true;
+    if (!gltf || !mesh.colors.empty() || material.opacity < 1 || material.opacity_texture.used()) return true;
     const TextureSlot& slot = gltf->base_color_texture;
     if (slot.used() && textures[slot.index].channels % 2 == 0)
         return true;  // 2, 4: has alpha
@@ -31,8 +32,8 @@ bool may_be_transparent(const Material& material, const Mesh& mesh,
 }
 
 /// Uniform in [0,1), the same for the same ray and triangle whatever the order of
-/// traversal. A ray may meet a segment of a curve twice: `place` tells where.
-float cutout_random(const Ray& ray, const RawHit& hit, std::uint32_t place) {
+/// traversal. `salt` makes another of it.
+float random_of(const Ray& ray, const RawHit& hit, std::uint32_t salt) {
     auto pair = [](float a, float b) {
         return std::uint64_t(std::bit_cast<std::uint32_t>(a)) << 32 |
                std::bit_cast<std::uint32_t>(b);
@@ -40,9 +41,17 @@ float cutout_random(const Ray& ray, const RawHit& hit, std::uint32_t place) {
     const std::uint64_t h =
         hash64(pair(ray.origin.x, ray.origin.y), pair(ray.origin.z, ray.direction.x),
                pair(ray.direction.y, ray.direction.z),
-               std::uint64_t(hit.instance) << 32 | (hit.primitive ^ place));
+               std::uint64_t(hit.instance) << 32 | (hit.primitive ^ salt));
     return static_cast<float>(h >> 40) * 0x1p-24f;
 }
+
+/// Where on a curve: a ray may meet a segment twice.
+std::uint32_t place_on_curve(const InstanceRecord& record, const RawHit& hit) {
+    return record.curves ? std::bit_cast<std::uint32_t>(hit.v) << 4 : 0;
+}
+
+// Parts of mixtures are chosen by other numbers than what passes their holes.
+constexpr std::uint32_t kOfChoice = 0x9e3779b9u;
 
 /// Whether a transform can be inverted well enough to trace rays through it.
 bool is_singular(const Affine3d& m) {
@@ -80,6 +89,7 @@ std::shared_ptr<const Scene> Scene::build(SceneDescription description) {
     Changes changes = take_changes(description);
     std::shared_ptr<Scene> scene(new Scene(std::move(description)));
     scene->changes_ = std::move(changes);
+    link_mixtures(scene->description_.materials, scene->changes_.materials);
     const auto geometry = scene->geometry_of_instances();
     scene->build_intersector(geometry);
     scene->build_records(geometry);
@@ -175,10 +185,9 @@ bool Scene::passes(const Ray& ray, const RawHit& hit) const {
     interpolate_attributes(record, hit.primitive, hit.u, hit.v, surface);
     const MaterialAt material = material_at(record.material, ray.time);
     const float alpha =
-        opacity(material, description_.textures, surface.uv, surface.color[3]);
+        opacity(material, description_.textures, surface.uv, surface.color[3], ray.time);
     if (alpha >= 1) return false;
-    const std::uint32_t place = record.curves ? std::bit_cast<std::uint32_t>(hit.v) << 4 : 0;
-    return alpha <= 0 || cutout_random(ray, hit, place) >= alpha;
+    return alpha <= 0 || random_of(ray, hit, place_on_curve(record, hit)) >= alpha;
 }
 
 void Scene::find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const {
@@ -193,6 +202,7 @@ void Scene::find_surface(const Ray& ray, const RawHit& raw, SurfaceHit& hit) con
     surface_at(record, placement, raw.primitive, raw.u, raw.v, hit);
     if (!ray.cone.empty()) set_footprint(record, placement, ray.cone.after(raw.t).width, hit);
     hit.front = dot(hit.ng, hit.wo) > 0;
+    if (record.mixed) hit.choice = random_of(ray, raw, place_on_curve(record, raw) ^ kOfChoice);
 }
 
 std::optional<Scene::Hit> Scene::intersect(const Ray& ray) const {

@@ -55,6 +55,26 @@ void check_profiles(const SceneDescription& d) {
         for (const Material& m : keys.values) check_profile("keys of material " + std::to_string(i), m.profile, d);
 }
 
+/// Parts come before their mixture, so that none is a part of itself.
+void check_mixtures(const SceneDescription& d) {
+    std::vector<int> nested(d.materials.size(), 0);
+    const auto check = [&](std::uint32_t i, const Material& m) {
+        const auto* mix = std::get_if<MixMaterial>(&m.kind);
+        if (!mix) return;
+        const std::string where = "material '" + d.materials[i].name + "'";
+        for (const auto& [what, part] : {std::pair{"first", mix->first}, {"second", mix->second}}) {
+            check_index(where, what, part, i);
+            nested[i] = std::max(nested[i], nested[part] + 1);
+            if (emits(d.materials[part]))
+                throw input_error(where, what, "a material that emits nothing", "'" + d.materials[part].name + "'");
+        }
+        if (nested[i] > MixMaterial::kMostNested)
+            throw input_error(where, "mixtures within it", "at most " + std::to_string(MixMaterial::kMostNested),
+                              std::to_string(nested[i]));
+    };
+    for (std::uint32_t i = 0; i < d.materials.size(); ++i) check(i, d.materials[i]);
+}
+
 void validate_keys(const SceneDescription& d) {
     for (const auto& [i, keys] : d.material_keys) {
         check_index("keys of material " + std::to_string(i), "index", i, d.materials.size());
@@ -84,6 +104,7 @@ void validate(const SceneDescription& d) {
         check_index(where, "material index", instance.material, d.materials.size());
         if (!instance.motion) check_transform(where, instance.world_from_local);
     }
+    check_mixtures(d);
     check_profiles(d);
     validate_keys(d);
 }

@@ -12,7 +12,9 @@ Vec3f shading_normal(const Bsdf& bsdf) {
         bsdf);
 }
 
+/// Not of a surface that is black from behind.
 bool same_normals(const Bsdf& a, const Bsdf& b) {
+    if (a.index() != b.index()) return false;
     if (!(shading_normal(a) == shading_normal(b))) return false;
     const auto* coated = std::get_if<LayeredBsdf>(&a);
     return !coated || coated->coat.ns == std::get<LayeredBsdf>(b).coat.ns;
@@ -36,7 +38,7 @@ PathVertex::PathVertex(const Material& material, const std::vector<Texture>& tex
       textures_(textures),
       wavelengths_(wavelengths),
       hit_(hit),
-      even_(hit.ns == hit.ng && !has_normal_map(material)),
+      even_(hit.ns == hit.ng && !has_normal_map(material) && !is_one_sided(material)),
       from_(hit.wo),
       here_(shaded ? *shaded : shade_from(hit.wo)) {}
 

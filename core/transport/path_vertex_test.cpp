@@ -91,6 +91,35 @@ std::vector<Case> cases() {
     film.iridescence.factor = 1;
     film.iridescence.thickness_max = 400;
     add("film", film);
+    DiffuseMaterial translucent{{0.3f, 0.5f, 0.2f}, {}, {0.5f, 0.4f, 0.6f}};
+    add("translucent", translucent);
+    ConductorMaterial gold{{1, 1, 1}, {0.15f, 0.5f}};
+    gold.fresnel = true;
+    gold.eta = {0.2f, 0.4f, 1.3f}, gold.k = {3.5f, 2.4f, 1.9f};
+    add("brushed gold", gold);
+    gold.alpha = 0;
+    add("gold mirror", gold);
+    DielectricMaterial even{1.5f, {0.2f, 0.6f}, {0.8f, 0.9f, 1}};
+    even.reflection_tint = {0.9f, 0.5f, 0.7f};
+    even.energy_compensation = true;
+    add("brushed glass that keeps its energy", even);
+    for (const float rough : {0.f, 0.4f}) {
+        DielectricMaterial pane{1.5f, rough, {0.8f, 0.9f, 1}};
+        pane.thin = true;
+        add("pane", pane);
+        CoatedMaterial plastic;
+        plastic.alpha = rough;
+        plastic.diffuse.reflectance = {0.8f, 0.4f, 0.6f};
+        add("plastic", plastic);
+        CoatedMaterial coated_gold;
+        coated_gold.metal = true;
+        coated_gold.conductor = gold;
+        coated_gold.conductor.alpha = rough;
+        add("coated gold", coated_gold);
+        coated_gold.alpha = 0.3f;
+        add("gold under a rough coat", coated_gold);
+    }
+    add("boundary", BoundaryMaterial{});
     GltfMaterial bumpy = gltf(0.2f, 0.4f);
     bumpy.normal_texture = test::slot(0);
     add("bumpy", bumpy);

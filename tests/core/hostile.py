@@ -6,7 +6,6 @@ name of each before it is made: what ends the process is named by the last line.
 
 from __future__ import annotations
 
-import dataclasses
 import faulthandler
 import math
 import resource
@@ -21,6 +20,7 @@ import numpy as np
 
 import daguerre as dg
 from daguerre import _core, lenses
+from daguerre.setup.core_materials import common_values, kind_name, kind_values
 
 #: Bytes of memory that cases may take, and s of CPU time of one.
 ROOM, SECONDS = 3 << 30, 10
@@ -191,7 +191,7 @@ def built(call: Callable[..., Any]) -> Callable[..., Any]:
 
     def run(*arguments: Any) -> Any:
         builder = _core.SceneBuilder()
-        builder.add_diffuse("grey", (0.5, 0.5, 0.5), DARK)
+        builder.add_material("grey", *GREY)
         builder.add_texture(
             "dots", np.ones((2, 2, 3), F32), False, *["repeat"] * 2, "linear", "linear"
         )
@@ -771,7 +771,8 @@ def _of_films() -> dict[str, Call]:
 
 AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 LAMP = (-1, *AXES)
-DARK = ((0.0, 0.0, 0.0), False, -1)
+#: Kind, its values and those of all materials, of a grey one.
+GREY = ("diffuse", kind_values(dg.Diffuse()), common_values(dg.Material(), -1))
 
 
 def profile(*given: Any) -> Any:
@@ -799,7 +800,10 @@ def _of_scenes() -> dict[str, Call]:
     uv, four = np.zeros((3, 2), F32), np.ones((3, 4), F32)
     motion = c.Motion.keys(np.array([0.0, 1.0]), np.stack([np.eye(4)] * 2))
     slot = (0, 0, (1.0, 0.0, 0.0, 0.0, 1.0, 0.0))
-    gltf = _gltf(slot)
+    gltf = _surfaces(slot)["gltf"]
+    shining = {**GREY[2], "emission": (0.5, 0.5, 0.5), "two_sided_emission": True, "profile": 0}
+    for name in ("opacity_texture", "normal_texture", "emission_texture"):
+        shining[name] = slot
 
     def instance(b: Any, *a: Any) -> Any:
         return b.add_instance("more", *a)
@@ -808,17 +812,14 @@ def _of_scenes() -> dict[str, Call]:
         return b.add_instance("more", b.add_mesh("more", *a), 0, np.eye(4))
 
     def made(kind: str) -> Callable[..., Any]:
-        return lambda b, *a: b.add_instance(
-            "more",
-            b.add_mesh("more", positions, triangles, None, uv, uv, None, None),
-            getattr(b, kind)("more", *a),
-            np.eye(4),
-        )
-
-    def emitting(kind: str) -> Callable[..., Any]:
         def call(b: Any, *a: Any) -> Any:
             b.add_profile(profile())
-            return made(kind)(b, *a[:-3], a[-3:])
+            return b.add_instance(
+                "more",
+                b.add_mesh("more", positions, triangles, None, uv, uv, None, None),
+                b.add_material("more", kind, *a),
+                np.eye(4),
+            )
 
         return call
 
@@ -831,7 +832,7 @@ def _of_scenes() -> dict[str, Call]:
 
     def folded(b: Any, times: Any) -> Any:
         for _ in range(2):
-            b.add_diffuse("key", (0.5, 0.5, 0.5), ((1, 1, 1), False, -1))
+            b.add_material("key", *GREY[:2], {**GREY[2], "emission": (1, 1, 1)})
         b.add_instance("more", 0, 1, np.eye(4))
         b.fold_materials(times)
 
@@ -842,7 +843,7 @@ def _of_scenes() -> dict[str, Call]:
 
     def textured(b: Any, *a: Any) -> Any:
         b.add_texture("more", *a)
-        return made("add_gltf")(b, {**gltf, "base_color_texture": (1, *slot[1:])}, DARK)
+        return made("gltf")(b, {**gltf, "base_color_texture": (1, *slot[1:])}, GREY[2])
 
     def caught(b: Any, *a: Any) -> Any:
         return b.set_catcher(*a)
@@ -868,10 +869,8 @@ def _of_scenes() -> dict[str, Call]:
             [0, 0, [(0.0, 1.0)]],
         ),
         "set_catcher": (caught, [0, True, True, True]),
-        "add_diffuse": (emitting("add_diffuse"), [rgb, rgb, True, 0]),
-        "add_conductor": (emitting("add_conductor"), [rgb, 0.1, rgb, True, 0]),
-        "add_dielectric": (emitting("add_dielectric"), [1.5, 0.1, rgb, 0.02, rgb, True, 0]),
-        "add_gltf": (emitting("add_gltf"), [gltf, rgb, True, 0]),
+        **{f"add_material {k}": (made(k), [v, shining]) for k, v in _surfaces(slot).items()},
+        "add_material": (lambda b, *a: b.add_material("more", *a), list(GREY)),
         "add_profile": (lambda b, p: b.add_profile(p), [profile()]),
         "add_point_light": (lamp("add_point_light"), [(0.0, 1.0, 2.0), rgb, 5.0, 0, *AXES]),
         "add_spot_light": (
@@ -899,11 +898,23 @@ def _of_scenes() -> dict[str, Call]:
     return {name: (built(call), arguments) for name, (call, arguments) in found.items()}
 
 
-def _gltf(slot: Any) -> dict[str, Any]:
-    """A material of all parts, whose textures are one picture."""
-    kind = dg.Gltf()
-    values = {field.name: getattr(kind, field.name) for field in dataclasses.fields(kind)}
-    return {name: slot if name.endswith("_texture") else value for name, value in values.items()}
+def _surfaces(slot: Any) -> dict[str, dict[str, Any]]:
+    """Materials of all kinds with all parts, whose textures are one picture."""
+    green = dg.Spectrum((400, 700), (0.2, 0.8))
+    kinds: tuple[Any, ...] = (
+        dg.Diffuse(green, transmittance=(0.1, 0.2, 0.1)),
+        dg.Conductor(green, eta=green, k=(3, 2, 2), alpha_v=0.3),
+        dg.Dielectric(alpha=0.2, alpha_v=0.4, dispersion=0.02, energy_compensation=True),
+        dg.Coated(dg.Conductor(eta=green, k=green), alpha=0.1, thickness=1e-4, absorption=green),
+        dg.Mix(0, 0, 0.25),
+        dg.Boundary(),
+        dg.Gltf(),
+    )
+    found = {kind_name(kind): kind_values(kind) for kind in kinds}
+    return {
+        kind: {k: slot if k.endswith("_texture") else v for k, v in values.items()}
+        for kind, values in found.items()
+    }
 
 
 def _of_renders() -> dict[str, Call]:

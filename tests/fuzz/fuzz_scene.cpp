@@ -122,17 +122,82 @@ GltfMaterial any_gltf(FuzzInput& in) {
     return m;
 }
 
-Material any_material(FuzzInput& in) {
+SpectralColor any_color(FuzzInput& in) {
+    if (in.flag()) return color(in);
+    const std::vector<double> nm{400, 600}, values{in.factor(), in.factor()};
+    return std::make_shared<const SampledSpectrum>(nm, values);
+}
+
+Roughness any_roughness(FuzzInput& in) {
+    const float u = in.factor();
+    Roughness a{u, in.flag() ? u : in.factor()};
+    any_slot(in, a.texture);
+    return a;
+}
+
+DiffuseMaterial any_diffuse(FuzzInput& in) {
+    DiffuseMaterial m{any_color(in)};
+    if (in.flag()) m.transmittance = any_color(in);
+    any_slot(in, m.reflectance_texture);
+    any_slot(in, m.transmittance_texture);
+    return m;
+}
+
+ConductorMaterial any_conductor(FuzzInput& in) {
+    ConductorMaterial m{any_color(in), any_roughness(in)};
+    m.fresnel = in.flag();
+    if (m.fresnel) m.eta = any_color(in), m.k = any_color(in);
+    any_slot(in, m.reflectance_texture);
+    return m;
+}
+
+DielectricMaterial any_dielectric(FuzzInput& in) {
+    DielectricMaterial m{1 + in.factor(), any_roughness(in), any_color(in), in.factor()};
+    if (in.flag()) m.reflection_tint = any_color(in);
+    m.thin = in.flag();
+    m.energy_compensation = in.flag();
+    return m;
+}
+
+CoatedMaterial any_coated(FuzzInput& in) {
+    CoatedMaterial m;
+    m.metal = in.flag();
+    if (m.metal) m.conductor = any_conductor(in);
+    else m.diffuse = any_diffuse(in);
+    m.ior = 1 + in.factor();
+    m.alpha = any_roughness(in);
+    m.specular_tint = any_color(in);
+    m.thickness = in.number();
+    m.absorption = any_color(in);
+    m.nonlinear = in.flag();
+    return m;
+}
+
+/// Of a scene that has `known` materials before it.
+Material any_material(FuzzInput& in, int known) {
     Material m;
     m.name = "material";
-    switch (in.below(6)) {
-        case 0: m.kind = DiffuseMaterial{color(in)}; break;
-        case 1: m.kind = ConductorMaterial{color(in), in.factor()}; break;
-        case 2: m.kind = DielectricMaterial{1 + in.factor(), in.factor(), color(in), in.factor()}; break;
+    switch (in.below(9)) {
+        case 0: m.kind = any_diffuse(in); break;
+        case 1: m.kind = any_conductor(in); break;
+        case 2: m.kind = any_dielectric(in); break;
+        case 3: m.kind = any_coated(in); break;
+        case 4: m.kind = BoundaryMaterial{}; break;
+        case 5: {
+            MixMaterial mix{std::uint32_t(in.below(known + 1)), std::uint32_t(in.below(known + 1)), in.factor()};
+            any_slot(in, mix.amount_texture);
+            m.kind = mix;
+            break;
+        }
         default: m.kind = any_gltf(in);
     }
     if (in.flag()) m.emission = color(in);
     m.two_sided_emission = in.flag();
+    if (in.flag()) {
+        m.opacity = in.factor();
+        m.two_sided = in.flag();
+        for (TextureSlot* slot : {&m.opacity_texture, &m.normal_texture, &m.emission_texture}) any_slot(in, *slot);
+    }
     return m;
 }
 
@@ -163,7 +228,7 @@ Affine3f any_transform(FuzzInput& in) {
 SceneDescription any_scene(FuzzInput& in) {
     SceneDescription d;
     for (int n = in.below(4); n > 0; --n) d.textures.push_back(any_texture(in));
-    for (int n = 1 + in.below(3); n > 0; --n) d.materials.push_back(any_material(in));
+    for (int n = 1 + in.below(3); n > 0; --n) d.materials.push_back(any_material(in, int(d.materials.size())));
     for (int n = 1 + in.below(3); n > 0; --n) d.meshes.push_back(any_mesh(in));
     for (int n = in.below(5); n > 0; --n) {
         const auto mesh = std::uint32_t(in.below(int(d.meshes.size()) + (in.below(64) == 63)));

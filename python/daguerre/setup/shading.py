@@ -24,17 +24,11 @@ from daguerre.scene.lights import (
     SpotLight,
     check_light,
 )
-from daguerre.scene.materials import (
-    Conductor,
-    Dielectric,
-    Diffuse,
-    Gltf,
-    Material,
-    TextureSlot,
-    check_material,
-)
+from daguerre.scene.materials import Material, check_material
 from daguerre.scene.parts import Environment
 from daguerre.scene.scene import Scene
+
+from .core_materials import common_values, kind_name, kind_values
 
 Interval = tuple[float, float]
 #: Kind of light, and arguments of the core's function for that kind.
@@ -160,65 +154,9 @@ def _light_checker(kind: str) -> Callable[[Any], CoreLight]:
     return checked
 
 
-def _slot(slot: TextureSlot | None) -> tuple[Any, ...] | None:
-    return None if slot is None else (slot.texture, slot.uv_set, tuple(slot.transform))
-
-
 def _add_material(builder: _core.SceneBuilder, material: Material, profiles: Profiles) -> None:
-    _refuse_new(material)
-    kind, profile = material.kind, profiles.index(material.profile)
-    emission = (material.emission, material.two_sided_emission, profile)
-    if isinstance(kind, Diffuse):
-        builder.add_diffuse(material.name, kind.reflectance, emission)
-    elif isinstance(kind, Conductor):
-        builder.add_conductor(material.name, kind.reflectance, kind.alpha, emission)
-    elif isinstance(kind, Dielectric):
-        builder.add_dielectric(
-            material.name, kind.ior, kind.alpha, kind.tint, kind.dispersion, emission
-        )
-    elif isinstance(kind, Gltf):
-        values = {f.name: getattr(kind, f.name) for f in dataclasses.fields(kind)}
-        for name, value in values.items():
-            if name.endswith("_texture"):
-                values[name] = _slot(value)
-        values["anisotropy_rotation"] = math.radians(kind.anisotropy_rotation)
-        builder.add_gltf(material.name, values, emission)
-    else:
-        raise InputError(
-            f"material {material.name!r}: kind: wanted Diffuse, Conductor, Dielectric or Gltf, "
-            f"got {type(kind).__name__}"
-        )
-
-
-#: Fields that the core draws; of glTF it draws all.
-_DRAWN = frozenset(("kind", "name", "emission", "two_sided_emission", "profile")) | {
-    "reflectance",
-    "alpha",
-    "ior",
-    "tint",
-    "dispersion",
-}
-
-
-def _refuse_new(material: Material) -> None:
-    """Refuses what the core does not draw yet."""
-    kind = material.kind
-    if isinstance(kind, Gltf):
-        pairs: list[tuple[Any, Any]] = [(material, Material(kind))]
-    elif isinstance(kind, Diffuse | Conductor | Dielectric):
-        pairs = [(material, Material(kind)), (kind, type(kind)())]
-    else:
-        name = type(kind).__name__
-        raise InputError(f"material {material.name!r}: kind: the core does not draw {name} yet")
-    for given, plain in pairs:
-        for field in dataclasses.fields(given):
-            name, value = field.name, getattr(given, field.name)
-            if name in _DRAWN or value == getattr(plain, name):
-                continue
-            raise InputError(
-                f"material {material.name!r}: {name}: wanted its default, as the core does not "
-                f"draw it yet, got {value!r}"
-            )
+    kind, common = material.kind, common_values(material, profiles.index(material.profile))
+    builder.add_material(material.name, kind_name(kind), kind_values(kind), common)
 
 
 def _add_light(builder: _core.SceneBuilder, light: CoreLight, profiles: Profiles) -> None:

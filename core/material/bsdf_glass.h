@@ -1,0 +1,75 @@
+// bsdf_glass.h -- clear glass with all that DielectricBsdf has not: facets of two roughnesses, a tint of reflections,
+// panes, and light that bounces from facet to facet.
+//
+// A pane has two parallel faces, closer together than anything sees: light goes through it unbent, and what the faces
+// reflect to and fro leaves in the same two directions. With F of one face, R = F + (1 - F)^2 F / (1 - F^2) =
+// 2 F / (1 + F) (Stokes 1860, On the Intensity of the Light Reflected from or Transmitted through a Pile of Plates).
+// A rough pane mirrors its reflected lobe through the surface.
+//
+// What facets block, m(cos) of the light, is scattered evenly, as light that met several facets would be: reflected by
+// (1 - T) m(o) m(i) / (pi M), with M the mean of m, and transmitted by T m(o) m'(i) / (pi eta^2 M') with m' of the
+// other side (Kulla and Conty 2017, Revisiting Physically Based Shading at Imageworks, SIGGRAPH course). It is
+// reciprocal if T M = n^2 T' M'. As the means of 1 - F keep to the same ratio, T = (1 - F_mean) min(M, M') / M does.
+#pragma once
+#include <optional>
+
+#include "material/dispersive.h"
+#include "material/facets.h"
+#include "material/glass_albedo.h"
+#include "spectrum/wavelengths.h"
+
+namespace dg {
+
+/// Light that rough glass would lose: how much, and which share of it is transmitted, from either side.
+struct GlassCompensation {
+    GlassAlbedo albedo;
+    float transmitted_thin = 0, transmitted_dense = 0, transmitted_pane = 0;
+
+    /// n >= 1.
+    GlassCompensation(float n, const Facets& facets);
+    bool used() const { return albedo.mean().missing_thin > 1e-6f && albedo.mean().missing_dense > 1e-6f; }
+};
+
+struct GlassBsdf {
+    Vec3f ns, ng;
+    Spectrum reflection_tint{1.f}, tint{1.f};
+    float ior = 1.5f;  // the hero's
+    bool thin = false;
+    bool disperses = false;  // what is bent is the hero's alone
+    Spectrum iors{1.5f};     // of the four wavelengths
+    Facets facets;
+    std::optional<GlassCompensation> compensation;
+
+    static constexpr bool kOneLobe = false;
+    bool is_specular() const { return facets.smooth || (!thin && std::abs(ior - 1) < 1e-3f); }
+    float diffuse_share(Vec3f, Vec3f) const { return 0; }
+    Evaluation evaluate_with_pdf(Vec3f wo, Vec3f wi) const;
+    Spectrum evaluate(Vec3f wo, Vec3f wi) const { return evaluate_with_pdf(wo, wi).f_cos; }
+    float pdf(Vec3f wo, Vec3f wi) const { return evaluate_with_pdf(wo, wi).pdf; }
+    std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f u) const;
+    Interior interior() const { return {}; }
+    bool bounds_volume() const { return !thin && ior != 1; }
+    float reversed(Vec3f, Vec3f) const { return 1; }
+    Spectrum straight(Vec3f wo) const;
+
+  private:
+    /// Split of light at a facet whose normal makes cos_h with wo, and the chance to reflect.
+    struct Split {
+        Spectrum reflected, transmitted;
+        float probability;
+    };
+    Split split(float cos_h, float eta, bool front) const;
+    Spectrum reflectance(float cos_h, bool front) const;
+    float eta(bool front) const { return thin ? 1.f : front ? ior : 1 / ior; }
+    Facet joined(const Facing& side, Vec3f wo, Vec3f wi, float cos_i, bool reflected) const;
+
+    /// The evenly scattered light as seen from wo: its share, and the share of that which is transmitted.
+    struct Even {
+        float share = 0, transmitted = 0, mean_here = 1, mean_beyond = 1;
+        bool thin_side = true;
+    };
+    Even even(const Facing& side, Vec3f wo) const;
+    void add_even(const Even& e, const Facing& side, Vec3f wi, bool reflected, Evaluation& sum) const;
+};
+
+}  // namespace dg

@@ -1,0 +1,129 @@
+// glass_albedo.cpp -- the tables of glass_albedo.h by quadrature over the visible normals.
+#include "material/glass_albedo.h"
+
+#include "material/ggx.h"
+
+namespace dg {
+namespace {
+
+GlassLobes to_lobes(LobeAlbedo a) { return {a[0], a[1], a[2], a[3]}; }
+
+/// G2 / G1 of a facet that joins two directions, with heights correlated.
+float passed(float cos_o, float slope_o, float cos_i, float slope_i) {
+    return cos_i * (cos_o + slope_o) / (cos_i * slope_o + cos_o * slope_i);
+}
+
+float curve_of(float exact, float f0) { return f0 < 1 ? std::max(0.f, exact - f0) / (1 - f0) : 0.f; }
+
+/// Light of one facet: what it returns on either side, for eta = index beyond / index here.
+struct Returned {
+    float reflected = 0, facets = 0, transmitted = 0, exact = 1;
+};
+Returned returned(Vec3f wo, Vec3f h, float alpha2, float eta) {
+    Returned r;
+    const float cos_o = wo.z, slope_o = ggx_slope(alpha2, cos_o), cos_h = dot(wo, h);
+    r.exact = fresnel_dielectric(cos_h, eta);
+    const float up = reflect(wo, h).z;
+    if (up > 0) r.facets = passed(cos_o, slope_o, up, ggx_slope(alpha2, up));
+    r.reflected = r.exact * r.facets;
+    if (r.exact >= 1) return r;
+    const float down = -refract(wo, h, eta).z;
+    if (down > 0) r.transmitted = (1 - r.exact) * passed(cos_o, slope_o, down, ggx_slope(alpha2, down));
+    return r;
+}
+
+/// Midpoint rule in the two random numbers of the sampler; half a circle, the other half mirrors it.
+constexpr int kAzimuths = 8, kCaps = 48;
+template <typename What>
+void for_visible_facets(Vec3f wo, float alpha, What what) {
+    for (int j = 0; j < kAzimuths; ++j) {
+        for (int i = 0; i < kCaps; ++i) {
+            const Vec2f u{(static_cast<float>(j) + 0.5f) / (2 * kAzimuths), (static_cast<float>(i) + 0.5f) / kCaps};
+            what(sample_visible_normal({0, 0, 1}, wo, alpha, u));
+        }
+    }
+}
+
+LobeAlbedo integrate_glass(float cos_o, float alpha, float n) {
+    if (alpha == 0) return {0, 0, curve_of(fresnel_dielectric(cos_o, n), normal_reflectance(n)), 1};
+    const Vec3f wo{std::sqrt(std::max(0.f, 1 - cos_o * cos_o)), 0, cos_o};
+    const float f0 = normal_reflectance(n);
+    double thin = 0, dense = 0, curve = 0, facets = 0;
+    for_visible_facets(wo, alpha, [&](Vec3f h) {
+        const Returned outside = returned(wo, h, alpha * alpha, n), inside = returned(wo, h, alpha * alpha, 1 / n);
+        thin += 1 - (outside.reflected + outside.transmitted);
+        dense += 1 - (inside.reflected + inside.transmitted);
+        curve += curve_of(outside.exact, f0) * outside.facets;
+        facets += outside.facets;
+    });
+    const double scale = 1.0 / (kAzimuths * kCaps);
+    return {static_cast<float>(std::max(0.0, thin * scale)), static_cast<float>(std::max(0.0, dense * scale)),
+            static_cast<float>(curve * scale), static_cast<float>(facets * scale)};
+}
+
+/// A metal of reflectance 1 below a smooth coat: what its facets return, less what leaves through the coat.
+LobeAlbedo integrate_caught(float cos_o, float alpha, float n) {
+    if (alpha == 0) return 0.f;
+    const auto inside = [&](float c) { return std::sqrt(1 - (1 - c * c) / (n * n)); };
+    const auto reflected = [&](float c) { return fresnel_dielectric(c, n); };
+    const float c = inside(cos_o), alpha2 = alpha * alpha, slope_o = ggx_slope(alpha2, c), e_o = reflected(cos_o);
+    const Vec3f wo{std::sqrt(std::max(0.f, 1 - c * c)), 0, c};
+    double caught = 0;
+    for_visible_facets(wo, alpha, [&](Vec3f h) {
+        const float up = reflect(wo, h).z, sin2 = (1 - up * up) * n * n;
+        if (up <= 0) return;
+        const float facets = passed(c, slope_o, up, ggx_slope(alpha2, up));
+        const float e_i = sin2 < 1 ? reflected(std::sqrt(1 - sin2)) : 1.f;
+        const float leaves = e_i < 1 ? (1 - e_i) / (1 - std::min(e_o, e_i)) : 0.f;
+        caught += facets * (1 - leaves);
+    });
+    const float share = static_cast<float>(std::max(0.0, caught / (kAzimuths * kCaps)));
+    return {share, share * (1 - e_o), 0, 0};
+}
+
+const IndexedAlbedo& glass_table() {
+    static const IndexedAlbedo table(integrate_glass);
+    return table;
+}
+const IndexedAlbedo& caught_table() {
+    static const IndexedAlbedo table(integrate_caught);
+    return table;
+}
+
+/// Duntley's form, for n far enough from 1.
+double mean_in_closed_form(double n) {
+    const double n2 = n * n, n4 = n2 * n2, plus = n2 + 1, minus = n2 - 1, fourth = n4 - 1;
+    return 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) +
+           n2 * minus * minus / (plus * plus * plus) * std::log((n - 1) / (n + 1)) -
+           2 * n * n2 * (n2 + 2 * n - 1) / (plus * fourth) + 8 * n4 * (n4 + 1) / (plus * fourth * fourth) * std::log(n);
+}
+
+}  // namespace
+
+float mean_fresnel(float n) {
+    constexpr double kNearest = 1.01;   // below, terms of 1 / (n - 1)^2 cancel
+    if (n >= kNearest) return static_cast<float>(mean_in_closed_form(n));
+    return static_cast<float>(mean_in_closed_form(kNearest) * (std::max(n, 1.f) - 1) / (kNearest - 1));
+}
+
+GlassAlbedo::GlassAlbedo(float n, const StretchedGgx& facets)
+    : n_(n), facets_(facets), row_(glass_table().row(n, facets.alpha_t)), mean_(to_lobes(row_.mean)) {
+    if (facets.alpha_t == facets.alpha_b) return;
+    constexpr int kTurns = 8;   // of a quarter
+    LobeAlbedo sum(0.f);
+    for (int i = 0; i < kTurns; ++i) {
+        const Vec2f d = unit_circle((static_cast<float>(i) + 0.5f) / (4 * kTurns));
+        const Vec3f w = facets.tangent * d.x + facets.bitangent * d.y;
+        sum += glass_table().row(n, facets.alpha_toward(w)).mean;
+    }
+    mean_ = to_lobes(sum / static_cast<float>(kTurns));
+}
+
+GlassLobes GlassAlbedo::toward(Vec3f w, float cosine) const {
+    if (facets_.alpha_t == facets_.alpha_b) return to_lobes(row_.at(cosine));
+    return to_lobes(glass_table().row(n_, facets_.alpha_toward(w)).at(cosine));
+}
+
+CaughtBelow::CaughtBelow(float n, float alpha) : row(caught_table().row(n, alpha)) {}
+
+}  // namespace dg
