@@ -18,6 +18,7 @@ def everything() -> dg.Scene:
         dg.Material(Gltf(base_color_texture=TextureSlot(picture), roughness=0.4), "checks")
     )
     grey = made.add_material(dg.Diffuse((0.5, 0.4, 0.3)))
+    _surfaces(made, TextureSlot(picture))
     _meshes(made, surface, grey)
     _curves(made, grey, rng)
     _lights(made)
@@ -46,6 +47,24 @@ def everything() -> dg.Scene:
     )
     made.note("something is left out (2 uses)")
     return made
+
+
+def _surfaces(made: dg.Scene, slot: TextureSlot) -> None:
+    """Materials of all kinds, with spectra, masks and normal maps."""
+    green = dg.Spectrum((400, 550, 700), (0.1, 0.8, 0.2))
+    gold = dg.Conductor.of_metal("Au", alpha=0.2, alpha_v=0.4, alpha_texture=slot)
+    for kind in (
+        dg.Diffuse(green, slot, (0.1, 0.2, 0.3), slot),
+        gold,
+        dg.Dielectric(green, 0.1, reflection_tint=green, thin=True, energy_compensation=True),
+        dg.Coated(gold, absorption=green, thickness=1e-4),
+        dg.Coated(dg.Diffuse((0.5, 0.2, 0.1)), alpha=0.2, nonlinear=False),
+    ):
+        made.add_material(dg.Material(kind, opacity=0.5, opacity_texture=slot, normal_texture=slot))
+    made.add_material(dg.Mix(0, 1, 0.25, slot))
+    made.add_material(dg.Boundary())
+    shining = dg.Material(emission=(1, 2, 3), emission_texture=slot, two_sided=False)
+    made.add_material(shining)
 
 
 def _meshes(made: dg.Scene, surface: int, grey: int) -> None:

@@ -41,11 +41,10 @@ def entry(name: str) -> Metal:
     Raises:
         UsageError: No such metal.
     """
-    tables = _tables()
-    table = tables.get(name) if isinstance(name, str) else None
+    table = _tables().get(str(name))
     if table is None:
-        hint = suggest(name, tables) if isinstance(name, str) else ""
         known = ", ".join(names())
+        hint = suggest(name, names())
         raise UsageError(f"metal: wanted one of {known}, got {short(name)}{hint}")
     nm = table["wavelengths_nm"]
     return Metal(name, Spectrum(nm, table["eta"]), Spectrum(nm, table["k"]), table["source"])
