@@ -11,8 +11,9 @@ import pytest
 from pxr import Gf, Usd, UsdGeom
 
 import daguerre as dg
-from daguerre.io.usd.shapes import Solid, ball, is_solid, solid_of
+from daguerre.io.usd.shapes import ball, is_solid, solid_of
 from daguerre.io.usd.values import Clock
+from daguerre.scene.shapes import ShapeMesh
 from tests.support import stages
 
 _CLOCK = Clock("f.usda", 24.0, 0.0)
@@ -44,30 +45,30 @@ def _prim(kind: str, **sizes: Any) -> tuple[Usd.Stage, Usd.Prim]:
     return stage, prim
 
 
-def _solid(kind: str, **sizes: Any) -> Solid | None:
+def _solid(kind: str, **sizes: Any) -> ShapeMesh | None:
     stage, prim = _prim(kind, **sizes)
     made = solid_of(prim, _CLOCK)
     del stage
     return made
 
 
-def _made(kind: str, **sizes: Any) -> Solid:
+def _made(kind: str, **sizes: Any) -> ShapeMesh:
     made = _solid(kind, **sizes)
     assert made is not None
     return made
 
 
-def _corners(solid: Solid) -> Any:
+def _corners(solid: ShapeMesh) -> Any:
     return (solid.positions[solid.triangles[:, k]] for k in range(3))
 
 
-def _volume(solid: Solid) -> float:
+def _volume(solid: ShapeMesh) -> float:
     """Signed volume: positive if triangles are counter-clockwise seen from outside."""
     a, b, c = _corners(solid)
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
-def _area(solid: Solid) -> float:
+def _area(solid: ShapeMesh) -> float:
     a, b, c = _corners(solid)
     return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
 

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .shapes import Solid, revolved
+from daguerre.scene.shapes import SQUARE, ShapeMesh, revolved
 
 Array = NDArray[np.float64]
 _AROUND = 64
 
 
-def rectangle(width: float, height: float) -> Solid | None:
+def rectangle(width: float, height: float) -> ShapeMesh | None:
     """A rectangle in the plane z = 0 that faces -z; None if it has no area.
 
     The top left of an image is at (+x, +y): it is upright for an observer whom it lights, who has
@@ -25,13 +25,13 @@ def rectangle(width: float, height: float) -> Solid | None:
     """
     if not width * height > 0:
         return None
-    corners = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
+    corners = 0.5 * SQUARE
     positions = np.zeros((4, 3))
     positions[:, :2] = corners * (width, height)
-    return Solid(positions, _facing(4), 0.5 - corners, np.array([(0, 2, 1), (0, 3, 2)]))
+    return ShapeMesh(positions, _facing(4), 0.5 - corners, np.array([(0, 2, 1), (0, 3, 2)]))
 
 
-def disk(radius: float) -> Solid | None:
+def disk(radius: float) -> ShapeMesh | None:
     """A disk in the plane z = 0 that faces -z, of a circle's area; None for a radius of 0."""
     if not radius > 0:
         return None
@@ -44,10 +44,10 @@ def disk(radius: float) -> Solid | None:
     i = np.arange(_AROUND)
     triangles = np.stack([0 * i, 1 + (i + 1) % _AROUND, 1 + i], axis=1)
     uv = 0.5 - 0.5 * positions[:, :2] / radius
-    return Solid(positions, _facing(len(positions)), uv, triangles)
+    return ShapeMesh(positions, _facing(len(positions)), uv, triangles)
 
 
-def cylinder(length: float, radius: float) -> Solid | None:
+def cylinder(length: float, radius: float) -> ShapeMesh | None:
     """The side of a cylinder along x, without ends; None if it has no area."""
     profile = np.array([(radius, -0.5 * length), (radius, 0.5 * length)])
     return revolved(profile, np.array([(1.0, 0.0), (1.0, 0.0)]), "X")

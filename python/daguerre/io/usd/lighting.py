@@ -20,6 +20,7 @@ from daguerre.scene.light_profile import LightProfile
 from daguerre.scene.lights import DirectionalLight, PointLight, SphereLight
 from daguerre.scene.materials import Diffuse, Gltf, Material, TextureSlot
 from daguerre.scene.scene import Scene
+from daguerre.scene.shapes import ShapeMesh
 from daguerre.scene.transforms import without_scale
 
 from .domes import Dome, is_dome, is_latlong, read_panorama, set_environment, turn_of
@@ -27,7 +28,7 @@ from .light_shapes import area, cylinder, disk, rectangle
 from .lights import Lamp, cone_size, times
 from .placing import Placing, Spots
 from .prims import Visit
-from .shapes import Solid, ball
+from .shapes import ball
 from .shaping import is_shaped, read_profile
 from .stage import Opened
 from .transforms import Rigid
@@ -218,7 +219,7 @@ class Lighting:
         visit: Visit,
         spots: Spots,
         lamp: Lamp,
-        solid: Solid | None,
+        solid: ShapeMesh | None,
         path: Path | None = None,
     ) -> None:
         """Adds a mesh that emits, at each place."""
@@ -234,7 +235,7 @@ class Lighting:
                 material = self._scene.add_material(replace(made, profile=self._profile(lamp)))
                 self._placing.add(mesh, material, some, visit.name, visit.shown)
 
-    def _mesh_of(self, visit: Visit, solid: Solid) -> int:
+    def _mesh_of(self, visit: Visit, solid: ShapeMesh) -> int:
         if visit.source not in self._meshes:
             self._meshes[visit.source] = self._scene.add_mesh(
                 *(solid.positions, solid.triangles, solid.normals, solid.uv), name=visit.path

@@ -1,8 +1,9 @@
 """Meshes of USD's solids: cube, sphere, cylinder, cone, capsule and plane.
 
-Round shapes are made of facets whose corners lie on the surface; the largest gap to it is
-``1 - cos(pi / 64)``, 0.12 % of the radius. Normals are those of the exact surface. USD gives solids
-no texture coordinates; here u runs around the axis, v along it, and faces show an image upright.
+Round shapes are made of 64 facets around whose corners lie on the surface; the largest gap to it is
+0.12 % of the radius, and 0.24 % for spheres. Normals are those of the exact surface. USD gives
+solids no texture coordinates; here u runs around the axis, v along it, and faces show an image
+upright.
 
 Source: OpenUSD, documentation of UsdGeomCube and the other solids.
 """
@@ -10,7 +11,6 @@ Source: OpenUSD, documentation of UsdGeomCube and the other solids.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from pxr import Usd, UsdGeom
 
 from daguerre.errors import InputError
+from daguerre.scene.shapes import SQUARE, TURNS, ShapeMesh, cube, revolved, with_area
 
 from .values import Clock
 
@@ -26,30 +27,11 @@ Array = NDArray[np.float64]
 SIZES = ("size", "width", "length", "height", "radius", "radiusTop", "radiusBottom")
 #: Sizes beyond do not fit into single precision.
 _LARGEST = 1e37
-#: Facets around, and from pole to pole.
-_AROUND, _ACROSS = 64, 32
-#: Columns of a rotation that takes +z to an axis.
-_TURNS = {"X": (1, 2, 0), "Y": (2, 0, 1), "Z": (0, 1, 2)}
+#: Facets from pole to pole.
+_ACROSS = 32
 
 
-@dataclass(frozen=True, eq=False)
-class Solid:
-    """A mesh with normals and texture coordinates.
-
-    Attributes:
-        positions: Shape (N, 3), in the prim's space.
-        normals: Shape (N, 3).
-        uv: Shape (N, 2); (0, 0) is the top left of an image.
-        triangles: Shape (M, 3), counter-clockwise seen from outside.
-    """
-
-    positions: Array
-    normals: Array
-    uv: Array
-    triangles: NDArray[np.int64]
-
-
-def solid_of(prim: Usd.Prim, clock: Clock) -> Solid | None:
+def solid_of(prim: Usd.Prim, clock: Clock) -> ShapeMesh | None:
     """Makes the mesh of a solid at the scene's time; None for another prim, or one of size 0.
 
     Raises:
@@ -57,7 +39,7 @@ def solid_of(prim: Usd.Prim, clock: Clock) -> Solid | None:
     """
     for kind, make in _SOLIDS.items():
         if prim.IsA(kind):
-            made: Solid | None = make(_Sizes(prim, clock))
+            made: ShapeMesh | None = make(_Sizes(prim, clock))
             return made
     return None
 
@@ -94,30 +76,16 @@ class _Sizes:
     def axis(self) -> str:
         """Axis of the solid, X, Y or Z."""
         found = str(self._clock.now(self._prim.GetAttribute("axis")))
-        return found if found in _TURNS else "Z"
+        return found if found in TURNS else "Z"
 
 
-def _cube(sizes: _Sizes) -> Solid | None:
-    half = 0.5 * sizes["size"]
-    corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], float)
-    positions, normals = [], []
-    for axis in range(3):
-        for sign in (-1.0, 1.0):
-            face = np.empty((4, 3))
-            face[:, axis] = sign
-            face[:, (axis + 1) % 3] = corners[:, 0] * sign
-            face[:, (axis + 2) % 3] = corners[:, 1]
-            positions.append(face * half)
-            normals.append(np.repeat(sign * np.eye(3)[axis][None], 4, axis=0))
-    uv = np.tile((corners * (0.5, -0.5)) + 0.5, (6, 1))
-    quads = 4 * np.arange(6)[:, None]
-    triangles = np.concatenate([quads + corner for corner in ((0, 1, 2), (0, 2, 3))])
-    return _whole(np.concatenate(positions), np.concatenate(normals), uv, triangles)
+def _cube(sizes: _Sizes) -> ShapeMesh | None:
+    return cube(sizes["size"])
 
 
-def _plane(sizes: _Sizes) -> Solid | None:
+def _plane(sizes: _Sizes) -> ShapeMesh | None:
     width, length, axis = sizes["width"], sizes["length"], sizes.axis
-    corners = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
+    corners = 0.5 * SQUARE
     # Source: UsdGeomPlane: width lies along x (z for axis X), length along y (z for axis Y).
     across, along = {"X": (2, 1), "Y": (0, 2), "Z": (0, 1)}[axis]
     positions = np.zeros((4, 3))
@@ -129,23 +97,23 @@ def _plane(sizes: _Sizes) -> Solid | None:
         triangles = triangles[:, ::-1]
     # An image is upright for an observer on the axis whose up is y; for axis Y, -z.
     upright = {"X": (-1, -1), "Y": (1, 1), "Z": (1, -1)}[axis]
-    return _whole(positions, normals, corners * upright + 0.5, triangles)
+    return with_area(positions, normals, corners * upright + 0.5, triangles)
 
 
-def ball(radius: float) -> Solid | None:
+def ball(radius: float) -> ShapeMesh | None:
     """A sphere about the origin; None for a radius of 0."""
     return _hull((radius, radius), 0.0, "Z")
 
 
-def _sphere(sizes: _Sizes) -> Solid | None:
+def _sphere(sizes: _Sizes) -> ShapeMesh | None:
     return ball(sizes["radius"])
 
 
-def _capsule(sizes: _Sizes) -> Solid | None:
+def _capsule(sizes: _Sizes) -> ShapeMesh | None:
     return _hull(sizes.radii, sizes["height"], sizes.axis)
 
 
-def _hull(radii: tuple[float, float], height: float, axis: str) -> Solid | None:
+def _hull(radii: tuple[float, float], height: float, axis: str) -> ShapeMesh | None:
     """Hull of two balls, the second one higher on the axis by ``height``.
 
     Its side touches both at the latitude whose sine is the difference of radii over the height.
@@ -168,52 +136,21 @@ def _latitudes(low: float, high: float) -> Array:
     return np.linspace(low, high, math.ceil(_ACROSS * (high - low) / math.pi) + 1)
 
 
-def _cylinder(sizes: _Sizes) -> Solid | None:
+def _cylinder(sizes: _Sizes) -> ShapeMesh | None:
     return _frustum(*sizes.radii, sizes["height"], sizes.axis)
 
 
-def _cone(sizes: _Sizes) -> Solid | None:
+def _cone(sizes: _Sizes) -> ShapeMesh | None:
     return _frustum(sizes["radius"], 0.0, sizes["height"], sizes.axis)
 
 
-def _frustum(bottom: float, top: float, height: float, axis: str) -> Solid | None:
+def _frustum(bottom: float, top: float, height: float, axis: str) -> ShapeMesh | None:
     length = math.hypot(height, bottom - top) or 1.0
     side = (height / length, (bottom - top) / length)
     low, high = -0.5 * height, 0.5 * height
     profile = [(0, low), (bottom, low), (bottom, low), (top, high), (top, high), (0, high)]
     slopes = [(0, -1), (0, -1), side, side, (0, 1), (0, 1)]
     return revolved(np.array(profile, float), np.array(slopes, float), axis)
-
-
-def revolved(profile: Array, slopes: Array, axis: str) -> Solid | None:
-    """Revolves a profile of (radius, height) about an axis, from the bottom to the top."""
-    angles = np.linspace(0, 2 * math.pi, _AROUND + 1)
-    circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    turn = list(np.argsort(_TURNS[axis]))
-
-    def swept(rows: Array) -> Array:
-        flat = rows[:, None, :1] * circle
-        high = np.broadcast_to(rows[:, None, 1:], (len(rows), len(angles), 1))
-        return np.concatenate([flat, high], axis=2).reshape(-1, 3)[:, turn]
-
-    rows = len(profile)
-    v = np.linspace(1, 0, rows)
-    u = np.linspace(0, 1, _AROUND + 1)
-    uv = np.stack(np.meshgrid(u, v), axis=2).reshape(-1, 2)
-    i = (np.arange(rows - 1)[:, None] * (_AROUND + 1) + np.arange(_AROUND)).reshape(-1, 1)
-    up = i + _AROUND + 1
-    triangles = np.concatenate([np.hstack([i, i + 1, up + 1]), np.hstack([i, up + 1, up])])
-    return _whole(swept(profile), swept(slopes), uv, triangles)
-
-
-def _whole(
-    positions: Array, normals: Array, uv: Array, triangles: NDArray[np.int64]
-) -> Solid | None:
-    """A solid without triangles of no area."""
-    a, b, c = (positions[triangles[:, k]] for k in range(3))
-    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    kept = triangles[areas > 1e-12 * max(float(areas.max(initial=0)), 1e-300)]
-    return Solid(positions, normals, uv, kept) if len(kept) else None
 
 
 _SOLIDS: dict[Any, Any] = {
