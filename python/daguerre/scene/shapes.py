@@ -220,7 +220,7 @@ def bilinear(
 
     def spread(values: ArrayLike) -> Array:
         given = np.asarray(values, np.float64).reshape(len(points), 4, -1)
-        return np.matmul(weights, given).reshape(-1, given.shape[2])
+        return np.asarray(np.matmul(weights, given).reshape(-1, given.shape[2]))
 
     flat = _bilinear_normals(points, u, v) if normals is None else spread(normals)
     if uv is None:
@@ -252,12 +252,12 @@ def _bilinear_normals(points: Array, u: Array, v: Array) -> Array:
     # Where two corners coincide the surface has no normal; that of the whole patch is near.
     whole = np.cross(points[:, 3] - points[:, 0], points[:, 2] - points[:, 1])
     lost = np.einsum("fkd,fkd->fk", found, found) == 0
-    return np.where(lost[:, :, None], whole[:, None], found).reshape(-1, 3)
+    return np.asarray(np.where(lost[:, :, None], whole[:, None], found).reshape(-1, 3))
 
 
 def _unit(vectors: Array) -> Array:
     lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return vectors / np.where(lengths > 0, lengths, 1)
+    return np.asarray(vectors / np.where(lengths > 0, lengths, 1))
 
 
 def revolved(
@@ -279,7 +279,7 @@ def revolved(
     def swept(rows: Array) -> Array:
         flat = rows[:, None, :1] * circle
         high = np.broadcast_to(rows[:, None, 1:], (len(rows), len(angles), 1))
-        return np.concatenate([flat, high], axis=2).reshape(-1, 3)[:, turn]
+        return np.asarray(np.concatenate([flat, high], axis=2).reshape(-1, 3)[:, turn])
 
     rows = len(profile)
     v = np.linspace(1, 0, rows)
