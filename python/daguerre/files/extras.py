@@ -10,6 +10,7 @@ from daguerre.errors import UsageError
 EXTRAS = {
     "DracoPy": ("DracoPy", "compression"),
     "opengl_basisu": ("opengl_basisu", "compression"),
+    "blosc": ("blosc", "compression"),
     "anywidget": ("anywidget", "notebook"),
     "PyOpenColorIO": ("opencolorio", "color"),
     "distributed": ("distributed", "cluster"),

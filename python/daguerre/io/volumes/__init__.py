@@ -1,0 +1,1 @@
+"""Reads files of grids of numbers in space: Mitsuba's ``.vol`` and NanoVDB's ``.nvdb``."""
