@@ -35,14 +35,10 @@ _OBJ = (
     "f 1/1/1 2/2/1 3/1/1 4//1\nf -1 -2 \\\n -3\nusemtl b\nf 1//1 2//1 3//1\nl 1 2\n"
 )
 #: Words that break things.
-_WORDS = [
-    *b"0 -1 1e39 nan inf 4294967295 99999999999 3.5 / list float uchar element 1//2/3 # \\".split(),
-    b"",
-    b"\n",
-    b"\xff",
-    b"\x1f\x8b",
-    b"element face 7",
-]
+_WORDS = (
+    *b"0 -1 1e39 nan inf 4294967295 99999999999 3.5 / list float uchar 1//2/3 # \\".split(),
+    *(b"", b"\n", b"\xff", b"\x1f\x8b", b"element face 7"),
+)
 _NUMBERS = (0, 1, 0x7FFFFFFF, 0xFFFFFFFF, 0x10000)
 _LIMIT_S, _LIMIT_BYTES = 5.0, 300 << 20
 

@@ -25,6 +25,8 @@ Integers = NDArray[np.int64]
 Floats = NDArray[np.float32]
 #: Records, and the rows that they are; None: all of a block.
 Part = tuple[Records, Integers | None]
+#: Numbers that were found one by one, or all at once.
+Found = list[int] | NDArray[Any]
 #: Runs shorter than this are not worth an array; as many rows are then followed.
 _SHORT_RUN, _FOLLOWED = 64, 1 << 16
 #: Maximum size of a row, bytes.
@@ -152,10 +154,9 @@ class Rows:
     def _follow(self, count: int) -> int:
         """Reads rows whose lists have many lengths."""
         begins, sizes, self.end = self._followed(count)
-        kinds, which = np.unique(sizes, axis=0, return_inverse=True)
         parts: list[Part] = []
-        for i, kind in enumerate(kinds):
-            rows = np.flatnonzero(which.reshape(-1) == i)
+        for kind in _different(sizes):
+            rows = np.flatnonzero((sizes == kind).all(axis=1))
             record = self._record(kind)
             at_each_byte = len(self._data) - record.itemsize + 1, record, self._data, 0, (1,)
             parts.append((np.ndarray(*at_each_byte)[begins[rows]], rows))
@@ -209,19 +210,19 @@ class _Follower:
         shape = (count, len(self._lists))
         return np.array(begins, np.int64), np.array(sizes, np.int64).reshape(shape), end
 
-    def _bytes(self, view: memoryview, at: int, count: int) -> tuple[list[int], list[int], int]:
+    def _bytes(self, view: memoryview, at: int, count: int) -> tuple[Found, Found, int]:
         """Follows rows of one list whose length is a byte."""
         before, _, item = self._lists[0]
-        fixed = before + 1 + self._tail
-        begins, sizes = [], []
-        for _ in range(count):
-            size = view[at + before]
-            begins.append(at)
-            sizes.append(size)
-            at += fixed + size * item
-        return begins, sizes, at
+        steps = [before + 1 + self._tail + size * item for size in range(256)]
+        begins = [0] * count
+        at += before
+        for i in range(count):
+            begins[i] = at
+            at += steps[view[at]]
+        lengths = np.array(begins)
+        return lengths - before, np.frombuffer(view, np.uint8)[lengths], at - before
 
-    def _any(self, view: memoryview, at: int, count: int) -> tuple[list[int], list[int], int]:
+    def _any(self, view: memoryview, at: int, count: int) -> tuple[Found, Found, int]:
         begins, sizes = [], []
         for _ in range(count):
             begins.append(at)
@@ -238,6 +239,16 @@ class _Follower:
                     raise IndexError
             at += self._tail
         return begins, sizes, at
+
+
+def _different(sizes: Integers) -> Integers:
+    """Different rows of lengths (R, L), shape (K, L)."""
+    if sizes.shape[1] != 1:
+        return np.unique(sizes, axis=0)
+    column = sizes[:, 0]
+    if column.max() < len(column):  # few numbers are counted faster than sorted
+        return np.asarray(np.flatnonzero(np.bincount(column))[:, None])
+    return np.asarray(np.unique(column)[:, None])
 
 
 class _Block:
