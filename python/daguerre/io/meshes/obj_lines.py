@@ -48,11 +48,12 @@ class Lines:
             return np.zeros(0, np.uint8)
         first, last = self._begins[lines[0]], self._ends[lines[-1]] + 1
         begins, ends = self._begins[lines] - first, self._ends[lines] + 1 - first
-        change = np.zeros(last - first + 1, np.int8)
-        change[begins] += 1
-        change[ends] -= 1
-        inside = np.cumsum(change[:-1], dtype=np.int8) > 0
-        out: Bytes = self._data[first:last][inside]
+        out = self._data[first:last].copy()
+        if len(lines) <= lines[-1] - lines[0]:  # others stand between them
+            change = np.zeros(len(out) + 1, np.int8)
+            change[begins] += 1
+            change[ends] -= 1
+            out = out[np.cumsum(change[:-1], dtype=np.int8) > 0]
         sizes = ends - begins
         words = np.cumsum(sizes) - sizes + self._words[lines] - first - begins
         out[words] = _SPACE
@@ -95,7 +96,8 @@ def words_of(text: Bytes, lines: int) -> Integers:
     begins = np.concatenate([[0], np.flatnonzero(text == _END)[:-1] + 1])
     word = ~blank
     word[1:] &= blank[:-1]
-    return np.add.reduceat(word, begins, dtype=np.int64)
+    places = np.searchsorted(np.flatnonzero(word), begins)
+    return np.diff(places, append=np.count_nonzero(word))
 
 
 def _plain(data: Bytes) -> Bytes:

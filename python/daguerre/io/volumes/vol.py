@@ -66,7 +66,8 @@ def read(path: str | os.PathLike[str]) -> FileGrid:
             f"got {len(data) - _HEAD.itemsize}"
         )
     raw = np.frombuffer(data, kind, count, _HEAD.itemsize).reshape(z, y, x, channels)
-    values = raw.astype(np.float32) * np.float32(factor)
+    with np.errstate(invalid="ignore"):
+        values = raw.astype(np.float32) * np.float32(factor)
     if not (np.isfinite(values).all() and np.isfinite(head["box"]).all()):
         raise InputError(f"{file}: wanted finite numbers, got others")
     return FileGrid(freeze_in_place(values), _of_box(*head["box"].astype(np.float64)))
