@@ -272,8 +272,9 @@ std::vector<Case> all_cases(bool straight) {
     add_translucent_and_metals(cases, ns, straight);
     const std::size_t first = cases.size();
     add_glass(cases, ns);
+    const std::size_t coated = cases.size();
     add_coated(cases, ns);
-    for (std::size_t i = first; i < cases.size(); ++i) cases[i].rounding = 0.008;
+    for (std::size_t i = first; i < cases.size(); ++i) cases[i].rounding = i < coated ? 0.01 : 0.02;
     return cases;
 }
 
