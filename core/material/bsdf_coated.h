@@ -24,7 +24,7 @@
 
 namespace dg {
 
-/// What lies above.
+/// The coat.
 struct ClearCoat {
     float ior = 1.5f;
     Facets facets;
@@ -33,7 +33,7 @@ struct ClearCoat {
     bool linear = false;   // no colour by light that goes to and fro
 };
 
-/// What lies below: diffuse, or a metal whose index is relative to the coat's.
+/// The surface below: diffuse, or a metal whose index is relative to the coat's.
 struct CoatedBase {
     bool metal = false;
     Spectrum diffuse{0.f};

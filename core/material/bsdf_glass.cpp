@@ -123,7 +123,7 @@ std::optional<BsdfSample> GlassBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) con
 Spectrum GlassBsdf::straight(Vec3f wo) const {
     const Facing side(ns, ng, wo);
     if (!is_specular() || side.cos_o <= 0) return 0.f;
-    // As if light went on without being bent: see bsdf.h.
+    // Light counts as if it were not bent: see bsdf.h.
     return tint * (Spectrum(1.f) - reflectance(side.cos_o, thin || ior >= 1));
 }
 

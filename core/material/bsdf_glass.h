@@ -6,7 +6,7 @@
 // 2 F / (1 + F) (Stokes 1860, On the Intensity of the Light Reflected from or Transmitted through a Pile of Plates).
 // A rough pane mirrors its reflected lobe through the surface.
 //
-// What facets block, m(cos) of the light, is scattered evenly, as light that met several facets would be: reflected by
+// Light that facets block, m(cos) of it, is scattered evenly, as light that met several facets would be: reflected by
 // (1 - T) m(o) m(i) / (pi M), with M the mean of m, and transmitted by T m(o) m'(i) / (pi eta^2 M') with m' of the
 // other side (Kulla and Conty 2017, Revisiting Physically Based Shading at Imageworks, SIGGRAPH course). It is
 // reciprocal if T M = n^2 T' M'. As the means of 1 - F keep to the same ratio, T = (1 - F_mean) min(M, M') / M does.

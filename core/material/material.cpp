@@ -42,7 +42,7 @@ Vec3f visible_normal(Vec3f ns, Vec3f ng, Vec3f wo) {
 
 namespace {
 
-/// Of a mixture the share of its second part among what is there: rays that pass one part may be stopped by the other.
+/// Share of the second part of a mixture among what is there: rays that pass one part may be stopped by the other.
 float share_of_second(const MixMaterial& m, const Textures& textures, const SurfaceHit& hit) {
     float share = m.amount;
     if (m.amount_texture.used()) share *= clamped(read_point(m.amount_texture, textures, hit).r);

@@ -119,7 +119,7 @@ TEST_CASE("camera, light and both: a table with things of all materials on it") 
     Material mask{"mask", copper};
     mask.opacity = 0.4f;
     world("mask", World().add(1, mask, kBallPlace).light(kLamp));
-    // Of table and wall too, so that several vertices of a path choose.
+    // The table and a ball, so that several vertices of a path choose.
     World mixed({"table", plain()});
     mixed.d.materials.push_back({"mirror", ConductorMaterial{{0.9f, 0.9f, 0.9f}, 0}});
     mixed.d.materials.push_back({"glass", kGlass});

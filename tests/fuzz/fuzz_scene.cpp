@@ -173,7 +173,7 @@ CoatedMaterial any_coated(FuzzInput& in) {
     return m;
 }
 
-/// Of a scene that has `known` materials before it.
+/// One of a scene that has `known` materials before it.
 Material any_material(FuzzInput& in, int known) {
     Material m;
     m.name = "material";

@@ -19,7 +19,7 @@ class Coated:
     saturated.
 
     Attributes:
-        base: What lies below. Of a metal ``eta`` and ``k`` are those in air.
+        base: Surface below. The ``eta`` and ``k`` of a metal are those in air.
         ior: Index of refraction of the coat, 1 to 10.
         alpha: GGX roughness of the coat, of slopes along u where ``alpha_v`` is given; < 1e-3:
             smooth.
