@@ -16,7 +16,7 @@ import pytest
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.io.meshes import obj, ply, serialized
-from daguerre.io.meshes.file_mesh import FileMesh, smoothed
+from daguerre.io.meshes.file_mesh import FileMesh
 from daguerre.io.volumes import nanovdb, vol
 from daguerre.io.volumes.grid import FileGrid
 from daguerre.scene.scene import Scene
@@ -136,8 +136,6 @@ def _use(found: FileMesh | FileGrid) -> None:
         found.add_to(scene, "m")
     except InputError as error:  # numbers of a face that is no polygon, at worst
         raise AssertionError(f"a mesh that is read can be used, got {error}") from None
-    if len(found.corners):
-        assert np.isfinite(smoothed(found).normals).all()
     repr(found)
 
 

@@ -12,7 +12,7 @@ import daguerre as dg
 from daguerre.color.srgb import to_linear
 from daguerre.files.notes import Notes
 from daguerre.io.meshes import file_bytes, ply
-from daguerre.io.meshes.file_mesh import FileMesh, smoothed
+from daguerre.io.meshes.file_mesh import FileMesh
 from tests.support import mesh_files as write
 
 #: A pyramid of a quadrangle and triangles.
@@ -160,18 +160,6 @@ def test_a_mesh_goes_to_a_scene(tmp_path: Path) -> None:
     assert len(made.indices) == 6
     assert made.colors is None
     assert scene.meshes[mesh.add_to(scene, colors=True)].colors is not None
-
-
-def test_smooth_normals_are_weighted_by_angles(tmp_path: Path) -> None:
-    """At a corner of a cube, triangles at one face must not count twice."""
-    corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
-    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    columns = dict(zip("xyz", corners.T, strict=True))
-    mesh = smoothed(read(tmp_path, write.ply(columns, quads)))
-    want = (corners - 0.5) / np.linalg.norm(corners - 0.5, axis=1, keepdims=True)
-    np.testing.assert_allclose(mesh.normals, want, atol=1e-6)
-    lonely = smoothed(read(tmp_path, write.ply(COLUMNS, [(0, 0, 1)])))
-    np.testing.assert_array_equal(lonely.normals, [(1, 0, 0)] * 5)
 
 
 _VERTEX = ("element vertex 5", "property float x", "property float y", "property float z")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from daguerre.checks import freeze_in_place
 from daguerre.errors import InputError
 from daguerre.files.value import FixedArrays
-from daguerre.scene.polygons import triangulate, weld
+from daguerre.scene.polygons import weld
 from daguerre.scene.scene import Scene
 
 Floats = NDArray[np.float32]
@@ -81,32 +81,6 @@ def with_corner_uv(mesh: FileMesh, uv: Floats) -> FileMesh:
         uv=freeze_in_place(uv[leaders]),
         colors=picked(mesh.colors),
     )
-
-
-def smoothed(mesh: FileMesh) -> FileMesh:
-    """A mesh with smooth normals: means of its faces', weighted by their angles at the vertex.
-
-    Vertices without a face that has an area get (1, 0, 0).
-
-    Source: G. Thürmer and C. A. Wüthrich 1998, "Computing Vertex Normals from Polygonal Facets".
-    """
-    corners = mesh.corners.astype(np.int64)
-    if mesh.sizes is not None:
-        three, _ = triangulate(mesh.sizes, corners, mesh.positions)
-        corners = corners[three.reshape(-1)]
-    points = mesh.positions.astype(np.float64)
-    a, b, c = (points[corners[k::3]] for k in range(3))
-    faces = np.cross(b - a, c - a)
-    doubled = np.linalg.norm(faces, axis=1)  # twice the area
-    units = faces / np.where(doubled > 0, doubled, 1)[:, None]
-    total = np.zeros_like(points)
-    for k, (one, other) in enumerate(((b - a, c - a), (c - b, a - b), (a - c, b - c))):
-        angle = np.arctan2(doubled, np.einsum("ij,ij->i", one, other))
-        for axis in range(3):
-            total[:, axis] += np.bincount(corners[k::3], units[:, axis] * angle, len(points))
-    lengths = np.linalg.norm(total, axis=1)
-    total[lengths == 0], lengths[lengths == 0] = (1, 0, 0), 1
-    return replace(mesh, normals=freeze_in_place((total / lengths[:, None]).astype(np.float32)))
 
 
 def check_corners(corners: NDArray[Any], vertices: int, where: str) -> NDArray[np.uint32]:
