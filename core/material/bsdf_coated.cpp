@@ -95,7 +95,7 @@ float CoatedBsdf::coat_probability(const Bent& o) const {
     return above + below > 0 ? above / (above + below) : 1;
 }
 
-/// Light that a smooth metal below returns, to and fro.
+/// Light that a smooth metal below returns, back and forth.
 Spectrum CoatedBsdf::below_mirrored(const Bent& o) const {
     const Spectrum r = base_.reflectance.at(o.inside);
     const Spectrum way = absorbs_ ? exp(coat_.depth * (-2 / o.inside)) : Spectrum(1.f);

@@ -30,15 +30,15 @@ struct ClearCoat {
     Facets facets;
     Spectrum tint{1.f};    // of what the coat reflects
     Spectrum depth{0.f};   // optical depth: absorption times thickness
-    bool linear = false;   // no colour by light that goes to and fro
+    bool linear = false;   // no colour by light that goes back and forth
 };
 
 /// The surface below: diffuse, or a metal whose index is relative to the coat's.
 struct CoatedBase {
     bool metal = false;
     Spectrum diffuse{0.f};
-    MetalReflectance reflectance;
-    Facets facets;
+    MetalReflectance reflectance{};
+    Facets facets{};
 };
 
 class CoatedBsdf {

@@ -2,7 +2,7 @@
 // panes, and light that bounces from facet to facet.
 //
 // A pane has two parallel faces, closer together than anything sees: light goes through it unbent, and what the faces
-// reflect to and fro leaves in the same two directions. With F of one face, R = F + (1 - F)^2 F / (1 - F^2) =
+// reflect back and forth leaves in the same two directions. With F of one face, R = F + (1 - F)^2 F / (1 - F^2) =
 // 2 F / (1 + F) (Stokes 1860, On the Intensity of the Light Reflected from or Transmitted through a Pile of Plates).
 // A rough pane mirrors its reflected lobe through the surface.
 //
@@ -37,8 +37,8 @@ struct GlassBsdf {
     bool thin = false;
     bool disperses = false;  // what is bent is the hero's alone
     Spectrum iors{1.5f};     // of the four wavelengths
-    Facets facets;
-    std::optional<GlassCompensation> compensation;
+    Facets facets{};
+    std::optional<GlassCompensation> compensation{};
 
     static constexpr bool kOneLobe = false;
     bool is_specular() const { return facets.smooth || (!thin && std::abs(ior - 1) < 1e-3f); }

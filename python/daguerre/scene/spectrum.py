@@ -46,7 +46,9 @@ class Spectrum:
 
     def at(self, wavelengths_nm: ArrayLike) -> NDArray[np.float64]:
         """Values at wavelengths in nm, of any shape."""
-        return np.asarray(np.interp(wavelengths_nm, self.wavelengths_nm, self.values))
+        return np.asarray(
+            np.interp(np.asarray(wavelengths_nm, float), self.wavelengths_nm, self.values)
+        )
 
     def __repr__(self) -> str:
         """Tells the range alone: a measured spectrum has many samples."""

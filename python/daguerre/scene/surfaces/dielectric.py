@@ -23,7 +23,7 @@ class Dielectric:
         alpha_texture: Factors: R on ``alpha``, G on ``alpha_v``.
         reflection_tint: Factor on reflected light.
         thin: Whether it is a pane with two parallel faces, in whose middle the mesh lies. Light
-            goes through it unbent, and what the faces reflect to and fro is counted.
+            goes through it unbent, and what the faces reflect back and forth is counted.
         energy_compensation: Whether rough glass returns the light that facets block, as light that
             bounces between them would; without it, rough glass is too dark.
     """
