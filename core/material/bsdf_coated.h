@@ -1,8 +1,8 @@
 // bsdf_coated.h -- a clear dielectric coat, smooth or rough, over a diffuse surface or a metal.
 //
 // E(w) is the share of light from w that the coat's outside reflects, of which it lets T = 1 - E in; M is the mean of
-// E, n the coat's index, and K = 1 - (1 - M) / n^2 the share of diffuse light that its inside reflects. Light goes to
-// and fro between coat and base.
+// E, n the coat's index, and K = 1 - (1 - M) / n^2 the share of diffuse light that its inside reflects. Light goes
+// back and forth between coat and base.
 // - Diffuse base of reflectance p: f = T(o) T(i) p / (pi n^2 (1 - p K)), which is exact for a smooth coat, reciprocal,
 //   and loses nothing for p = 1 (Wolff 1994, Diffuse-Reflectance Model for Smooth Dielectric Surfaces; Kubelka's
 //   series). Linear: p / (1 - K) in place of p / (1 - p K), as Mitsuba's plastic has it.

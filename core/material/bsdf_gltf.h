@@ -55,9 +55,9 @@ struct GltfSurface {
     bool volume = false;  // thickness > 0
     Interior interior;
     float anisotropy = 0;  // strength
-    Vec3f tangent;         // unit, where the roughness grows; set if anisotropy > 0
+    Vec3f tangent{};       // unit, where the roughness grows; set if anisotropy > 0
     float iridescence = 0;
-    ThinFilm film;
+    ThinFilm film{};
 };
 
 /// F of iridescence: what a film on the dielectric and on the metal reflects.
