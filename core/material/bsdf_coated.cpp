@@ -6,6 +6,9 @@
 namespace dg {
 namespace {
 
+// Less than any coat lets in: 0 / 0 at grazing angles is 0.
+constexpr float kNothing = 1e-9f;
+
 float bent_cosine(float cosine, float n) {
     return std::sqrt(std::max(0.f, 1 - (1 - cosine * cosine) / (n * n)));
 }
@@ -99,7 +102,7 @@ float CoatedBsdf::coat_probability(const Bent& o) const {
 Spectrum CoatedBsdf::below_mirrored(const Bent& o) const {
     const Spectrum r = base_.reflectance.at(o.inside);
     const Spectrum way = absorbs_ ? exp(coat_.depth * (-2 / o.inside)) : Spectrum(1.f);
-    return o.passed * o.passed * r / (Spectrum(1.f) - r * way * o.reflected);
+    return o.passed * o.passed * r / (Spectrum(1.f) - r * way * o.reflected + kNothing);
 }
 
 Evaluation CoatedBsdf::coat_lobe(const Facing& side, Vec3f wo, Vec3f wi, float cos_i) const {
@@ -119,7 +122,7 @@ Evaluation CoatedBsdf::metal_lobe(const Facing& side, Vec3f wo, Vec3f wi, const 
     const float solid_angle = i.outside / (i.inside * coat_.ior * coat_.ior);   // inside over outside
     const Spectrum r = base_.reflectance.at(f.cos_h);
     const Spectrum way = absorbs_ ? exp(coat_.depth * (-1 / o.inside - 1 / i.inside)) : Spectrum(1.f);
-    const Spectrum more = Spectrum(1.f) - r * way * std::min(o.reflected, i.reflected);
+    const Spectrum more = Spectrum(1.f) - r * way * std::min(o.reflected, i.reflected) + kNothing;
     return {o.passed * i.passed * r / more * (f.f_cos * solid_angle), f.pdf * solid_angle};
 }
 

@@ -86,6 +86,12 @@ TEST_CASE("a smooth coat on a mirror has the closed form of two interfaces") {
     REQUIRE(s);
     for (int k = 0; k < kWavelengths; ++k)
         CHECK(s->weight[k] == doctest::Approx(f + (1 - f) * (1 - f) * r[k] / (1 - r[k] * f)).epsilon(1e-5));
+    for (const float low : {1e-3f, 1e-6f, 1e-20f}) {
+        const auto grazing = coated_metal({}, 0, 0).sample(at_cosine(low), 0.4f, {0.5f, 0.5f});
+        CHECK((!grazing || (grazing->weight[0] >= 0 && grazing->weight[0] < 1.01f)));
+        const Spectrum rough = coated_metal({}, 0.2f, 0).evaluate(at_cosine(low), at_cosine(low));
+        CHECK(std::isfinite(rough[0]));
+    }
     // A perfect one under a coat that takes nothing is a perfect one.
     CHECK(coated_metal({}, 0, 0).sample(at_cosine(z), 0.4f, {0.5f, 0.5f})->weight[0] == doctest::Approx(1));
     const auto dim = coated_metal({}, 0, 0, 0.5f).sample(at_cosine(z), 0.4f, {0.5f, 0.5f});

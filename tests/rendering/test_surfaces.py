@@ -46,7 +46,7 @@ WHITE = (1.0, 1.0, 1.0)
         (dg.Coated(dg.Diffuse(WHITE)), 0.02),
         (dg.Coated(dg.Diffuse(WHITE), alpha=0.3), 0.02),
         (dg.Coated(dg.Conductor(alpha=0.0)), 1e-3),
-        (dg.Boundary(), 1e-6),
+        (dg.Boundary(), 0.01),
     ],
 )
 def test_what_absorbs_nothing_cannot_be_seen_in_an_even_light(kind: Any, within: float) -> None:
@@ -63,7 +63,7 @@ def test_a_smooth_metal_has_the_colour_of_its_table() -> None:
     gold = mean(picture(dg.Conductor.of_metal("Au", alpha=0), spp=256))
     # Near the centre of a narrow field the angle is as good as 0.
     assert gold == pytest.approx(mean(picture(dg.Conductor(reflectance, 0), spp=256)), rel=0.01)
-    assert gold[0] > 0.9 > 0.75 > gold[1] > 0.35 > gold[2] > 0
+    assert gold[0] > 0.9 > 0.8 > gold[1] > 0.6 > 0.45 > gold[2] > 0.2
 
 
 def test_a_mask_lets_the_sky_through_by_its_share() -> None:
@@ -73,8 +73,8 @@ def test_a_mask_lets_the_sky_through_by_its_share() -> None:
     masked = dg.Material(black, opacity=0.5, opacity_texture=half)
     assert mean(picture(masked, spp=256)) == pytest.approx(0.75, abs=0.01)
     stencil = picture(dg.Material(black, opacity_texture=dg.TextureSlot(1)))
-    assert stencil[:, :5].min() == pytest.approx(1)
-    assert stencil[:, 7:].max() == 0
+    assert stencil[:, :4] == pytest.approx(1, abs=0.03)  # wavelengths are sampled
+    assert stencil[:, 8:].max() == 0
 
 
 def test_a_mixture_is_the_mean_of_its_parts() -> None:
@@ -111,8 +111,8 @@ def test_emission_follows_its_texture_for_camera_and_light_sampling() -> None:
         dg.Diffuse((0, 0, 0)), emission=(4, 4, 4), emission_texture=dg.TextureSlot(1)
     )
     seen = picture(lamp, sky=0)
-    assert seen[:, :5].max() == 0
-    assert seen[:, 7:].min() == pytest.approx(4, rel=1e-3)
+    assert seen[:, :4].max() == 0
+    assert seen[:, 8:] == pytest.approx(4, rel=0.03)
 
 
 def test_parts_that_shine_or_come_later_are_one_error() -> None:
@@ -120,7 +120,7 @@ def test_parts_that_shine_or_come_later_are_one_error() -> None:
     scene.add_material(dg.Material(emission=(1, 1, 1), name="lamp"))
     scene.add_instance(scene.add_mesh(np.eye(3), [(0, 1, 2)]), dg.Mix(0, 0))
     with pytest.raises(dg.InputError, match="first: wanted a material that emits nothing"):
-        dg.render(scene, resolution=SIZE, spp=1)
+        dg.render(scene, dg.Camera(), resolution=SIZE, spp=1)
 
 
 def test_coats_over_what_lets_light_pass_are_one_error() -> None:

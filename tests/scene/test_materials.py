@@ -26,7 +26,8 @@ KINDS: tuple[Any, ...] = (
 
 def test_a_spectrum_is_linear_between_samples_and_constant_beyond() -> None:
     assert GREEN.at([300, 475, 625, 800]).tolist() == pytest.approx([0.1, 0.45, 0.5, 0.2])
-    assert dg.Spectrum(np.array([400.0, 550, 700]), [0.1, 0.8, 0.2]) == GREEN
+    arrays = dg.Spectrum(np.array([400.0, 550, 700]), [0.1, 0.8, 0.2])  # type: ignore[arg-type]
+    assert arrays == GREEN
     assert hash(GREEN) == hash(pickle.loads(pickle.dumps(GREEN)))
     assert repr(GREEN) == "Spectrum(3 samples, 400..700 nm)"
 
