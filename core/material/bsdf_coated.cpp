@@ -54,7 +54,7 @@ CoatedBsdf::CoatedBsdf(Vec3f ns, Vec3f ng, const ClearCoat& coat, const CoatedBa
     passed_mean_ = 1 - (rough_ ? rough_->mean().reflected(f0) : mean_fresnel(coat.ior));
     if (base.metal) {
         base_.facets = blurred(base.facets, coat.facets, coat.ior);
-        if (!base_.facets.smooth && coat.ior > 1) catch_below();
+        if (!base.facets.smooth && coat.ior > 1) catch_below();
     } else {
         diffuse_ = base.diffuse / ((Spectrum(1.f) - (coat.linear ? Spectrum(1.f) : base.diffuse) * to_and_fro()) *
                                    (coat.ior * coat.ior));

@@ -3,7 +3,17 @@
 
 namespace dg {
 
-GlassCompensation::GlassCompensation(float n, const Facets& facets) : albedo(n, facets.ggx) {
+namespace {
+
+/// Facets as rough in every direction: as many of two roughnesses block, whatever the direction, near the normal.
+StretchedGgx rounded(StretchedGgx g) {
+    g.alpha_t = g.alpha_b = std::sqrt(g.alpha_t * g.alpha_b);
+    return g;
+}
+
+}  // namespace
+
+GlassCompensation::GlassCompensation(float n, const Facets& facets) : albedo(n, rounded(facets.ggx)) {
     const float thin = albedo.mean().missing_thin, dense = albedo.mean().missing_dense, both = std::min(thin, dense);
     const float mean = mean_fresnel(n), passes = 1 - mean;
     transmitted_pane = passes / (1 + mean);

@@ -274,7 +274,7 @@ std::vector<Case> all_cases(bool straight) {
     add_glass(cases, ns);
     const std::size_t coated = cases.size();
     add_coated(cases, ns);
-    for (std::size_t i = first; i < cases.size(); ++i) cases[i].rounding = i < coated ? 0.01 : 0.02;
+    for (std::size_t i = first; i < cases.size(); ++i) cases[i].rounding = i < coated ? 0.025 : 0.02;
     return cases;
 }
 
