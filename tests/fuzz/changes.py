@@ -155,7 +155,14 @@ def in_bytes(rng: Random, data: bytes) -> bytes:
                 del made[at:]
             case _:
                 made[at : at + size] = rng.randbytes(size)
-    return bytes(made[:MOST])
+    return bytes(made[: max(MOST, len(data))])
+
+
+def in_part(rng: Random, data: bytes) -> bytes:
+    """Bytes with some of them changed near the begin or the end, where files tell their sizes."""
+    begin = rng.choice((0, 0, max(len(data) - 300, 0), rng.randrange(len(data) + 1)))
+    part = slice(begin, begin + rng.choice((64, 300, 1000)))
+    return data[:begin] + in_bytes(rng, data[part]) + data[part.stop :]
 
 
 def in_glb(rng: Random, data: bytes, buffers: float) -> bytes:

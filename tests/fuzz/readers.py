@@ -51,6 +51,9 @@ READERS = {
     "json": Reader("recipes", "recipe"),
     "picture": Reader("pictures", "picture"),
     "profile": Reader("profiles", "profile"),
+    "ply": Reader("plys", "mesh"),
+    "mesh": Reader("meshes", "mesh"),
+    "grid": Reader("grids", "grid"),
 }
 
 
@@ -59,6 +62,8 @@ def changed(rng: Random, name: str, data: bytes) -> bytes:
     from . import changes
 
     suffix = Path(name).suffix
+    if suffix in (".ply", ".serialized", ".vol", ".nvdb") and rng.random() < 0.7:
+        return changes.in_part(rng, data)
     if rng.random() < 0.1:
         return changes.in_bytes(rng, data)
     if name == "exact.glb":

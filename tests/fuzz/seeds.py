@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +24,8 @@ from tests.io.gltf import test_gltf_compressed_images as ktx2
 from tests.io.gltf import test_gltf_draco as draco
 from tests.io.gltf import test_gltf_meshopt as meshopt
 from tests.lenses.test_lens_fuzz import SEEDS as LENSES
-from tests.support import tracked
+from tests.support import mesh_files, tracked
+from tests.support.nanovdb_files import Writer, segment
 from tests.support.packed_scenes import everything
 from tests.support.plate_frames import of_light
 
@@ -188,3 +191,50 @@ def profiles(folder: Path) -> Iterator[Seed]:
         candelas = "\n".join(f"{900 + i} {400 + i} {50 + i}" for i in range(columns))
         lines = head, f"TILT={tilt}", facts.format(columns), "0 45 90", phi, candelas
         yield "lamp.ies", "\n".join(lines).encode()
+
+
+def _values() -> dict[str, Any]:
+    """Columns of 12 vertices."""
+    rng = np.random.default_rng(6)
+    names = ["x", "y", "z", "nx", "ny", "nz", "u", "v", "r", "g", "b"]
+    return dict(zip(names, rng.random((len(names), 12)), strict=True))
+
+
+#: Faces of a few sizes, and more of them than are read one by one.
+FACES = [(0, 1, 2), (2, 3, 4), (4, 5, 6, 7), (7, 8, 9), (0, 3, 6, 9, 11), (1, 4, 8, 10), (3, 5, 7)]
+
+
+def plys(folder: Path) -> Iterator[Seed]:
+    values, points = _values(), {key: _values()[key] for key in "xyz"}
+    uv = [[0.5] * (2 * len(face)) for face in FACES]
+    yield "text.ply", mesh_files.ply(values, FACES, "")
+    yield "little.ply", mesh_files.ply(values, FACES, "<", uv=uv)
+    yield "big.ply", mesh_files.ply(points, FACES, ">", length="i4", index="u2")
+    yield "triangles.ply", mesh_files.ply(points, FACES[:2] * 50, "<")
+    yield "mixed.ply", mesh_files.ply(points, FACES * 30, "<", index="u1")
+    yield "packed.ply", gzip.compress(mesh_files.ply(values, FACES))
+
+
+def meshes(folder: Path) -> Iterator[Seed]:
+    yield (
+        "mesh.obj",
+        b"# comment\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.5\nvt 0 0\nvt 1 1\nvn 0 0 1\ng a\n"
+        b"f 1/1/1 2/2/1 3/1/1 4//1\nf -1 -2 \\\n -3\nusemtl b\nf 1//1 2//1 3//1\nl 1 2\n",
+    )
+    yield "uv.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n" * 9
+    rng = np.random.default_rng(7)
+    mesh: dict[str, Any] = {
+        "positions": rng.random((6, 3)), "normals": rng.random((6, 3)), "uv": rng.random((6, 2)),
+        "triangles": [(0, 1, 2), (3, 4, 5)], "name": "mesh",
+    }  # fmt: skip
+    yield "four.serialized", mesh_files.serialized([mesh, mesh])
+    yield "three.serialized", mesh_files.serialized([mesh, mesh], 3, "<f8")
+
+
+def grids(folder: Path) -> Iterator[Seed]:
+    grid = Writer({(0, 0, 0): 1.0, (9, 0, 0): 2.0}, {((16, 8, 0), 8): 2.5}).bytes()
+    yield "smoke.vol", mesh_files.vol(np.random.default_rng(8).random((2, 3, 4, 1)))
+    yield "bytes.vol", mesh_files.vol(np.ones((2, 3, 4, 3)), kind=3)
+    yield "raw.nvdb", grid
+    yield "plain.nvdb", segment([("a", grid), ("b", grid)])
+    yield "zipped.nvdb", segment([("a", grid)], 1)

@@ -7,11 +7,16 @@ import warnings
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+
 import daguerre as dg
 from daguerre import calibration
 from daguerre.errors import InputError
 from daguerre.files import formats
+from daguerre.files.notes import Notes
 from daguerre.io.iris import read_grey
+from daguerre.io.meshes import obj, ply, serialized
+from daguerre.io.volumes import nanovdb, vol
 from daguerre.labels.categories import Categories
 from daguerre.plates import files as plates
 from daguerre.post import recipe as effects
@@ -47,6 +52,25 @@ def profile(path: Path) -> None:
         dg.PointLight(profile=read.stretched(0.7).normalized() * dg.LightProfile.focus(9))
     )
     dg.render(wall, dg.Camera(lens_model="pinhole"), **TINY)
+
+
+def mesh(path: Path) -> None:
+    """Reads all meshes of a file and draws them."""
+    notes, suffix = Notes(), path.suffix
+    if suffix == ".serialized":
+        found = [serialized.read(path, i) for i in range(serialized.count(path))]
+    else:
+        found = [(ply if suffix == ".ply" else obj).read(path, notes)]
+    made = dg.Scene()
+    for one in found:
+        made.add_instance(one.add_to(made, "mesh", colors=True))
+    dg.render(made, dg.Camera(lens_model="pinhole"), **TINY)
+
+
+def grid(path: Path) -> None:
+    read = (vol if path.suffix == ".vol" else nanovdb).read(path)
+    assert np.isfinite(read.values).all()
+    assert np.isfinite(read.transform).all()
 
 
 def samples(path: Path) -> None:

@@ -151,7 +151,7 @@ def _with(at: int, form: str, *values: Any) -> bytes:
         (_with(384, "<d", float("inf")), "wanted a transform of finite numbers"),
         (_with(_UPPER + 32 + 4096, "<4096B", *[255] * 4096), "wanted each node once"),
         (_with(_LOWER + 32 + 512, "<512B", *[255] * 512), "wanted each node once|wanted leaves"),
-        (Writer({}, {((0, 0, 0), 4096): 1.0}).bytes(), "wanted at most 536870912 cells"),
+        (Writer({}, {((0, 0, 0), 4096): 1.0}).bytes(), "wanted at most 16777216 cells"),
         (Writer({(0, 0, 0): 1.0, (9000, 9000, 9000): 1.0}).bytes(), "9003 x 9003 x 9003"),
     ],
 )  # fmt: skip

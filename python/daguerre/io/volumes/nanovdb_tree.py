@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from daguerre.checks import freeze_in_place
 from daguerre.errors import InputError
-from daguerre.io.meshes.file_bytes import Bytes, check_room
+from daguerre.io.meshes.file_bytes import Bytes, check_room, most_unpacked
 
 from .grid import MAX_VALUES, FileGrid
 
@@ -99,9 +99,10 @@ def dense(data: Bytes, where: str) -> FileGrid:
     tree = _Tree(data, root, int(head["tiles"]), where)
     low, high = tree.box()
     size = high - low + 2
-    if int(np.prod(size, dtype=object)) > MAX_VALUES:
+    most = min(MAX_VALUES, most_unpacked(len(data)) // 4)
+    if int(np.prod(size, dtype=object)) > most:
         raise InputError(
-            f"{where}: wanted at most {MAX_VALUES} cells around the active values, "
+            f"{where}: wanted at most {most} cells around the active values of {len(data)} bytes, "
             f"got {' x '.join(map(str, size))}"
         )
     values = tree.filled(low - 1, high + 1, float(head["background"]))
