@@ -65,6 +65,7 @@ if TYPE_CHECKING:
         Mix,
         TextureSlot,
     )
+    from .scene.media import DensityGrid, Medium
     from .scene.scene import Scene
     from .scene.spectrum import Spectrum
     from .viewfinder.notebook import view
@@ -77,6 +78,7 @@ __all__ = [
     "Coated",
     "Conductor",
     "DaguerreError",
+    "DensityGrid",
     "Dielectric",
     "Diffraction",
     "Diffuse",
@@ -88,6 +90,7 @@ __all__ = [
     "LensScatter",
     "LightProfile",
     "Material",
+    "Medium",
     "MismatchError",
     "Mix",
     "OutputError",
@@ -169,6 +172,8 @@ _LAZY = {
     "Gltf": "scene.materials",
     "Material": "scene.materials",
     "Mix": "scene.materials",
+    "DensityGrid": "scene.media",
+    "Medium": "scene.media",
     "Spectrum": "scene.spectrum",
     "TextureSlot": "scene.materials",
     "Scene": "scene.scene",

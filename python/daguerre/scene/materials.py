@@ -8,6 +8,7 @@ from daguerre.checks import short, shown
 from daguerre.errors import InputError
 
 from .light_profile import LightProfile, check_profile
+from .media import Medium, check_media
 from .spectrum import Spectrum
 from .surfaces.boundary import Boundary
 from .surfaces.checks import check_fields, check_surface
@@ -32,6 +33,7 @@ __all__ = [
     "Mix",
     "Spectrum",
     "TextureSlot",
+    "bounds_media",
     "check_material",
     "check_parts",
 ]
@@ -59,6 +61,8 @@ class Material:
         two_sided: Whether the kind is seen from behind too; otherwise the back is black, emission
             aside.
         emission_texture: RGB, a factor on ``emission``.
+        interior: Medium inside a closed mesh, in place of what the kind absorbs; None: none.
+        exterior: Medium outside of it, as where it lies within another one; None: the scene's fog.
     """
 
     kind: Kind = field(default_factory=Diffuse)
@@ -72,6 +76,8 @@ class Material:
     normal_scale: float = 1.0
     two_sided: bool = True
     emission_texture: TextureSlot | None = None
+    interior: Medium | None = None
+    exterior: Medium | None = None
 
 
 def check_material(material: Material, where: str) -> None:
@@ -90,9 +96,20 @@ def check_material(material: Material, where: str) -> None:
     check_fields(material, where)
     check_profile(material.profile, where)
     check_surface(kind, where)
+    check_media(material.interior, material.exterior, where)
+    if isinstance(kind, Boundary) and any(material.emission):
+        raise InputError(
+            f"{where}: emission: wanted none of a boundary, got {short(material.emission)}"
+        )
     if isinstance(kind, Gltf | Mix | Boundary) and material.normal_texture is not None:
         owner = {Gltf: "that of Gltf", Mix: "those of the parts", Boundary: "none"}[type(kind)]
         raise InputError(f"{where}: normal_texture: wanted {owner}, got one of the material")
+
+
+def bounds_media(material: Material) -> bool:
+    """Whether another medium may begin at the material's surfaces."""
+    media = (material.interior, material.exterior)
+    return isinstance(material.kind, Boundary) or media != (None, None)
 
 
 def check_parts(material: Material, known: int, where: str) -> None:

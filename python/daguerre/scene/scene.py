@@ -31,7 +31,8 @@ from .catcher import EFFECTS, check_effects
 from .curves import CURVES, CurveKeywords, curves_of, moving_curves
 from .illuminance import scale_for
 from .lights import Light, check_light
-from .materials import Diffuse, Kind, Material, check_material, check_parts
+from .materials import Diffuse, Kind, Material, bounds_media, check_material, check_parts
+from .media import Medium, check_fog
 from .mesh import MESH, MeshKeywords, mesh_of
 from .motion import SceneMotion
 from .node_names import find_node
@@ -82,6 +83,8 @@ class Scene(Value):
     warnings: list[str] = field(default_factory=list)
     #: photograph of the set, which objects reflect and refract
     plate: Plate | None = None
+    #: medium that fills the world outside of all closed meshes
+    fog: Medium | None = None
 
     __hash__ = None  # type: ignore[assignment]  # it changes
 
@@ -204,6 +207,28 @@ class Scene(Value):
         if camera is not None and not isinstance(camera, Camera):
             raise UsageError(f"plate: camera: wanted a Camera, got {short(camera)}")
         self.plate = Plate(array, camera)
+
+    def set_fog(self, medium: Medium | None) -> None:
+        """Fills the world outside of all closed meshes with an endless medium; None: with nothing.
+
+        Glass and other closed meshes that refract keep it out, unless their ``Material.interior``
+        is the same medium. No light from infinity gets through endless fog, neither from the
+        environment nor from directional lights; fog on a grid (``Medium.density``), or in a mesh
+        of :class:`Boundary`, has an end.
+
+        Args:
+            medium: The medium; without a grid it must not emit without absorbing or scattering.
+
+        Raises:
+            InputError: It is no medium, or its light would grow without end.
+        """
+        check_fog(medium, "fog")
+        self.fog = medium
+
+    @property
+    def has_media(self) -> bool:
+        """Whether the scene has fog or a material that bounds a medium."""
+        return self.fog is not None or any(bounds_media(material) for material in self.materials)
 
     @property
     def has_catchers(self) -> bool:

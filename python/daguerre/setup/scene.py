@@ -69,6 +69,8 @@ def _add_all(builder: _core.SceneBuilder, scene: Scene, moving: MovingParts) -> 
         )
     profiles = Profiles(builder)
     add_materials(builder, scene, moving.interval, profiles)
+    if scene.fog is not None:
+        raise InputError("fog: the core does not draw it yet")
     for i, instance in enumerate(scene.instances):
         builder.add_instance(
             instance.name, instance.mesh, instance.material, moving.transform(i), moving.shown(i)
@@ -124,6 +126,7 @@ def content_hash(scene: Scene, interval: tuple[float, float] | None = None) -> s
         scene.lights,
         scene.environment,
         scene.plate,
+        scene.fog,
     ):
         add(part)
     if interval is not None:

@@ -31,6 +31,7 @@ from daguerre.scene.materials import (
     Spectrum,
     TextureSlot,
 )
+from daguerre.scene.media import DensityGrid, Medium
 from daguerre.scene.parts import Environment
 from daguerre.sensors import names as sensor_names
 
@@ -87,6 +88,7 @@ def _listed(what: str, name: Any, names: Any) -> None:
 _PLAIN: tuple[type[Any], ...] = (
     *(Boundary, Coated, Conductor, Dielectric, Diffuse, Gltf, Mix),
     *(Material, Spectrum, TextureSlot),
+    *(DensityGrid, Medium),
     *(DirectionalLight, PointLight, SphereLight, SpotLight, Environment),
     *(LightProfile, ProfileCone, ProfileFocus, ProfileTable),
     *(Composite, LensScatter, Projection, RollingShutter),
