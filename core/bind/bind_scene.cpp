@@ -13,6 +13,7 @@
 #include "bind/arrays.h"
 #include "bind/choose.h"
 #include "bind/material_values.h"
+#include "bind/medium_values.h"
 #include "bind/unlocked.h"
 #include "math/error.h"
 #include "scene/scene.h"
@@ -156,6 +157,15 @@ struct Builder {
         description.instances.at(instance).catcher = CatcherEffects{shadow, reflection, gi};
     }
 
+    int add_medium(const MediumColor& absorption, const MediumColor& scattering, const MediumColor& emission,
+                   const std::vector<std::pair<float, float>>& lobes, const MediumGrid& density) {
+        description.media.all.push_back(to_medium({absorption, scattering, emission, lobes, density}));
+        return int(description.media.all.size()) - 1;
+    }
+    void set_media(std::uint32_t material, int inside, int outside, bool invisible) {
+        description.media.of_material[material] = {inside, outside, invisible};
+    }
+
     int add_profile(std::shared_ptr<LightProfile> profile) {
         description.profiles.push_back(std::move(profile));
         return int(description.profiles.size()) - 1;
@@ -199,9 +209,9 @@ std::optional<std::tuple<float, std::uint32_t>> first_hit(const Scene& scene, co
     ray.time = 0.5f;
     ray.t_min = t_min;
     if (!is_traceable(ray)) return std::nullopt;
-    const auto hit = scene.intersect(ray);
+    const auto hit = scene.first_hit(ray);
     if (!hit) return std::nullopt;
-    return std::tuple{hit->surface.t, hit->surface.instance};
+    return std::tuple{hit->t, hit->instance};
 }
 
 void bind_built_scene(nb::module_& m) {
@@ -234,6 +244,16 @@ void def_shapes(nb::class_<Builder>& c) {
              "motion"_a, "shown"_a = nb::none())
         .def("set_catcher", &Builder::set_catcher, "instance"_a, "shadow"_a, "reflection"_a, "gi"_a,
              "Makes an instance a part of the set: which effects of objects it catches.");
+}
+
+/// What fills meshes, and the world around them.
+void def_media(nb::class_<Builder>& c) {
+    c.def("add_medium", &Builder::add_medium, "absorption"_a, "scattering"_a, "emission"_a, "lobes"_a,
+             "density"_a.none())
+        .def("set_media", &Builder::set_media, "material"_a, "inside"_a, "outside"_a, "invisible"_a,
+             "Media on both sides of a material's surfaces; -1: none inside, outside that of the world. invisible: "
+             "nothing else is there.")
+        .def("set_fog", [](Builder& b, int medium) { b.description.media.fog = medium; }, "medium"_a);
 }
 
 /// Index of a profile, -1 without, and the axes of the lamp in the world.
@@ -331,6 +351,7 @@ void bind_scene(nb::module_& m) {
     def_shapes(c);
     c.def("add_material", &Builder::add_material, "name"_a, "kind"_a, "values"_a, "common"_a,
           "values: fields of the kind; common: those of all materials, with the index of the profile.");
+    def_media(c);
     def_lights(c);
     def_environment(c);
     def_time(c);

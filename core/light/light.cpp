@@ -365,8 +365,12 @@ std::optional<LightSample> LightSet::sample_infinite(
     float u_select, float p_infinite, Vec2f u, float time,
     const Wavelengths& wavelengths) const {
     const DiscreteSample choice = infinite_.sample(u_select);
-    const float probability = p_infinite * choice.pmf;
-    const std::int32_t light = infinite_lights_[choice.index];
+    return sample_infinite_at(choice.index, p_infinite * choice.pmf, u, time, wavelengths);
+}
+
+std::optional<LightSample> LightSet::sample_infinite_at(int index, float probability, Vec2f u, float time,
+                                                        const Wavelengths& wavelengths) const {
+    const std::int32_t light = infinite_lights_[index];
     LightSample sample{};
     sample.distance = std::numeric_limits<float>::infinity();
     if (light == kEnvironment) {
@@ -397,9 +401,9 @@ float LightSet::pdf_triangle(std::uint32_t instance, std::uint32_t primitive, fl
     return now ? emitter_pdf(*now, t, cos_light) * chosen : 0;
 }
 
-float LightSet::choice_probability(std::size_t light, Vec3f position) const {
-    if (tree_index_[light] != kNone) return local_probability(position, light);
-    const auto found = std::ranges::find(infinite_lights_, std::int32_t(light));
+float LightSet::choice_probability(std::int32_t light, Vec3f position) const {
+    if (light >= 0 && tree_index_[light] != kNone) return local_probability(position, std::size_t(light));
+    const auto found = std::ranges::find(infinite_lights_, light);
     if (found == infinite_lights_.end()) return 0;
     return infinite_probability(position) *
            infinite_.pmf(int(found - infinite_lights_.begin()));

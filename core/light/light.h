@@ -134,6 +134,20 @@ class LightSet {
     /// Several samples of the same law, spread over the lights: some of `found` are without light (pdf 0).
     void sample_several(float u_select, Vec2f u, Vec3f position, float time, const Wavelengths& wavelengths,
                         std::span<LightSample> found) const;
+    /// One light by the law of sample(): its index, or kEnvironment, and the chance of that. Empty when the choice
+    /// cannot light the position.
+    struct Choice {
+        std::int32_t light;
+        float probability;
+    };
+    std::optional<Choice> choose(float u, Vec3f position) const;
+    /// That chance.
+    float choice_probability(std::int32_t light, Vec3f position) const;
+    /// A sample of one light, as sample() has it; its pdf is without the choice.
+    std::optional<LightSample> sample_one(std::int32_t light, Vec2f u, Vec3f position, float time,
+                                          const Wavelengths& wavelengths) const;
+    /// The point of a light that sample_one() finds with the same u, or its middle; nothing at infinity.
+    std::optional<Vec3f> place_of(std::int32_t light, Vec2f u, float time) const;
     /// Lights among which one is chosen.
     std::size_t choices() const { return tree_.size() + infinite_lights_.size(); }
     /// Solid-angle density (selection included) with which sample() would have chosen the
@@ -198,6 +212,8 @@ class LightSet {
     std::optional<LightSample> sample_infinite(float u_select, float p_infinite, Vec2f u,
                                                float time,
                                                const Wavelengths& wavelengths) const;
+    std::optional<LightSample> sample_infinite_at(int index, float probability, Vec2f u, float time,
+                                                  const Wavelengths& wavelengths) const;
     std::optional<EmitterSample> with_profile(const Light& now, std::optional<EmitterSample> sample) const;
     std::optional<EmitterSample> sample_other(std::size_t light, Vec2f u, Vec3f position,
                                               float time) const;
@@ -205,7 +221,6 @@ class LightSet {
         return keys_.empty() ? nullptr : keys_[light];
     }
     float local_probability(Vec3f position, std::size_t light) const;
-    float choice_probability(std::size_t light, Vec3f position) const;
 
     std::vector<Light> lights_;
     std::optional<Environment> environment_;

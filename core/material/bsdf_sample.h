@@ -2,11 +2,14 @@
 // seen from.
 #pragma once
 #include <cmath>
+#include <cstdint>
 
 #include "math/vec.h"
 #include "spectrum/spectrum.h"
 
 namespace dg {
+
+struct Medium;   // medium/medium.h
 
 struct BsdfSample {
     Vec3f wi;
@@ -32,6 +35,9 @@ struct Interior {
     bool present = false;
     Spectrum color{1.f};
     float distance = 1;
+    const Medium* medium = nullptr;      // scatters and absorbs as well
+    std::uint32_t instance = kWorld;     // in whose space a grid of the medium lies
+    static constexpr std::uint32_t kWorld = 0xffffffffu;
 
     /// Beer-Lambert over `length` metres; `color` is what is left after `distance`
     /// metres.

@@ -90,6 +90,7 @@ std::shared_ptr<const Scene> Scene::build(SceneDescription description) {
     std::shared_ptr<Scene> scene(new Scene(std::move(description)));
     scene->changes_ = std::move(changes);
     link_mixtures(scene->description_.materials, scene->changes_.materials);
+    scene->find_media();
     const auto geometry = scene->geometry_of_instances();
     scene->build_intersector(geometry);
     scene->build_records(geometry);
@@ -125,6 +126,8 @@ void Scene::build_intersector(const std::vector<InstanceGeometry>& geometry) {
 
 /// Where no light is a delta light, shadow rays need not ask about volumes.
 Clear Scene::clear_for_shadows(const Instance& instance, bool delta_lights) const {
+    const auto bounds = description_.media.of_material.find(instance.material);
+    if (bounds != description_.media.of_material.end() && bounds->second.invisible) return Clear::sheet;
     const MaterialChange* change = change_of(instance.material);
     const Clear clear = change ? clearness(change->range)
                                : clearness(description_.materials[instance.material]);

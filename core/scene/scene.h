@@ -13,10 +13,12 @@
 #include "light/emission_ray.h"
 #include "light/light.h"
 #include "material/material.h"
+#include "medium/tracking.h"
 #include "motion/motion.h"
 #include "scene/catcher.h"
 #include "scene/changes.h"
 #include "scene/instance_record.h"
+#include "scene/media.h"
 
 namespace dg {
 
@@ -38,6 +40,7 @@ struct SceneDescription {
     std::vector<Instance> instances;
     std::vector<Light> lights;  // punctual and sphere lights
     std::vector<std::shared_ptr<const LightProfile>> profiles;   // of lights and materials
+    SceneMedia media;
     std::optional<Environment> environment;
     LightChoice light_choice = LightChoice::tree;
     /// Exposed interval of the picture, s: the first moment of any row of the film to the last. Inside
@@ -71,7 +74,10 @@ class Scene {
     std::optional<Hit> intersect(const Ray& ray) const;
     /// The same in two steps (follow.cpp): which point of which surface, and what it is like. The
     /// point can be followed through time, and through scenes that differ in nothing but time.
-    std::optional<RawHit> first_hit(const Ray& ray) const { return intersector_->intersect(ray); }
+    /// Surfaces where nothing but media changes are passed.
+    std::optional<RawHit> first_hit(const Ray& ray) const {
+        return has_bounded_media_ ? first_visible(ray) : intersector_->intersect(ray);
+    }
     Hit surface(const Ray& ray, const RawHit& hit) const;
     /// Where it is (m) at a time; nothing while it is not shown. `normal` is asked for on spheres.
     std::optional<Vec3d> follow(const RawHit& hit, Vec3f normal, float time) const;
@@ -93,6 +99,27 @@ class Scene {
     Spectrum visibility_along(const Ray& ray, const Wavelengths& wavelengths) const;
 
     bool has_clear() const { return has_clear_; }  // some shadow rays pass surfaces
+
+    // Media (media.cpp).
+    bool has_media() const { return has_media_; }
+    /// What a ray begins in, found by what it meets: for the first ray of a path.
+    Interior medium_around(Ray ray) const;
+    /// What lies behind a surface of an instance that is met in `here`; `inside` and `bounds_volume` are its BSDF's.
+    Interior beyond(const Interior& here, std::uint32_t instance, const Interior& inside, bool bounds_volume,
+                    bool entering) const {
+        if (has_media_) return medium_behind(here, instance, inside, bounds_volume, entering);
+        return medium_beyond(here, inside, bounds_volume, entering);
+    }
+    /// Whether nothing but media changes at the surfaces of an instance.
+    bool is_invisible(std::uint32_t instance) const { return has_bounded_media_ && media_[instance].invisible; }
+    /// Share of light that is left after the way from `begin` to `end` m along the ray.
+    Spectrum left_after(const Interior& in, const Ray& ray, float begin, float end,
+                        const Wavelengths& wavelengths) const {
+        const Spectrum left = in.transmittance(end - begin);
+        return in.medium ? left * through_medium(in, ray, begin, end, wavelengths) : left;
+    }
+    /// Density along a ray in a medium on a grid.
+    GridRay grid_ray(const Interior& in, const Ray& ray) const;
 
     bool has_catchers() const { return has_catchers_; }
     /// Effects that the instance catches; null: it is an object.
@@ -167,6 +194,13 @@ class Scene {
     LightProfiles light_profiles() const;
     Spectrum transmission(const Ray& ray, float distance, bool delta, const Interior& medium,
                           const Wavelengths& wavelengths) const;
+    Spectrum through_medium(const Interior& in, const Ray& ray, float begin, float end,
+                            const Wavelengths& wavelengths) const;
+    Interior medium_on(std::uint32_t instance, bool inside) const;
+    Interior medium_behind(const Interior& here, std::uint32_t instance, const Interior& inside, bool bounds_volume,
+                           bool entering) const;
+    std::optional<RawHit> first_visible(Ray ray) const;
+    void find_media();
     Spectrum through_crossings(const Ray& ray, Crossings& crossings, Interior medium,
                                float distance, const Wavelengths& wavelengths) const;
     void hold(Vec3d point);
@@ -186,6 +220,9 @@ class Scene {
     std::vector<Keyed<Sphere>> spheres() const;
     Clear clear_for_shadows(const Instance& instance, bool delta_lights) const;
     bool has_clear_ = false, has_catchers_ = false;
+    bool has_media_ = false, has_bounded_media_ = false;
+    const Medium* fog_ = nullptr;
+    std::vector<MediaOfInstance> media_;   // by instance; empty: there are none
 
     SceneDescription description_;
     std::unique_ptr<Intersector> intersector_;

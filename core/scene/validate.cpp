@@ -106,6 +106,7 @@ void validate(const SceneDescription& d) {
     }
     check_mixtures(d);
     check_profiles(d);
+    validate(d.media, d.materials.size());
     validate_keys(d);
 }
 

@@ -27,12 +27,12 @@ Spectrum Scene::visibility(Ray ray, bool delta, const Interior& medium, const Wa
 Spectrum Scene::visibility_along(const Ray& ray, const Wavelengths& wavelengths) const {
     if (ray.t_max < 0) return 0.f;
     if (!(ray.t_max > ray.t_min)) return 1.f;
-    return transmission(ray, ray.t_max, false, {}, wavelengths);
+    return transmission(ray, ray.t_max, false, has_media_ ? medium_around(ray) : Interior{}, wavelengths);
 }
 
 Spectrum Scene::transmission(const Ray& ray, float distance, bool delta, const Interior& medium,
                              const Wavelengths& wavelengths) const {
-    if (!has_clear_ && !medium.present) return intersector_->occluded(ray) ? 0.f : 1.f;
+    if (!has_clear_ && !medium.present && !medium.medium) return intersector_->occluded(ray) ? 0.f : 1.f;
     Crossings crossings(delta);
     if (intersector_->occluded(ray, &crossings)) return 0.f;
     return through_crossings(ray, crossings, medium, distance, wavelengths);
@@ -52,23 +52,27 @@ Spectrum Scene::through_crossings(const Ray& ray, Crossings& crossings, Interior
         if (hit.t < next) continue;
         SurfaceHit surface;
         find_surface(ray, hit, surface);
-        left *= medium.transmittance(hit.t - here);
+        left *= left_after(medium, ray, here, hit.t, wavelengths);
         here = hit.t;
         next = here + surface.error / std::abs(dot(surface.ng, surface.wo));
+        if (is_invisible(hit.instance)) {
+            medium = medium_behind(medium, hit.instance, {}, false, surface.front);
+            if (left.is_black()) return 0.f;
+            continue;
+        }
         const MaterialAt now = material(surface);
         const Bsdf bsdf = shade(now, textures(), surface, wavelengths);
         std::visit(
             [&](const auto& kind) {
                 const bool bent = kind.bounds_volume() && !crossings.volumes;
                 left *= bent ? Spectrum(0.f) : kind.straight(surface.wo);
-                medium = medium_beyond(medium, kind.interior(), kind.bounds_volume(),
-                                       surface.front);
+                medium = beyond(medium, hit.instance, kind.interior(), kind.bounds_volume(), surface.front);
             },
             bsdf);
         if (left.is_black()) return 0.f;
     }
     const bool finite = distance < std::numeric_limits<float>::infinity();
-    return finite ? left * medium.transmittance(distance - here) : left;
+    return finite || medium.medium ? left * left_after(medium, ray, here, distance, wavelengths) : left;
 }
 
 }  // namespace dg

@@ -27,18 +27,47 @@ std::optional<LightWalk> LightWalk::begin(const Scene& scene, const LightSharing
     }
     walk.wavelengths_ = start.wavelengths;
     walk.flux_ = walk.wavelengths_.emission(leaving.value) * (1 / emitted->pdf);
+    if (scene.has_media()) {
+        walk.medium_ = scene.medium_around(walk.ray_);
+        const Medium* const fog = walk.medium_.medium;   // light from infinity has come through all of it
+        if (walk.infinite() && fog && !fog->density)
+            walk.flux_ *= scene.left_after(walk.medium_, walk.ray_, 0, std::numeric_limits<float>::infinity(),
+                                           walk.wavelengths_);
+        if (walk.flux_.is_black()) return std::nullopt;
+    }
     walk.start_ = walk.flux_;
     walk.odds_ = sharing.of_bounced(emitted->pdf);
     return walk;
 }
 
+/// What a material absorbs; a medium takes its place.
+void LightWalk::absorb(float length) {
+    if (medium_.medium) return;
+    if (volume_.where == VolumeWalk::Where::unknown) unknown_ += length;
+    if (volume_.where == VolumeWalk::Where::inside) flux_ *= volume_.interior.transmittance(length);
+}
+
+/// Through surfaces where nothing but media changes. These dim the light on all of its way.
+std::optional<Scene::Hit> LightWalk::meet_visible() {
+    for (;;) {
+        const auto found = scene_->intersect(ray_);
+        if (!found) return found;
+        const SurfaceHit& hit = found->surface;
+        if (medium_.medium) flux_ *= scene_->left_after(medium_, ray_, ray_.t_min, hit.t, wavelengths_);
+        if (found->sphere_light >= 0 || !scene_->is_invisible(hit.instance)) return found;
+        absorb(hit.t);
+        medium_ = scene_->beyond(medium_, hit.instance, {}, false, hit.front);
+        straight_ += hit.t;
+        ray_ = spawn_ray(hit, ray_.direction, ray_.time);
+    }
+}
+
 bool LightWalk::meet(std::optional<LightVertex>& vertex) {
-    const auto found = scene_->intersect(ray_);
+    const auto found = scene_->has_media() ? meet_visible() : scene_->intersect(ray_);
     if (!found || found->sphere_light >= 0) return false;
     const SurfaceHit& hit = found->surface;
     if (is_last() && !scene_->has_clear()) return false;
-    if (volume_.where == VolumeWalk::Where::unknown) unknown_ += hit.t;
-    if (volume_.where == VolumeWalk::Where::inside) flux_ *= volume_.interior.transmittance(hit.t);
+    absorb(hit.t);
     straight_ += hit.t;
     vertex.emplace(*scene_, hit, wavelengths_);
     return true;
@@ -126,6 +155,9 @@ bool LightWalk::pass(LightVertex& vertex, const LightStep& step) {
         straight_ = 0;
     }
     flux_ *= step.weight;
+    const bool entering = dot(w, hit.ng) < 0;
+    if (scene_->has_media() && entering == hit.front)
+        medium_ = scene_->beyond(medium_, hit.instance, {}, bounds, entering);
     ray_ = spawn_ray(hit, w, ray_.time);
     return true;
 }

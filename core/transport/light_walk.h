@@ -4,7 +4,7 @@
 // Each path finds what the camera's find by next-event estimation and by meeting emitters, and no more, and
 // not what comes straight to the first surface that the lens sees (path_mis.h):
 // light of a delta light begins at the first surface that scatters it, and none of it passes the boundary
-// of a volume before.
+// of a volume before. Media dim it, and scatter nothing: that light is the camera paths' alone.
 #pragma once
 #include <limits>
 #include <optional>
@@ -80,6 +80,8 @@ class LightWalk {
     LightWalk(const Scene& scene, const LightSharing& sharing, const PathSettings& settings,
               const EmissionRay& emission, const PathSampler& sampler)
         : scene_(&scene), sharing_(&sharing), settings_(&settings), emission_(emission), sampler_(sampler) {}
+    std::optional<Scene::Hit> meet_visible();
+    void absorb(float length);
     bool is_last() const { return vertices_ == settings_->max_depth; }   // behind it only windows count
     bool pass(LightVertex& vertex, const LightStep& step);
     bool survives();
@@ -106,6 +108,7 @@ class LightWalk {
     float straight_ = 0;       // m from the last vertex or the light, through windows
     float unknown_ = 0;        // m within whatever the light is in
     VolumeWalk volume_{VolumeWalk::Where::unknown};
+    Interior medium_{};        // its participating medium alone
     Wavelengths wavelengths_{};
 };
 

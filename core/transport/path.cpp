@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "medium/segment.h"
 #include "transport/light_pick.h"
 #include "transport/path_mis.h"
 
@@ -31,6 +32,7 @@ struct Walk {
     float straight = 0;          // m from there to the ray's origin, through clear sheets
     float eta_squared = 1;       // undoes the radiance scaling of refraction for Russian roulette
     Interior medium;
+    Spectrum lanes{1.f};         // by which wavelengths the path may have been drawn (medium/segment.h)
     const FirstRay* first = nullptr;   // while the path is one, and light paths may find the same
     PathMis* bounces = nullptr;        // while light paths may find what comes next
     bool bent_alone = false;           // it goes the hero's way, behind a dispersive interface
@@ -106,23 +108,24 @@ VertexRandom draw_vertex(const BsdfKind& bsdf, int tries, PathSampler& sampler) 
 
 /// The medium of a ray that leaves along `wi`.
 template <typename BsdfKind>
-Interior medium_after(const Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
+Interior medium_after(const Scene& scene, const Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
                       Vec3f wi) {
+    if constexpr (requires { BsdfKind::kInMedium; }) return walk.medium;
     const float side = dot(wi, hit.ng);
     const bool transmitted = (side > 0) != hit.front;
     if (!transmitted) return walk.medium;
-    return medium_beyond(walk.medium, bsdf.interior(), bsdf.bounds_volume(), side < 0);
+    return scene.beyond(walk.medium, hit.instance, bsdf.interior(), bsdf.bounds_volume(), side < 0);
 }
 
 /// Carries on from a vertex. What goes straight on through a clear sheet comes from where
 /// it came from: light sampling there sees through the sheet too.
 template <typename BsdfKind>
-void advance(Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
+void advance(const Scene& scene, Walk& walk, const SurfaceHit& hit, const BsdfKind& bsdf,
              const BsdfSample& sample, PathMis::Vertex* both) {
     walk.throughput *= sample.weight;
     if (sample.transmitted) {
         walk.eta_squared *= sample.eta * sample.eta;
-        walk.medium = medium_after(walk, hit, bsdf, sample.wi);
+        walk.medium = medium_after(scene, walk, hit, bsdf, sample.wi);
         if (sample.specular && !bsdf.bounds_volume()) {
             walk.straight += hit.t;
             return;
@@ -175,6 +178,7 @@ class Path {
     bool step(int vertex);
     bool leave_scene(bool counts);
     bool arrive(Scene::Hit& found, int vertex, bool counts);
+    bool pass_boundary(const SurfaceHit& hit);
     bool fork(Scene::Hit& found, int vertex, bool counts);
     void see_catcher(std::uint32_t instance);
     bool see_through();
@@ -205,6 +209,32 @@ class Path {
     template <typename BsdfKind>
     void leave_catcher(const BsdfKind& bsdf, const SurfaceHit& hit, const BsdfSample& sample);
 
+    // In media (path_media-inl.h).
+    enum class Way { passed, scattered, ended };
+    struct Place {
+        float t, density;
+    };
+    struct LampOnWay {
+        LightSample light;
+        Evaluation seen;
+        Spectrum scattered;   // share of light that is scattered there, per m and sr, and reaches the start
+        float t, weight, worth;
+    };
+    struct WayRandom {
+        float select, from, where;   // which lamp, as seen from where; where it is sampled from
+        Vec2f place;                 // on the lamp
+        WayRandom nth(int i, int of) const;
+    };
+    Way cross_medium(float t, int vertex);
+    Way cross_even(const Medium& medium, const MediumAt& here, float t, int vertex);
+    Way cross_grid(const Medium& medium, const MediumAt& here, float t, int vertex);
+    bool take(const Segment::Onward& onward);
+    void note_medium();
+    float light_way(const Phase& phase, const Segment& way);
+    float share_of_light(float light_pdf, float phase_pdf) const;
+    LampOnWay find_lamp(const Phase& phase, const Segment& way, float odds, const WayRandom& u) const;
+    Place aim(const Segment& way, const std::optional<Vec3f>& lamp, float u) const;
+
     Spectrum environment_emission() const;
     Spectrum surface_emission(const Material& material, const SurfaceHit& hit) const;
     Spectrum sphere_light(std::uint32_t sphere, const SurfaceHit& hit) const;
@@ -230,6 +260,7 @@ void Path::start(const Ray& ray, const FirstRay* first) {
     walk_.ray = ray;
     walk_.previous = ray.origin;
     walk_.first = first;
+    if (scene_.has_media()) walk_.medium = scene_.medium_around(ray);
     if (scene_.has_catchers()) walk_.world = World::both, walk_.of_catcher = true;
     if (first) bounces_.emplace(*first);
     if (bounces_ && bounces_->open()) walk_.bounces = &*bounces_;
@@ -278,6 +309,10 @@ bool Path::step(int vertex) {
     ++rays_;
     const bool counted = counts(vertex);
     auto found = scene_.intersect(walk_.ray);
+    if (walk_.medium.medium) {
+        const Way way = cross_medium(found ? found->surface.t : kInfinity, vertex);
+        if (way != Way::passed) return way == Way::scattered;
+    }
     if (!found) return leave_scene(counted);
     const bool object = found->sphere_light < 0 && walk_.world == World::both &&
                         !scene_.catcher(found->surface.instance);
@@ -334,6 +369,7 @@ void Path::show_plate(const Material& material, const SurfaceHit& hit) {
 bool Path::arrive(Scene::Hit& found, int vertex, bool counts) {
     SurfaceHit& hit = found.surface;
     if (walk_.medium.present) walk_.throughput *= walk_.medium.transmittance(hit.t);
+    if (found.sphere_light < 0 && scene_.is_invisible(hit.instance)) return pass_boundary(hit);
     if (found.sphere_light >= 0) {
         if (walk_.open && scene_.has_catchers()) walk_.of_catcher = true;
         else cover(Cover::kSpheres + std::uint32_t(found.sphere_light), 1);
@@ -348,6 +384,16 @@ bool Path::arrive(Scene::Hit& found, int vertex, bool counts) {
     if (counts) gather_emission(walk_.throughput * surface_emission(material, hit));
     if (vertex == settings_.max_depth && !scene_.has_clear()) return false;   // behind it only windows count
     return scatter(material, hit, vertex);
+}
+
+/// Straight on through a surface where nothing but the medium changes. It is a window, and no vertex.
+bool Path::pass_boundary(const SurfaceHit& hit) {
+    walk_.medium = scene_.beyond(walk_.medium, hit.instance, {}, false, hit.front);
+    walk_.straight += hit.t;
+    const Ray before = walk_.ray;
+    walk_.ray = spawn_ray(hit, before.direction, before.time);
+    if (!before.cone.empty()) walk_.ray.cone = before.cone.after(hit.t);
+    return true;
 }
 
 /// At a catcher. One that is seen past an object (through a sheet) is in both worlds again, as effects may be off.
@@ -465,7 +511,7 @@ void Path::go(const BsdfKind& bsdf, const SurfaceHit& hit, const BsdfSample& sam
     const bool through = sample.transmitted && sample.specular && (settings_.see_through || !bsdf.bounds_volume());
     walk_.open = walk_.open && through;
     walk_.bent = walk_.bent || bsdf.bounds_volume();
-    advance(walk_, hit, bsdf, sample, both);
+    advance(scene_, walk_, hit, bsdf, sample, both);
     if (!scene_.has_catchers() || !scene_.catcher(hit.instance)) cover(hit.instance, -1);
     if (sample.hero_only) {
         // The throughput carries the hero's share from here on, so the weights of what was
@@ -515,7 +561,7 @@ void Path::arriving(const BsdfKind& bsdf, const SurfaceHit& hit, const LightSamp
                     const Evaluation& f, PathMis::Vertex* both) {
     const bool of_object = walk_.world != World::full && scene_.is_of_object(light.light);
     if (of_object && walk_.world == World::set) return;
-    const Interior medium = medium_after(walk_, hit, bsdf, light.wi);
+    const Interior medium = medium_after(scene_, walk_, hit, bsdf, light.wi);
     Ray ray = ray_to_light(hit, light, walk_.ray.time);
     const auto visible = [&](bool of_set) {
         ++rays_;
@@ -620,6 +666,11 @@ void Path::record_first_hit(const Material& material, const SurfaceHit& hit, boo
 }
 
 }  // namespace
+}  // namespace dg
+
+#include "transport/path_media-inl.h"
+
+namespace dg {
 
 Radiance radiance(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
                   const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,

@@ -22,6 +22,8 @@ struct PathSettings {
     bool straight = true;    // with what emitters send straight along the ray, through clear sheets too
     Background background = Background::environment;
     bool see_through = false;   // smooth glass lets the background pass unbent; false: it covers it with what it shows
+    /// How the light of lamps is sampled along a way through a medium (path_media-inl.h); the latter for tests.
+    enum class Distances { both, equiangular, free } distances = Distances::both;
     const PlateLight* plate = nullptr;   // light of the set as objects see it; null: that of its materials
 };
 
@@ -64,8 +66,10 @@ class Covers {
     }
     const Cover* begin() const { return all_.data(); }
     const Cover* end() const { return all_.data() + count_; }
+    /// Share that media cover, which are no objects.
+    void add_veil(float share) { veil_ += share; }
     float sum() const {
-        float sum = 0;
+        float sum = veil_;
         for (const Cover& c : *this) sum += c.share;
         return sum;
     }
@@ -73,6 +77,7 @@ class Covers {
   private:
     std::array<Cover, kMost> all_;
     std::size_t count_ = 0;
+    float veil_ = 0;
 };
 
 /// Radiance along a camera ray, and what it covers. In a scene with catchers `light` is that of the objects alone;

@@ -18,6 +18,7 @@ from daguerre.scene.motion import Vertices
 from daguerre.scene.parts import Curves
 from daguerre.scene.scene import Scene
 
+from .media import add_media
 from .scene_motion import MovingParts
 from .shading import Profiles, add_environment, add_lights, add_materials
 
@@ -32,7 +33,8 @@ def build(
     Args:
         scene: The scene.
         interval: Exposure interval, s; None: the scene's ``time``.
-        notes: List that gets a sentence for each motion that is only approximated.
+        notes: List that gets a sentence for each motion that is only approximated, and for fog that
+            keeps out light.
 
     Raises:
         InputError: A part cannot be rendered; the message names it.
@@ -43,8 +45,10 @@ def build(
         builder = _core.SceneBuilder()
         seen = interval or (scene.time, scene.time)
         builder.set_interval(*seen)
-        moving = MovingParts(scene, seen, [] if notes is None else notes)
+        notes = [] if notes is None else notes
+        moving = MovingParts(scene, seen, notes)
         _add_all(builder, scene, moving)
+        add_media(builder, scene, notes)
         moving.finish()
         free = memory.left_bytes()
         return builder.build(free_memory=0 if free is None else max(free, 1))
@@ -69,8 +73,6 @@ def _add_all(builder: _core.SceneBuilder, scene: Scene, moving: MovingParts) -> 
         )
     profiles = Profiles(builder)
     add_materials(builder, scene, moving.interval, profiles)
-    if scene.fog is not None:
-        raise InputError("fog: the core does not draw it yet")
     for i, instance in enumerate(scene.instances):
         builder.add_instance(
             instance.name, instance.mesh, instance.material, moving.transform(i), moving.shown(i)

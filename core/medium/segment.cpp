@@ -1,0 +1,66 @@
+#include "medium/segment.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dg {
+namespace {
+
+constexpr float kAlmostOne = 0x1.fffffep-1f;
+constexpr float kLeastDensity = 1e-30f;   // below, its inverse overflows
+
+}  // namespace
+
+void Segment::find_collisions() {
+    float sum = 0;
+    for (int k = 0; k < kWavelengths; ++k) {
+        if (rate_[k] > 0) met_.set(k, -std::expm1(-rate_[k] * length_));
+        if (met_[k] > 0) sum += lanes_[k];
+    }
+    for (int k = 0; k < kWavelengths; ++k)
+        if (met_[k] > 0 && sum > 0) colliding_.set(k, float(kWavelengths) * lanes_[k] / (sum * met_[k]));
+}
+
+/// A wavelength by its share; what is left of u is as even as it was. A grey medium needs no choice.
+int Segment::choose(Spectrum shares, float& u) const {
+    if (rate_.min() == rate_.max()) return 0;
+    float left = u * (shares[0] + shares[1] + shares[2] + shares[3]);
+    int chosen = 0;
+    for (int k = 0; k < kWavelengths; ++k) {
+        if (!(shares[k] > 0)) continue;
+        chosen = k;
+        if (left < shares[k]) break;
+        left -= shares[k];
+    }
+    if (shares[chosen] > 0) u = std::clamp(left / shares[chosen], 0.f, kAlmostOne);
+    return chosen;
+}
+
+float Segment::free_path(float u) const {
+    const int k = choose(lanes_, u);
+    return rate_[k] > 0 ? -std::log1p(-u) / rate_[k] : std::numeric_limits<float>::infinity();
+}
+
+float Segment::collision(float u) const {
+    const int k = choose(colliding_ * met_, u);
+    return std::min(-std::log1p(-u * met_[k]) / rate_[k], length_);
+}
+
+Spectrum Segment::emitted() const {
+    Spectrum sum{0.f};
+    for (int k = 0; k < kWavelengths; ++k) {
+        const float rate = medium_.extinction[k];
+        const float way = rate > 0 ? -std::expm1(-rate * length_) / rate : length_;
+        if (medium_.emission[k] > 0) sum.set(k, medium_.emission[k] * way);
+    }
+    return sum;
+}
+
+Segment::Onward Segment::onward(Spectrum value, Spectrum density) const {
+    const Spectrum lanes = lanes_ * density;
+    const float mean = lanes.average();
+    if (!(mean > kLeastDensity)) return {0.f, lanes_};
+    return {value / mean, lanes / mean};
+}
+
+}  // namespace dg

@@ -1,0 +1,132 @@
+#include "medium/segment.h"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "math/hash.h"
+#include "math/statistics.h"
+#include "medium/equiangular.h"
+
+namespace dg {
+namespace {
+
+MediumAt medium(Spectrum scattering, Spectrum absorption, Spectrum emission = 0.f) {
+    return {scattering, scattering + absorption, emission};
+}
+
+const MediumAt kGrey = medium(0.6f, 0.2f);
+const MediumAt kColorful = medium({0.1f, 0.5f, 2.f, 0}, {0.f, 0.1f, 0.5f, 0});
+constexpr float kEndless = std::numeric_limits<float>::infinity();
+
+/// Lanes as a path has them that has come some way through the medium.
+Spectrum lanes_after(const MediumAt& m, float way) { return Segment(m, way, 1.f, false).passed().lanes; }
+
+/// Chi-square of distances against the integral of a density; those beyond `end` are one cell.
+template <typename Draw, typename Density>
+double p_value(float end, Draw draw, Density density, int stream) {
+    constexpr int kCells = 30, kCount = 60000, kSteps = 200;
+    std::vector<double> observed(kCells + 1), expected(kCells + 1);
+    double inside = 0;
+    for (int i = 0; i < kCells; ++i) {
+        for (int k = 0; k < kSteps; ++k)
+            expected[i] += kCount * double(density(end * (i + (k + 0.5f) / kSteps) / kCells)) * end / kCells / kSteps;
+        inside += expected[i];
+    }
+    expected[kCells] = std::max(0., kCount - inside);
+    for (int n = 0; n < kCount; ++n) {
+        const float t = draw(float(hash_uniform(stream, n)));
+        ++observed[t < end ? int(t / end * kCells) : kCells];
+    }
+    if (expected[kCells] < 1) expected.pop_back(), observed[kCells - 1] += observed[kCells], observed.pop_back();
+    return chi_square_test(observed, expected).p_value;
+}
+
+}  // namespace
+
+TEST_CASE("free paths are drawn by their density, by all wavelengths together") {
+    int stream = 10;
+    for (const MediumAt& m : {kGrey, kColorful})
+        for (const Spectrum lanes : {Spectrum(1.f), lanes_after(m, 1)}) {
+            const Segment segment(m, 3, lanes, false);
+            const auto draw = [&](float u) { return segment.free_path(u); };
+            const auto density = [&](float t) { return segment.free_path_density(t); };
+            CHECK(p_value(3, draw, density, ++stream) > 1e-3);
+            CHECK(p_value(3, draw, [&](float t) { return density(t) * 1.08f; }, stream) < 1e-3);
+            const auto within = [&](float u) { return segment.collision(u); };
+            const auto within_density = [&](float t) { return segment.collision_density(t); };
+            CHECK(p_value(3, within, within_density, ++stream) > 1e-3);
+        }
+}
+
+TEST_CASE("what passes and what is scattered have the right mean at each wavelength") {
+    // E[passed] = exp(-extinction length), E[scattered] = albedo (1 - that), whichever wavelength draws.
+    for (const bool hero_only : {false, true}) {
+        const MediumAt m = kColorful;
+        const Segment segment(m, 1.5f, hero_only ? Spectrum(1.f) : lanes_after(m, 0.7f), hero_only);
+        constexpr int kCount = 400000;
+        double passed[4]{}, scattered[4]{};
+        for (int n = 0; n < kCount; ++n) {
+            const float t = segment.free_path(float((n + hash_uniform(5, n)) / kCount));
+            const auto onward = t < segment.length() ? segment.scattered(t) : segment.passed();
+            double* const sum = t < segment.length() ? scattered : passed;
+            for (int k = 0; k < 4; ++k) sum[k] += double(onward.weight[k]) / kCount;
+            CHECK(onward.lanes.average() == doctest::Approx(1).epsilon(1e-4));
+        }
+        for (int k = 0; k < (hero_only ? 1 : 4); ++k) {
+            const double left = std::exp(-double(m.extinction[k]) * 1.5);
+            const double albedo = m.extinction[k] > 0 ? m.scattering[k] / m.extinction[k] : 0;
+            CHECK(passed[k] == doctest::Approx(left).epsilon(0.003));
+            CHECK(scattered[k] == doctest::Approx(albedo * (1 - left)).epsilon(0.003));
+        }
+    }
+}
+
+
+TEST_CASE("no wavelength of a path ever carries more than 4, however colourful the medium") {
+    const MediumAt m = medium({0.01f, 30, 1, 0.2f}, 0.f);
+    Spectrum lanes{1.f}, carried{1.f};
+    for (int n = 0; n < 2000; ++n) {
+        if (n % 8 == 0) lanes = carried = 1.f;
+        const Segment segment(m, 1, lanes, false);
+        const float t = segment.free_path(float(hash_uniform(9, n)));
+        const auto onward = t < 1 ? segment.scattered(t) : segment.passed();
+        carried *= onward.weight, lanes = onward.lanes;
+        CHECK(carried.max() < 4.001f);
+    }
+}
+
+TEST_CASE("emission is (1 - exp(-s d)) j / s") {
+    const MediumAt m = medium({0.3f, 1, 0, 0}, {0.2f, 0, 0, 1e-7f}, {2, 1, 3, 0.5f});
+    const Spectrum found = Segment(m, 2, 1.f, false).emitted();
+    CHECK(found[0] == doctest::Approx((1 - std::exp(-1.)) * 2 / 0.5).epsilon(1e-5));
+    CHECK(found[1] == doctest::Approx(1 - std::exp(-2.)).epsilon(1e-5));
+    CHECK(found[2] == doctest::Approx(6));
+    CHECK(found[3] == doctest::Approx(1).epsilon(1e-5));
+    CHECK(Segment(m, kEndless, 1.f, false).emitted()[1] == doctest::Approx(1));
+}
+
+TEST_CASE("an endless way lets nothing pass but what meets nothing") {
+    const Segment grey(kGrey, kEndless, 1.f, false);
+    CHECK(grey.free_path(0.999999f) < 1000);
+    CHECK(grey.left(kEndless).is_black());
+    const Segment colorful(kColorful, kEndless, 1.f, false);
+    CHECK(colorful.left(kEndless)[3] == 1);
+    CHECK(colorful.passed().weight[3] == doctest::Approx(4));
+}
+
+TEST_CASE("equiangular distances are drawn by their density") {
+    const Vec3f origin{1, 2, 3}, d = normalize(Vec3f{1, -1, 0.5f});
+    int stream = 40;
+    for (const Vec3f lamp : {Vec3f{2, 1.2f, 3}, Vec3f{0, 3, 3}, Vec3f{6, 0, 5}})
+        for (const float length : {4.f, kEndless}) {
+            const Equiangular e(origin, d, length, lamp);
+            const auto draw = [&](float u) { return e.sample(u); };
+            const auto density = [&](float t) { return e.pdf(t); };
+            REQUIRE(e.usable());
+            CHECK(p_value(4, draw, density, ++stream) > 1e-3);
+            CHECK(p_value(4, draw, [&](float t) { return density(t) * (1.1f - 0.03f * t); }, stream) < 1e-3);
+        }
+}
+
+}  // namespace dg

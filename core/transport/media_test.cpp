@@ -1,0 +1,287 @@
+// Paths in media, held against worlds whose light is known.
+#include <doctest/doctest.h>
+
+#include <functional>
+
+#include "math/error.h"
+#include "math/statistics.h"
+#include "scene/test_scenes.h"
+#include "transport/path.h"
+
+namespace dg {
+namespace {
+
+constexpr float kEndless = std::numeric_limits<float>::infinity();
+
+std::shared_ptr<const Medium> medium(SpectralColor absorption, SpectralColor scattering,
+                                     std::vector<PhaseLobe> lobes = {{0, 1}}, SpectralColor emission = {}) {
+    return std::make_shared<const Medium>(Medium{absorption, scattering, emission, Phase(lobes)});
+}
+SpectralColor grey(float v) { return {v, v, v}; }
+
+/// The same with a density of 1 on the cube from -1 to 1 in all directions, on a grid; `uneven`: 2 x, x from 0 to 1.
+std::shared_ptr<const Medium> on_grid(Medium m, bool uneven = false) {
+    constexpr std::uint32_t kCells = 20;
+    std::vector<float> values(kCells * kCells * kCells, 1.f);
+    if (uneven)
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = (float(i % kCells) + 0.5f) / kCells * 2;
+    const Affine3d cube{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {-1, -1, -1}};
+    m.density = std::make_shared<const DensityGrid>(DensityGrid::Size{kCells, kCells, kCells}, std::move(values), cube);
+    return std::make_shared<const Medium>(std::move(m));
+}
+
+Mesh cube_mesh() {
+    Mesh cube;
+    std::vector<Vec3f> corners;
+    for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f});
+    cube.positions = corners;
+    cube.triangles = {{0, 3, 1}, {0, 2, 3}, {4, 7, 6}, {4, 5, 7}, {0, 5, 4}, {0, 1, 5},
+                      {2, 7, 3}, {2, 6, 7}, {0, 6, 2}, {0, 4, 6}, {1, 7, 5}, {1, 3, 7}};
+    return cube;
+}
+
+/// Adds a closed mesh that nothing but a medium fills.
+void fill(SceneDescription& d, Mesh mesh, std::shared_ptr<const Medium> inside) {
+    add(d, std::move(mesh), {"boundary", DiffuseMaterial{}});
+    d.media.of_material[std::uint32_t(d.materials.size() - 1)] = {std::int32_t(d.media.all.size()), -1, true};
+    d.media.all.push_back(std::move(inside));
+}
+void fill_world(SceneDescription& d, std::shared_ptr<const Medium> fog) {
+    d.media.fog = std::int32_t(d.media.all.size());
+    d.media.all.push_back(std::move(fog));
+}
+
+/// Luminances of n paths along one ray.
+SampleMoments look(const Scene& scene, const Ray& ray, const PathSettings& settings, int n, bool alone = false) {
+    std::vector<double> values;
+    for (int i = 0; i < n; ++i) {
+        PathSampler sampler(i / 1024, 5, std::uint32_t(i % 1024), 11);
+        Wavelengths wavelengths = Wavelengths::sample(sampler.camera().lambda);
+        if (alone) wavelengths.end_secondary();
+        const Spectrum l = radiance(scene, ray, wavelengths, sampler, settings, nullptr, nullptr).sum();
+        values.push_back(wavelengths.to_xyz(l).y);
+    }
+    return moments(values);
+}
+
+bool agrees(const SampleMoments& m, double expected, double relative = 2e-3) {
+    return std::abs(m.mean - expected) < 4 * std::sqrt(m.variance / m.count) + relative * expected;
+}
+/// Samples are stratified, so their mean is closer than their variance says.
+bool finds(const SampleMoments& m, double expected, double percent = 0.5) {
+    return std::abs(m.mean - expected) < percent / 100 * expected;
+}
+
+PathSettings deep(int depth) {
+    PathSettings settings;
+    settings.max_depth = depth;
+    return settings;
+}
+
+/// What a lamp of 1 cd brings by light scattered once: the integral along the ray.
+double scattered_once(Vec3d lamp, double albedo, double extinction, const Phase& phase, double end) {
+    constexpr int kSteps = 200000;
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double t = end * (i + 0.5) / kSteps;
+        const Vec3d to = lamp - Vec3d{0, 0, -t};
+        const double r = length(to);
+        const float p = phase.value({0, 0, 1}, to_float(to / r));
+        sum += albedo * extinction * double(p) * std::exp(-extinction * (t + r)) / (r * r);
+    }
+    return sum * end / kSteps;
+}
+
+}  // namespace
+
+TEST_CASE("a lamp in fog shines as the integral along the ray says, by every way to draw distances") {
+    const std::vector<PhaseLobe> lobes{{0.5f, 3}, {-0.2f, 1}};
+    for (const Vec3f lamp : {Vec3f{0.3f, 0.1f, -2}, Vec3f{-1, 0, 0.5f}, Vec3f{0, 2, -6}})
+        for (const double density : {0.05, 0.6}) {
+            SceneDescription d;
+            fill_world(d, medium(grey(float(0.2 * density)), grey(float(0.8 * density)), lobes));
+            d.lights.push_back(PointLight{lamp, {1, 1, 1}});
+            const auto scene = Scene::build(std::move(d));
+            const double expected = scattered_once(to_double(lamp), 0.8, density, Phase(lobes), 200);
+            using Distances = PathSettings::Distances;
+            for (const auto distances : {Distances::both, Distances::equiangular, Distances::free}) {
+                PathSettings settings = deep(1);
+                settings.distances = distances;
+                const SampleMoments m = look(*scene, test_ray({}, {0, 0, -1}), settings, 1 << 16);
+                CAPTURE(expected);
+                CAPTURE(m.mean);
+                CHECK(agrees(m, expected));
+                if (distances == Distances::both) CHECK(finds(m, expected));
+            }
+        }
+}
+
+TEST_CASE("many lamps in fog shine as each of them does") {
+    SceneDescription d;
+    fill_world(d, medium(grey(0.05f), grey(0.2f)));
+    double expected = 0;
+    for (int i = 0; i < 12; ++i) {
+        const auto u = [&](int k) { return float(hash_uniform(k, i)); };
+        const Vec3f lamp{u(1) * 4 - 2, u(2) * 4 - 2, -6 * u(3)};
+        const float cd = 0.2f + 2 * u(4);
+        d.lights.push_back(PointLight{lamp, {cd, cd, cd}});
+        expected += double(cd) * scattered_once(to_double(lamp), 0.8, 0.25, Phase(), 100);
+    }
+    const auto scene = Scene::build(std::move(d));
+    CHECK(finds(look(*scene, test_ray({}, {0, 0, -1}), deep(1), 1 << 16), expected, 1));
+}
+
+TEST_CASE("a slab of a medium leaves exp(-optical depth) of what lies behind, and of what lights a surface") {
+    for (const bool grid : {false, true}) {
+        SceneDescription d;
+        const auto absorbing = medium(grey(0.7f), {});
+        fill(d, cube_mesh(), grid ? on_grid(*absorbing, true) : absorbing);
+        d.environment = Environment::constant({1, 1, 1});
+        const auto scene = Scene::build(std::move(d));
+        CHECK(finds(look(*scene, test_ray({0, 0, 5}, {0, 0, -1}), deep(1), 1 << 14), std::exp(-1.4)));
+        CHECK(finds(look(*scene, test_ray({0, 0, 0}, {0, 0, -1}), deep(1), 1 << 14), std::exp(-0.7)));   // from within
+        CHECK(finds(look(*scene, test_ray({5, 0, 0}, {0, 0, -1}), deep(1), 1 << 10), 1));
+        const double dark = 0.7 * (grid ? 0.125 + 0.00125 : 0.5);   // half of the last cell is as dense as its centre
+        CHECK(finds(look(*scene, test_ray({-0.5f, 0, 0}, {-1, 0, 0}), deep(1), 1 << 14),
+                    std::exp(-dark)));
+    }
+    for (const bool grid : {false, true}) {
+        SceneDescription d;
+        const auto absorbing = medium(grey(0.7f), {});
+        fill(d, cube_mesh(), grid ? on_grid(*absorbing) : absorbing);
+
+        add(d, quad_mesh(), {"floor", DiffuseMaterial{{0.5f, 0.5f, 0.5f}}});
+        d.instances.back().world_from_local.origin = {0, 0, -2};
+        d.lights.push_back(DirectionalLight{{0, 0, -1}, {kPi, kPi, kPi}});
+        const auto scene = Scene::build(std::move(d));
+        CHECK(finds(look(*scene, test_ray({3, 0, -1.2f}, {-3, 0, -0.8f}), deep(1), 1 << 12), 0.5 * std::exp(-1.4)));
+    }
+}
+
+TEST_CASE("a cloud that absorbs nothing cannot be seen in an even world") {
+    const std::vector<std::vector<PhaseLobe>> phases{{{0, 1}}, {{0.8f, 2}, {-0.4f, 1}}};
+    for (const auto& lobes : phases)
+        for (const bool grid : {false, true})
+            for (const bool colorful : {false, true}) {
+                SceneDescription d;
+                const auto cloud = medium({}, colorful ? SpectralColor{3, 0.8f, 0.1f} : grey(2), lobes);
+                fill(d, cube_mesh(), grid ? on_grid(*cloud, true) : cloud);
+                d.environment = Environment::constant({1, 1, 1});
+                const auto scene = Scene::build(std::move(d));
+                PathSettings settings = deep(400);
+                settings.roulette_depth = 1000;
+                CHECK(agrees(look(*scene, test_ray({0.1f, 0.2f, 5}, {0, 0, -1}), settings, 4096), 1));
+                CHECK(agrees(look(*scene, test_ray({0.5f, 0, 0}, {0.3f, 1, -1}), deep(400), 1 << 14), 1, 5e-3));
+            }
+}
+
+TEST_CASE("a medium shines with (1 - exp(-optical depth)) j / s") {
+    for (const bool grid : {false, true})
+        for (const bool alone : {false, true}) {
+            SceneDescription d;
+            const auto flame = medium({0.5f, 0.2f, 0.1f}, {}, {{0, 1}}, {3, 2, 1});
+            fill(d, cube_mesh(), grid ? on_grid(*flame) : flame);
+            const auto scene = Scene::build(std::move(d));
+            double expected = 0;   // by wavelengths, as they are drawn
+            for (int i = 0; i < 4096; ++i) {
+                const Wavelengths w = Wavelengths::sample((i + 0.5f) / 4096);
+                const MediumAt m = flame->at(w);
+                Spectrum l;
+                for (int k = 0; k < 4; ++k) {
+                    const float met = 1 - std::exp(-2 * m.extinction[k]);
+                    l.set(k, m.emission[k] * met / m.extinction[k]);
+                }
+                expected += double(w.to_xyz(l).y) / 4096;
+            }
+            CHECK(finds(look(*scene, test_ray({0, 0, 5}, {0, 0, -1}), deep(1), 1 << 16, alone), expected, 1));
+        }
+}
+
+TEST_CASE("lamps of some size in fog are found the same by their light, by the phase function and by both") {
+    for (int kind = 0; kind < 4; ++kind) {
+        const bool grid = kind & 1, many = kind & 2;
+        SceneDescription d;
+        const auto fog = medium({0.02f, 0.05f, 0.1f}, {0.3f, 0.25f, 0.2f}, {{0.6f, 1}});
+        if (grid)
+            fill_world(d, on_grid(*fog));
+        else
+            fill_world(d, fog);
+        d.lights.push_back(SphereLight{{{0.5f, 0.3f, 0}, 0.3f}, {10, 10, 10}});
+        d.lights.push_back(SphereLight{{{-0.6f, -0.5f, 0.4f}, 0.2f}, {5, 9, 20}});
+        for (int i = 0; many && i < 5; ++i)
+            d.lights.push_back(SphereLight{{{0.1f * float(i), -1, 0.3f * float(i)}, 0.05f}, {40, 40, 9}});
+        const auto scene = Scene::build(std::move(d));
+        std::vector<SampleMoments> found;
+        using Strategy = PathSettings::Strategy;
+        for (const auto strategy : {Strategy::mis, Strategy::light, Strategy::bsdf}) {
+            PathSettings settings = deep(6);
+            settings.strategy = strategy;
+            found.push_back(look(*scene, test_ray({0, 0, 4}, {0, 0, -1}), settings, 1 << 17));
+        }
+        CHECK(welch_p_value(found[0], found[1]) > 1e-3);
+        CHECK(welch_p_value(found[0], found[2]) > 1e-3);
+        CHECK(found[0].variance < found[2].variance);
+    }
+}
+
+TEST_CASE("a medium of one number finds the same by one wavelength as by four, and on a grid as without") {
+    std::vector<SampleMoments> found;
+    for (const bool grid : {false, true})
+        for (const bool alone : {false, true}) {
+            SceneDescription d;
+            const auto smoke = medium({0.1f, 0.3f, 0.9f}, {2, 1, 0.5f}, {{0.3f, 1}});
+            fill(d, cube_mesh(), grid ? on_grid(*smoke) : smoke);
+            d.environment = Environment::constant({1, 0.5f, 0.2f});
+            const auto scene = Scene::build(std::move(d));
+            found.push_back(look(*scene, test_ray({0.2f, 0, 4}, {0, 0.05f, -1}), deep(100), 1 << 16, alone));
+        }
+    for (const SampleMoments& m : found) CHECK(welch_p_value(found[0], m) > 1e-3);
+}
+
+TEST_CASE("media move with their meshes, at the time of the ray") {
+    for (const bool grid : {false, true}) {
+        SceneDescription d;
+        const auto absorbing = medium(grey(0.5f), {});
+        fill(d, cube_mesh(), grid ? on_grid(*absorbing) : absorbing);
+        d.environment = Environment::constant({1, 1, 1});
+        d.interval = {0, 1};
+        std::vector<Affine3d> poses{{}, {}};
+        poses[1].origin = {4, 0, 0};
+        const std::vector<double> times{0, 1};
+        d.instances.back().motion = std::make_shared<const Motion>(Motion::keys(times, poses, Interpolation::linear));
+        const auto scene = Scene::build(std::move(d));
+        for (const float time : {0.f, 0.5f, 1.f})
+            for (const float x : {0.f, 2.f, 4.f}) {
+                Ray ray = test_ray({x, 0.1f, 5}, {0, 0, -1});
+                ray.time = time;
+                const bool inside = std::abs(x - 4 * time) < 1;
+                CHECK(agrees(look(*scene, ray, deep(2), 1024), inside ? std::exp(-1.) : 1));
+            }
+    }
+}
+
+TEST_CASE("a medium within a medium takes its place, and light that leaves is in the outer one again") {
+    SceneDescription d;
+    fill(d, cube_mesh(), medium(grey(0.4f), {}));
+    Mesh inner = cube_mesh();
+    fill(d, inner, medium(grey(1.2f), {}));
+    d.media.of_material[1].outside = 0;
+    d.instances.back().world_from_local = {{0.5f, 0, 0}, {0, 0.5f, 0}, {0, 0, 0.5f}, {}};
+    d.environment = Environment::constant({1, 1, 1});
+    const auto scene = Scene::build(std::move(d));
+    const double outer = 0.4, middle = 1.2;
+    CHECK(finds(look(*scene, test_ray({0, 0, 5}, {0, 0, -1}), deep(1), 4096), std::exp(-outer - middle)));
+    CHECK(finds(look(*scene, test_ray({0, 0, 0.75f}, {0, 0, -1}), deep(1), 4096), std::exp(-0.75 * outer - middle)));
+    CHECK(finds(look(*scene, test_ray({0, 0, 0}, {0, 0, -1}), deep(1), 4096), std::exp(-0.5 * (outer + middle))));
+}
+
+TEST_CASE("media that the scene has not are refused") {
+    SceneDescription d;
+    d.media.fog = 0;
+    CHECK_THROWS_AS(Scene::build(d), Error);
+    d = {};
+    d.media.of_material[0] = {};
+    CHECK_THROWS_AS(Scene::build(d), Error);
+}
+
+}  // namespace dg

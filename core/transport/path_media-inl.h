@@ -1,0 +1,190 @@
+// path_media-inl.h -- part of path.cpp: a path on its way through a participating medium.
+//
+// In an even medium the light that the way itself emits is a closed form. What lamps send there to be scattered toward
+// the path is found in two ways, as light at a surface is: by one light sample at one distance, drawn as the lamp is
+// seen from the ray (equiangular.h) or as light is scattered, half and half; and by the path itself, which is scattered
+// after a free path and may meet a lamp. With densities n(t) p_lamp and c(t) p_phase, the power heuristic would want
+// n / c at the distance. It gets that of distances drawn as light is scattered, 1 / chance of a collision, which both
+// know of each other whichever lamp it is: they weigh 1 together, and equiangular distances only improve the first.
+// In a grid the path is scattered by delta tracking, and lamps are sampled there.
+// Sources: Kulla and Fajardo 2012 (equiangular.h); Wilkie et al. 2014 (segment.h); Pharr, Jakob and Humphreys 2023,
+// Physically Based Rendering, chapter 14.
+#pragma once
+#include "medium/equiangular.h"
+#include "medium/segment.h"
+#include "medium/tracking.h"
+#include "transport/phase_bsdf.h"
+
+namespace dg {
+namespace {
+
+/// Light samples for each scattering of paths that the lens does not look along.
+constexpr float kSamplesPerCollision = 4;
+constexpr float kEquiangularShare = 0.5f;
+
+/// Point of the ray, in the form of a surface's. No side of it matters.
+SurfaceHit in_medium(const Ray& ray, float t) {
+    SurfaceHit at;
+    at.position = ray.origin + ray.direction * t;
+    at.wo = at.ng = at.ns = -ray.direction;
+    at.t = t;
+    at.time = ray.time;
+    return at;
+}
+
+float turned(float u, float by) {
+    const float x = u + by;
+    return std::min(x - std::floor(x), 0x1.fffffep-1f);
+}
+
+/// Numbers of the i-th of several samples, spread wherever those of the first are (light.cpp: turned()).
+Path::WayRandom Path::WayRandom::nth(int i, int of) const {
+    const float n = float(i), x = 0.75487767f * n, y = 0.56984029f * n;
+    const float chosen = std::min((select + n) / float(of), 0x1.fffffep-1f);
+    return {chosen, turned(from, y), turned(where, x), {turned(place.x, x), turned(place.y, y)}};
+}
+
+/// As far as what the ray meets, `t` m from its origin.
+Path::Way Path::cross_medium(float t, int vertex) {
+    const Medium& medium = *walk_.medium.medium;
+    const MediumAt here = medium.at(wavelengths_);
+    const float before = walk_.open ? walk_.throughput.average() * walk_.eta_squared : 0;
+    const Way way = medium.density ? cross_grid(medium, here, t, vertex) : cross_even(medium, here, t, vertex);
+    if (before > 0) {
+        const float after = way == Way::passed ? walk_.throughput.average() * walk_.eta_squared : 0;
+        sight_.covers.add_veil(before - after);
+    }
+    return way;
+}
+
+Path::Way Path::cross_even(const Medium& medium, const MediumAt& here, float t, int vertex) {
+    const Segment way(here, t - walk_.ray.t_min, walk_.lanes, wavelengths_.secondary_ended);
+    if (!here.emission.is_black()) gather(walk_.throughput * way.emitted());
+    if (vertex == settings_.max_depth || here.scattering.is_black() || !(way.collides() > 0)) {
+        walk_.throughput *= way.left(way.length());
+        return walk_.throughput.is_black() ? Way::ended : Way::passed;
+    }
+    const float odds = light_way(medium.phase, way);
+    const float free_path = way.free_path(sampler_.next_1d());
+    const bool met = free_path < way.length();
+    if (!take(met ? way.scattered(free_path) : way.passed())) return Way::ended;
+    if (!met) return Way::passed;
+    const SurfaceHit at = in_medium(walk_.ray, walk_.ray.t_min + free_path);
+    const PhaseBsdf phase{medium.phase};
+    const float u_lobe = sampler_.next_1d();
+    const auto sample = phase.sample(at.wo, u_lobe, sampler_.next_2d());
+    note_medium();
+    walk_.bounces = nullptr;   // no light path is scattered in a medium
+    go(phase, at, *sample, nullptr);
+    walk_.bsdf_pdf /= odds, walk_.tries = 1;
+    return Way::scattered;
+}
+
+Path::Way Path::cross_grid(const Medium& medium, const MediumAt& here, float t, int vertex) {
+    const RayRandom random(walk_.ray.origin, walk_.ray.direction, sampler_.next_1d());
+    const Tracked way = delta_tracking(scene_.grid_ray(walk_.medium, walk_.ray), here, walk_.lanes,
+                                       wavelengths_.secondary_ended, double(walk_.ray.t_min), double(t), random);
+    if (!here.emission.is_black()) gather(walk_.throughput * way.emitted);
+    if (!take({way.weight, way.lanes})) return Way::ended;
+    if (!way.scattered) return Way::passed;
+    if (vertex == settings_.max_depth) return Way::ended;
+    note_medium();
+    walk_.bounces = nullptr;
+    const SurfaceHit at = in_medium(walk_.ray, float(way.t));
+    return leave(PhaseBsdf{medium.phase}, at, vertex, nullptr) ? Way::scattered : Way::ended;
+}
+
+/// False: the path carries nothing any more.
+bool Path::take(const Segment::Onward& onward) {
+    walk_.throughput *= onward.weight;
+    walk_.lanes = onward.lanes;
+    return !walk_.throughput.is_black();
+}
+
+/// What guides of a denoiser see where the path is scattered first: a white that has no normal.
+void Path::note_medium() {
+    if (!first_hit_ || walk_.seen) return;
+    const float share = walk_.throughput.average();
+    first_hit_->seen_albedo = first_hit_->seen_albedo + Rgb{share, share, share};
+    walk_.seen = true;
+}
+
+/// Adds what one light sample brings to one place on the way. Returns the odds of such a sample over a collision of the
+/// path, for whatever that meets. Where there are many lamps, one of several samples is picked (light_pick.h).
+float Path::light_way(const Phase& phase, const Segment& way) {
+    const int tries = light_tries(scene_.lights(), walk_.in_view);
+    const float chance = walk_.in_view ? 1 : std::min(1.f, kSamplesPerCollision * way.collides());
+    const float odds = chance * float(std::max(tries, 1)) / way.collides();
+    const float u_chance = sampler_.next_1d();
+    WayRandom u;
+    u.select = sampler_.next_1d(), u.from = sampler_.next_1d(), u.where = sampler_.next_1d();
+    u.place = sampler_.next_2d();
+    const float u_pick = tries > 1 ? sampler_.next_1d() : 0;
+    if (u_chance >= chance) return odds;
+    std::array<LampOnWay, LightSet::kMostSamples> lamps;
+    float sum = 0;
+    for (int i = 0; i < tries; ++i) {
+        lamps[i] = find_lamp(phase, way, odds, u.nth(i, tries));
+        sum += lamps[i].worth;
+    }
+    if (!(sum > 0) || !std::isfinite(sum)) return odds;
+    float left = u_pick * sum;
+    int chosen = -1;
+    for (int i = 0; i < tries && (chosen < 0 || left >= 0); ++i)
+        if (lamps[i].worth > 0) chosen = i, left -= lamps[i].worth;
+    const LampOnWay& lamp = lamps[chosen];
+    const float weight = lamp.weight * sum / (float(tries) * lamp.worth * chance);
+    const Spectrum before = walk_.throughput;
+    walk_.throughput *= lamp.scattered;
+    arriving(PhaseBsdf{phase}, in_medium(walk_.ray, lamp.t), lamp.light, weight, lamp.seen, nullptr);
+    walk_.throughput = before;
+    return odds;
+}
+
+/// A sample of a lamp and of a place on the way. The lamp is chosen as seen from some collision, and sampled from the
+/// place; worth 0: it brings nothing.
+Path::LampOnWay Path::find_lamp(const Phase& phase, const Segment& way, float odds, const WayRandom& u) const {
+    const LightSet& lights = scene_.lights();
+    LampOnWay lamp{};
+    const SurfaceHit from = in_medium(walk_.ray, walk_.ray.t_min + way.collision(u.from));
+    const auto choice = lights.choose(u.select, from.position);
+    if (!choice) return lamp;
+    const auto [t, density] = aim(way, lights.place_of(choice->light, u.place, walk_.ray.time), u.where);
+    lamp.t = walk_.ray.t_min + t;
+    const SurfaceHit at = in_medium(walk_.ray, lamp.t);
+    auto light = lights.sample_one(choice->light, u.place, at.position, at.time, wavelengths_);
+    if (!light || !(light->pdf > 0) || !(density > 0)) return lamp;
+    if (light->uneven) scene_.resolve(*light, at.time, wavelengths_);
+    lamp.light = *light;
+    lamp.seen = PhaseBsdf{phase}.evaluate_with_pdf(at.wo, light->wi);
+    lamp.scattered = way.medium().scattering * way.left(t);
+    const float as_seen = lights.choice_probability(choice->light, at.position) * light->pdf;
+    const float share = light->delta ? 1 : share_of_light(odds * as_seen, lamp.seen.pdf);
+    lamp.weight = share / (choice->probability * density * light->pdf);
+    lamp.worth = (walk_.throughput * lamp.scattered * lamp.seen.f_cos * light->radiance).average() * lamp.weight;
+    return lamp;
+}
+
+/// Share of light sampling in light that both it and the path may find.
+float Path::share_of_light(float light_pdf, float phase_pdf) const {
+    using Strategy = PathSettings::Strategy;
+    if (settings_.strategy == Strategy::bsdf) return 0;
+    return settings_.strategy == Strategy::light ? 1 : power_heuristic(light_pdf, phase_pdf);
+}
+
+/// A distance at which the lamp lights the way, and its density.
+Path::Place Path::aim(const Segment& way, const std::optional<Vec3f>& lamp, float u) const {
+    using Distances = PathSettings::Distances;
+    std::optional<Equiangular> seen;
+    const SurfaceHit start = in_medium(walk_.ray, walk_.ray.t_min);
+    if (lamp) seen.emplace(start.position, walk_.ray.direction, way.length(), *lamp);
+    float share = settings_.distances == Distances::both ? kEquiangularShare
+                                                         : float(settings_.distances == Distances::equiangular);
+    if (!seen || !seen->usable()) share = 0;
+    const float t = u < share ? seen->sample(u / share) : way.collision((u - share) / (1 - share));
+    const float even = share < 1 ? (1 - share) * way.collision_density(t) : 0;
+    return {t, even + (share > 0 ? share * seen->pdf(t) : 0)};
+}
+
+}  // namespace
+}  // namespace dg
