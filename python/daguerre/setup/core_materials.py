@@ -9,11 +9,11 @@ from typing import Any
 import daguerre._core as _core
 from daguerre.scene.materials import Gltf, Kind, Material, Spectrum, TextureSlot
 
-#: Fields of a material that the core takes aside from its kind; the profile becomes an index.
+#: Fields of a material that the core takes aside from its kind; profile and media become indices.
 _COMMON = tuple(
     field.name
     for field in dataclasses.fields(Material)
-    if field.name not in ("kind", "name", "profile")
+    if field.name not in ("kind", "name", "profile", "interior", "exterior")
 )
 
 
