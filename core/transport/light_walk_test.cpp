@@ -15,7 +15,7 @@ constexpr int kPaths = 60000;
 const Vec3f kPoint{-0.3f, -0.2f, 0.5f};
 
 /// A closed cube of half side 1 with a lamp in it.
-std::shared_ptr<const Scene> room(Light lamp, Material wall) {
+SceneDescription describe_room(Light lamp, Material wall) {
     SceneDescription d;
     Mesh cube;
     cube.name = "cube";
@@ -28,6 +28,24 @@ std::shared_ptr<const Scene> room(Light lamp, Material wall) {
     d.materials.push_back(std::move(wall));
     d.instances.push_back({"cube", 0, 0, {}});
     d.lights.push_back(std::move(lamp));
+    return d;
+}
+std::shared_ptr<const Scene> room(Light lamp, Material wall) {
+    return Scene::build(describe_room(std::move(lamp), std::move(wall)));
+}
+
+/// The same full of fog that absorbs, with a ball of another such medium, on a grid or even.
+std::shared_ptr<const Scene> foggy_room(Light lamp, Material wall, bool grid) {
+    SceneDescription d = describe_room(std::move(lamp), std::move(wall));
+    add(d, ball_mesh(3), {"boundary", DiffuseMaterial{}});
+    d.instances.back().world_from_local = {{0.4f, 0, 0}, {0, 0.4f, 0}, {0, 0, 0.4f}, {0.1f, 0, 0.1f}};
+    Medium fog{{0.2f, 0.3f, 0.4f}, {}, {}, Phase()}, ball{{0.5f, 1, 2}, {}, {}, Phase()};
+    const Affine3d box{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {-1, -1, -1}};
+    const DensityGrid halves({2, 1, 1}, std::vector{2.f, 0.1f}, box);
+    if (grid) ball.density = std::make_shared<const DensityGrid>(halves);
+    d.media.all = {std::make_shared<const Medium>(fog), std::make_shared<const Medium>(ball)};
+    d.media.fog = 0;
+    d.media.of_material[1] = {1, -1, true};
     return Scene::build(std::move(d));
 }
 
@@ -99,6 +117,21 @@ TEST_CASE("walks bring to a point the light that paths find there after two surf
             b.mean *= 1.05;   // the check sees 5 %
             CHECK(welch_p_value(a, b) < 1e-3);
         }
+}
+
+TEST_CASE("walks bring the light of paths through media that absorb") {
+    const Material wall{"wall", DiffuseMaterial{{0.6f, 0.6f, 0.6f}}};
+    const SphereLight lamp{{{0.1f, 0.1f, 0.1f}, 0.1f}, {20, 20, 20}};   // in the ball
+    for (const bool grid : {false, true}) {
+        const auto clear = room(lamp, wall), foggy = foggy_room(lamp, wall, grid);
+        SampleMoments a = by_paths(*foggy, {}), b = by_walks(*foggy, {});
+        INFO("paths ", a.mean, " walks ", b.mean);
+        CHECK(a.mean > 0.05);
+        CHECK(a.mean < 0.6 * by_paths(*clear, {}).mean);
+        CHECK(welch_p_value(a, b) > 1e-3);
+        b.mean *= 1.05;
+        CHECK(welch_p_value(a, b) < 1e-3);
+    }
 }
 
 TEST_CASE("no light leaves where there is none, and a mirror alone sends none to a lens") {
