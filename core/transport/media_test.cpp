@@ -275,6 +275,37 @@ TEST_CASE("a medium within a medium takes its place, and light that leaves is in
     CHECK(finds(look(*scene, test_ray({0, 0, 0}, {0, 0, -1}), deep(1), 4096), std::exp(-0.5 * (outer + middle))));
 }
 
+TEST_CASE("what a medium takes away counts as covered, and nothing else of it is seen") {
+    for (const bool grid : {false, true}) {
+        SceneDescription d;
+        const auto smoke = medium(grey(0.2f), grey(0.3f));
+        fill(d, cube_mesh(), grid ? on_grid(*smoke) : smoke);
+        add(d, quad_mesh(), {"wall", DiffuseMaterial{}});
+        d.instances.back().world_from_local.origin = {0, 0, -3};
+        const auto scene = Scene::build(std::move(d));
+        const auto hit = scene->first_hit(test_ray({0.2f, 0.3f, 5}, {0, 0, -1}));
+        REQUIRE(hit);
+        CHECK(hit->instance == 1);
+        CHECK(hit->t == doctest::Approx(8));
+        CHECK_FALSE(scene->first_hit(test_ray({0.2f, 0.3f, 5}, {0.2f, 0, -1})));
+        double covered = 0, by_wall = 0;
+        constexpr int kCount = 1 << 14;
+        for (int i = 0; i < kCount; ++i) {
+            PathSampler sampler(3, 5, std::uint32_t(i), 11);
+            const Wavelengths wavelengths = Wavelengths::sample(sampler.camera().lambda);
+            const Ray ray = test_ray({0.2f, 0.3f, 5}, {0, 0, -1});
+            const Sight sight = look(*scene, ray, wavelengths, sampler, deep(3), nullptr, nullptr);
+            covered += double(sight.covers.sum()) / kCount;
+            for (const Cover& c : sight.covers) {
+                CHECK(c.instance == 1);
+                by_wall += double(c.share) / kCount;
+            }
+        }
+        CHECK(covered == doctest::Approx(1).epsilon(1e-3));
+        CHECK(by_wall == doctest::Approx(std::exp(-1.)).epsilon(0.01));
+    }
+}
+
 TEST_CASE("media that the scene has not are refused") {
     SceneDescription d;
     d.media.fog = 0;

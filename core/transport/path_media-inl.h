@@ -81,6 +81,10 @@ Path::Way Path::cross_even(const Medium& medium, const MediumAt& here, float t, 
 }
 
 Path::Way Path::cross_grid(const Medium& medium, const MediumAt& here, float t, int vertex) {
+    if (here.scattering.is_black() && here.emission.is_black()) {
+        walk_.throughput *= scene_.left_after(walk_.medium, walk_.ray, walk_.ray.t_min, t, wavelengths_);
+        return walk_.throughput.is_black() ? Way::ended : Way::passed;
+    }
     const RayRandom random(walk_.ray.origin, walk_.ray.direction, sampler_.next_1d());
     const Tracked way = delta_tracking(scene_.grid_ray(walk_.medium, walk_.ray), here, walk_.lanes,
                                        wavelengths_.secondary_ended, double(walk_.ray.t_min), double(t), random);

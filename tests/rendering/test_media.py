@@ -106,7 +106,7 @@ def test_a_moving_cloud_is_blurred_by_the_shutter() -> None:
     path = dg.keys([(0.0, scenes.at(0, 0, -4)), (1.0, scenes.at(2, 0, -4))])
     scene.add_instance(scene.add_mesh(CUBE, SIDES), cloud, path)
     scene.set_environment(color=(1, 1, 1))
-    camera = NARROW.with_(shutter_time=1.0, shutter_offset=0.5)
+    camera = NARROW.with_(shutter_time=1.0)
     scene = scene.at(0.5)
     assert mean(scene, camera=camera) == pytest.approx([0.5] * 3, abs=0.03)
 
@@ -115,7 +115,7 @@ def test_alpha_of_fog_is_what_it_takes_away_and_truth_looks_through_its_faces() 
     scene = box_of(dg.Medium((0.2,) * 3, (0.3,) * 3))
     scene.set_environment(color=(1, 1, 1))
     options: dict[str, Any] = {"resolution": (8, 8), "spp": 256, "filter": "box"}
-    frame = dg.render(scene, NARROW, transparent=True, **options)
+    frame = dg.render(scene, NARROW, background="transparent", **options)
     assert float(frame.alpha.mean()) == pytest.approx(1 - math.exp(-1), rel=0.03)
     wall = scene.add_mesh(*scenes.quad(3, -9))
     scene.add_instance(wall, dg.Material(dg.Diffuse()))
@@ -131,7 +131,7 @@ def test_light_paths_find_what_the_camera_finds_in_fog(density: dg.DensityGrid |
     floor = scene.add_mesh(*scenes.quad(4))
     turned = np.array([[1, 0, 0, 0], [0, 0, 1, -0.5], [0, -1, 0, -3], [0, 0, 0, 1.0]])
     scene.add_instance(floor, dg.Material(dg.Diffuse((0.6, 0.5, 0.4))), turned)
-    scene.add_light(dg.SphereLight((50, 40, 30), radius=0.1), scenes.at(0, 0.3, -3.2))
+    scene.add_light(dg.SphereLight((3, 2.4, 2), radius=0.4), scenes.at(0, 0.3, -3.2))
     camera = dg.Camera(
         lens="thin", focal_length=35, sensor_size=(24, 24), f_stop=2, focus_distance=6
     )
