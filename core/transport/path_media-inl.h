@@ -81,13 +81,15 @@ Path::Way Path::cross_even(const Medium& medium, const MediumAt& here, float t, 
 }
 
 Path::Way Path::cross_grid(const Medium& medium, const MediumAt& here, float t, int vertex) {
+    const GridRay ray = scene_.grid_ray(walk_.medium, walk_.ray);
+    const RayRandom random(walk_.ray.origin, walk_.ray.direction, sampler_.next_1d());
+    const double begin = double(walk_.ray.t_min), end = double(t);
     if (here.scattering.is_black() && here.emission.is_black()) {
-        walk_.throughput *= scene_.left_after(walk_.medium, walk_.ray, walk_.ray.t_min, t, wavelengths_);
+        walk_.throughput *= ratio_tracking(ray, here.extinction, begin, end, random);
         return walk_.throughput.is_black() ? Way::ended : Way::passed;
     }
-    const RayRandom random(walk_.ray.origin, walk_.ray.direction, sampler_.next_1d());
-    const Tracked way = delta_tracking(scene_.grid_ray(walk_.medium, walk_.ray), here, walk_.lanes,
-                                       wavelengths_.secondary_ended, double(walk_.ray.t_min), double(t), random);
+    const Tracked way =
+        delta_tracking(ray, here, walk_.lanes, wavelengths_.secondary_ended, begin, end, random);
     if (!here.emission.is_black()) gather(walk_.throughput * way.emitted);
     if (!take({way.weight, way.lanes})) return Way::ended;
     if (!way.scattered) return Way::passed;

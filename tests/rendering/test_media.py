@@ -119,7 +119,7 @@ def test_alpha_of_fog_is_what_it_takes_away_and_truth_looks_through_its_faces() 
     assert float(frame.alpha.mean()) == pytest.approx(1 - math.exp(-1), rel=0.03)
     wall = scene.add_mesh(*scenes.quad(3, -9))
     scene.add_instance(wall, dg.Material(dg.Diffuse()))
-    depth = dg.render(scene, NARROW, aovs=["depth"], **options).aovs["depth"]
+    depth = dg.render(scene, NARROW, aovs=True, **options).aovs["depth.Z"]
     assert np.allclose(depth, 9, rtol=1e-4)
 
 
