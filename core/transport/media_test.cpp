@@ -138,8 +138,9 @@ TEST_CASE("a slab of a medium leaves exp(-optical depth) of what lies behind, an
         fill(d, cube_mesh(), grid ? on_grid(*absorbing, true) : absorbing);
         d.environment = Environment::constant({1, 1, 1});
         const auto scene = Scene::build(std::move(d));
-        CHECK(finds(look(*scene, test_ray({0, 0, 5}, {0, 0, -1}), deep(1), 1 << 14), std::exp(-1.4)));
-        CHECK(finds(look(*scene, test_ray({0, 0, 0}, {0, 0, -1}), deep(1), 1 << 14), std::exp(-0.7)));   // from within
+        const double percent = grid ? 1.5 : 0.5;   // ratio tracking is random where densities differ
+        CHECK(finds(look(*scene, test_ray({0, 0, 5}, {0, 0, -1}), deep(1), 1 << 14), std::exp(-1.4), percent));
+        CHECK(finds(look(*scene, test_ray({0, 0, 0}, {0, 0, -1}), deep(1), 1 << 14), std::exp(-0.7), percent));
         CHECK(finds(look(*scene, test_ray({5, 0, 0}, {0, 0, -1}), deep(1), 1 << 10), 1));
         const double dark = 0.7 * (grid ? 0.125 + 0.00125 : 0.5);   // half of the last cell is as dense as its centre
         CHECK(finds(look(*scene, test_ray({-0.5f, 0, 0}, {-1, 0, 0}), deep(1), 1 << 14),
