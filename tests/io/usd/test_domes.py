@@ -12,9 +12,9 @@ import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdUtils
 
 import daguerre as dg
+from daguerre.io.panorama import resampled
 from daguerre.io.usd.domes import Strength
 from daguerre.io.usd.lights import Emission
-from daguerre.io.usd.panorama import resampled
 from daguerre.motion.values import keys
 from tests.support import stages
 

@@ -25,12 +25,12 @@ from daguerre.errors import InputError
 from daguerre.files import formats
 from daguerre.files.notes import Notes
 from daguerre.files.value import Value
+from daguerre.io.panorama import resampled
 from daguerre.motion.values import at as value_at
 from daguerre.motion.values import is_dynamic
 from daguerre.scene.scene import Scene
 
 from .lights import MOST, WHITE, Color, Emission
-from .panorama import resampled
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.float32]
