@@ -1,0 +1,1 @@
+"""Reads scenes of pbrt-v4 and pbrt-v3."""

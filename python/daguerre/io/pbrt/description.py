@@ -1,0 +1,85 @@
+"""Content of a scene's text, before anything is made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+from daguerre.errors import suggest
+
+from .place import Place
+from .state import Made
+
+#: Names that may be defined anew; each time costs a copy of all names.
+MAX_REDEFINED = 1000
+
+
+Key = TypeVar("Key")
+
+
+class Names(Generic[Key]):
+    """Definitions by name.
+
+    Whoever holds ``now`` sees later definitions, but keeps the old ones of names that are defined
+    anew, as in pbrt-v3.
+
+    Args:
+        what: Name of the things, for messages.
+    """
+
+    def __init__(self, what: str) -> None:
+        self.what = what
+        self.now: dict[Key, Made] = {}
+        self._left = MAX_REDEFINED
+
+    def define(self, key: Key, made: Made) -> None:
+        """Adds a definition.
+
+        Raises:
+            InputError: Names are defined anew too often.
+        """
+        if key in self.now:
+            self._left -= 1
+            if self._left < 0:
+                made.place.fail(f"wanted at most {MAX_REDEFINED} {self.what} defined anew")
+            self.now = dict(self.now)
+        self.now[key] = made
+
+
+@dataclass(eq=False)
+class Description:
+    """Content of a scene's text.
+
+    Attributes:
+        version: Version of pbrt, 3 or 4.
+        camera: Camera, with the state at its directive.
+        film: Film.
+        lights: Lights, besides those of shapes.
+        shapes: Shapes outside of objects.
+        objects: Shapes of objects, by name.
+        instances: Places where objects stand; their ``name`` is that of the object.
+        media: Media by name.
+    """
+
+    version: int = 4
+    camera: Made | None = None
+    film: Made | None = None
+    lights: list[Made] = field(default_factory=list)
+    shapes: list[Made] = field(default_factory=list)
+    objects: dict[str, list[Made]] = field(default_factory=dict)
+    instances: list[Made] = field(default_factory=list)
+    media: Names[str] = field(default_factory=lambda: Names("media"))
+    textures: Names[tuple[str, str]] = field(default_factory=lambda: Names("textures"))
+    materials: Names[str] = field(default_factory=lambda: Names("materials"))
+
+
+def named(names: Mapping[str, Made], name: str, place: Place, what: str) -> Made:
+    """Returns a definition.
+
+    Raises:
+        InputError: There is none of this name.
+    """
+    if name not in names:
+        place.fail(f"wanted a {what} that is defined, got {name[:60]!r}{suggest(name[:60], names)}")
+    return names[name]

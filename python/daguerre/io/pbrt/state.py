@@ -1,0 +1,66 @@
+"""State of the graphics: what a shape or a light takes from the directives before it.
+
+A state is never changed: directives make another one. So opening an attribute block costs nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from .parameters import Parameter, Parameters
+from .place import Place
+from .transforms import Moving
+
+#: Targets of ``Attribute``.
+TARGETS = ("light", "material", "medium", "shape", "texture")
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """What counts for the next directive.
+
+    Attributes:
+        transform: World from local; before ``WorldBegin`` camera from world.
+        active: Whether directives change the start and the end of transforms.
+        reversed: Whether the sides of surfaces are exchanged.
+        material: Material: a directive, or the name of one.
+        emission: Directive ``AreaLightSource``, or None.
+        inside: Name of the medium inside of surfaces; empty: none.
+        outside: Name of the medium outside.
+        color_space: Color space of colors.
+        attributes: Parameters by target of ``Attribute``.
+    """
+
+    transform: Moving = field(default_factory=Moving)
+    active: tuple[bool, bool] = (True, True)
+    reversed: bool = False
+    material: Made | str | None = None
+    emission: Made | None = None
+    inside: str = ""
+    outside: str = ""
+    color_space: str = "srgb"
+    attributes: Mapping[str, tuple[Parameter, ...]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Made:
+    """Something that a directive makes, with the state at that moment.
+
+    Attributes:
+        kind: Its kind, such as ``trianglemesh``.
+        parameters: Its parameters.
+        place: Place of its directive.
+        state: State of the graphics.
+        textures: Textures that it may name.
+        materials: Materials that it may name.
+        name: Name, if it has one.
+    """
+
+    kind: str
+    parameters: Parameters
+    place: Place
+    state: State
+    textures: Mapping[tuple[str, str], Made] = field(default_factory=dict)
+    materials: Mapping[str, Made] = field(default_factory=dict)
+    name: str = ""
