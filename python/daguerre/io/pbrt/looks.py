@@ -1,0 +1,185 @@
+"""Materials of the scene: the look of a surface with its light, its masks and its media."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass, replace
+
+from daguerre.scene.materials import Boundary, Diffuse, Kind, Material, TextureSlot
+from daguerre.scene.media import Medium
+from daguerre.scene.scene import Scene
+
+from .description import named
+from .emission import DARK, Emission
+from .ledger import Ledger
+from .materials import OF_V4, Look, Reader, Tools
+from .media import Media
+from .old_materials import OF_V3
+from .state import Made
+from .textures import Shade, Textures
+
+#: Largest depth of mixtures within mixtures.
+_DEEPEST = 16
+#: Material of surfaces without one; that of pbrt.
+_USUAL = Look(Diffuse((0.5, 0.5, 0.5)))
+
+
+class Looks:
+    """Makes the materials of shapes, each once.
+
+    Args:
+        scene: Receives materials.
+        tools: What readers of materials need; without ``part``.
+        media: Media of the scene.
+        ledger: Counts directives.
+    """
+
+    def __init__(self, scene: Scene, tools: Tools, media: Media, ledger: Ledger) -> None:
+        self._scene, self._media, self._ledger = scene, media, ledger
+        self._tools = replace(tools, part=self._part)
+        self._looks: dict[Made, Look] = {}
+        self._open: list[Made] = []
+        self._indices: dict[tuple[object, ...], int] = {}
+        readers: dict[str, Reader] = (
+            {**OF_V4, **OF_V3} if tools.version == 3 else {**OF_V3, **OF_V4}
+        )
+        self._readers = readers
+
+    @property
+    def textures(self) -> Textures:
+        """Textures of the scene."""
+        return self._tools.textures
+
+    def of(self, shape: Made) -> Look:
+        """Look of a shape's material.
+
+        Raises:
+            InputError: It is not defined, or wrong.
+        """
+        material = shape.state.material
+        if material is None:
+            return _USUAL
+        if isinstance(material, str):
+            material = named(shape.materials, material, shape.place, "material")
+        return self._look(material)
+
+    def mask(self, shape: Made) -> Shade:
+        """Share of a shape that is there."""
+        shape.parameters.find("shadowalpha")
+        return self.textures.number(shape, "alpha", 1.0)
+
+    def index(
+        self, shape: Made, look: Look, mask: Shade, emission: Emission, slope: float = 1.0
+    ) -> int:
+        """Index of the material of a shape.
+
+        Args:
+            shape: The shape.
+            look: Look of its material.
+            mask: Its mask.
+            emission: Its light.
+            slope: Factor on the slopes of its bumps.
+        """
+        slope = float(f"{slope:.3g}") if look.bump is not None and look.normals is None else 1.0
+        inside = self._media.inside(shape.state.inside, shape)
+        outside = self._media.named(shape.state.outside)
+        kind = look.kind
+        if isinstance(kind, Boundary) and emission is not DARK:
+            kind = Diffuse((0.0, 0.0, 0.0))
+        slot = self._glow(emission)
+        shine = (emission.color, emission.two_sided, slot)
+        key = (id(look), mask, *shine, id(inside), id(outside), slope)
+        if key not in self._indices:
+            material = self._material(kind, look, mask, inside, outside)
+            material = replace(material, normal_scale=slope)
+            if emission is not DARK:
+                material = replace(
+                    material,
+                    emission=emission.color,
+                    two_sided_emission=emission.two_sided,
+                    emission_texture=slot,
+                )
+            self._indices[key] = self._scene.add_material(material)
+        return self._indices[key]
+
+    def _material(
+        self, kind: Kind, look: Look, mask: Shade, inside: Medium | None, outside: Medium | None
+    ) -> Material:
+        opacity = min(max(mask.number, 0.0), 1.0) * look.opacity
+        if mask.slot is not None and look.opacity_slot is not None:
+            self._ledger.notes.add("of two masks of one surface, that of its material is left out")
+        return Material(
+            kind,
+            opacity=opacity,
+            opacity_texture=mask.slot or look.opacity_slot,
+            normal_texture=look.normals or look.bump,
+            interior=inside,
+            exterior=outside,
+        )
+
+    def _glow(self, emission: Emission) -> TextureSlot | None:
+        if not emission.picture or emission.directive is None:
+            return None
+        place = str(emission.directive.place)
+        index = self.textures.picture(place, emission.picture)
+        return None if index is None else TextureSlot(index)
+
+    def _look(self, made: Made) -> Look:
+        if made not in self._looks:
+            if made in self._open:
+                made.place.fail("mixes in a circle: wanted other materials, got itself")
+            if len(self._open) >= _DEEPEST:
+                made.place.fail(f"wanted at most {_DEEPEST} mixtures within mixtures, got more")
+            self._open.append(made)
+            self._looks[made] = self._read(made)
+            self._open.pop()
+        return self._looks[made]
+
+    def _read(self, made: Made) -> Look:
+        is_named = made.place.directive == "MakeNamedMaterial"
+        kind = made.parameters.text("type") if is_named else made.kind
+        if is_named and not kind:
+            made.place.fail("type: wanted a kind of material, got none")
+        reader = self._readers.get(kind)
+        if reader is None:
+            known = ", ".join(name for name in OF_V4 if name)
+            made.place.fail(f"kind: wanted {known}, got {kind[:40]!r}")
+        textures = self.textures
+        textures.space = None
+        found = reader(replace(made, kind=kind), self._tools)
+        look = found if isinstance(found, Look) else Look(found)
+        look = replace(
+            look, normals=self._normals(made), bump=self._bump(made), space=textures.space
+        )
+        self._ledger.use(made.place)
+        self._ledger.tell_unread(made.parameters, made.place, kind)
+        return look
+
+    def _normals(self, made: Made) -> TextureSlot | None:
+        name = made.parameters.text("normalmap")
+        index = self.textures.picture(str(made.place), name, srgb=False) if name else None
+        return None if index is None else TextureSlot(index)
+
+    def _bump(self, made: Made) -> TextureSlot | None:
+        name = "bumpmap" if made.parameters.has("bumpmap") else "displacement"
+        return self.textures.bump(made, name)
+
+    def _part(self, owner: Made, name: str) -> tuple[int, Kind]:
+        """Adds a part of a mixture."""
+        made = named(owner.materials, name, owner.place, "material")
+        look = self._look(made)
+        if look.opacity != 1 or look.opacity_slot is not None:
+            self._ledger.notes.add("a partly transparent part of a mixture is opaque")
+        key = ("part", id(look))
+        if key not in self._indices:
+            material = Material(look.kind, normal_texture=look.normals)
+            self._indices[key] = self._scene.add_material(material)
+        return self._indices[key], look.kind
+
+
+def has_slots(value: object) -> bool:
+    """Whether a surface or a material has a slot of a texture, also in its parts."""
+    if isinstance(value, TextureSlot):
+        return True
+    if not is_dataclass(value) or isinstance(value, type):
+        return False
+    return any(has_slots(getattr(value, field.name)) for field in fields(value))

@@ -1,0 +1,257 @@
+"""Reads materials of pbrt-v4.
+
+Source: pbrt-v4's user's guide ("Materials"); Pharr, Jakob and Humphreys 2023, chapters 9 and 14.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from daguerre.scene.materials import (
+    Boundary,
+    Coated,
+    Conductor,
+    Dielectric,
+    Diffuse,
+    Kind,
+    Mix,
+    TextureSlot,
+)
+from daguerre.scene.spectrum import Spectrum
+
+from .indices import Indices
+from .ledger import Ledger
+from .roughness import Roughness, roughness_of
+from .spectra import Color, Spectra
+from .state import Made
+from .subsurface import diffuse_reflectance, scattering_of
+from .texture_mapping import SpaceMapping
+from .textures import Textures
+
+_WHITE: Color = (1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Look:
+    """Look of a surface.
+
+    Attributes:
+        kind: Its kind.
+        normals: Slot of a normal map.
+        bump: Slot of a normal map whose slopes each mesh scales.
+        opacity: Share of it that is there.
+        opacity_slot: Slot of factors on that.
+        space: Mapping of set 1 of texture coordinates.
+    """
+
+    kind: Kind
+    normals: TextureSlot | None = None
+    bump: TextureSlot | None = None
+    opacity: float = 1.0
+    opacity_slot: TextureSlot | None = None
+    space: SpaceMapping | None = None
+
+
+@dataclass(frozen=True)
+class Tools:
+    """What readers of materials need.
+
+    Attributes:
+        textures: Textures of the scene.
+        indices: Indices of refraction.
+        spectra: Spectra.
+        version: Version of pbrt, 3 or 4.
+        ledger: Counts directives.
+        part: Adds a material by name, for mixtures; returns its index and kind.
+    """
+
+    textures: Textures
+    indices: Indices
+    spectra: Spectra
+    version: int
+    ledger: Ledger
+    part: Callable[[Made, str], tuple[int, Kind]]
+
+    def note(self, sentence: str) -> None:
+        """Adds a note."""
+        self.ledger.notes.add(sentence)
+
+    def roughness(self, made: Made, default: float = 0.0, prefix: str = "") -> Roughness:
+        """Reads roughness; see ``roughness_of``."""
+        return roughness_of(made, self.textures, self.version, self.ledger, default, prefix)
+
+
+Reader = Callable[[Made, Tools], Kind | Look]
+
+
+def diffuse(made: Made, tools: Tools) -> Kind:
+    """Reads ``diffuse``."""
+    shade = tools.textures.color(made, "reflectance", (0.5, 0.5, 0.5))
+    return Diffuse(shade.color, shade.slot)
+
+
+def conductor(made: Made, tools: Tools) -> Kind:
+    """Reads ``conductor``: by its index, or by its reflectance."""
+    return metal(made, tools, "", 0.0)
+
+
+def metal(made: Made, tools: Tools, prefix: str, roughness: float) -> Conductor:
+    """Reads a metal whose parameters begin with ``prefix``."""
+    rough = tools.roughness(made, roughness, prefix)
+    if tools.textures.has(made, "reflectance"):
+        shade = tools.textures.color(made, "reflectance", _WHITE)
+        return Conductor(
+            shade.color, rough.alpha, shade.slot, rough.alpha_v, alpha_texture=rough.slot
+        )
+    eta, k = tools.indices.metal(made, f"{prefix}eta", f"{prefix}k")
+    return Conductor(
+        alpha=rough.alpha, alpha_v=rough.alpha_v, alpha_texture=rough.slot, eta=eta, k=k
+    )
+
+
+def dielectric(made: Made, tools: Tools) -> Kind:
+    """Reads ``dielectric``."""
+    rough = tools.roughness(made)
+    ior = tools.indices.glass(made, ("eta",), 1.5)
+    return Dielectric(ior, rough.alpha, alpha_v=rough.alpha_v, alpha_texture=rough.slot)
+
+
+def thin_dielectric(made: Made, tools: Tools) -> Kind:
+    """Reads ``thindielectric``."""
+    return Dielectric(tools.indices.glass(made, ("eta",), 1.5), thin=True)
+
+
+def coated_diffuse(made: Made, tools: Tools) -> Kind:
+    """Reads ``coateddiffuse``."""
+    rough = tools.roughness(made)
+    base = diffuse(made, tools)
+    assert isinstance(base, Diffuse)
+    return _coated(base, rough, tools.indices.glass(made, ("eta",), 1.5), made, tools)
+
+
+def coated_conductor(made: Made, tools: Tools) -> Kind:
+    """Reads ``coatedconductor``."""
+    rough = tools.roughness(made, 0.0, "interface.")
+    ior = tools.indices.glass(made, ("interface.eta",), 1.5)
+    return _coated(metal(made, tools, "conductor.", 0.0), rough, ior, made, tools)
+
+
+def _coated(
+    base: Diffuse | Conductor,
+    rough: Roughness,
+    ior: float | Spectrum,
+    made: Made,
+    tools: Tools,
+) -> Coated:
+    layers = ("thickness", "g", "albedo", "maxdepth", "nsamples", "twosided")
+    for name in layers:
+        made.parameters.find(name)
+    albedo = tools.textures.color(made, "albedo", (0.0, 0.0, 0.0))
+    if albedo.slot is not None or max(albedo.color) > 0:
+        tools.note("a medium between coat and base is left out")
+    index = float(ior.at(587.6)) if isinstance(ior, Spectrum) else ior
+    alpha_v, slot = rough.alpha_v, rough.slot
+    return Coated(base, max(index, 1.0), rough.alpha, alpha_v=alpha_v, alpha_texture=slot)
+
+
+def diffuse_transmission(made: Made, tools: Tools) -> Kind:
+    """Reads ``diffusetransmission``."""
+    quarter = (0.25, 0.25, 0.25)
+    scale = made.parameters.number("scale", 1.0, 0.0)
+    made.parameters.find("remaproughness")
+    back = tools.textures.color(made, "reflectance", quarter)
+    through = tools.textures.color(made, "transmittance", quarter)
+    return Diffuse(_times(back.color, scale), back.slot, _times(through.color, scale), through.slot)
+
+
+def subsurface(made: Made, tools: Tools) -> Kind:
+    """Reads ``subsurface`` as a coated surface of the color that light has when it leaves."""
+    tools.note("a material of kind 'subsurface' is drawn as a coated surface of its color")
+    rough = tools.roughness(made)
+    ior = tools.indices.glass(made, ("eta", "index"), 1.33)
+    for name in ("mfp", "g", "scale", "Kr", "Kt"):
+        made.parameters.find(name)
+    name = "Kd" if tools.textures.has(made, "Kd") else "reflectance"
+    if tools.textures.has(made, name):
+        shade = tools.textures.color(made, name, (0.5, 0.5, 0.5))
+        return _coated(Diffuse(shade.color, shade.slot), rough, ior, made, tools)
+    absorbed, scattered = scattering_of(made, tools.spectra, tools.ledger.notes)
+    index = float(ior.at(587.6)) if isinstance(ior, Spectrum) else ior
+    color = diffuse_reflectance(absorbed, scattered, index)
+    return _coated(Diffuse(color), rough, ior, made, tools)
+
+
+def measured(made: Made, tools: Tools) -> Kind:
+    """Reads ``measured``, which is not supported."""
+    tools.note(f"a material of kind {made.kind[:40]!r} is drawn as a grey diffuse surface")
+    for parameter in made.parameters.unread():
+        made.parameters.find(parameter.name)
+    return Diffuse()
+
+
+def hair(made: Made, tools: Tools) -> Kind:
+    """Reads ``hair`` as a diffuse surface of its color."""
+    tools.note("a material of kind 'hair' is drawn as a diffuse surface of its color")
+    for name in ("sigma_a", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"):
+        made.parameters.find(name)
+    shade = tools.textures.color(made, "color", (0.15, 0.08, 0.04))
+    return Diffuse(shade.color, shade.slot)
+
+
+def interface(made: Made, tools: Tools) -> Kind:
+    """Reads ``interface``, which only bounds media."""
+    del made, tools
+    return Boundary()
+
+
+def mix(made: Made, tools: Tools) -> Kind | Look:
+    """Reads ``mix`` of two named materials."""
+    names = made.parameters.texts("materials")
+    if len(names) != 2:
+        made.place.fail(f"materials: wanted two names, got {len(names)}")
+    return mixed(made, tools, names[0], names[1])
+
+
+def mixed(made: Made, tools: Tools, first: str, second: str) -> Kind | Look:
+    """Mixture of two named materials; ``amount`` is the share of the second.
+
+    An invisible part makes the other one partly transparent.
+    """
+    (one, kind), (two, other) = (tools.part(made, name) for name in (first, second))
+    if isinstance(other, Boundary):
+        shade = tools.textures.number(made, "amount", 0.5, lambda values: 1 - values, "1 - amount")
+        return Look(kind, opacity=_share(shade.number), opacity_slot=shade.slot)
+    shade = tools.textures.number(made, "amount", 0.5)
+    if isinstance(kind, Boundary):
+        return Look(other, opacity=_share(shade.number), opacity_slot=shade.slot)
+    return Mix(one, two, _share(shade.number), shade.slot)
+
+
+def _share(value: float) -> float:
+    return float(np.clip(value, 0.0, 1.0))
+
+
+def _times(color: Color, factor: float) -> Color:
+    red, green, blue = (min(value * factor, 1.0) for value in color)
+    return red, green, blue
+
+
+OF_V4: dict[str, Reader] = {
+    "": interface,
+    "none": interface,
+    "interface": interface,
+    "diffuse": diffuse,
+    "coateddiffuse": coated_diffuse,
+    "coatedconductor": coated_conductor,
+    "diffusetransmission": diffuse_transmission,
+    "dielectric": dielectric,
+    "thindielectric": thin_dielectric,
+    "conductor": conductor,
+    "measured": measured,
+    "subsurface": subsurface,
+    "hair": hair,
+    "mix": mix,
+}

@@ -1,0 +1,195 @@
+"""Adds the shapes of a scene: meshes with their materials at their places."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.checks import freeze_in_place
+from daguerre.scene.scene import Scene
+from daguerre.scene.subdivision import Subdivision
+
+from .bump import strength
+from .curves import Strands, group_of
+from .emission import DARK, Emission, Emissions
+from .files import Files
+from .ledger import Ledger
+from .looks import Looks, has_slots
+from .materials import Look
+from .placing import Placing, Spots
+from .shapes import Surface, surface_of
+from .state import Made
+from .textures import Shade
+from .transforms import Moving, scaling
+
+#: Maximum number of triangles of spheres, patches and subdivided surfaces of a scene.
+MAX_TRIANGLES = 1 << 25
+
+
+class Meshes:
+    """Adds shapes to a scene.
+
+    Args:
+        scene: The scene.
+        files: Files of the scene.
+        looks: Materials.
+        emissions: Light of surfaces.
+        placing: Places of meshes.
+        ledger: Counts directives.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        files: Files,
+        looks: Looks,
+        emissions: Emissions,
+        placing: Placing,
+        ledger: Ledger,
+    ) -> None:
+        self._scene, self._files, self._looks = scene, files, looks
+        self._emissions, self._placing, self._ledger = emissions, placing, ledger
+        self._meshes: dict[tuple[object, ...], int] = {}
+        self._left = MAX_TRIANGLES
+
+    def add(self, shapes: list[Made], outer: list[Moving] | None, name: str = "") -> None:
+        """Adds shapes.
+
+        Args:
+            shapes: Shapes of an object, or those outside of objects.
+            outer: Transforms of the object's instances; None: there is no object.
+            name: Node of the object.
+
+        Raises:
+            InputError: A parameter or a file is wrong.
+        """
+        strands: dict[tuple[object, ...], Strands] = {}
+        for made in shapes:
+            if made.kind == "curve":
+                group = strands.setdefault(group_of(made), Strands(made))
+                group.add(made, self._ledger.notes)
+            else:
+                self._shape(made, outer, name)
+        for group in strands.values():
+            self._strands(group, outer, name)
+
+    def _spots(self, made: Made, outer: list[Moving] | None, name: str, own: str) -> Spots:
+        if outer is None:
+            return Spots(self._placing.name(own), [Moving()], made.place)
+        return Spots(name, outer, made.place)
+
+    def _shape(self, made: Made, outer: list[Moving] | None, name: str) -> None:
+        surface = surface_of(made, self._files, self._ledger.notes)
+        if isinstance(surface, str):
+            self._ledger.note(made.place, surface)
+            return
+        look, mask = self._looks.of(made), self._looks.mask(made)
+        spots = self._spots(made, outer, name, surface.name or made.kind)
+        for emission, chosen in self._lit(made, surface, outer):
+            part = surface
+            if chosen is not None:
+                part = replace(surface, triangles=surface.triangles[chosen], key=None)
+            world = made.state.transform.start
+            slope = 1.0 if look.bump is None else strength(surface, world)
+            material = self._looks.index(made, look, mask, emission, slope)
+            mesh = self._mesh(part, made, look, mask, emission)
+            inner = made.state.transform
+            if part.size != 1:
+                inner = inner.times_matrix(scaling(np.full(3, part.size)), True, True)
+            self._placing.add(mesh, material, inner, spots)
+        self._ledger.use(made.place)
+        self._ledger.tell_unread(made.parameters, made.place, made.kind)
+
+    def _lit(
+        self, made: Made, surface: Surface, outer: list[Moving] | None
+    ) -> list[tuple[Emission, NDArray[np.bool_] | None]]:
+        light = made.state.emission
+        if light is not None and outer is not None:
+            sentence = "an AreaLightSource of an object is left out, as in pbrt"
+            self._ledger.note(light.place, sentence)
+            light = None
+        return self._emissions.of(light, surface, made.state.transform.start)
+
+    def _mesh(
+        self, surface: Surface, made: Made, look: Look, mask: Shade, emission: Emission
+    ) -> int:
+        textured = has_slots(look) or has_slots(mask) or bool(emission.picture)
+        if textured:
+            surface = surface.with_uv()
+        uv1 = None
+        if look.space is not None and not surface.level:
+            world = made.state.transform.start
+            local = surface.positions.astype(np.float64) * surface.size
+            points = local @ world[:3, :3].T + world[:3, 3]
+            uv1 = _down(look.space.coordinates(points))
+            surface = replace(surface, key=None)
+        if surface.key is None:
+            self._spend(surface, made)
+            return self._add(surface, uv1)
+        if surface.key not in self._meshes:
+            self._spend(surface, made)
+            self._meshes[surface.key] = self._add(surface, None)
+        return self._meshes[surface.key]
+
+    def _spend(self, surface: Surface, made: Made) -> None:
+        """Counts triangles that no file holds, and stops at too many."""
+        if made.kind in ("trianglemesh", "plymesh"):
+            return
+        self._left -= len(surface.triangles) << 2 * surface.level
+        if self._left < 0:
+            made.place.fail(f"wanted at most {MAX_TRIANGLES} triangles of shapes, got more")
+
+    def _add(self, surface: Surface, uv1: NDArray[np.float32] | None) -> int:
+        positions = freeze_in_place(np.ascontiguousarray(surface.positions, np.float32))
+        triangles = freeze_in_place(np.ascontiguousarray(surface.triangles, np.uint32))
+        if surface.level:
+            return self._scene.add_mesh(
+                positions,
+                triangles,
+                subdivision=Subdivision("loop", level=surface.level),
+                name=surface.name,
+            )
+        normals = surface.normals
+        return self._scene.add_mesh(
+            positions,
+            triangles,
+            None if normals is None else _unit(normals),
+            None if surface.uv is None else _down(surface.uv),
+            uv1=uv1,
+            name=surface.name,
+        )
+
+    def _strands(self, strands: Strands, outer: list[Moving] | None, name: str) -> None:
+        made = strands.first
+        mesh = self._scene.add_curves(
+            np.concatenate(strands.points),
+            [len(points) for points in strands.points],
+            np.concatenate(strands.widths),
+            basis="bezier",
+            name="curves",
+        )
+        look, mask = self._looks.of(made), self._looks.mask(made)
+        if made.state.emission is not None:
+            self._ledger.note(made.state.emission.place, "the light of curves is left out")
+        material = self._looks.index(made, look, mask, DARK)
+        self._placing.add(mesh, material, Moving(), self._spots(made, outer, name, "curves"))
+        for one in strands.all:
+            if one.state.transform.moves:
+                self._ledger.notes.add("a curve that moves stays where it is at first")
+            self._ledger.use(one.place)
+            self._ledger.tell_unread(one.parameters, one.place, one.kind)
+
+
+def _down(uv: NDArray[np.floating]) -> NDArray[np.float32]:
+    """Texture coordinates with (0, 0) at the top left."""
+    made = np.array(uv, np.float32)
+    made[:, 1] = 1 - made[:, 1]
+    return made
+
+
+def _unit(normals: NDArray[np.floating]) -> NDArray[np.float32]:
+    found = np.array(normals, np.float32)
+    lengths = np.linalg.norm(found, axis=1, keepdims=True)
+    return np.asarray(found / np.where(lengths > 0, lengths, 1), np.float32)

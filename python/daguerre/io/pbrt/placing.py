@@ -1,0 +1,100 @@
+"""Places meshes in the scene: shapes once, those of objects at each of their instances."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.files.json_item import clean
+from daguerre.motion.values import Keys
+from daguerre.scene.scene import Scene
+from daguerre.scene.transforms import ranks
+
+from .ledger import Ledger
+from .place import Place
+from .transforms import Matrix, Moving
+
+Array = NDArray[np.float64]
+#: Maximum number of instances of a scene.
+MAX_INSTANCES = 20_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Spots:
+    """Places of the copies of a shape.
+
+    Attributes:
+        name: Node of the copies.
+        outer: Transforms of the instances of its object; one identity outside of objects.
+        place: Place of the directive, for messages.
+    """
+
+    name: str
+    outer: Sequence[Moving]
+    place: Place
+
+
+class Placing:
+    """Adds instances to a scene.
+
+    Args:
+        scene: The scene.
+        axes: Scene from world of pbrt, shape (4, 4).
+        ledger: Receives notes.
+    """
+
+    def __init__(self, scene: Scene, axes: Matrix, ledger: Ledger) -> None:
+        self._scene, self._axes, self._ledger = scene, axes, ledger
+        self._left = MAX_INSTANCES
+        self._taken: dict[str, int] = {}
+
+    def name(self, wanted: str) -> str:
+        """Returns a name that no other node has."""
+        base = clean(wanted) or "shape"
+        self._taken[base] = count = self._taken.get(base, 0) + 1
+        return base if count == 1 else self.name(f"{base} {count}")
+
+    def add(self, mesh: int, material: int, inner: Moving, spots: Spots) -> None:
+        """Places a mesh.
+
+        Args:
+            mesh: Index of the mesh.
+            material: Index of its material.
+            inner: Transform of the shape in its object, or in the world.
+            spots: Its places.
+
+        Raises:
+            InputError: There are too many instances.
+        """
+        self._left -= len(spots.outer)
+        if self._left < 0:
+            spots.place.fail(f"wanted at most {MAX_INSTANCES} instances in all, got more")
+        values = [self._in_scene(inner.after(outer)).value() for outer in spots.outer]
+        still = np.array([self._now(value) for value in values], np.float64).reshape(-1, 4, 4)
+        moving = any(isinstance(value, Keys) for value in values)
+        flat = ranks(still[:, :3, :3]) < 3
+        if flat.any() and not moving:
+            self._ledger.notes.add("a shape that is scaled to nothing is left out", int(flat.sum()))
+            still = still[~flat]
+        if not len(still):
+            return
+        if spots.name not in self._scene.node_positions:
+            self._scene.add_node(spots.name, still[0, :3, 3].copy())
+        if not moving:
+            self._scene.add_instances(mesh, material, still, name=spots.name)
+            return
+        for world, value in zip(still, values, strict=True):
+            motion = value if isinstance(value, Keys) else None
+            self._scene.add_instance(mesh, material, world, name=spots.name, motion=motion)
+
+    def _in_scene(self, moving: Moving) -> Moving:
+        start = self._axes @ moving.start
+        end = start if moving.end is moving.start else self._axes @ moving.end
+        return Moving(start, end, moving.times)
+
+    def _now(self, value: Matrix | Keys) -> Matrix:
+        now = value.at(self._scene.time) if isinstance(value, Keys) else value
+        return np.asarray(now, np.float64)

@@ -1,0 +1,98 @@
+"""Mappings of textures: from a surface to coordinates s, t, whose origin is the lower left.
+
+Source: pbrt-v4's user's guide ("Textures"); Pharr, Jakob and Humphreys 2023, section 10.2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .state import Made
+from .transforms import Matrix, inverse
+
+Array = NDArray[np.float64]
+Six = tuple[float, float, float, float, float, float]
+KINDS = ("uv", "spherical", "cylindrical", "planar")
+
+
+@dataclass(frozen=True)
+class UvMapping:
+    """s = ``scale[0]`` u + ``offset[0]``, and t of v likewise."""
+
+    scale: tuple[float, float] = (1.0, 1.0)
+    offset: tuple[float, float] = (0.0, 0.0)
+
+    def at(self, u: Array, v: Array) -> tuple[Array, Array]:
+        """Coordinates s, t at texture coordinates."""
+        return self.scale[0] * u + self.offset[0], self.scale[1] * v + self.offset[1]
+
+    def transform(self, period: float) -> Six:
+        """Transform from texture coordinates of a mesh (v downward) to those of a picture.
+
+        Args:
+            period: Size of the picture in s and t.
+        """
+        (su, sv), (du, dv) = self.scale, self.offset
+        return (su / period, 0.0, du / period, 0.0, sv / period, 1.0 - (sv + dv) / period)
+
+    @property
+    def repeats(self) -> bool:
+        """Whether what repeats in s, t repeats in u, v."""
+        return all(scale == round(scale) != 0 for scale in self.scale)
+
+
+@dataclass(frozen=True, eq=False)
+class SpaceMapping:
+    """Mapping by the place in the world: spherical, cylindrical or planar.
+
+    Attributes:
+        kind: One of ``KINDS``, besides ``uv``.
+        from_world: Texture space from world, shape (4, 4).
+        axes: Vectors of s and t of a plane, shape (2, 3).
+        offset: Offsets of s and t of a plane.
+    """
+
+    kind: str
+    from_world: Matrix
+    axes: Array
+    offset: tuple[float, float]
+
+    def coordinates(self, world: Array) -> Array:
+        """Coordinates s, t of points of the world, shape (N, 2)."""
+        points = world @ self.from_world[:3, :3].T + self.from_world[:3, 3]
+        if self.kind == "planar":
+            return points @ self.axes.T + self.offset
+        around = np.mod(np.arctan2(points[:, 1], points[:, 0]) / (2 * np.pi), 1.0)
+        if self.kind == "cylindrical":
+            return np.stack([around, points[:, 2]], axis=1)
+        lengths = np.linalg.norm(points, axis=1)
+        down = np.arccos(np.clip(points[:, 2] / np.where(lengths > 0, lengths, 1), -1, 1)) / np.pi
+        return np.stack([down, around], axis=1)
+
+
+Mapping = UvMapping | SpaceMapping
+
+
+def mapping_of(made: Made) -> Mapping:
+    """Reads the mapping of a texture.
+
+    Raises:
+        InputError: It is not known, or a parameter is wrong.
+    """
+    parameters = made.parameters
+    kind = parameters.text("mapping", "uv")
+    if kind not in KINDS:
+        made.place.fail(f"mapping: wanted {', '.join(KINDS)}, got {kind[:40]!r}")
+    number = parameters.number
+    offset = number("udelta", 0.0), number("vdelta", 0.0)
+    if kind == "uv":
+        return UvMapping((number("uscale", 1.0), number("vscale", 1.0)), offset)
+    axes = np.zeros((2, 3))
+    if kind == "planar":
+        axes = np.stack([parameters.point("v1", (1, 0, 0)), parameters.point("v2", (0, 1, 0))])
+    else:
+        offset = (0.0, 0.0)
+    return SpaceMapping(kind, inverse(made.state.transform.start, made.place), axes, offset)
