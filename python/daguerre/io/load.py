@@ -24,7 +24,7 @@ def load(
     strict: bool = False,
     **options: Any,
 ) -> Scene:
-    """Reads a scene file (.glb, .gltf, .usd, .usda, .usdc, .usdz, or a registered format).
+    """Reads a scene file (.glb, .gltf, .usd, .usda, .usdc, .usdz, .pbrt, or a registered one).
 
     A file without a camera gets a camera named ``framing`` that has everything in view.
 

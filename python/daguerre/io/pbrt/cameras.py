@@ -1,0 +1,222 @@
+"""Reads ``Camera``: perspective, realistic and spherical.
+
+pbrt's camera looks along +z of a left-handed frame. Its ``fov`` is that of the film's shorter side.
+
+Source: pbrt-v4's user's guide ("Cameras"); ``cameras.cpp`` where it is silent.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.camera.camera import Camera
+from daguerre.camera.projection import Projection
+from daguerre.errors import InputError, UsageError
+from daguerre.motion.values import keys
+from daguerre.scene.transforms import without_scale
+
+from .description import Description
+from .files import Files
+from .film import PBRT_F_STOP, FilmSize, film_of
+from .ledger import Ledger
+from .realistic import lens_of
+from .state import Made
+
+Array = NDArray[np.float64]
+#: Camera of pbrt from camera of the scene: both see x to the right and y up.
+_TURN = np.diag([1.0, 1.0, -1.0, 1.0])
+#: The same of a spherical camera, which has -x in its middle and -z right of it.
+_TURNS = dict.fromkeys(
+    ("spherical", "environment"),
+    np.array([(0, 0, 1, 0), (0, 1, 0, 0), (-1, 0, 0, 0), (0, 0, 0, 1)], float),
+)
+#: F-stop below which an ideal lens would gather light from more than a half space.
+_FASTEST = 0.5
+#: Focus distance that pbrt takes for infinity, and beyond it.
+_FAR = 1e6
+
+
+@dataclass(frozen=True)
+class Eye:
+    """What readers of cameras need.
+
+    Attributes:
+        made: Directive.
+        film: Film.
+        size: Length of a unit of the camera's space, m.
+        version: Version of pbrt, 3 or 4.
+        files: Files of the scene.
+        ledger: Counts directives.
+    """
+
+    made: Made
+    film: FilmSize
+    size: float
+    version: int
+    files: Files
+    ledger: Ledger
+
+
+def mirror_of(made: Made | None) -> Array:
+    """Scene from world of pbrt, shape (4, 4): the mirror image in which the camera is a real one.
+
+    pbrt's frame is left-handed, unless the camera's transform mirrors it.
+    """
+    if made is None:
+        return _TURN.copy()
+    seen = made.state.transform.start @ _TURNS.get(made.kind, _TURN)
+    return np.eye(4) if np.linalg.det(seen[:3, :3]) > 0 else _TURN.copy()
+
+
+def read_camera(described: Description, files: Files, axes: Array, ledger: Ledger) -> Camera | None:
+    """Reads the camera of a scene; None: it has none, or, with a note, one that cannot be used.
+
+    Raises:
+        InputError: A parameter is wrong, or its kind is not supported.
+    """
+    film = film_of(described.film, described.version, ledger)
+    made = described.camera
+    if made is None:
+        return None
+    reader = _KINDS.get(made.kind)
+    if reader is None:
+        made.place.fail(f"kind: wanted {', '.join(_KINDS)}, got {made.kind[:40]!r}")
+    pose, size = _pose(made, axes, ledger)
+    if pose is None:
+        ledger.note(made.place, "a camera that is scaled to nothing is left out")
+        return None
+    eye = Eye(made, film, size, described.version, files, ledger)
+    fields = {"transform": pose, **_shutter(eye), **film.exposure}
+    ahead, more = reader(eye)
+    fields = {**fields, **more}
+    if ahead:
+        fields["transform"] = _moved_ahead(fields["transform"], ahead)
+    ledger.use(made.place)
+    ledger.tell_unread(made.parameters, made.place, made.kind)
+    try:
+        return Camera(**fields)
+    except (UsageError, InputError) as error:
+        made.place.fail(str(error))
+
+
+def _pose(made: Made, axes: Array, ledger: Ledger) -> tuple[Any, float]:
+    """World from camera, rigid, and the scale that is left out."""
+    moving = made.state.transform.inverse(made.place)
+    turn = _TURNS.get(made.kind, _TURN)
+    worlds = [axes @ one @ turn for one in (moving.start, moving.end)]
+    lengths = np.linalg.norm(worlds[0][:3, :3], axis=0)
+    rigid = [without_scale(world) for world in worlds]
+    if any(one is None for one in rigid) or not np.isfinite(lengths).all():
+        return None, 1.0
+    if np.ptp(lengths) > 1e-3 * lengths.max():
+        ledger.notes.add("a camera that is scaled in one direction keeps its shape")
+    begin, end = moving.times
+    if not moving.moves or not begin < end:
+        return rigid[0], float(lengths[2])
+    return keys([(begin, rigid[0]), (end, rigid[1])]), float(lengths[2])
+
+
+def _moved_ahead(transform: Any, metres: float) -> Any:
+    offset = np.eye(4)
+    offset[2, 3] = -metres
+    if isinstance(transform, np.ndarray):
+        return transform @ offset
+    pairs = zip(transform.times.tolist(), transform.values, strict=True)
+    return keys([(time, pose @ offset) for time, pose in pairs])
+
+
+def _shutter(eye: Eye) -> dict[str, Any]:
+    """Shutter; in pbrt-v4 its time sets the brightness, too."""
+    number = eye.made.parameters.number
+    begin, end = number("shutteropen", 0.0), number("shutterclose", 1.0)
+    begin, end = min(begin, end), max(begin, end)
+    fields: dict[str, Any] = {"shutter_time": end - begin, "shutter_offset": begin * 24}
+    if eye.version == 3:
+        fields["exposure_time"] = 1.0
+    elif end == begin:
+        eye.made.place.fail("shutteropen, shutterclose: wanted two moments, got the same twice")
+    return fields
+
+
+def _perspective(eye: Eye) -> tuple[float, dict[str, Any]]:
+    parameters, film = eye.made.parameters, eye.film
+    number = parameters.number
+    window = _window(eye)
+    fov = number("fov", 90.0, 1e-4, 179.99)
+    half = math.tan(math.radians(fov) / 2)
+    if parameters.has("halffov"):
+        half = math.tan(math.radians(number("halffov", 45.0, 1e-4, 89.99)))
+    focal = film.millimetres[0] / ((window[1] - window[0]) * half)
+    shift = tuple(half * focal * (low + high) / 2 for low, high in (window[:2], window[2:]))
+    radius = number("lensradius", 0.0, 0.0) * eye.size
+    distance = number("focaldistance", _FAR, 0.0) * eye.size
+    fields: dict[str, Any] = {"exposure_f_stop": PBRT_F_STOP}
+    if any(abs(one) > 1e-9 * focal for one in shift):
+        fields["shift"] = shift
+    if not radius > 0:
+        enlarged = 1.0
+        fields["lens"] = "pinhole"
+    else:
+        # The size of pbrt's film means nothing here: a larger one keeps f-stops possible.
+        enlarged = max(1.0, 2 * _FASTEST * 2000 * radius / focal)
+        fields |= {"aperture_diameter": 2000 * radius, "focus_distance": _distance(distance, eye)}
+    fields["focal_length"] = focal * enlarged
+    fields["sensor_size"] = tuple(side * enlarged for side in film.millimetres)
+    if "shift" in fields:
+        fields["shift"] = tuple(one * enlarged for one in shift)
+    return 0.0, fields
+
+
+def _window(eye: Eye) -> tuple[float, float, float, float]:
+    """Part of the image plane that the film shows, in units in which the short side is 2."""
+    aspect = eye.made.parameters.number("frameaspectratio", eye.film.aspect, 1e-3, 1e3)
+    given = eye.made.parameters.numbers("screenwindow", 4)
+    wide, high = (aspect, 1.0) if aspect > 1 else (1.0, 1 / aspect)
+    window = (-wide, wide, -high, high)
+    if given is not None:
+        left, right, low, top = given.tolist()
+        if not (left < right and low < top):
+            eye.made.place.fail("screenwindow: wanted left < right and bottom < top, got others")
+        window = (left, right, low, top)
+    shape = (window[1] - window[0]) / (window[3] - window[2])
+    if not math.isclose(shape, eye.film.aspect, rel_tol=5e-3):
+        eye.ledger.notes.add("pixels that are not square become square: the width is kept")
+    return window
+
+
+def _distance(distance: float, eye: Eye) -> float:
+    if not distance > 0:
+        eye.made.place.fail("focaldistance: wanted a number above 0, got 0")
+    return math.inf if distance >= _FAR * eye.size else distance
+
+
+def _realistic(eye: Eye) -> tuple[float, dict[str, Any]]:
+    return lens_of(eye.made, eye.film, eye.files, eye.version, eye.ledger)
+
+
+def _spherical(eye: Eye) -> tuple[float, dict[str, Any]]:
+    usual = "equalarea" if eye.version == 4 else "equirectangular"
+    mapping = eye.made.parameters.text("mapping", usual)
+    if mapping not in ("equirectangular", "equalarea"):
+        eye.made.place.fail(f"mapping: wanted equirectangular or equalarea, got {mapping[:40]!r}")
+    if mapping == "equalarea":
+        eye.ledger.notes.add("a spherical camera with an equal-area map is drawn equirectangular")
+    for name in ("lensradius", "focaldistance", "screenwindow", "frameaspectratio"):
+        eye.made.parameters.find(name)
+    width = eye.film.resolution[0] + eye.film.resolution[0] % 2
+    projection = Projection.of_field("equirectangular", (width, width // 2), 360.0)
+    return 0.0, {"projection": projection, "exposure_f_stop": PBRT_F_STOP}
+
+
+_KINDS: dict[str, Callable[[Eye], tuple[float, dict[str, Any]]]] = {
+    "perspective": _perspective,
+    "realistic": _realistic,
+    "spherical": _spherical,
+    "environment": _spherical,
+}

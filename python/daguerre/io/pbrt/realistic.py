@@ -1,0 +1,112 @@
+"""Reads the realistic camera: a lens file, its iris, its focus and its film.
+
+The lens is traced exactly, as the file has it. pbrt's camera stands at its film and focuses from
+there; Daguerre's stands in the entrance pupil.
+
+Source: pbrt-v4's user's guide ("realistic"); ``RealisticCamera`` of pbrt-v4 and pbrt-v3.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from daguerre.errors import InputError
+from daguerre.lenses import Lens
+from daguerre.lenses import read as read_lens
+from daguerre.lenses.focus import Focused
+
+from .files import Files
+from .film import PBRT_F_STOP, PBRT_RESPONSIVITY, FilmSize
+from .ledger import Ledger
+from .state import Made
+
+#: Shapes of the iris in pbrt-v4 by the number of blades.
+_BLADES = {"square": 4, "pentagon": 5}
+#: pbrt-v3 draws rays from squares around the exit pupil, which it widens by this share of the rear
+#: element's radius on each side: twice the diagonal of 1.5 radii, in 1024 steps.
+_WIDENED = 2 * 3 * math.sqrt(2) / 1024
+
+
+def lens_of(
+    made: Made, film: FilmSize, files: Files, version: int, ledger: Ledger
+) -> tuple[float, dict[str, Any]]:
+    """Reads a realistic camera.
+
+    Returns:
+        Distance from its film to the entrance pupil, m, and the fields of ``Camera``.
+
+    Raises:
+        InputError: A parameter or the lens file is wrong.
+    """
+    parameters = made.parameters
+    name = parameters.text("lensfile")
+    if not name:
+        made.place.fail("lensfile: wanted a lens file, got none")
+    path = files.find(name, made.place, "lensfile")
+    if path is None:
+        made.place.fail(f"lensfile: missing file: wanted {name[:200]!r}, got no such file")
+    lens = read_lens(path)
+    f_stop = _f_stop(made, lens, parameters.number("aperturediameter", 1.0, 1e-6), ledger)
+    distance = parameters.number("focusdistance", 10.0, 1e-6)
+    try:
+        focused = lens.focused(distance, f_stop=f_stop, measured_from="sensor")
+    except InputError as error:
+        made.place.fail(f"focusdistance: {error}")
+    fields: dict[str, Any] = {
+        "lens": lens,
+        "f_stop": f_stop,
+        "focus_distance": distance,
+        "focus_from": "sensor",
+        "sensor_size": film.millimetres,
+        **_iris(made, ledger),
+        **_brightness(made, film, version, focused),
+    }
+    return (focused.film_z_mm - focused.entrance_pupil_z) / 1000, fields
+
+
+def _f_stop(made: Made, lens: Lens, diameter: float, ledger: Ledger) -> float:
+    """F-stop of an iris of a diameter, mm."""
+    order = lens.first_order()
+    widest = 2 * order.stop_semi_diameter
+    if diameter > widest * (1 + 1e-9):
+        ledger.notes.add("an iris that is larger than that of its lens file is as large as that")
+    if not widest > 0:
+        made.place.fail("lensfile: wanted a lens whose iris opens, got one that is closed")
+    return float(order.f_number * max(widest / diameter, 1.0))
+
+
+def _iris(made: Made, ledger: Ledger) -> dict[str, Any]:
+    name = made.parameters.text("aperture")
+    if not name or name == "gaussian":
+        if name:
+            ledger.notes.add("the iris 'gaussian' is left out: it is round")
+        return {}
+    if name in _BLADES:
+        return {"blades": _BLADES[name]}
+    ledger.notes.add(f"the iris {name[:40]!r} is left out: it is round")
+    return {}
+
+
+def _brightness(made: Made, film: FilmSize, version: int, focused: Focused) -> dict[str, Any]:
+    """Exposure: that of the film's illuminance, or, in pbrt-v3's simple weights, of no f-stop."""
+    responsivity = float(film.exposure.get("responsivity", 1.0))
+    simple = made.parameters.flag("simpleweighting", True) if version == 3 else False
+    if simple:
+        diameter = made.parameters.number("aperturediameter", 1.0)
+        share = _simple_share(focused, diameter)
+        return {"exposure_f_stop": PBRT_F_STOP, "responsivity": responsivity * share}
+    return {"responsivity": responsivity * PBRT_RESPONSIVITY}
+
+
+def _simple_share(focused: Focused, diameter: float) -> float:
+    """Share of the square around the exit pupil that passes: what pbrt-v3 shows of a radiance.
+
+    The square lies in the plane of the rear element, as the middle of the film sees the pupil.
+    """
+    order, rear = focused.lens.first_order(), focused.lens.surfaces[-1].semi_diameter
+    pupil, vertex = order.exit_pupil, float(focused.lens.vertices[-1])
+    opened = min(diameter / (2 * order.stop_semi_diameter), 1.0)
+    seen = (focused.film_z_mm - vertex) / (focused.film_z_mm - pupil.z)
+    side = abs(pupil.diameter * opened * seen)
+    return float(math.pi / 4 * (side / (side + 2 * _WIDENED * (rear or 0.0))) ** 2)
