@@ -54,6 +54,7 @@ READERS = {
     "ply": Reader("plys", "mesh"),
     "mesh": Reader("meshes", "mesh"),
     "grid": Reader("grids", "grid"),
+    "pbrt": Reader("pbrts", "read_scene"),
 }
 
 

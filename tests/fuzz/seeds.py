@@ -23,6 +23,7 @@ from tests.faults.scene import write_scene
 from tests.io.gltf import test_gltf_compressed_images as ktx2
 from tests.io.gltf import test_gltf_draco as draco
 from tests.io.gltf import test_gltf_meshopt as meshopt
+from tests.io.pbrt import everything as pbrt_scene
 from tests.lenses.test_lens_fuzz import SEEDS as LENSES
 from tests.support import mesh_files, tracked
 from tests.support.nanovdb_files import Writer, segment
@@ -238,3 +239,10 @@ def grids(folder: Path) -> Iterator[Seed]:
     yield "raw.nvdb", grid
     yield "plain.nvdb", segment([("a", grid), ("b", grid)])
     yield "zipped.nvdb", segment([("a", grid)], 1)
+
+
+def pbrts(folder: Path) -> Iterator[Seed]:
+    """Scenes of pbrt, with the files that they name beside them."""
+    data = pbrt_scene.everything(folder)[0].read_bytes()
+    yield "scene.pbrt", data
+    yield "v3.pbrt", data + b"WorldEnd"

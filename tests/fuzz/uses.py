@@ -31,6 +31,10 @@ def scene(path: Path) -> None:
     dg.render(made, camera, **TINY)
 
 
+def read_scene(path: Path) -> None:
+    dg.load(path)
+
+
 def lens(path: Path) -> None:
     made = dg.lenses.load(str(path))
     sky = dg.Scene()

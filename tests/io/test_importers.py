@@ -167,7 +167,87 @@ USD = Samples(
     },
     _usd_moving,
 )
-SAMPLES = {"glTF 2.0": GLTF, "Wavefront OBJ": OBJ, "OpenUSD": USD}
+
+
+def _pbrt_card(folder: Path) -> Path:
+    corners = " ".join(f"{x} {y} {-3 - z}" for x, y, z in CARD)  # pbrt's z points ahead
+    path = folder / "card.pbrt"
+    path.write_text(
+        f"""WorldBegin
+        Shape "nurbs" "integer nu" 4
+        ObjectBegin "card" # its front faces the origin
+            ReverseOrientation
+            Shape "trianglemesh" "point3 P" [{corners}] "integer indices" [0 1 2 0 2 3]
+        ObjectEnd
+        Translate 0 0 3
+        ObjectInstance "card"
+        """
+    )
+    return path
+
+
+def _pbrt_moving(folder: Path) -> Path:
+    path = folder / "moving.pbrt"
+    path.write_text(
+        """Camera "perspective" WorldBegin
+        TransformTimes 0 2
+        ActiveTransform EndTime
+        Rotate 90 0 1 0
+        ActiveTransform All
+        Shape "disk"
+        """
+    )
+    return path
+
+
+def _pbrt(*lines: str) -> bytes:
+    return "\n".join(["WorldBegin", *lines, ""]).encode()
+
+
+_DEEP = b"WorldBegin\n" + b"AttributeBegin\n" * 20_000
+PBRT = Samples(
+    _pbrt_card,
+    {
+        "empty.pbrt": (b"", "line 1, column 1: wanted WorldBegin"),
+        "string.pbrt": (_pbrt('Shape "sphere'), "line 2, column 7: .*unterminated string"),
+        "list.pbrt": (
+            _pbrt('Shape "sphere" "float radius" [1'),
+            "line 2, column 31: Shape: unterm",
+        ),
+        "block.pbrt": (_pbrt("AttributeBegin"), "line 2, column 1: AttributeBegin: unterminated"),
+        "deep.pbrt": (_DEEP, "line 10002, column 1: AttributeBegin: wanted at most"),
+        "unmatched.pbrt": (_pbrt("AttributeEnd"), "column 1: AttributeEnd: wanted Attr"),
+        "no_number.pbrt": (
+            _pbrt("Translate 1 two 3"),
+            "line 2, column 13: Translate: wanted a num",
+        ),
+        "expression.pbrt": (_pbrt('Shape "disk" "float radius" [1-2]'), "line 2, column 30: Shape"),
+        "infinite.pbrt": (_pbrt("Scale 1 1e999 1"), "line 2, column 9: Scale: wanted a number"),
+        "unknown.pbrt": (_pbrt("AttributeBegan"), "line 2, column 1: wanted a directive"),
+        "lies.pbrt": (
+            _pbrt(
+                'Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0]',
+                '    "integer indices" [0 1 7]',
+            ),
+            "line 3, column 5: Shape: indices: wanted indices of 0 .. 2, got 7",
+        ),
+        "circle.pbrt": (_pbrt('Include "circle.pbrt"'), "line 2, column 1: Include: .*circle"),
+        "outside.pbrt": (_pbrt('Include "../../etc/passwd"'), "Include: name: leaves the scene's"),
+        "texture.pbrt": (
+            _pbrt('Texture "a" "spectrum" "scale" "texture tex" "a"')
+            + b'Material "diffuse" "texture reflectance" "a" Shape "disk"',
+            "Texture: tex: wanted at most",
+        ),
+        "material.pbrt": (
+            _pbrt('NamedMaterial "a"', 'Shape "disk"'),
+            "line 3.*Shape: wanted a mat",
+        ),
+        "camera.pbrt": (b'Camera "orthographic" WorldBegin', "line 1, column 1: Camera: kind"),
+        "type.pbrt": (_pbrt('Shape "disk" "float radius" "x"'), "line 2, column 14: Shape: radius"),
+    },
+    _pbrt_moving,
+)
+SAMPLES = {"glTF 2.0": GLTF, "Wavefront OBJ": OBJ, "OpenUSD": USD, "pbrt": PBRT}
 
 
 def _example() -> Format:
@@ -215,7 +295,8 @@ def test_the_card_is_where_it_stands(samples: Samples, tmp_path: Path) -> None:
     points = points + instance.transform[:3, 3]
     assert np.allclose(np.sort(points, axis=0), np.sort(np.array(CARD, float), axis=0))
     a, b, c = points[scene.meshes[instance.mesh].indices[0]]
-    assert np.cross(b - a, c - a)[2] > 0  # it faces +z
+    side = np.sign(np.linalg.det(instance.transform))  # a mirror image keeps its front
+    assert side * np.cross(b - a, c - a)[2] > 0  # it faces +z
 
 
 def test_what_was_filled_fits_together(samples: Samples, tmp_path: Path) -> None:
