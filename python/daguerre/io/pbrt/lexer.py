@@ -237,7 +237,7 @@ def _few(words: list[bytes]) -> FloatArray | None:
 def _many(text: bytes, count: int) -> FloatArray | None:
     """Numbers of a long list; None: not all words are numbers.
 
-    numpy splits ``1-2`` into two numbers, so their count is compared with that of the words.
+    Older numpy stops at a word that is none, so the count is compared with that of the words.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # of text that is no number
