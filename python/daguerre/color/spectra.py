@@ -112,3 +112,23 @@ def band_wavelengths(bands: int, each: int) -> FloatArray:
     """Representative wavelengths of bands, nm, shape (bands, each)."""
     at = (np.arange(bands * each) + 0.5) / (bands * each)
     return (FIRST_NM + (LAST_NM - FIRST_NM) * at).reshape(bands, each)
+
+
+def rgb_of_emission(values_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    """Linear Rec.709 of emission by wavelength, shape (3,); 1 at all wavelengths has luminance 1.
+
+    Args:
+        values_at: Function that returns emission at wavelengths (L,), nm.
+    """
+    nm = fine_wavelengths(1)[0]
+    step = (LAST_NM - FIRST_NM) / len(nm)
+    return np.asarray(rgb_from_xyz() @ (values_at(nm) @ _tables(nm)[0]) * step)
+
+
+def rgb_of_reflectance(values_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    """Linear Rec.709 of a reflectance by wavelength in light of D65, shape (3,).
+
+    Args:
+        values_at: Function that returns reflectances at wavelengths (L,), nm.
+    """
+    return rgb_of_emission(lambda nm: values_at(nm) * unit_d65(nm))

@@ -65,6 +65,8 @@ _FORMATS = [
            needs=("pxr", extras.hint("pxr")),
            time_of="daguerre.io.usd.stage:time_of_code"),
     Format("pbrt", "scene", (".pbrt",), "daguerre.io.pbrt.reader:read", takes=("allow_dirs",)),
+    Format("Mitsuba", "scene", (".xml",), "daguerre.io.mitsuba.reader:read",
+           takes=("define", "unit_m", "allow_dirs")),
     Format("OpenEXR", "frame", _EXR, _READ_EXR, f"{_FRAMES}:as_exr", _SHOWN),
     Format("PNG", "frame", _PNG, None, f"{_FRAMES}:as_png", _SHOWN),
     Format("JPEG", "frame", _JPEG, None, f"{_FRAMES}:as_picture", _SHOWN),

@@ -1,0 +1,308 @@
+"""Reads a scene file of Mitsuba, and the files that it includes, into objects with properties.
+
+``<default>`` and parameters, ``<include>``, ``<path>``, ``<alias>`` and ``<ref>`` are resolved
+here, and names of old versions are replaced (:mod:`.upgrade`), as Mitsuba's own loader does.
+
+Source: Mitsuba 3, documentation of the scene format
+(https://mitsuba.readthedocs.io/en/stable/src/key_topics/scene_format.html).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from daguerre.files.budget import Budget
+from daguerre.files.json_item import Item, short
+from daguerre.io.materialx.elements import MAX_BYTES, MAX_ELEMENTS, Element, parse
+
+from .files import Files
+from .ledger import Entry, Ledger
+from .node import Node, Property
+from .parameters import Parameters
+from .transforms import product
+from .upgrade import upgraded
+from .values import VALUES, known, label_of, needed
+
+#: Objects inside each other, references and included files among them.
+MAX_DEPTH = 64
+#: Files that include each other.
+MAX_INCLUDES = 15
+#: Elements of objects, and the kind of each.
+OBJECTS = {
+    **{
+        kind: kind
+        for kind in (
+            *("scene", "bsdf", "emitter", "film", "integrator", "medium", "phase", "rfilter"),
+            *("sampler", "sensor", "shape", "subsurface", "texture", "volume"),
+        )
+    },
+    "luminaire": "emitter",  # names before Mitsuba 0.4
+    "camera": "sensor",
+}
+_VERSION = re.compile(r"\s*(\d{1,6})(?:\.(\d{1,6}))?(?:\.(\d{1,6}))?\s*\Z", re.ASCII)
+Version = tuple[int, int, int]
+
+
+class Document:
+    """A scene file with all that it includes.
+
+    Args:
+        file: The file.
+        files: Folders of the files that it names.
+        define: Values of parameters.
+
+    Attributes:
+        root: The scene, with all references resolved.
+        ledger: All elements.
+
+    Raises:
+        InputError: A file is no scene of Mitsuba; the message names file, line and element.
+        UsageError: It has no parameter of a name in ``define``.
+    """
+
+    def __init__(self, file: Path, files: Files, define: Mapping[str, str]) -> None:
+        self.ledger = Ledger()
+        self.parameters = Parameters(define)
+        self.references: list[tuple[Property, str]] = []
+        self._ids: dict[str, Node] = {}
+        self._budget = Budget(MAX_ELEMENTS, "elements in all files")
+        self._files: dict[int, Files] = {}
+        self.root = _Reader(self, files, str(file), 0, 0).root(file, Entry(str(file), 1, "<scene>"))
+        if self.root.kind != "scene":
+            self.root.fail("wanted <scene> at the top")
+        self._resolve()
+        self.parameters.check_used()
+
+    def files_of(self, node: Node) -> Files:
+        """Folders for names of files in an object."""
+        return self._files[id(node)]
+
+    def entry(self, file: str, element: Element) -> Entry:
+        """Adds an element to the accounts."""
+        self._budget.spend(1, Item(None, file))
+        return self.ledger.add(file, element.line, label_of(element))
+
+    def add(self, node: Node, files: Files) -> None:
+        """Adds an object under its id."""
+        self._files[id(node)] = files
+        if node.id:
+            self.name(node.id, node, node.entry)
+
+    def name(self, name: str, node: Node, entry: Entry) -> None:
+        """Gives an object an id."""
+        if name in self._ids:
+            entry.fail(f"wanted an id that no other object has, got {short(name)} again")
+        self._ids[name] = node
+
+    def named(self, name: str, entry: Entry) -> Node:
+        """Object of an id."""
+        if name not in self._ids:
+            entry.fail(f"wanted the id of an object, got {short(name)}")
+        return self._ids[name]
+
+    def _resolve(self) -> None:
+        """Puts objects in the place of references to them."""
+        for one, name in self.references:
+            one.value = self.named(name, one.entry)
+        _check_depth(self.root)
+
+
+def _check_depth(root: Node) -> None:
+    """Checks that objects are not inside themselves, nor too deep, by way of references.
+
+    Raises:
+        InputError: They are.
+    """
+    height: dict[int, int] = {}
+    waiting: list[tuple[Node, bool]] = [(root, False)]
+    inside: set[int] = set()
+    while waiting:
+        node, is_done = waiting.pop()
+        below = [one.value for one in node.properties if isinstance(one.value, Node)]
+        if is_done:
+            inside.discard(id(node))
+            height[id(node)] = 1 + max((height[id(child)] for child in below), default=0)
+            if height[id(node)] > MAX_DEPTH:
+                node.fail(f"wanted at most {MAX_DEPTH} objects inside each other, got more")
+        elif id(node) in inside:
+            node.fail("wanted no object inside itself, got a reference in a circle")
+        elif id(node) not in height:
+            inside.add(id(node))
+            waiting.append((node, True))
+            for child in below:
+                if id(child) in inside:
+                    child.fail("wanted no object inside itself, got a reference in a circle")
+                waiting.append((child, False))
+
+
+class _Reader:
+    """Reads one file.
+
+    Args:
+        document: Receives what is read.
+        files: Folders of the files that it names.
+        name: Path of the file, for messages.
+        includes: Number of files around it.
+        depth: Number of objects around it.
+    """
+
+    def __init__(
+        self, document: Document, files: Files, name: str, includes: int, depth: int
+    ) -> None:
+        self._document, self._files, self._name = document, files, name
+        self._includes, self._depth = includes, depth
+        self._version: Version = (3, 0, 0)
+
+    def root(self, path: Path, include: Entry) -> Node:
+        """Reads the object at the top of the file; ``include`` is the element that names it."""
+        root = parse(_bytes(path, include), self._name)
+        entry = self._document.entry(self._name, root)
+        if root.tag not in OBJECTS:
+            entry.fail("wanted an object of Mitsuba, such as <scene>")
+        self._version = _version(root, entry)
+        entry.used = True
+        return self._object(root, entry, top=True)
+
+    def _object(self, element: Element, entry: Entry, *, top: bool = False) -> Node:
+        """Object of an element, with its properties."""
+        known(element, entry, "type", "id", "name", *(("version",) if top else ()))
+        kind = OBJECTS.get(element.tag, "texture")  # or a <spectrum> with a type
+        plugin = element.get("type") or ("scene" if kind == "scene" else "")
+        if not plugin:
+            entry.fail("wanted an attribute 'type', got none")
+        node = Node(kind, plugin, entry, element.get("id"))
+        self._document.add(node, self._files)
+        self._depth += 1
+        if self._depth > MAX_DEPTH:
+            entry.fail(f"wanted at most {MAX_DEPTH} objects inside each other, got more")
+        for child in element.children:
+            self._child(node, child)
+        self._depth -= 1
+        if self._version < (2, 0, 0):
+            upgraded(node)
+        _check_once(node)
+        return node
+
+    def _child(self, node: Node, element: Element) -> None:
+        entry = self._begun(element)
+        tag = element.tag
+        if tag in OBJECTS or (tag == "spectrum" and "type" in element.attributes):
+            child = self._object(element, entry)
+            node.properties.append(Property(element.get("name"), "object", child, entry))
+        elif tag == "transform":
+            node.properties.append(self._transform(element, entry))
+        elif tag in _DIRECTIVES:
+            _leaf(element, entry)
+            _DIRECTIVES[tag](self, node, element, entry)
+        elif tag in VALUES:
+            _leaf(element, entry)
+            value = VALUES[tag](element, entry)
+            if not element.get("name"):
+                entry.fail("wanted an attribute 'name', got none")
+            node.properties.append(Property(element.get("name"), tag, value, entry))
+        else:
+            entry.fail("wanted an element of Mitsuba's scene format")
+
+    def _begun(self, element: Element) -> Entry:
+        """Adds an element to the accounts, and puts the values of parameters into it."""
+        entry = self._document.entry(self._name, element)
+        for name, value in element.attributes.items():
+            element.attributes[name] = self._document.parameters.fill(value, entry)
+        return entry
+
+    # Directives -----------------------------------------------------------------------------------
+
+    def _default(self, node: Node, element: Element, entry: Entry) -> None:
+        name, value = needed(element, entry, "name", "value")
+        if not name:
+            entry.fail("wanted a name, got none")
+        self._document.parameters.default(name, value)
+        entry.used = True
+
+    def _include(self, node: Node, element: Element, entry: Entry) -> None:
+        known(element, entry, "filename", "name")
+        if self._includes >= MAX_INCLUDES:
+            entry.fail(f"wanted at most {MAX_INCLUDES} files that include each other, got more")
+        path = self._files.find(element.get("filename"), entry)
+        inside = self._files.within(path.parent)
+        reader = _Reader(self._document, inside, str(path), self._includes + 1, self._depth)
+        found = reader.root(path, entry)
+        entry.used = True
+        if found.kind == "scene":
+            node.properties.extend(found.properties)
+        else:
+            node.properties.append(Property(element.get("name"), "object", found, entry))
+
+    def _path(self, node: Node, element: Element, entry: Entry) -> None:
+        (value,) = needed(element, entry, "value")
+        if node.kind != "scene":
+            entry.fail(f"wanted a path at the top of a scene, got one in {node.entry.label}")
+        self._files.prepend(value, entry)
+        entry.used = True
+
+    def _alias(self, node: Node, element: Element, entry: Entry) -> None:
+        name, other = needed(element, entry, "id", "as")
+        self._document.name(other, self._document.named(name, entry), entry)
+        entry.used = True
+
+    def _ref(self, node: Node, element: Element, entry: Entry) -> None:
+        known(element, entry, "id", "name")
+        found = Property(element.get("name"), "object", None, entry)
+        node.properties.append(found)
+        self._document.references.append((found, element.get("id")))
+
+    # Transforms -----------------------------------------------------------------------------------
+
+    def _transform(self, element: Element, entry: Entry) -> Property:
+        (name,) = needed(element, entry, "name")
+        parts = [self._begun(child) for child in element.children]
+        for child, part in zip(element.children, parts, strict=True):
+            _leaf(child, part)
+        steps = [(child.tag, child.attributes) for child in element.children]
+        return Property(name, "transform", product(steps, parts), entry, parts)
+
+
+_DIRECTIVES: dict[str, Callable[[_Reader, Node, Element, Entry], None]] = {
+    "default": _Reader._default,
+    "include": _Reader._include,
+    "path": _Reader._path,
+    "alias": _Reader._alias,
+    "ref": _Reader._ref,
+}
+
+
+def _bytes(path: Path, entry: Entry) -> bytes:
+    try:
+        if not path.is_file():
+            entry.fail(f"wanted an ordinary file, got {str(path)[:200]!r}")
+        if (size := path.stat().st_size) > MAX_BYTES:
+            entry.fail(f"wanted at most {MAX_BYTES} bytes, got {size}")
+        return path.read_bytes()
+    except OSError as error:
+        entry.fail(f"{path.name}: cannot be read: {error.strerror}")
+
+
+def _version(root: Element, entry: Entry) -> Version:
+    found = _VERSION.match(root.get("version"))
+    if not found:
+        entry.fail(f"wanted a version such as 3.0.0, got {short(root.get('version'))}")
+    if int(found[1]) > 3:
+        entry.fail(f"wanted a version of at most 3, got {short(root.get('version'))}")
+    return int(found[1]), int(found[2] or 0), int(found[3] or 0)
+
+
+def _leaf(element: Element, entry: Entry) -> None:
+    """Checks that an element has no elements inside."""
+    if element.children:
+        entry.fail(f"wanted no element inside, got {label_of(element.children[0])}")
+
+
+def _check_once(node: Node) -> None:
+    """Checks that each name of a property occurs once."""
+    seen: set[str] = set()
+    for one in node.properties:
+        if one.name and one.name in seen:
+            one.entry.fail(f"wanted each property once, got {short(one.name)} again")
+        seen.add(one.name)

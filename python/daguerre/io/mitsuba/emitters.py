@@ -1,0 +1,146 @@
+"""Lights without a shape, and the sky: points, spots, directions, constants, panoramas.
+
+Source: Mitsuba 3, documentation of emitters. Its lights shine along +z, ours along -z.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.io.images import read_environment
+from daguerre.scene.light_profile import LightProfile
+from daguerre.scene.lights import DirectionalLight, PointLight
+
+from .context import Context
+from .node import Node, leave_out
+from .panorama import panorama
+from .spectra import emitted_rgb
+from .textures import Textures
+from .transforms import rigid
+
+Matrix = NDArray[np.float64]
+#: Our lamp from Mitsuba's: half a turn about +y.
+_TURN = np.diag([-1.0, 1.0, -1.0, 1.0])
+
+
+class Emitters:
+    """Lights of a scene file.
+
+    Args:
+        context: File, scene, unit and notes.
+        textures: Reads colours.
+    """
+
+    def __init__(self, context: Context, textures: Textures) -> None:
+        self._context, self._textures = context, textures
+        self._document, self._scene = context.document, context.scene
+        self._world, self._notes = context.world, context.notes
+        self._metres = context.unit_m
+
+    def add(self, node: Node) -> None:
+        """Adds a light, or notes that it is left out."""
+        read = _PLUGINS.get(node.plugin)
+        if read is None:
+            leave_out(node, self._notes, f"an emitter {node.plugin[:40]!r} is left out")
+            return
+        node.use()
+        node.skip("sampling_weight")
+        read(self, node)
+
+    def _intensity(self, node: Node, name: str, per: float = 1.0) -> tuple[float, float, float]:
+        """Light of a property; ``per``: area of a unit of the scene, for intensities."""
+        r, g, b = emitted_rgb(self._textures.color(node, name, 1.0))
+        return r * per, g * per, b * per
+
+    def _point(self, node: Node) -> None:
+        place = self._world @ node.transform()
+        if node.has("position"):
+            if node.has("to_world"):
+                node.fail("wanted either position or to_world, got both")
+            place = self._world.copy()
+            place[:3, 3] = self._world[:3, :3] @ node.vector("position", (0, 0, 0))
+        pose = np.eye(4)
+        pose[:3, 3] = place[:3, 3]
+        light = PointLight(self._intensity(node, "intensity", self._metres**2), name=node.id)
+        self._scene.add_light(light, pose)
+
+    def _spot(self, node: Node) -> None:
+        """Even within the beam; falls off linearly by angle to the cutoff."""
+        cutoff = node.number("cutoff_angle", 20.0, above=0)
+        beam = node.number("beam_width", 0.75 * cutoff, 0.0)
+        if not beam <= cutoff < 90:
+            node.fail(f"wanted beam_width <= cutoff_angle < 90 degrees, got {beam:g}, {cutoff:g}")
+        intensity = self._intensity(node, "intensity", self._metres**2)
+        light = PointLight(intensity, name=node.id, profile=_cone(beam, cutoff))
+        self._scene.add_light(light, self._pose(node))
+        for one, texture in node.objects("texture"):
+            if one.name == "texture":
+                what = "the picture that a spot light projects is left out"
+                leave_out(texture, self._notes, what)
+
+    def _directional(self, node: Node) -> None:
+        if node.has("direction"):
+            direction = node.vector("direction", (0, 0, 1))
+            length = float(np.linalg.norm(direction))
+            if not 0 < length < math.inf:
+                node.fail("wanted a direction, got one of length 0")
+            pose = _facing(direction / length)
+        else:
+            pose = self._pose(node)
+            pose[:3, 3] = 0
+        light = DirectionalLight(self._intensity(node, "irradiance"), name=node.id)
+        self._scene.add_light(light, pose)
+
+    def _pose(self, node: Node) -> Matrix:
+        return rigid(self._world @ node.transform(), node, self._notes) @ _TURN
+
+    # The sky --------------------------------------------------------------------------------------
+
+    def _constant(self, node: Node) -> None:
+        self._check_only(node)
+        self._scene.set_environment(color=self._intensity(node, "radiance"))
+
+    def _envmap(self, node: Node) -> None:
+        self._check_only(node)
+        file = self._document.files_of(node).find(node.text("filename"), node.entry)
+        node.skip("mis_compensation", "gamma", "cache")
+        scale = node.number("scale", 1.0, 0.0)
+        turn = rigid(node.transform(), node, self._notes)[:3, :3]
+        pixels, rotation = panorama(read_environment(file), turn)
+        self._scene.set_environment(pixels, scale=scale, rotation=rotation)
+
+    def _check_only(self, node: Node) -> None:
+        if self._scene.environment is not None:
+            node.fail("wanted one emitter around the scene, got another")
+
+
+def _cone(beam: float, cutoff: float) -> LightProfile:
+    """Profile of a spot light."""
+    if beam == cutoff:
+        return LightProfile.table([0.0, cutoff], [1.0, 1.0])
+    if beam == 0:
+        return LightProfile.table([0.0, cutoff], [1.0, 0.0])
+    return LightProfile.table([0.0, beam, cutoff], [1.0, 1.0, 0.0])
+
+
+def _facing(direction: Matrix) -> Matrix:
+    """Pose of a lamp whose -z runs along a direction."""
+    z = -direction
+    x = np.cross((0.0, 1.0, 0.0), z) if abs(z[1]) < 0.9 else np.cross((1.0, 0.0, 0.0), z)
+    x /= np.linalg.norm(x)
+    pose = np.eye(4)
+    pose[:3, 0], pose[:3, 1], pose[:3, 2] = x, np.cross(z, x), z
+    return pose
+
+
+_PLUGINS: dict[str, Callable[[Emitters, Node], None]] = {
+    "point": Emitters._point,
+    "spot": Emitters._spot,
+    "directional": Emitters._directional,
+    "constant": Emitters._constant,
+    "envmap": Emitters._envmap,
+}

@@ -1,0 +1,97 @@
+"""Files that a scene names: found in its folders, and only in those that may be read.
+
+Mitsuba looks in the folder of the file that names another, then in those of the files that include
+it, and in folders of ``<path>`` elements, the last of which comes first.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from daguerre.files.text_lines import MAX_BYTES
+from daguerre.files.uris import Folder
+
+from .ledger import Entry
+
+
+class Files:
+    """Folders in which names are looked up.
+
+    Args:
+        scene: Path of the scene.
+        allow_dirs: Further folders whose files may be read.
+    """
+
+    def __init__(self, scene: Path, allow_dirs: Iterable[str | os.PathLike[str]] = ()) -> None:
+        self._allowed = Folder(scene, allow_dirs).allowed
+        self._folders = [self._allowed[0]]
+
+    def within(self, folder: Path) -> Files:
+        """Files for what is in another folder, which comes first."""
+        made = object.__new__(Files)
+        made._allowed, made._folders = self._allowed, [folder, *self._folders]
+        return made
+
+    def prepend(self, name: str, entry: Entry) -> None:
+        """Adds a folder of a ``<path>``, which comes first.
+
+        Raises:
+            InputError: There is no such folder, or it may not be read.
+        """
+        for folder in self._folders:
+            found = self._real(folder, name, entry)
+            if found.is_dir():
+                self._check(found, name, entry)
+                self._folders.insert(0, found)
+                return
+        self._check(self._real(self._folders[0], name, entry), name, entry)
+        entry.fail(f"missing folder: wanted {name[:200]!r}, got no such folder")
+
+    def find(self, name: str, entry: Entry) -> Path:
+        """File of a name.
+
+        Raises:
+            InputError: There is no such file, or it may not be read.
+        """
+        for folder in self._folders:
+            found = self._real(folder, name, entry)
+            if _is_file(found):
+                self._check(found, name, entry)
+                return found
+        self._check(self._real(self._folders[0], name, entry), name, entry)
+        entry.fail(f"missing file: wanted {name[:200]!r}, got no such file")
+
+    def read(self, name: str, entry: Entry, most: int = MAX_BYTES) -> bytes:
+        """Bytes of the file of a name, at most ``most``."""
+        found = self.find(name, entry)
+        try:
+            if (size := found.stat().st_size) > most:
+                entry.fail(f"{found.name}: wanted at most {most} bytes, got {size}")
+            return found.read_bytes()
+        except OSError as error:
+            entry.fail(f"{found.name}: cannot be read: {error.strerror}")
+
+    def _real(self, folder: Path, name: str, entry: Entry) -> Path:
+        plain = name.replace("\\", "/")  # separators, which so cannot hide a way up
+        if not plain or "\0" in plain:
+            entry.fail(f"wanted the name of a file, got {name[:40]!r}")
+        try:
+            return Path(os.path.realpath(folder / plain))
+        except (OSError, ValueError):
+            entry.fail(f"wanted the name of a file, got {name[:40]!r}")
+
+    def _check(self, found: Path, name: str, entry: Entry) -> None:
+        if not any(found.is_relative_to(folder) for folder in self._allowed):
+            entry.fail(
+                f"leaves the scene's folder: wanted a file under {str(self._allowed[0])!r} "
+                f"(--allow-dir widens), got {name[:200]!r}"
+            )
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # a name too long for any file
+        return False

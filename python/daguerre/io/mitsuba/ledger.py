@@ -1,0 +1,54 @@
+"""Accounts of the elements of a file: each is used, or a note names it.
+
+Mitsuba refuses properties that no plugin asks for. Here they are noted, so that the elements that
+are used and those that are noted are all elements of a file.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NoReturn
+
+from daguerre.errors import InputError
+
+
+@dataclass(eq=False)
+class Entry:
+    """An element of a file.
+
+    Attributes:
+        file: Path of the file, for messages.
+        line: Line on which it begins.
+        label: The element for messages, such as ``<float name="fov">``.
+        used: Whether it had an effect on the scene.
+        noted: Whether a note names it, or something around it.
+    """
+
+    file: str
+    line: int
+    label: str
+    used: bool = False
+    noted: bool = False
+
+    def fail(self, message: str) -> NoReturn:
+        """Raises ``InputError`` at this element."""
+        raise InputError(f"{self.file}: line {self.line}: {self.label}: {message}")
+
+
+@dataclass
+class Ledger:
+    """All elements of a scene, those of included files among them."""
+
+    entries: list[Entry] = field(default_factory=list)
+
+    def add(self, file: str, line: int, label: str) -> Entry:
+        """Adds an element."""
+        entry = Entry(file, line, label)
+        self.entries.append(entry)
+        return entry
+
+    def counts(self) -> tuple[int, int, int]:
+        """Numbers of elements that are used, noted, and neither."""
+        used = sum(entry.used for entry in self.entries)
+        noted = sum(entry.noted and not entry.used for entry in self.entries)
+        return used, noted, len(self.entries) - used - noted

@@ -1,0 +1,49 @@
+"""Panoramas of Mitsuba as ours: rows from pole to pole, the middle along +z, any turn.
+
+Mitsuba's first and last row are the poles themselves; ours are half a row away from them.
+
+Source: Mitsuba 3, documentation of ``envmap``.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.io.usd.panorama import resampled
+
+Picture = NDArray[np.float32]
+
+
+def panorama(pixels: Picture, turn: NDArray[np.float64]) -> tuple[Picture, float]:
+    """Converts a panorama.
+
+    Args:
+        pixels: Shape (H, W, 3).
+        turn: World from the emitter, a rotation, shape (3, 3).
+
+    Returns:
+        A panorama with -z in its middle, and its rotation about +y, degrees.
+    """
+    rows = _between_poles(pixels)
+    if turn[1, 1] < 1 - 1e-9:
+        return resampled(rows, turn, len(rows)), 0.0
+    half = rows.shape[1] // 2
+    rotation = math.degrees(math.atan2(turn[0, 2], turn[2, 2]))
+    if rows.shape[1] % 2:  # no whole number of columns is half a turn
+        return rows, rotation + 180.0
+    return np.roll(rows, half, axis=1), rotation
+
+
+def _between_poles(pixels: Picture) -> Picture:
+    """Rows half a step from the poles, from rows that begin and end at the poles."""
+    count = len(pixels)
+    if count < 2:
+        return pixels
+    at = (np.arange(count) + 0.5) * ((count - 1) / count)
+    first = np.minimum(at.astype(np.int64), count - 2)
+    share = (at - first).astype(np.float32)[:, None, None]
+    made: Picture = pixels[first] * (1 - share) + pixels[first + 1] * share
+    return made

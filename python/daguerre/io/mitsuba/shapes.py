@@ -1,0 +1,118 @@
+"""Shapes as meshes with Mitsuba's texture coordinates, in the space that ``to_world`` transforms.
+
+Source: Mitsuba 3, documentation of shapes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.scene import shapes
+from daguerre.scene.shapes import SQUARE, ShapeMesh
+
+from .node import Node
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A mesh and the transform of its own parameters, such as centre and radius."""
+
+    mesh: ShapeMesh
+    inner: Array
+
+
+def solid_of(node: Node) -> Solid | None:
+    """Solid of a shape; None: the plugin is none.
+
+    Raises:
+        InputError: A parameter is wrong.
+    """
+    make = _SOLIDS.get(node.plugin)
+    if make is None:
+        return None
+    made = make(node)
+    return replace(made, mesh=made.mesh.flipped()) if node.flag("flip_normals", False) else made
+
+
+def _mesh(found: ShapeMesh | None) -> ShapeMesh:
+    assert found is not None  # of unit size
+    return found
+
+
+def _sphere(node: Node) -> Solid:
+    """Sphere; u from +x toward +y, v from +z down."""
+    inner = np.diag([*[node.number("radius", 1.0, above=0)] * 3, 1.0])
+    inner[:3, 3] = node.vector("center", (0, 0, 0))
+    return Solid(_mesh(shapes.sphere()), inner)
+
+
+def _rectangle(node: Node) -> Solid:
+    return Solid(_v_up(_mesh(shapes.rectangle())), np.eye(4))
+
+
+def _disk(node: Node) -> Solid:
+    """Disk; u from the centre to the rim, v around."""
+    mesh = _mesh(shapes.disk())
+    return Solid(replace(mesh, uv=mesh.uv[:, ::-1]), np.eye(4))
+
+
+def _cylinder(node: Node) -> Solid:
+    """From p0 to p1; u around, v along."""
+    begin, end = node.vector("p0", (0, 0, 0)), node.vector("p1", (0, 0, 1))
+    radius = node.number("radius", 1.0, above=0)
+    length = float(np.linalg.norm(end - begin))
+    if not length > 0:
+        node.fail("wanted two points apart, got the same twice")
+    inner = np.eye(4)
+    inner[:3, :3] = _frame((end - begin) / length) * (radius, radius, length)
+    inner[:3, 3] = begin
+    return Solid(_v_up(_mesh(shapes.cylinder(low=0.0, high=1.0))), inner)
+
+
+def _cube(node: Node) -> Solid:
+    """Six squares, each with a whole picture."""
+    corners = np.array(_CUBE, float)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    uv = SQUARE * (0.5, -0.5) + 0.5
+    return Solid(_mesh(shapes.quads(corners, normals, uv)), np.eye(4))
+
+
+def _v_up(mesh: ShapeMesh) -> ShapeMesh:
+    """The same mesh whose v rises the other way."""
+    return replace(mesh, uv=mesh.uv * (1, -1) + (0, 1))
+
+
+def _frame(axis: Array) -> Array:
+    """Columns x, y, z with z along an axis (Duff et al. 2017), shape (3, 3)."""
+    x, y, z = axis
+    sign = np.copysign(1.0, z)
+    a = -1 / (sign + z)
+    b = x * y * a
+    first = (1 + sign * x * x * a, sign * b, -sign * x)
+    second = (b, sign + y * y * a, -y)
+    return np.stack([first, second, axis], axis=1)
+
+
+#: Corners of the faces of a cube, each with the lower left of a picture first.
+_CUBE = [
+    [(1, -1, -1), (1, -1, 1), (-1, -1, 1), (-1, -1, -1)],
+    [(1, 1, -1), (-1, 1, -1), (-1, 1, 1), (1, 1, 1)],
+    [(1, -1, -1), (1, 1, -1), (1, 1, 1), (1, -1, 1)],
+    [(1, -1, 1), (1, 1, 1), (-1, 1, 1), (-1, -1, 1)],
+    [(-1, -1, 1), (-1, 1, 1), (-1, 1, -1), (-1, -1, -1)],
+    [(1, 1, -1), (1, -1, -1), (-1, -1, -1), (-1, 1, -1)],
+]
+_SOLIDS: dict[str, Callable[[Node], Solid]] = {
+    "sphere": _sphere,
+    "rectangle": _rectangle,
+    "disk": _disk,
+    "cylinder": _cylinder,
+    "cube": _cube,
+}

@@ -1,0 +1,204 @@
+"""Colours and spectra: numbers, sRGB, samples, files, blackbodies, and plugins for each.
+
+One unit of Mitsuba's radiance is 1 cd/m2, and likewise cd of intensity and lux of irradiance. Its
+colours are linear sRGB, as ours; a light of value 1 has the shape of D65 in both. Sampled emission
+of 1 at all wavelengths has a luminance of 1 in Mitsuba, and so here.
+
+Source: Mitsuba 3, documentation of spectra, and ``spectrum_from_file`` for the format of files.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.color import srgb
+from daguerre.color.spectra import rgb_of_emission, rgb_of_reflectance
+from daguerre.errors import InputError
+from daguerre.scene.materials import Color
+from daguerre.scene.spectrum import Spectrum
+
+from .ledger import Entry
+from .node import Node, Property
+from .numbers import MAX_NUMBERS, numbers, words
+
+#: Planck's first constant of radiance, W m2 / sr, and the second one, m K (CODATA 2014).
+_C1, _C2 = 2 * 6.62607004e-34 * 299792458.0**2, 6.62607004e-34 * 299792458.0 / 1.38064852e-23
+#: Wavelengths at which a blackbody is sampled, nm.
+_PLANCK_NM = np.linspace(360.0, 830.0, 95)
+_MOST_FILE = 1 << 24
+#: Plugins that are colours or spectra, not textures.
+PLUGINS = (
+    *("rgb", "srgb", "uniform", "regular", "irregular", "d65", "blackbody"),
+    *("rawconstant", "srgb_d65", "acromatic"),
+)
+ReadFile = Callable[[str, Entry], bytes]
+
+
+class Spectra:
+    """Reads colours and spectra.
+
+    Args:
+        read: Reads the file of a name, for an element.
+    """
+
+    def __init__(self, read: ReadFile) -> None:
+        self._read = read
+
+    def value(self, one: Property) -> Color | Spectrum:
+        """Colour or spectrum of a property, which is no texture.
+
+        Raises:
+            InputError: It is none.
+        """
+        made = self._plain(one) if one.tag != "object" else self._node(one.value)
+        one.take()
+        values = made.values if isinstance(made, Spectrum) else made
+        if min(values) < 0:
+            one.entry.fail(f"wanted values of at least 0, got {min(values):g}")
+        return made
+
+    def _plain(self, one: Property) -> Color | Spectrum:
+        if one.tag in ("float", "integer"):
+            return _grey(float(one.value))
+        if one.tag == "rgb":
+            r, g, b = one.value
+            return r, g, b
+        if one.tag == "srgb":
+            return _linear(one.value)
+        if one.tag == "spectrum":
+            text, file = one.value
+            return self._text(text, file, one.entry)
+        if one.tag == "blackbody":
+            kelvin, scale = one.value
+            return blackbody(kelvin, scale, one.entry)
+        one.wrong("a colour or spectrum")
+
+    def _text(self, text: str, file: str, entry: Entry) -> Color | Spectrum:
+        """Constant, or pairs ``wavelength:value``, or a file of such pairs."""
+        if file:
+            lines = _lines(self._read(file, entry), entry)
+            pairs = [numbers(line, entry, 2) for line in lines if line.split()]
+        elif ":" not in text:
+            found = numbers(text, entry, 1, 3)
+            return found if len(found) == 3 else _grey(found[0])
+        else:
+            pairs = [numbers(word.replace(":", " "), entry, 2) for word in words(text)]
+        return sampled([p[0] for p in pairs], [p[1] for p in pairs], entry)
+
+    def _node(self, node: Node) -> Color | Spectrum:
+        node.use()
+        if node.plugin in ("rgb", "srgb", "srgb_d65"):
+            return self._color(node)
+        if node.plugin in ("uniform", "acromatic", "rawconstant"):
+            node.skip("wavelength_min", "wavelength_max", "lambda_min", "lambda_max")
+            return _grey(node.number("value", 1.0))
+        if node.plugin == "d65":
+            scale = node.number("scale", 1.0)
+            color = self._color(node) if node.has("color") else _grey(1.0)
+            r, g, b = (scale * c for c in color)
+            return r, g, b
+        if node.plugin == "blackbody":
+            if not node.has("temperature"):
+                node.fail("wanted a property 'temperature', got none")
+            node.skip("wavelength_min", "wavelength_max", "lambda_min", "lambda_max")
+            temperature = node.number("temperature", 0.0, above=0)
+            return blackbody(temperature, node.number("scale", 1.0), node.entry)
+        return self._samples(node)
+
+    def _color(self, node: Node) -> Color:
+        found = node.find("color") or node.find("value")
+        if found is None:
+            node.fail("wanted a property 'value', got none")
+        if found.tag not in ("rgb", "srgb", "float", "integer"):
+            found.wrong("a colour")
+        made = self._plain(found)
+        found.take()
+        assert not isinstance(made, Spectrum)
+        return made
+
+    def _samples(self, node: Node) -> Spectrum:
+        """Samples of ``regular`` and ``irregular`` spectra."""
+        if node.has("filename"):
+            lines = _lines(self._read(node.text("filename"), node.entry), node.entry)
+            pairs = [numbers(line, node.entry, 2) for line in lines if line.split()]
+            return sampled([p[0] for p in pairs], [p[1] for p in pairs], node.entry)
+        values = numbers(node.text("values"), node.entry)
+        if node.plugin == "irregular":
+            return sampled(numbers(node.text("wavelengths"), node.entry), values, node.entry)
+        low = node.number("wavelength_min", 360.0, above=0)
+        high = node.number("wavelength_max", 830.0, above=0)
+        return sampled(np.linspace(low, high, max(len(values), 1)), values, node.entry)
+
+
+def sampled(wavelengths: object, values: object, entry: Entry) -> Spectrum:
+    """Spectrum of samples.
+
+    Raises:
+        InputError: They are no spectrum.
+    """
+    nm = np.asarray(wavelengths, np.float64)
+    row = np.asarray(values, np.float64)
+    if len(nm) > MAX_NUMBERS or len(nm) != len(row):
+        entry.fail(f"wanted as many values as wavelengths, got {len(row)} and {len(nm)}")
+    try:
+        return Spectrum(tuple(nm.tolist()), tuple(row.tolist()))
+    except InputError as error:
+        entry.fail(str(error).removeprefix("spectrum: "))
+
+
+def blackbody(kelvin: float, scale: float, entry: Entry) -> Spectrum:
+    """Radiance of a blackbody, W / (m2 sr nm), by Planck's law."""
+    if not 0 < kelvin < 1e9:
+        entry.fail(f"wanted a temperature above 0 K, got {kelvin:g}")
+    metres = _PLANCK_NM * 1e-9
+    with np.errstate(over="ignore"):
+        radiance = 1e-9 * _C1 / (metres**5 * np.expm1(_C2 / (metres * kelvin)))
+    return sampled(_PLANCK_NM, scale * radiance, entry)
+
+
+def emitted_rgb(value: Color | Spectrum) -> Color:
+    """Emission as linear Rec.709; colours beyond it lose their negative part."""
+    if not isinstance(value, Spectrum):
+        return value
+    return _clipped(rgb_of_emission(value.at))
+
+
+def reflected_rgb(value: Color | Spectrum) -> Color:
+    """Reflectance as linear Rec.709, in light of D65."""
+    if not isinstance(value, Spectrum):
+        return value
+    return _clipped(rgb_of_reflectance(value.at))
+
+
+def _clipped(rgb: NDArray[np.float64]) -> Color:
+    r, g, b = (max(float(c), 0.0) for c in rgb)
+    return r, g, b
+
+
+def _grey(value: float) -> Color:
+    return value, value, value
+
+
+def _linear(encoded: Color) -> Color:
+    r, g, b = srgb.to_linear(np.array(encoded, np.float32)).tolist()
+    return r, g, b
+
+
+def _lines(data: bytes, entry: Entry) -> list[str]:
+    """Lines of a file of samples, without comments."""
+    if len(data) > _MOST_FILE:
+        entry.fail(f"wanted at most {_MOST_FILE} bytes, got {len(data)}")
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError:
+        entry.fail("wanted a text of samples, got other bytes")
+    return [line.split("#")[0] for line in text.splitlines()]
+
+
+def luminance(color: Color) -> float:
+    """Luminance of linear Rec.709."""
+    return math.fsum(w * c for w, c in zip((0.212671, 0.715160, 0.072169), color, strict=True))
