@@ -247,7 +247,48 @@ PBRT = Samples(
     },
     _pbrt_moving,
 )
-SAMPLES = {"glTF 2.0": GLTF, "Wavefront OBJ": OBJ, "OpenUSD": USD, "pbrt": PBRT}
+
+
+def _mitsuba(*lines: str, version: str = "3.0.0") -> bytes:
+    return "\n".join([f'<scene version="{version}">', *lines, "</scene>"]).encode()
+
+
+def _mitsuba_card(folder: Path) -> Path:
+    path = folder / "card.xml"
+    path.write_bytes(
+        _mitsuba(
+            '<shape type="rectangle" id="card"><transform name="to_world">',
+            '<scale x="1" y="0.5"/><translate z="-3"/></transform></shape>',
+            '<emitter type="sunsky"/>',
+        )
+    )
+    return path
+
+
+MITSUBA = Samples(
+    _mitsuba_card,
+    {
+        "empty.xml": (b"", "XML"),
+        "half.xml": (_mitsuba()[:-4], "XML"),
+        "noise.xml": (bytes(range(256)), "XML"),
+        "other.xml": (b"<html/>", "line 1: <html>"),
+        "entities.xml": (b'<!DOCTYPE a [<!ENTITY b "c">]><scene/>', "document type"),
+        "no_version.xml": (b"<scene/>", "line 1: <scene>: wanted a version"),
+        "no_number.xml": (
+            _mitsuba('<shape type="sphere"><float name="radius" value="x"/></shape>'),
+            "line 2: <float name='radius'>",
+        ),
+        "negative.xml": (
+            _mitsuba('<shape type="sphere"><float name="radius" value="-1"/></shape>'),
+            "line 2: <float name='radius'>",
+        ),
+        "nobody.xml": (_mitsuba('<shape type="sphere"><ref id="x"/></shape>'), "line 2: <ref"),
+        "outside.xml": (_mitsuba('<include filename="../../x.xml"/>'), "leaves the scene's folder"),
+        "missing.xml": (_mitsuba('<include filename="x.xml"/>'), "missing file"),
+        "circle.xml": (_mitsuba('<include filename="circle.xml"/>'), "files that include"),
+    },
+)
+SAMPLES = {"glTF 2.0": GLTF, "Wavefront OBJ": OBJ, "OpenUSD": USD, "pbrt": PBRT, "Mitsuba": MITSUBA}
 
 
 def _example() -> Format:
@@ -441,9 +482,7 @@ def test_a_suffix_belongs_to_one_format(row: Format) -> None:
 
 
 def test_an_unknown_suffix_names_those_that_are_known(tmp_path: Path) -> None:
-    with pytest.raises(
-        dg.InputError, match=r"x\.stl: format: wanted \.glb, .*\.usdz or \.obj, got \.stl"
-    ):
+    with pytest.raises(dg.InputError, match=r"x\.stl: format: wanted \.glb, .*\.obj, got \.stl"):
         dg.load(tmp_path / "x.stl")
 
 

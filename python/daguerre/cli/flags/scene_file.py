@@ -61,6 +61,25 @@ class SceneFileFlags:
             panel=_FILE,
         ),
     ] = None
+    define: Annotated[
+        list[str] | None,
+        option(
+            "--define",
+            "-D",
+            metavar="NAME=VALUE",
+            help="Value of a parameter of a Mitsuba scene ($NAME in the file); repeatable.",
+            panel=_FILE,
+        ),
+    ] = None
+    scene_unit: Annotated[
+        Text,
+        option(
+            "--scene-unit",
+            metavar="UNIT",
+            help="Unit of lengths in a Mitsuba scene, such as cm [m].",
+            panel=_FILE,
+        ),
+    ] = None
     allow_dir: Annotated[
         list[Path] | None,
         option(
@@ -115,4 +134,8 @@ class SceneFileFlags:
             options["purpose"] = tuple(self.purpose.split(","))
         if units is not None:
             options["camera_units"] = 1000 * q.unit_m("--camera-units", units)
+        if self.define is not None:
+            options["define"] = tuple(self.define)
+        if self.scene_unit is not None:
+            options["unit_m"] = q.unit_m("--scene-unit", self.scene_unit)
         return options

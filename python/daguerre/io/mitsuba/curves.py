@@ -9,25 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError
-from daguerre.scene.scene import Scene
 
-from .document import Document
+from .context import Context
 from .node import Node
 
-Matrix = NDArray[np.float64]
 CURVES = {"bsplinecurve": "bspline", "linearcurve": "linear"}
 #: Least control points of a curve.
 _LEAST = {"bspline": 4, "linear": 2}
 
 
-def add_curves(node: Node, document: Document, scene: Scene, place: Matrix) -> int:
-    """Adds the curves of a shape to a scene, as one mesh.
-
-    Args:
-        node: The shape.
-        document: Its file.
-        scene: Receives the mesh.
-        place: Scene from the curves; radii follow the first number of it, the unit of the scene.
+def add_curves(node: Node, context: Context) -> int:
+    """Adds the curves of a shape to the scene, as one mesh; ``to_world`` leaves radii as they are.
 
     Returns:
         Index of the mesh, in the space of the scene.
@@ -38,7 +30,8 @@ def add_curves(node: Node, document: Document, scene: Scene, place: Matrix) -> i
     basis = CURVES[node.plugin]
     node.skip("silhouette_sampling_weight")
     name = node.text("filename")
-    data = document.files_of(node).read(name, node.entry)
+    data = context.document.files_of(node).read(name, node.entry)
+    place = context.world @ node.transform()
     where = f"{node.entry.file}: line {node.entry.line}: {node.entry.label}: {name[:200]}"
     rows, counts = _rows(data, where)
     short = [count for count in counts if count < _LEAST[basis]]
@@ -46,7 +39,8 @@ def add_curves(node: Node, document: Document, scene: Scene, place: Matrix) -> i
         got = f"{short[0]}" if short else "none"
         raise InputError(f"{where}: wanted curves of at least {_LEAST[basis]} points, got {got}")
     points = rows[:, :3] @ place[:3, :3].T + place[:3, 3]
-    return scene.add_curves(points, counts, 2 * rows[:, 3], basis=basis, name=node.id)
+    widths = 2 * context.unit_m * rows[:, 3]
+    return context.scene.add_curves(points, counts, widths, basis=basis, name=node.id)
 
 
 def _rows(data: bytes, where: str) -> tuple[NDArray[np.float64], list[int]]:

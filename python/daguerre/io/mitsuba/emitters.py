@@ -12,17 +12,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.io.images import read_environment
+from daguerre.io.shading.channels import Texel, Value
 from daguerre.scene.light_profile import LightProfile
-from daguerre.scene.lights import DirectionalLight, PointLight
+from daguerre.scene.lights import Color, DirectionalLight, PointLight
 
 from .context import Context
 from .node import Node, leave_out
 from .panorama import panorama
-from .spectra import emitted_rgb
+from .projections import Shine, lamps, looked_up
+from .sensors import field_of_view
+from .spectra import PLUGINS, emitted_rgb
 from .textures import Textures
 from .transforms import rigid
 
-Matrix = NDArray[np.float64]
+Array = NDArray[np.float64]
+Matrix = Array
 #: Our lamp from Mitsuba's: half a turn about +y.
 _TURN = np.diag([-1.0, 1.0, -1.0, 1.0])
 
@@ -51,7 +55,7 @@ class Emitters:
         node.skip("sampling_weight")
         read(self, node)
 
-    def _intensity(self, node: Node, name: str, per: float = 1.0) -> tuple[float, float, float]:
+    def _intensity(self, node: Node, name: str, per: float = 1.0) -> Color:
         """Light of a property; ``per``: area of a unit of the scene, for intensities."""
         r, g, b = emitted_rgb(self._textures.color(node, name, 1.0))
         return r * per, g * per, b * per
@@ -75,12 +79,42 @@ class Emitters:
         if not beam <= cutoff < 90:
             node.fail(f"wanted beam_width <= cutoff_angle < 90 degrees, got {beam:g}, {cutoff:g}")
         intensity = self._intensity(node, "intensity", self._metres**2)
-        light = PointLight(intensity, name=node.id, profile=_cone(beam, cutoff))
-        self._scene.add_light(light, self._pose(node))
-        for one, texture in node.objects("texture"):
-            if one.name == "texture":
-                what = "the picture that a spot light projects is left out"
-                leave_out(texture, self._notes, what)
+        picture = self._picture(node, "texture")
+        if picture is None:
+            light = PointLight(intensity, name=node.id, profile=_cone(beam, cutoff))
+            self._scene.add_light(light, self._pose(node))
+            return
+        self._project(node, _spotlight(picture, intensity, beam, cutoff), math.radians(cutoff))
+
+    def _projector(self, node: Node) -> None:
+        """Irradiance of a plane that faces it, at a distance of 1."""
+        picture = self._picture(node, "irradiance")
+        aspect = 1.0
+        if picture is None:
+            picture = emitted_rgb(self._textures.color(node, "irradiance", 1.0))
+        elif isinstance(picture[0], Texel):
+            rows, columns = picture[0].plane.pixels.shape
+            aspect = columns / rows
+        half = math.tan(field_of_view(node, aspect) / 2)
+        scale = node.number("scale", 1.0, 0.0) * math.pi * self._metres**2
+        widest = math.atan(half * math.hypot(1, 1 / aspect))
+        self._project(node, _slide(picture, scale, half, aspect), widest)
+
+    def _picture(self, node: Node, name: str) -> Value | None:
+        """Channels of a texture that is projected; None: there is none."""
+        found = node.find(name)
+        if found is None or not isinstance(found.value, Node) or found.value.plugin in PLUGINS:
+            return None
+        found.take()
+        return self._textures.texture_of(found.value)
+
+    def _project(self, node: Node, shine: Shine, widest: float) -> None:
+        """Adds lamps that project a picture."""
+        pose = self._pose(node)
+        for intensity, profile in lamps(shine, widest):
+            light = PointLight(intensity, name=node.id, profile=profile)
+            self._scene.add_light(light, pose)
+        self._notes.add("a projected picture has edges as soft as a step of 1 / 640 of its angle")
 
     def _directional(self, node: Node) -> None:
         if node.has("direction"):
@@ -127,6 +161,33 @@ def _cone(beam: float, cutoff: float) -> LightProfile:
     return LightProfile.table([0.0, beam, cutoff], [1.0, 1.0, 0.0])
 
 
+def _spotlight(picture: Value, intensity: Color, beam: float, cutoff: float) -> Shine:
+    """Intensity of a spot light that projects a picture."""
+    reach = math.tan(math.radians(cutoff))
+
+    def shine(x: Array, y: Array, z: Array) -> Array:
+        depth = np.maximum(z, 1e-9) * reach
+        colors = looked_up(picture, 0.5 + 0.5 * x / depth, 0.5 + 0.5 * y / depth)
+        angle = np.degrees(np.arctan2(np.hypot(x, y), z))
+        width = max(cutoff - beam, 1e-9)
+        falloff = np.clip((cutoff - angle) / width, 0, 1) * (angle < cutoff)
+        return colors * np.asarray(intensity) * falloff[:, None]
+
+    return shine
+
+
+def _slide(picture: Value, scale: float, half: float, aspect: float) -> Shine:
+    """Intensity of a projector; a plane across its axis is lit as the picture says."""
+
+    def shine(x: Array, y: Array, z: Array) -> Array:
+        depth = np.maximum(z, 1e-9)
+        u, v = 0.5 - 0.5 * x / (depth * half), 0.5 - 0.5 * aspect * y / (depth * half)
+        inside = (u >= 0) & (u <= 1) & (v >= 0) & (v <= 1) & (z > 0)
+        return looked_up(picture, u, v) * (scale * inside / depth**3)[:, None]
+
+    return shine
+
+
 def _facing(direction: Matrix) -> Matrix:
     """Pose of a lamp whose -z runs along a direction."""
     z = -direction
@@ -140,6 +201,7 @@ def _facing(direction: Matrix) -> Matrix:
 _PLUGINS: dict[str, Callable[[Emitters, Node], None]] = {
     "point": Emitters._point,
     "spot": Emitters._spot,
+    "projector": Emitters._projector,
     "directional": Emitters._directional,
     "constant": Emitters._constant,
     "envmap": Emitters._envmap,

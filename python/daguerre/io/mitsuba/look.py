@@ -13,7 +13,7 @@ class Relief:
     """Normals or heights in a texture.
 
     Attributes:
-        normals: Normals, 2 x value - 1, along u, v and the normal; or None.
+        normals: Normals, 2 x value - 1, along u, normal x u and the normal; or None.
         heights: Height in units of the scene, or None.
         scale: Factor on the slopes of heights.
     """
@@ -49,9 +49,10 @@ class Chart:
     """How texture coordinates lie on a mesh in the world.
 
     Attributes:
-        against_v: Whether normal maps have G against v, as those on spheres; else along it.
+        right_handed: Whether v runs along normal x u, as on a rectangle; else against it, as in
+            most files.
         lengths: Lengths of a unit of u and v, m: means over the mesh.
     """
 
-    against_v: bool = False
+    right_handed: bool = False
     lengths: tuple[float, float] = (1.0, 1.0)

@@ -40,7 +40,7 @@ class Sides:
 
 
 #: Looks of shapes without a material: those of lamps reflect nothing.
-_GREY, _BLACK = Look(), Look(Diffuse((0.0, 0.0, 0.0)))
+_GREY, _BLACK = Look(), Look(Diffuse((0.0, 0.0, 0.0)), two_sided=True)
 
 
 class Materials:
@@ -63,7 +63,7 @@ class Materials:
         """Index of the material of a shape; ``black``: what it is without a look of its own."""
         look = self._default(black=black) if bsdf is None else self.look(bsdf)
         if look.relief is None or look.relief.heights is None:
-            chart = Chart(chart.against_v and look.relief is not None)
+            chart = Chart(chart.right_handed and look.relief is not None)
         name = "" if bsdf is None else bsdf.id
         key = (id(look), chart, glow, id(sides.interior), id(sides.exterior))
         if key not in self._known:

@@ -6,22 +6,32 @@ Source: Mitsuba 3, documentation of media, phase functions and volumes.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.errors import InputError
+from daguerre.io.volumes import vol
 from daguerre.scene.materials import Color, Spectrum
 from daguerre.scene.media import MAX_COSINE, MAX_LOBES, DensityGrid, Medium
 
 from .context import Context
 from .node import Node, leave_out
 from .textures import Textures
-from .volumes import read_grid
 
+_GRIDS = ("gridvolume", "grid")
 Lobes = tuple[tuple[float, float], ...]
 Matrix = NDArray[np.float64]
-_GRIDS = ("gridvolume", "grid")
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Densities of a medium, and the hue of its extinction."""
+
+    density: DensityGrid
+    color: Color
 
 
 class Media:
@@ -55,27 +65,34 @@ class Media:
         node.skip("sample_emitters", "has_spectral_extinction", "method", "step_size")
         scale = node.number("scale", 1.0, 0.0) / self._context.unit_m
         lobes = self._phase(node.nested_one("phase"))
-        density = self._density(node, local)
-        absorption, scattering = self._coefficients(node, scale)
+        grid = self._grid(node, local)
+        hue = (1.0, 1.0, 1.0) if grid is None else grid.color
+        absorption, scattering = self._coefficients(node, scale, hue)
         emission = self._emission(node)
-        return Medium(absorption, scattering, lobes, emission, density)
+        return Medium(
+            absorption, scattering, lobes, emission, None if grid is None else grid.density
+        )
 
-    def _coefficients(self, node: Node, scale: float) -> tuple[Color | Spectrum, Color | Spectrum]:
+    def _coefficients(
+        self, node: Node, scale: float, hue: Color
+    ) -> tuple[Color | Spectrum, Color | Spectrum]:
         """Absorption and scattering, 1/m."""
         if node.has("sigma_a") or node.has("sigma_s"):
             absorbed, scattered = (self._color(node, name, 0.0) for name in ("sigma_a", "sigma_s"))
             return _scaled(absorbed, scale), _scaled(scattered, scale)
         if node.has("material"):
             node.fail("material: wanted sigma_t and albedo, got the name of a measured material")
-        extinction = self._color(node, "sigma_t", 1.0)
+        extinction = self._color(node, "sigma_t", 1.0, hue)
         albedo = self._color(node, "albedo", 0.75)
         return (
             _combined(lambda t, a: scale * t * (1 - a), extinction, albedo),
             _combined(lambda t, a: scale * t * a, extinction, albedo),
         )
 
-    def _color(self, node: Node, name: str, default: float) -> Color | Spectrum:
-        """Coefficient; that of a grid is 1, as its values are densities."""
+    def _color(
+        self, node: Node, name: str, default: float, hue: Color = (1.0, 1.0, 1.0)
+    ) -> Color | Spectrum:
+        """Coefficient; that of a grid is its hue, as its values are densities."""
         found = node.find(name)
         if found is None or not isinstance(found.value, Node) or found.value.kind != "volume":
             return self._textures.color(node, name, default)
@@ -86,27 +103,34 @@ class Media:
             volume.skip("to_world")
             return self._textures.color(volume, "value", 1.0)
         if volume.plugin in _GRIDS and name == "sigma_t":
-            return 1.0, 1.0, 1.0
-        sentence = f"a {name} that changes from place to place is replaced by {default:g}"
+            return hue
+        sentence = f"{name} that changes from place to place is replaced by {default:g}"
         leave_out(volume, self._notes, sentence)
         return default, default, default
 
-    def _density(self, node: Node, local: Matrix) -> DensityGrid | None:
-        found = node.find("sigma_t") or node.find("density")
+    def _grid(self, node: Node, local: Matrix) -> Grid | None:
+        """Grid of extinction; None: the medium is even."""
+        found = node.find("sigma_t")
         if found is None or not isinstance(found.value, Node) or found.value.plugin not in _GRIDS:
             return None
         found.take()
         volume = found.value
         volume.use()
         volume.skip("filter_type", "wrap_mode", "accel", "raw", "max_value")
-        values, box = read_grid(volume, self._context.document)
-        unit = np.eye(4)
-        if volume.flag("use_grid_bbox", False):
-            unit[:3, :3], unit[:3, 3] = np.diag(box[1] - box[0]), box[0]
-        placed = np.linalg.inv(local) @ self._world @ volume.transform() @ unit
-        if values.shape[3] > 1:
-            self._notes.add("a grid of colours in a medium is drawn by their mean")
-        return DensityGrid(values.mean(axis=3), placed)
+        files = self._context.document.files_of(volume)
+        read = vol.read(files.find(volume.text("filename"), volume.entry))
+        inner = read.transform if volume.flag("use_grid_bbox", False) else np.eye(4)
+        placed = np.linalg.inv(local) @ self._world @ volume.transform() @ inner
+        values = read.values.mean(axis=3)
+        color = (1.0, 1.0, 1.0)
+        if read.values.shape[3] == 3:
+            self._notes.add("a grid of colours in a medium has one hue, that of its mean")
+            r, g, b = read.values.mean(axis=(0, 1, 2), dtype=np.float64) / max(values.mean(), 1e-30)
+            color = (float(r), float(g), float(b))
+        try:
+            return Grid(DensityGrid(values, placed), color)
+        except InputError as error:
+            volume.fail(str(error))
 
     def _emission(self, node: Node) -> Color | Spectrum:
         found = node.find("emission")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from daguerre.files.json_item import clean
 from daguerre.scene.media import Medium
 
-from .charts import lengths_of
+from .charts import chart_of
 from .context import Context
 from .curves import CURVES, add_curves
 from .look import Chart, Look
@@ -80,7 +80,7 @@ class Placing:
 
     def _curves(self, node: Node) -> None:
         place = self._context.world @ node.transform()
-        mesh = add_curves(node, self._context.document, self._scene, place)
+        mesh = add_curves(node, self._context)
         name = self._named(node, np.eye(4))
         self._scene.add_instance(mesh, self._material(node, Chart(), place), name=name)
 
@@ -97,8 +97,7 @@ class Placing:
         name = name or self._named(node, placed)
         chart = Chart()
         if look.relief is not None:
-            lengths = lengths_of(self._scene.meshes[mesh], placed)
-            chart = Chart(node.plugin == "sphere", lengths)
+            chart = chart_of(self._scene.meshes[mesh], placed)
         material = self._material(node, chart, placed)
         self._scene.add_instance(mesh, material, placed, name=name)
 

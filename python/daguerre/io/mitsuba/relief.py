@@ -25,7 +25,7 @@ def normal_map(relief: Relief, chart: Chart, arithmetic: Arithmetic) -> Value | 
     """Channels of a normal map; None: the relief is flat."""
     if relief.normals is not None:
         x, y, z = relief.normals
-        if not chart.against_v:
+        if chart.right_handed:
             (y,) = arithmetic.each(lambda v: 1 - v, (y,))
         return x, y, z
     return None if relief.heights is None else _from_heights(relief.heights, relief.scale, chart)

@@ -5,7 +5,7 @@ Texture coordinates (0, 0) are the top left of a bitmap in Mitsuba, as here.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +17,7 @@ from daguerre.io.shading.channels import (
     Channel,
     Mapping,
     Plane,
+    Six,
     Texel,
     Value,
     broadcast,
@@ -95,6 +96,8 @@ class Textures:
         if found is None or not self._is_texture(found):
             return luminance(reflected_rgb(self._color(node, found, default)))
         value = self._texture(found)
+        if value is not None and found.value.plugin == "checkerboard":
+            value = _swapped(value)
         return default if value is None else self.grey(value)
 
     def scalar(
@@ -236,6 +239,22 @@ _FILTERS = {"bilinear": "linear", "nearest": "nearest", "trilinear": "linear", "
 def _mapped(node: Node) -> tuple[float, float, float, float, float, float]:
     """Transform of texture coordinates from the bottom left."""
     return top_down(uv_part(node.transform("to_uv")))
+
+
+def _swapped(value: Value) -> Value:
+    """A checkerboard with its colours exchanged, as Mitsuba 3.9 has it where it wants a number."""
+    return tuple(
+        replace(one, mapping=replace(one.mapping, transform=_shifted(one.mapping.transform)))
+        if isinstance(one, Texel)
+        else one
+        for one in value
+    )
+
+
+def _shifted(six: Six) -> Six:
+    """Transform that moves u by half a period."""
+    a, b, c, d, e, f = six
+    return a, b, c + 0.5, d, e, f
 
 
 def _triple(value: Color | float) -> Color:

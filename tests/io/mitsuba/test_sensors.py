@@ -1,0 +1,218 @@
+"""Cameras see what Mitsuba's see: fields of view, offsets, thin lenses, clipping, shutters."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import daguerre as dg
+from daguerre.io.mitsuba.reader import read_all
+
+from .peer import ours, same_blocks, theirs
+from .scene_files import camera, loaded, written
+
+
+def _sensor(
+    inner: str, plugin: str = "perspective", size: tuple[int, int] = (60, 40), turn: str = ""
+) -> str:
+    width, height = size
+    return (
+        f'<sensor type="{plugin}" id="eye">{inner}{turn}<film type="hdrfilm">'
+        f'<integer name="width" value="{width}"/><integer name="height" value="{height}"/>'
+        f"</film></sensor>"
+    )
+
+
+def _half_width(camera: dg.Camera) -> float:
+    """Tangent of half the horizontal field of view."""
+    assert camera.focal_length is not None
+    assert camera.sensor_size is not None
+    return float(camera.sensor_size[0]) / 2 / float(camera.focal_length)
+
+
+@pytest.mark.parametrize(
+    ("inner", "size", "half"),
+    [
+        ('<float name="fov" value="60"/>', (60, 40), math.tan(math.radians(30))),
+        ('<float name="fov" value="60"/><string name="fov_axis" value="y"/>', (60, 40), 0.866025),
+        (
+            '<float name="fov" value="60"/><string name="fov_axis" value="smaller"/>',
+            (60, 40),
+            0.866025,
+        ),
+        (
+            '<float name="fov" value="60"/><string name="fov_axis" value="larger"/>',
+            (60, 40),
+            0.577350,
+        ),
+        (
+            '<float name="fov" value="60"/><string name="fov_axis" value="smaller"/>',
+            (40, 60),
+            0.577350,
+        ),
+        (
+            '<float name="fov" value="60"/><string name="fov_axis" value="diagonal"/>',
+            (30, 40),
+            0.6 * 0.577350,
+        ),
+        ('<string name="focal_length" value="50mm"/>', (60, 40), 18 / 50),
+        ('<string name="focal_length" value="35"/>', (40, 60), 12 / 35),
+        ("", (60, 40), 18 / 50),
+    ],
+)
+def test_fields_of_view(inner: str, size: tuple[int, int], half: float, tmp_path: Path) -> None:
+    scene = loaded(tmp_path, _sensor(inner, size=size))
+    assert _half_width(scene.camera("eye")) == pytest.approx(half, rel=1e-5)
+    width, height = scene.camera().sensor_size or (0, 0)
+    assert width / height == pytest.approx(size[0] / size[1])
+
+
+def test_the_focal_length_is_that_of_a_full_frame(tmp_path: Path) -> None:
+    scene = loaded(tmp_path, _sensor('<string name="focal_length" value="85mm"/>'))
+    assert scene.camera().focal_length == pytest.approx(85)
+    assert scene.camera().sensor_size == pytest.approx((36, 24))
+
+
+def test_a_thin_lens_has_its_aperture_and_focus(tmp_path: Path) -> None:
+    inner = '<float name="aperture_radius" value="2"/><float name="focus_distance" value="300"/>'
+    camera = loaded(tmp_path, _sensor(inner, "thinlens"), unit_m=0.01).camera()
+    assert camera.lens == "thin"
+    assert camera.aperture_diameter == pytest.approx(40)
+    assert camera.focus_distance == pytest.approx(3)
+    assert camera.f_stop is None
+
+
+def test_clipping_and_shutter(tmp_path: Path) -> None:
+    inner = (
+        '<float name="near_clip" value="20"/><float name="far_clip" value="900"/>'
+        '<float name="shutter_open" value="0.5"/><float name="shutter_close" value="0.75"/>'
+    )
+    scene = loaded(tmp_path, _sensor(inner), '<shape type="sphere"/>', unit_m=0.01)
+    camera = scene.camera()
+    assert camera.near_clip == pytest.approx(0.2)
+    assert camera.shutter_time == pytest.approx(0.25)
+    assert camera.shutter_offset == pytest.approx(12)
+    assert camera.fps == 24
+    assert not any("far_clip" in note for note in scene.warnings)
+    far = '<shape type="sphere"><point name="center" value="0 0 950"/></shape>'
+    assert any(
+        "beyond the far_clip" in note for note in loaded(tmp_path, _sensor(inner), far).warnings
+    )
+
+
+@pytest.mark.parametrize(
+    ("inner", "plugin", "wrong"),
+    [
+        ('<float name="fov" value="180"/>', "perspective", "fov: wanted an angle between"),
+        (
+            '<float name="fov" value="9"/><string name="focal_length" value="5"/>',
+            "perspective",
+            "either fov or focal_length",
+        ),
+        ('<string name="focal_length" value="x"/>', "perspective", "a length such as 50mm"),
+        ('<float name="fov" value="9"/><string name="fov_axis" value="z"/>', "perspective", "one"),
+        ("", "thinlens", "wanted a property 'aperture_radius'"),
+        ('<float name="aperture_radius" value="0"/>', "thinlens", "a number above 0"),
+        ('<float name="near_clip" value="0"/>', "perspective", "a number above 0"),
+        ('<float name="shutter_open" value="1"/>', "perspective", "a shutter that closes after 1"),
+        (
+            '<transform name="to_world"><matrix value="1 1 0 0 1 0 0 0 1"/></transform>',
+            "perspective",
+            "one that shears",
+        ),
+        (
+            '<transform name="to_world"><scale x="0"/></transform>',
+            "perspective",
+            "one that flattens",
+        ),
+    ],
+)
+def test_wrong_cameras(inner: str, plugin: str, wrong: str, tmp_path: Path) -> None:
+    with pytest.raises(dg.InputError, match=rf"line 2: .*{wrong}"):
+        loaded(tmp_path, _sensor(inner, plugin))
+
+
+def test_sensors_without_a_lens_are_left_out_by_name(tmp_path: Path) -> None:
+    scene = loaded(tmp_path, _sensor("", "radiancemeter"), '<shape type="cube"/>')
+    assert "a sensor 'radiancemeter' is left out: no lens takes its picture (1 use)" in (
+        scene.warnings
+    )
+    assert scene.default_camera == "framing"
+
+
+def test_settings_are_told(tmp_path: Path) -> None:
+    film = (
+        '<sensor type="perspective" id="eye"><film type="hdrfilm">'
+        '<integer name="width" value="60"/><integer name="height" value="40"/>'
+        '<integer name="crop_offset_x" value="10"/><integer name="crop_width" value="20"/>'
+        '<rfilter type="gaussian"><float name="stddev" value="0.4"/></rfilter></film>'
+        '<sampler type="multijitter"><integer name="sample_count" value="9"/></sampler></sensor>'
+    )
+    path = written(
+        tmp_path,
+        '<integrator type="path"><integer name="max_depth" value="5"/></integrator>',
+        film,
+        film.replace('"eye"', '"other"'),
+    )
+    scene, settings, _ = read_all(path)
+    found = settings["eye"]
+    assert (found.resolution, found.crop, found.spp) == ((60, 40), (10, 0, 30, 40), 9)
+    assert (found.filter, found.max_depth) == ("gaussian:1.6", 4)
+    assert scene.warnings == [
+        "the file's film and sampler are set by: --resolution 60x40 --crop 10,30,0,40 --spp 9 "
+        "--filter gaussian:1.6 --max-depth 4"
+    ]
+    assert list(scene.cameras) == ["eye", "other"]
+
+
+#: Shining balls and a floor that tell left from right and up from down.
+MARKS = "".join(
+    f'<shape type="sphere"><point name="center" value="{center}"/>'
+    f'<float name="radius" value="0.5"/><emitter type="area">'
+    f'<rgb name="radiance" value="{color}"/></emitter></shape>'
+    for center, color in (("1 0 0", "3 1 1"), ("0 1 0", "1 3 1"), ("0 0 1", "1 1 3"))
+)
+
+
+@pytest.mark.parametrize(
+    "inner",
+    [
+        "",
+        '<float name="principal_point_offset_x" value="0.2"/>'
+        '<float name="principal_point_offset_y" value="0.1"/>',
+        '<float name="near_clip" value="4.7"/>',
+    ],
+)
+def test_cameras_see_what_those_of_mitsuba_see(inner: str, tmp_path: Path) -> None:
+    seen = camera("4 3 3", "0.2 0.3 0", "0 1 0", fov=35, size=(80, 64))
+    path = written(
+        tmp_path,
+        '<integrator type="path"><integer name="max_depth" value="1"/></integrator>',
+        seen.replace("<transform", inner + "<transform", 1),
+        MARKS,
+    )
+    same_blocks(ours(path, 64), theirs(path, 64), 0.05)
+
+
+def test_a_thin_lens_blurs_as_mitsubas(tmp_path: Path) -> None:
+    seen = camera("0 0 6", "0 0 0", "0 1 0", fov=40, size=(64, 64))
+    lens = '<float name="aperture_radius" value="0.4"/><float name="focus_distance" value="9"/>'
+    seen = seen.replace('"perspective"', '"thinlens"').replace("<transform", lens + "<transform", 1)
+    path = written(
+        tmp_path,
+        '<integrator type="path"><integer name="max_depth" value="1"/></integrator>',
+        seen,
+        MARKS,
+    )
+    a, b = ours(path, 512), theirs(path, 512)
+    same_blocks(a, b, 0.1, size=8)
+    sharp = path.read_text().replace(
+        'name="aperture_radius" value="0.4"', 'name="aperture_radius" value="1e-4"'
+    )
+    path.write_text(sharp)
+    with pytest.raises(AssertionError, match="times the allowance"):
+        same_blocks(ours(path, 64), b, 0.1, size=8)
+    assert np.isfinite(a).all()
