@@ -51,7 +51,7 @@ def blocks(picture: Picture, size: int = BLOCK) -> Picture:
     """Means of square blocks of pixels."""
     height, width = (side // size for side in picture.shape[:2])
     whole = picture[: height * size, : width * size]
-    return whole.reshape(height, size, width, size, 3).mean(axis=(1, 3))
+    return np.asarray(whole.reshape(height, size, width, size, 3).mean(axis=(1, 3)))
 
 
 def same_blocks(a: Picture, b: Picture, share: float = 0.05, size: int = BLOCK) -> None:

@@ -170,7 +170,7 @@ def test_old_names(tmp_path: Path) -> None:
     assert _place(scene)[0, 3] == 2
     kind = scene.materials[0].kind
     assert isinstance(kind, dg.Diffuse)
-    assert np.allclose(kind.reflectance, (1, 0.2158605, 0), atol=1e-6)
+    assert kind.reflectance == pytest.approx((1, 0.2158605, 0), abs=1e-6)
     new = loaded(tmp_path, *old, version="2.0.0")
     assert _place(new)[0, 3] == 0
     assert any("'toWorld' is not supported" in note for note in new.warnings)

@@ -171,7 +171,7 @@ def _spotlight(picture: Value, intensity: Color, beam: float, cutoff: float) -> 
         angle = np.degrees(np.arctan2(np.hypot(x, y), z))
         width = max(cutoff - beam, 1e-9)
         falloff = np.clip((cutoff - angle) / width, 0, 1) * (angle < cutoff)
-        return colors * np.asarray(intensity) * falloff[:, None]
+        return np.asarray(colors * np.asarray(intensity) * falloff[:, None])
 
     return shine
 
@@ -183,7 +183,7 @@ def _slide(picture: Value, scale: float, half: float, aspect: float) -> Shine:
         depth = np.maximum(z, 1e-9)
         u, v = 0.5 - 0.5 * x / (depth * half), 0.5 - 0.5 * aspect * y / (depth * half)
         inside = (u >= 0) & (u <= 1) & (v >= 0) & (v <= 1) & (z > 0)
-        return looked_up(picture, u, v) * (scale * inside / depth**3)[:, None]
+        return np.asarray(looked_up(picture, u, v) * (scale * inside / depth**3)[:, None])
 
     return shine
 

@@ -100,7 +100,6 @@ class Media:
         found.take()
         if volume.plugin == "constvolume":
             volume.use()
-            volume.skip("to_world")
             return self._textures.color(volume, "value", 1.0)
         if volume.plugin in _GRIDS and name == "sigma_t":
             return hue
@@ -109,12 +108,21 @@ class Media:
         return default, default, default
 
     def _grid(self, node: Node, local: Matrix) -> Grid | None:
-        """Grid of extinction; None: the medium is even."""
+        """Grid of extinction; None: the medium is even, and without end."""
         found = node.find("sigma_t")
-        if found is None or not isinstance(found.value, Node) or found.value.plugin not in _GRIDS:
+        volume = None if found is None else found.value
+        if found is not None and isinstance(volume, Node) and volume.plugin in _GRIDS:
+            found.take()
+            return self._of_file(volume, local)
+        if node.plugin == "homogeneous":
             return None
-        found.take()
-        volume = found.value
+        # Mitsuba's heterogeneous media fill the unit cube of their extinction alone.
+        box = volume.transform() if isinstance(volume, Node) else np.eye(4)
+        placed = np.linalg.inv(local) @ self._world @ box
+        return Grid(DensityGrid(np.ones((1, 1, 1), np.float32), placed), (1.0, 1.0, 1.0))
+
+    def _of_file(self, volume: Node, local: Matrix) -> Grid:
+        """Grid of a file."""
         volume.use()
         volume.skip("filter_type", "wrap_mode", "accel", "raw", "max_value")
         files = self._context.document.files_of(volume)

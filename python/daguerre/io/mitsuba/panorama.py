@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from daguerre.io.usd.panorama import resampled
 
 Picture = NDArray[np.float32]
+#: Rows up to which a panorama that is tilted is drawn finer, which keeps it sharp.
+_FINE = 1024
 
 
 def panorama(pixels: Picture, turn: NDArray[np.float64]) -> tuple[Picture, float]:
@@ -29,7 +31,7 @@ def panorama(pixels: Picture, turn: NDArray[np.float64]) -> tuple[Picture, float
     """
     rows = _between_poles(pixels)
     if turn[1, 1] < 1 - 1e-9:
-        return resampled(rows, turn, len(rows)), 0.0
+        return resampled(rows, turn, max(len(rows), min(4 * len(rows), _FINE))), 0.0
     half = rows.shape[1] // 2
     rotation = math.degrees(math.atan2(turn[0, 2], turn[2, 2]))
     if rows.shape[1] % 2:  # no whole number of columns is half a turn

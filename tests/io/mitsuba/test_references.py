@@ -1,0 +1,128 @@
+"""Mitsuba's own reference pictures: a Z-test per pixel for its scenes.
+
+The folder of the public collection mitsuba-data is named by ``DAGUERRE_MITSUBA_DATA``. The rule is
+that of Mitsuba's render tests (src/render/tests/test_renders.py): two million samples per scene;
+CIE XYZ; a family-wise error of 1 % by Sidak's correction; 99.75 % of all values must pass. Two
+things differ. Wavelengths are sampled here, which adds noise that its variances lack: the larger of
+both variances counts. And their paths end by counts of steps, ours by counts of surfaces.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import daguerre as dg
+from daguerre.io.exr.reader import ExrReader
+from daguerre.io.mitsuba.reader import read_all
+
+FOLDER = os.environ.get("DAGUERRE_MITSUBA_DATA", "")
+BUDGET, BATCHES, ERROR, PASSING = 2_000_000, 16, 0.01, 0.9975
+#: Least variance of a sample.
+LEAST = 1e-4
+_XYZ = np.array(
+    [
+        [0.412453, 0.357580, 0.180423],
+        [0.212671, 0.715160, 0.072169],
+        [0.019334, 0.119193, 0.950227],
+    ]
+)
+Picture = NDArray[np.float64]
+#: Scenes that do not pass, and why; docs/scenes.md has the same table.
+LACKING: dict[str, str] = {}
+#: Scenes that do.
+PASSES: tuple[str, ...] = ()
+
+
+def _exr(path: Path) -> Picture:
+    with ExrReader(path) as reader:
+        planes = reader.rows(0, reader.height, ["R", "G", "B"])
+    return np.stack([planes[name] for name in "RGB"], axis=2).astype(np.float64) @ _XYZ.T
+
+
+def _scene(name: str) -> Path:
+    if not FOLDER:
+        pytest.skip("DAGUERRE_MITSUBA_DATA names no folder with mitsuba-data")
+    found = sorted((Path(FOLDER) / "tests/scenes").glob(f"{name}_*.xml"))
+    assert len(found) == 1, name
+    return found[0]
+
+
+def _drawn(path: Path, spp: int) -> tuple[Picture, Picture]:
+    """Picture, and variance of a sample, by independent batches."""
+    scene, settings, _ = read_all(path, allow_dirs=(FOLDER,))
+    chosen = next(iter(settings.values()))
+    pictures = np.array(
+        [
+            dg.render(
+                scene,
+                scene.camera(),
+                resolution=chosen.resolution,
+                filter=chosen.filter,
+                max_depth=chosen.max_depth or 64,
+                spp=spp // BATCHES,
+                seed=100 + i,
+            ).rgb
+            for i in range(BATCHES)
+        ],
+        np.float64,
+    )
+    pictures = pictures @ _XYZ.T
+    return pictures.mean(axis=0), pictures.var(axis=0, ddof=1) * (spp // BATCHES)
+
+
+def share_that_passes(mean: Picture, own: Picture, path: Path, spp: int) -> float:
+    """Share of values whose difference from the reference chance explains."""
+    stem = path.parent / "refs" / path.stem.rsplit("_", 1)[0]
+    wanted, variance = _exr(Path(f"{stem}_ref_rgb.exr")), _exr(Path(f"{stem}_ref_rgb_var.exr"))
+    z = np.abs(mean - wanted) * np.sqrt(spp / np.maximum(np.maximum(variance, own), LEAST))
+    chance = np.vectorize(math.erfc)(z / math.sqrt(2))
+    pixels = wanted.shape[0] * wanted.shape[1]
+    return float((chance > 1 - (1 - ERROR) ** (1 / pixels)).mean())
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize("name", PASSES)
+def test_pictures_are_those_of_mitsuba(name: str) -> None:
+    path = _scene(name)
+    mean, own = _drawn(path, spp := _samples(path))
+    assert share_that_passes(mean, own, path, spp) >= PASSING
+    # light that is 3 % too bright is seen, or the noise of the reference hides it
+    assert share_that_passes(1.03 * mean, own, path, spp) < PASSING or name in NOISY
+
+
+#: Scenes whose references are too noisy to show 3 %.
+NOISY: tuple[str, ...] = ()
+
+
+def _samples(path: Path) -> int:
+    stem = path.parent / "refs" / path.stem.rsplit("_", 1)[0]
+    height, width = _exr(Path(f"{stem}_ref_rgb.exr")).shape[:2]
+    return BUDGET // (height * width)
+
+
+@pytest.mark.slow
+def test_every_reference_is_in_the_table() -> None:
+    if not FOLDER:
+        pytest.skip("DAGUERRE_MITSUBA_DATA names no folder with mitsuba-data")
+    root = Path(FOLDER) / "tests/scenes"
+    found = {
+        f"{path.parent.parent.name}/{path.name.removesuffix('_ref_rgb.exr')}"
+        for path in root.glob("*/refs/*_ref_rgb.exr")
+    }
+    assert found == {*PASSES, *LACKING}
+    assert not {*PASSES} & {*LACKING}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(LACKING))
+def test_scenes_that_lack_something_load(name: str) -> None:
+    path = _scene(name)
+    _, _, ledger = read_all(path, allow_dirs=(FOLDER,))
+    assert ledger.counts()[2] == 0
