@@ -220,3 +220,15 @@ def in_png(rng: Random, data: bytes) -> bytes:
         struct.pack(">I", len(held)) + name + held + struct.pack(">I", zlib.crc32(name + held))
         for name, held in chunks
     )
+
+
+def in_attributes(rng: Random, text: str) -> str:
+    """Puts words that break things, and words of other places, into attributes of an XML text."""
+    parts = text.split('"')
+    for _ in range(rng.randint(1, 3)):
+        place = 2 * rng.randrange(max(len(parts) // 2, 1)) + 1
+        if place < len(parts):
+            other = parts[2 * rng.randrange(max(len(parts) // 2, 1)) + 1]
+            word = rng.choice((rng.choice(WORDS), other, f"{parts[place]} {other}"))
+            parts[place] = word.replace('"', "").replace("<", "&lt;").replace("&a", "&amp;a")
+    return '"'.join(parts)[:MOST]

@@ -55,6 +55,7 @@ READERS = {
     "mesh": Reader("meshes", "mesh"),
     "grid": Reader("grids", "grid"),
     "pbrt": Reader("pbrts", "read_scene"),
+    "mitsuba": Reader("mitsubas", "scene"),
 }
 
 
@@ -77,6 +78,8 @@ def changed(rng: Random, name: str, data: bytes) -> bytes:
         text = data.decode()
     except UnicodeDecodeError:
         return changes.in_bytes(rng, data)
+    if suffix == ".xml" and rng.random() < 0.5:
+        return changes.in_attributes(rng, text).encode("utf-8", "surrogatepass")
     if suffix in (".json", ".gltf") and rng.random() < 0.8:
         try:
             return changes.dumped(rng, changes.in_tree(rng, json.loads(text)))

@@ -23,6 +23,7 @@ from tests.faults.scene import write_scene
 from tests.io.gltf import test_gltf_compressed_images as ktx2
 from tests.io.gltf import test_gltf_draco as draco
 from tests.io.gltf import test_gltf_meshopt as meshopt
+from tests.io.mitsuba import scene_files
 from tests.io.pbrt import everything as pbrt_scene
 from tests.lenses.test_lens_fuzz import SEEDS as LENSES
 from tests.support import mesh_files, tracked
@@ -246,3 +247,11 @@ def pbrts(folder: Path) -> Iterator[Seed]:
     data = pbrt_scene.everything(folder)[0].read_bytes()
     yield "scene.pbrt", data
     yield "v3.pbrt", data + b"WorldEnd"
+
+
+def mitsubas(folder: Path) -> Iterator[Seed]:
+    """Scenes of Mitsuba, of today and of 0.6, with a mesh beside them."""
+    (folder / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n")
+    yield "rich.xml", scene_files.text_of(*scene_files.RICH)
+    yield "many.xml", scene_files.text_of(*scene_files.MANY)
+    yield "old.xml", scene_files.text_of(*scene_files.OLD, version="0.6.0")

@@ -13,7 +13,7 @@ import daguerre as dg
 from daguerre.io.mitsuba.reader import read_all
 from daguerre.io.mitsuba.upgrade import underscored
 
-from .scene_files import camera, loaded, written
+from .scene_files import RICH, loaded, written
 
 BALL = '<shape type="sphere" id="ball">{}</shape>'
 
@@ -231,34 +231,8 @@ def test_what_is_no_scene_is_refused(text: str, wrong: str, tmp_path: Path) -> N
         dg.load(path)
 
 
-#: A scene with something of everything, and things that nobody understands.
-_RICH = (
-    '<default name="spp" value="16"/>',
-    '<integrator type="moment"><integrator type="path"><integer name="max_depth" value="3"/>'
-    '<boolean name="hide_emitters" value="true"/></integrator></integrator>',
-    camera(),
-    '<bsdf type="twosided" id="two"><bsdf type="mask"><float name="opacity" value="0.5"/>'
-    '<bsdf type="roughplastic"><float name="alpha" value="0.2"/><float name="odd" value="1"/>'
-    "</bsdf></bsdf></bsdf>",
-    '<bsdf type="hair" id="hairy"><float name="beta" value="1"/></bsdf>',
-    '<bsdf type="diffuse" id="idle"><rgb name="reflectance" value="1"/></bsdf>',
-    '<texture type="checkerboard" id="squares"><transform name="to_uv"><scale value="5"/>'
-    "</transform></texture>",
-    '<shape type="sphere"><ref id="two"/><emitter type="area">'
-    '<rgb name="radiance" value="1 2 3"/></emitter></shape>',
-    '<shape type="cube"><ref id="hairy"/></shape>',
-    '<shape type="sdfgrid"><string name="filename" value="x"/><ref id="two"/></shape>',
-    '<shape type="disk"><bsdf type="diffuse"><ref id="squares" name="reflectance"/></bsdf></shape>',
-    '<shape type="shapegroup" id="group"><shape type="rectangle"/></shape>',
-    '<shape type="instance"><ref id="group"/><transform name="to_world"><translate x="3"/>'
-    '<rotate y="1" angle="20"/></transform></shape>',
-    '<emitter type="sunsky"><float name="turbidity" value="3"/></emitter>',
-    '<emitter type="constant"/>',
-)
-
-
 def test_all_elements_are_used_or_noted(tmp_path: Path) -> None:
-    path = written(tmp_path, *_RICH)
+    path = written(tmp_path, *RICH)
     scene, _, ledger = read_all(path)
     used, noted, rest = ledger.counts()
     assert used + noted == len(list(ElementTree.parse(path).iter()))
@@ -279,8 +253,8 @@ def test_all_elements_are_used_or_noted(tmp_path: Path) -> None:
 
 
 def test_elements_of_included_files_count(tmp_path: Path) -> None:
-    inner = written(tmp_path, *_RICH[:3], name="inner.xml")
-    path = written(tmp_path, '<include filename="inner.xml"/>', *_RICH[3:])
+    inner = written(tmp_path, *RICH[:3], name="inner.xml")
+    path = written(tmp_path, '<include filename="inner.xml"/>', *RICH[3:])
     _, _, ledger = read_all(path)
     used, noted, rest = ledger.counts()
     assert rest == 0

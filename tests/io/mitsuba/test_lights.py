@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -128,7 +129,7 @@ def _sky(folder: Path, width: int = 128) -> None:
     colors = np.stack([np.exp(3 * east), np.exp(3 * up), np.exp(2 * north - up)], axis=2)
     import OpenImageIO as oiio
 
-    made = oiio.ImageOutput.create(str(folder / "sky.exr"))
+    made: Any = oiio.ImageOutput.create(str(folder / "sky.exr"))
     made.open(str(folder / "sky.exr"), oiio.ImageSpec(width, height, 3, oiio.FLOAT))
     made.write_image(colors.astype(np.float32))
     made.close()

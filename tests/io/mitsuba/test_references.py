@@ -42,7 +42,8 @@ PASSES: tuple[str, ...] = ()
 def _exr(path: Path) -> Picture:
     with ExrReader(path) as reader:
         planes = reader.rows(0, reader.height, ["R", "G", "B"])
-    return np.stack([planes[name] for name in "RGB"], axis=2).astype(np.float64) @ _XYZ.T
+    rgb = np.stack([planes[name] for name in "RGB"], axis=2).astype(np.float64)
+    return np.asarray(rgb @ _XYZ.T)
 
 
 def _scene(name: str) -> Path:
@@ -104,7 +105,7 @@ NOISY: tuple[str, ...] = ()
 def _samples(path: Path) -> int:
     stem = path.parent / "refs" / path.stem.rsplit("_", 1)[0]
     height, width = _exr(Path(f"{stem}_ref_rgb.exr")).shape[:2]
-    return BUDGET // (height * width)
+    return int(BUDGET // (height * width))
 
 
 @pytest.mark.slow

@@ -51,8 +51,10 @@ class Media:
         """Medium of an object; ``local`` is the scene from the space of the mesh around it."""
         if node is None:
             return None
-        grid = any(inner.plugin in _GRIDS for _, inner in node.objects("volume", "texture"))
-        key = (id(node), local.tobytes() if grid else b"")
+        placed = node.plugin == "heterogeneous"
+        if placed and not abs(np.linalg.det(local)) > 0:
+            node.fail("wanted a mesh whose transform has an inverse around it, got another")
+        key = (id(node), local.tobytes() if placed else b"")
         if key not in self._known:
             self._known[key] = self._read(node, local)
         return self._known[key]
