@@ -24,7 +24,7 @@ def load(
     strict: bool = False,
     **options: Any,
 ) -> Scene:
-    """Reads a scene file (.glb, .gltf, .usd, .usda, .usdc, .usdz, .pbrt, or a registered one).
+    """Reads a scene file (.glb, .gltf, .usd, .usda, .usdc, .usdz, .pbrt, .xml, or a registered one).
 
     A file without a camera gets a camera named ``framing`` that has everything in view.
 
@@ -39,6 +39,8 @@ def load(
             names of purposes to draw besides ``default`` (default: ``("render",)``), and
             ``camera_units``, the unit of focal lengths and apertures in mm (default: a tenth of a
             scene unit). glTF has ``animated``: other moments than ``time`` will be drawn, too.
+            Mitsuba has ``define``, values of the file's parameters by name or as ``name=value``,
+            and ``unit_m``, the length of a unit in m (default: 1).
 
     Raises:
         InputError: The file cannot be used; the message names the file and the place in it. Or
