@@ -176,3 +176,30 @@ def test_a_cylinder_needs_a_length_and_an_unknown_shape_is_noted(tmp_path: Path)
         loaded(tmp_path, '<shape type="cylinder"><point name="p1" value="0 0 0"/></shape>')
     notes = loaded(tmp_path, '<shape type="sdfgrid"/>').warnings
     assert "a shape 'sdfgrid' is left out (1 use)" in notes
+
+
+def test_colours_of_meshes_are_reflectances(tmp_path: Path) -> None:
+    (tmp_path / "a.ply").write_text(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+        "property float z\nproperty float color_0\nproperty float color_1\n"
+        "property float color_2\nelement face 2\nproperty list uchar int vertex_indices\n"
+        "property float r\nproperty float g\nproperty float b\nend_header\n"
+        "0 0 0 1 0 0\n1 0 0 0 1 0\n1 1 0 0 0 1\n0 1 0 1 1 1\n"
+        "3 0 1 2 0.1 0.2 0.3\n3 0 2 3 0.4 0.5 0.6\n"
+    )
+    body = (
+        '<shape type="ply"><string name="filename" value="a.ply"/><bsdf type="diffuse">'
+        '<texture type="mesh_attribute" name="reflectance"><string name="name" value="{}"/>'
+        "</texture></bsdf></shape>"
+    )
+    scene = loaded(tmp_path, body.format("vertex_color"))
+    assert scene.materials[0].kind == dg.Diffuse((1, 1, 1))
+    colors = scene.meshes[0].colors
+    assert colors is not None
+    assert np.allclose(colors[:, :3], [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)])
+    by_face = loaded(tmp_path, body.format("face_color")).meshes[0]
+    assert by_face.colors is not None
+    for three, color in zip(by_face.indices, ((0.1, 0.2, 0.3), (0.4, 0.5, 0.6)), strict=True):
+        assert np.allclose(by_face.colors[three, :3], color)
+    other = loaded(tmp_path, body.format("face_weight"))
+    assert "the attribute 'face_weight' of a mesh is left out (1 use)" in other.warnings

@@ -37,6 +37,7 @@ class FileMesh(FixedArrays):
     normals: Floats | None = None
     uv: Floats | None = None
     colors: Floats | None = None
+    face_colors: Floats | None = None
     name: str = ""
 
     def __repr__(self) -> str:

@@ -32,7 +32,7 @@ _POSITION, _NORMAL = ("x", "y", "z"), ("nx", "ny", "nz")
 _UV = (("u", "v"), ("s", "t"), ("texture_u", "texture_v"), ("texture_s", "texture_t"))
 _COLORS = (
     ("red", "green", "blue", "alpha"), ("red", "green", "blue"), ("r", "g", "b", "a"),
-    ("r", "g", "b"),
+    ("r", "g", "b"), ("color_0", "color_1", "color_2"),
 )  # fmt: skip
 _CORNERS, _CORNER_UV = ("vertex_indices", "vertex_index"), ("texcoord", "texture_coordinates")
 
@@ -151,7 +151,9 @@ def _with_faces(mesh: FileMesh, element: Element, rows: Rows, where: str, notes:
     if uv is not None:
         check_finite(uv[0], where, uv[1])
         used.add(uv[1])
-    _note_others(element, used, "faces", notes)
+    colored = next((names for names in _COLORS if _has(element, names)), ())
+    colors = _colors(element, rows, colored, where)
+    _note_others(element, {*used, *colored}, "faces", notes)
     corners = check_corners(faces.values, len(mesh.positions), where)
     sizes = faces.sizes
     kept = None if uv is None else uv[0]
@@ -161,11 +163,13 @@ def _with_faces(mesh: FileMesh, element: Element, rows: Rows, where: str, notes:
         inside = np.repeat(whole, sizes)
         corners, sizes = corners[inside], sizes[whole]
         kept = None if kept is None else kept[inside]
+        colors = None if colors is None else freeze_in_place(colors[whole])
     triangles = not len(sizes) or (sizes[0] == 3 and bool((sizes == 3).all()))
     whole_mesh = replace(
         mesh,
         corners=freeze_in_place(corners),
         sizes=None if triangles else freeze_in_place(sizes.astype(np.uint32)),
+        face_colors=colors,
     )
     return whole_mesh if kept is None else with_corner_uv(whole_mesh, kept)
 

@@ -18,8 +18,8 @@ from .node import Node
 from .vertex_normals import vertex_normals
 
 FILES = ("obj", "ply", "serialized")
-#: Attributes of vertices that become colours of the mesh.
-_COLORS = ("vertex_color",)
+#: Attributes that become colours of the mesh.
+_COLORS = ("vertex_color", "face_color")
 
 
 @dataclass(frozen=True)
@@ -97,8 +97,20 @@ class MeshFiles:
             mesh = replace(mesh, uv=(mesh.uv * (1, -1) + (0, 1)).astype(np.float32))
         if wanted.inside_out:
             mesh = inside_out(mesh)
+        if wanted.attribute == "face_color":
+            mesh = colored_by_faces(mesh)
         name = wanted.file.name
         return mesh.add_to(self._context.scene, name, colors=bool(wanted.attribute))
+
+
+def colored_by_faces(mesh: FileMesh) -> FileMesh:
+    """The mesh with the colours of its faces at their corners."""
+    faces = len(mesh.corners) // 3 if mesh.sizes is None else len(mesh.sizes)
+    sizes = np.full(faces, 3, np.uint32) if mesh.sizes is None else mesh.sizes
+    colors = mesh.face_colors
+    if colors is None:
+        return replace(mesh, sizes=sizes, colors=None)
+    return replace(mesh, sizes=sizes, colors=np.repeat(colors, sizes, axis=0), face_colors=None)
 
 
 def inside_out(mesh: FileMesh) -> FileMesh:
