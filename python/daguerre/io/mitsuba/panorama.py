@@ -12,7 +12,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.io.usd.panorama import resampled
+from daguerre.io.panorama import resampled
 
 Picture = NDArray[np.float32]
 #: Rows up to which a panorama that is tilted is drawn finer, which keeps it sharp.
