@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from .plates.match.reader import read_plate_camera
     from .plates.probe.probe import light_probe
     from .rendering.diffraction import Diffraction
+    from .rendering.export_scene import export_scene
     from .rendering.merged import merge
     from .rendering.render import iter_render, render
     from .rendering.rig import render_rig, stereo_pair
@@ -120,6 +121,7 @@ __all__ = [
     "development",
     "distortion",
     "export_camera",
+    "export_scene",
     "exposure",
     "iter_render",
     "keys",
@@ -184,6 +186,7 @@ _LAZY = {
     "Diffraction": "rendering.diffraction",
     "load": "io.load",
     "export_camera": "io.export_camera",
+    "export_scene": "rendering.export_scene",
     "load_frame": "io.exr.read",
     "Frame": "frame.frame",
     "Raw": "frame.raw",

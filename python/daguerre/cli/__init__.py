@@ -52,6 +52,7 @@ COMMANDS = {
     "chart": Command(".chart", "Write a test chart as a scene."),
     "calibrate": Command(".calibrate", "Fit a projection to a lens."),
     "export-camera": Command(".export_camera", "Write cameras as a USD stage."),
+    "export-scene": Command(".export_scene", "Write a scene for pbrt-v4 or Mitsuba 3."),
     "match-plate": Command(".match_plate", "Find the camera settings of a photograph."),
     "light-probe": Command(".light_probe", "Build an environment from photographs of a probe."),
     "composite": Command(".composite", "Put rendered objects into a photograph."),

@@ -18,7 +18,7 @@ from daguerre.errors import InputError, UsageError, suggest
 
 from . import extras
 
-Kind = Literal["scene", "frame", "picture", "raw", "environment", "camera", "profile"]
+Kind = Literal["scene", "frame", "picture", "raw", "environment", "camera", "exchange", "profile"]
 #: A function, or "module:function", which is imported on first use.
 Function = str | Callable[..., Any]
 #: Suffix that matches every suffix without another row of the kind.
@@ -81,6 +81,8 @@ _FORMATS = [
     Format("OpenUSD", "camera", (".usda", ".usdc", ".usd"), None,
            "daguerre.io.usd.camera_writer:write_cameras", ("times",),
            ("pxr", extras.hint("pxr"))),
+    Format("pbrt-v4", "exchange", (".pbrt",), None, "daguerre.io.pbrt.writer:write"),
+    Format("Mitsuba 3", "exchange", (".xml",), None, "daguerre.io.mitsuba.writer:write"),
     Format("an image", "environment", (ANY,), "daguerre.io.images:read_environment"),
     Format("IES LM-63", "profile", (".ies",), "daguerre.io.ies:read"),
 ]  # fmt: skip

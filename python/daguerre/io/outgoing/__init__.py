@@ -1,0 +1,1 @@
+"""Scenes on their way to other renderers: what every writer of them shares."""

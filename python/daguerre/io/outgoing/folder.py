@@ -1,0 +1,94 @@
+"""Folder of the files that a written scene refers to.
+
+Files are named by a hash of their content, and the scene file is written after all of them. So
+a scene file that was there before stays whole at any moment, with its own files; only when the new
+one stands do files go that it has no use for.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+from daguerre.errors import OutputError
+from daguerre.files.atomic import atomic_path, remove, write_bytes
+
+_OURS = re.compile(r"[a-z]+-[0-9a-f]{16}\.[a-z]{3}")
+_ODD = re.compile(r"[^\w.\- ]")
+
+
+def plain_name(name: str) -> str:
+    """Returns a name without signs that end or escape texts of scene files."""
+    return _ODD.sub("_", name)
+
+
+class OutgoingFolder:
+    """Files beside a scene file, in a folder of its name."""
+
+    def __init__(self, scene_path: Path) -> None:
+        """Makes the folder, if it is not there.
+
+        Raises:
+            OutputError: It cannot be made.
+        """
+        self._scene = scene_path
+        suffix = scene_path.suffix.lower().removeprefix(".")
+        self.path = scene_path.with_name(f"{plain_name(scene_path.stem)}-{suffix}-files")
+        self._names: set[str] = set()
+        self._made = False
+
+    def add(self, kind: str, suffix: str, data: bytes) -> str:
+        """Writes bytes, once for equal ones; returns the path relative to the scene file."""
+        return self.write(
+            kind, suffix, hashlib.sha256(data), lambda path: path.write_bytes(data) and None
+        )
+
+    def write(
+        self, kind: str, suffix: str, content: hashlib._Hash, write: Callable[[Path], None]
+    ) -> str:
+        """Writes a file, unless one of this content is there.
+
+        Args:
+            kind: First word of its name, such as ``mesh``.
+            suffix: Suffix with its dot.
+            content: Hash of the content.
+            write: Function that writes a temporary file.
+
+        Returns:
+            Path relative to the scene file, with slashes.
+
+        Raises:
+            OutputError: It cannot be written.
+        """
+        self._make()
+        name = f"{kind}-{content.hexdigest()[:16]}{suffix}"
+        target = self.path / name
+        if name not in self._names and not target.is_file():
+            with atomic_path(target) as temp:
+                write(temp)
+        self._names.add(name)
+        return f"{self.path.name}/{name}"
+
+    def finish(self, text: str) -> None:
+        """Writes the scene file, then removes files of earlier ones that it does not use."""
+        write_bytes(self._scene, text.encode())
+        if not self.path.is_dir():
+            return
+        for found in self.path.iterdir():
+            if found.name not in self._names and _OURS.fullmatch(found.name):
+                remove(found)
+        if not self._names:
+            with suppress(OSError):  # it holds something else
+                self.path.rmdir()
+
+    def _make(self) -> None:
+        if self._made:
+            return
+        try:
+            self.path.mkdir(exist_ok=True)
+        except OSError as error:
+            raise OutputError(f"{self.path}: cannot write: {error.strerror or error}") from error
+        self._made = True

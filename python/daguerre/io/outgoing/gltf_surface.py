@@ -1,0 +1,196 @@
+"""glTF materials as the surfaces that other renderers have.
+
+The dielectric of glTF is a diffuse base below an interface whose light does not saturate; its metal
+has Schlick's Fresnel term. Source: glTF 2.0, Appendix B, and the extensions' texts.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from daguerre.scene.materials import Gltf, TextureSlot
+
+from .pictures import Baker, Color, Colored, Number, Picture, each
+from .surfaces import (
+    BLACK,
+    Absorption,
+    Blend,
+    Emission,
+    Glass,
+    Lambert,
+    Look,
+    Metal,
+    Plastic,
+    Surface,
+)
+
+#: Highest reflectance at normal incidence that an index of refraction stands for.
+MOST_F0 = 0.9
+_LEFT_OUT = {
+    "clearcoat": "clear coat of a glTF material is left out",
+    "sheen_color": "sheen of a glTF material is left out",
+    "iridescence": "iridescence of a glTF material is left out",
+    "anisotropy": "anisotropy of a glTF material is left out: its roughness is round",
+    "diffuse_transmission": "diffuse transmission of a glTF material is left out",
+    "dispersion": "dispersion of a glTF material is left out: it has one index of refraction",
+}
+
+
+@dataclass(frozen=True)
+class _Interface:
+    """Index of refraction, and the factor on what it reflects."""
+
+    ior: float
+    tint: Colored
+
+
+def gltf_look(kind: Gltf, baker: Baker) -> Look:
+    """Translates a glTF material, without the emission of the material that holds it."""
+    base = baker.color(kind.base_color_texture, kind.base_color)
+    if kind.unlit:
+        return Look(Lambert(BLACK), _opacity(kind, baker), emission=Emission(base, True),
+                    uv_set=_uv_set(kind, baker), vertex_colors=True)  # fmt: skip
+    _note_extensions(kind, baker)
+    surface = _glossy(kind, base, baker) if kind.specular_glossiness else _rough(kind, base, baker)
+    return Look(
+        surface,
+        _opacity(kind, baker),
+        baker.normals(kind.normal_texture, kind.normal_scale),
+        Emission(_emissive(kind, baker), kind.double_sided),
+        _inside(kind),
+        _uv_set(kind, baker),
+        vertex_colors=True,
+    )
+
+
+def _rough(kind: Gltf, base: Colored, baker: Baker) -> Surface:
+    texture = kind.metallic_roughness_texture
+    alpha = each(baker.number(texture, kind.roughness, 1), np.square)
+    metallic = baker.number(texture, kind.metallic, 2)
+    dielectric = _dielectric(kind, base, alpha, baker)
+    return _mixed(dielectric, Metal(base, alpha, schlick=True), metallic)
+
+
+def _dielectric(kind: Gltf, base: Colored, alpha: Number, baker: Baker) -> Surface:
+    interface = _interface(kind, baker)
+    opaque: Surface = Plastic(base, interface.ior, alpha, interface.tint)
+    if interface.ior == 1 or interface.tint == BLACK:
+        opaque = Lambert(base)
+    transmission = baker.number(kind.transmission_texture, kind.transmission, 0)
+    glass = Glass(interface.ior, alpha, base, thin=kind.thickness == 0)
+    return _mixed(opaque, glass, transmission)
+
+
+def _glossy(kind: Gltf, base: Colored, baker: Baker) -> Surface:
+    """Specular-glossiness: a base and F0 of any colour."""
+    texture = kind.specular_glossiness_texture
+    alpha = each(baker.number(texture, kind.glossiness, 3), lambda gloss: (1 - gloss) ** 2)
+    f0 = baker.color(texture, kind.specular_color)
+    if isinstance(f0, Picture):
+        baker.notes.add("texture of a glTF specular colour is written as its mean")
+        f0 = _mean(f0)
+    left = 1 - max(f0)
+    shade = (
+        base.mapped(lambda light: light * left) if isinstance(base, Picture) else _times(base, left)
+    )
+    interface = _of_f0(f0, baker)
+    return Plastic(shade, interface.ior, alpha, interface.tint)
+
+
+def _interface(kind: Gltf, baker: Baker) -> _Interface:
+    """Index and tint that have the reflectance of KHR_materials_ior and _specular."""
+    for slot in (kind.specular_texture, kind.specular_color_texture):
+        if slot is not None:
+            baker.notes.add("texture of glTF specular is left out: its factor is written")
+    if kind.ior == 0:
+        return _of_f0(_times(kind.specular_color, kind.specular), baker)
+    if kind.specular == 1 and kind.specular_color == (1.0, 1.0, 1.0):
+        return _Interface(kind.ior, (1.0, 1.0, 1.0))
+    f0 = _times(kind.specular_color, kind.specular * ((kind.ior - 1) / (kind.ior + 1)) ** 2)
+    return _of_f0(_clipped(f0), baker)
+
+
+def _of_f0(f0: Color, baker: Baker) -> _Interface:
+    top = max(f0)
+    if top <= 0:
+        return _Interface(1.0, BLACK)
+    if top > MOST_F0:
+        baker.notes.add(f"reflectance above {MOST_F0} of a glTF dielectric is written as that")
+    if min(f0) < top:
+        baker.notes.add("coloured specular of a glTF material is coloured at grazing angles, too")
+    root = math.sqrt(min(top, MOST_F0))
+    return _Interface((1 + root) / (1 - root), _times(f0, 1 / top))
+
+
+def _mixed(first: Surface, second: Surface, amount: Number) -> Surface:
+    if not isinstance(amount, Picture):
+        if amount <= 0:
+            return first
+        if amount >= 1:
+            return second
+    return Blend(first, second, amount)
+
+
+def _opacity(kind: Gltf, baker: Baker) -> Number:
+    if kind.alpha_mode == "opaque":
+        return 1.0
+    alpha = baker.number(kind.base_color_texture, kind.base_alpha, 3)
+    if kind.alpha_mode != "mask":
+        return alpha
+    cut = kind.alpha_cutoff
+    if isinstance(alpha, Picture):
+        baker.notes.add("alpha mask of a glTF material is cut at its texels, not between them")
+    return each(alpha, lambda a: (np.asarray(a) >= cut).astype(np.float32))
+
+
+def _emissive(kind: Gltf, baker: Baker) -> Colored:
+    if kind.emissive == BLACK:
+        return BLACK
+    return baker.color(kind.emissive_texture, kind.emissive)
+
+
+def _inside(kind: Gltf) -> Absorption | None:
+    absorbs = kind.transmission > 0 and kind.thickness > 0
+    if not absorbs or math.isinf(kind.attenuation_distance):
+        return None
+    return Absorption(kind.attenuation_color, kind.attenuation_distance)
+
+
+def _note_extensions(kind: Gltf, baker: Baker) -> None:
+    for name, sentence in _LEFT_OUT.items():
+        value = getattr(kind, name)
+        if (max(value) if isinstance(value, tuple) else value) > 0:
+            baker.notes.add(sentence)
+
+
+def _uv_set(kind: Gltf, baker: Baker) -> int:
+    """Set of texture coordinates of the material: that of its first texture."""
+    slots: list[TextureSlot] = [
+        slot for name, slot in vars(kind).items() if name.endswith("_texture") and slot is not None
+    ]
+    used = [slot for slot in slots if slot is not kind.occlusion_texture]
+    if not used:
+        return 0
+    others = sum(slot.uv_set != used[0].uv_set for slot in used)
+    if others:
+        baker.notes.add(
+            "texture on another set of coordinates than the first one of its material is written "
+            "on that one's", others,
+        )  # fmt: skip
+    return used[0].uv_set
+
+
+def _mean(picture: Picture) -> Color:
+    red, green, blue = (float(x) for x in picture.linear.mean(axis=(0, 1)))
+    return red, green, blue
+
+
+def _times(color: Color, factor: float) -> Color:
+    return color[0] * factor, color[1] * factor, color[2] * factor
+
+
+def _clipped(color: Color) -> Color:
+    return min(color[0], 1.0), min(color[1], 1.0), min(color[2], 1.0)

@@ -1,0 +1,56 @@
+"""Meshes of a scene as PLY files, one for each way in which they are used."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.files.notes import Notes
+from daguerre.scene.parts import Mesh
+from daguerre.scene.scene import Scene
+
+from .folder import OutgoingFolder
+from .ply import ply_bytes
+from .surfaces import Look
+
+
+class MeshFiles:
+    """PLY files of a scene's meshes.
+
+    Attributes:
+        notes: Remarks.
+    """
+
+    def __init__(self, scene: Scene, folder: OutgoingFolder, notes: Notes, *, v_up: bool) -> None:
+        """Takes a scene.
+
+        Args:
+            scene: The scene.
+            folder: Folder for the files.
+            notes: Remarks.
+            v_up: Whether texture coordinates have v up, as pbrt has them; they are mirrored then.
+        """
+        self._scene, self._folder, self.notes = scene, folder, notes
+        self._v_up = v_up
+        self._known: dict[tuple[int, int, bool], str] = {}
+
+    def path(self, index: int, look: Look, *, reversed: bool = False) -> str:
+        """Path of a mesh for a material, relative to the scene file."""
+        mesh = self._scene.meshes[index]
+        if look.vertex_colors and mesh.colors is not None and bool((mesh.colors != 1).any()):
+            self.notes.add("vertex colours of a mesh are left out")
+        key = index, look.uv_set, reversed
+        if key not in self._known:
+            data = ply_bytes(mesh, self._uv(mesh, look.uv_set), reversed=reversed)
+            self._known[key] = self._folder.add("mesh", ".ply", data)
+        return self._known[key]
+
+    def has_normals(self, index: int) -> bool:
+        """Whether a mesh has normals; without, its triangles are flat."""
+        return self._scene.meshes[index].normals is not None
+
+    def _uv(self, mesh: Mesh, uv_set: int) -> NDArray[np.float32] | None:
+        uv = mesh.uv1 if uv_set else mesh.uv
+        if uv is None or not self._v_up:
+            return uv
+        return np.asarray(uv * np.float32([1, -1]) + np.float32([0, 1]), np.float32)

@@ -1,0 +1,48 @@
+"""Writes a scene for pbrt-v4: a text file, and a folder of meshes and pictures beside it.
+
+Units agree: pbrt scales each light so that L, I or a picture of 1 is 1 nit, and its film, with
+the CIE's observer as its sensor, ISO 100 and 1 s, keeps that number; so its picture has the numbers
+of a frame.
+
+Source: pbrt-v4 file format (pbrt.org/fileformat-v4), and pbrt's source for conventions.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from daguerre.io.outgoing.folder import OutgoingFolder
+from daguerre.io.outgoing.looks import look_of
+from daguerre.io.outgoing.meshes import MeshFiles
+from daguerre.io.outgoing.pictures import Baker
+from daguerre.io.outgoing.placing import placements
+from daguerre.io.outgoing.record import Outgoing
+
+from .writer_camera import add_camera
+from .writer_lights import add_environment, add_lights
+from .writer_materials import Materials
+from .writer_shapes import Shapes
+from .writer_text import Text
+
+
+def write(path: str | os.PathLike[str], outgoing: Outgoing) -> None:
+    """Writes the scene; its file appears whole, after the files that it refers to.
+
+    Raises:
+        OutputError: A file cannot be written.
+    """
+    scene, notes = outgoing.scene, outgoing.notes
+    folder = OutgoingFolder(Path(path))
+    text = Text()
+    add_camera(text, outgoing, folder, Path(path).stem)
+    text.line("WorldBegin")
+    baker = Baker(scene.textures, notes)
+    looks = [look_of(material, baker) for material in scene.materials]
+    materials = Materials(text, folder, notes)
+    shapes = Shapes(text, looks, materials, MeshFiles(scene, folder, notes, v_up=True))
+    add_lights(text, scene.lights, folder, notes)
+    add_environment(text, scene.environment, folder, notes)
+    for placed in placements(scene, notes):
+        shapes.add(placed)
+    folder.finish(str(text))
