@@ -14,7 +14,7 @@ _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\Z")
 #: Numbers that a value of a type has; None: any.
 _COUNTS = {
     "float": 1, "integer": 1, "rgb": 3, "point3": 3, "vector3": 3, "spectrum": None, "bool": 1,
-    "string": None, "texture": 1,
+    "string": 1, "texture": 1,
 }  # fmt: skip
 _ROUGH = {"roughness", "uroughness", "vroughness", "remaproughness", "normalmap", "displacement"}
 #: Names of parameters by directive and kind.
@@ -59,6 +59,7 @@ KINDS: dict[tuple[str, str], set[str]] = {
     },
 }  # fmt: skip
 _BEFORE_WORLD = {"Camera", "Film", "PixelFilter", "Sampler", "Integrator", "Transform"}
+_ANYWHERE = {"Transform", "MakeNamedMedium", "MediumInterface"}
 
 
 @dataclass
@@ -87,9 +88,9 @@ def read(text: str) -> list[Directive]:
     assert names.count("WorldBegin") == 1
     world = names.index("WorldBegin")
     for one in found[:world]:
-        assert one.name in _BEFORE_WORLD, one
+        assert one.name in _BEFORE_WORLD | _ANYWHERE, one
     for one in found[world + 1 :]:
-        assert one.name not in _BEFORE_WORLD - {"Transform"}, one
+        assert one.name not in _BEFORE_WORLD - _ANYWHERE, one
     _check_blocks(found)
     _check_names(found)
     return found

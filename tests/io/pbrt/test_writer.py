@@ -55,14 +55,14 @@ def test_the_camera_sees_what_ours_sees(tmp_path: Path) -> None:
     assert found[0].name == "Transform"
     tangent = math.tan(math.radians(view.values("fov")[0]) / 2)
     left, right, bottom, top = np.array(view.values("screenwindow")) * tangent
-    ours = dg.raymap(scene, camera, resolution=(48, 32))
+    ours = dg.raymap(camera, (48, 32), scene=scene, frame="world")
     for x, y, column, row in ((left, top, 0, 0), (right, bottom, 47, 31)):
         # Middles of corner pixels lie half a pixel inside.
         u = x + (right - left) / 96 * (1 if column == 0 else -1)
         v = y + (top - bottom) / 64 * (-1 if row == 0 else 1)
         toward = world[:3, :3] @ (u, v, 1.0)
         toward = toward / np.linalg.norm(toward)
-        np.testing.assert_allclose(toward, ours.directions[row, column], atol=1e-5)
+        np.testing.assert_allclose(toward, ours.direction[row, column], atol=1e-5)
     np.testing.assert_allclose(world[:3, 3], camera.transform[:3, 3], atol=1e-9)
     assert view.values("lensradius")[0] == pytest.approx(40 / 2 / 2 * 1e-3)
     assert view.values("focaldistance") == [4.0]

@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 
 from daguerre.compiled import __version__
 from daguerre.io.outgoing.folder import OutgoingFolder
-from daguerre.io.outgoing.looks import look_of
+from daguerre.io.outgoing.looks import Looks
 from daguerre.io.outgoing.meshes import MeshFiles
 from daguerre.io.outgoing.pictures import Baker
 from daguerre.io.outgoing.placing import placements
@@ -23,6 +23,7 @@ from daguerre.io.outgoing.record import Outgoing
 from .writer_bsdfs import Bsdfs
 from .writer_camera import add_sensor
 from .writer_lights import add_environment, add_lights
+from .writer_media import Media
 from .writer_shapes import Shapes
 from .writer_xml import Element, add, add_value, with_comment
 
@@ -38,14 +39,15 @@ def write(path: str | os.PathLike[str], outgoing: Outgoing) -> None:
     root = ElementTree.Element("scene", version="3.0.0")
     integrator = add(root, "integrator", type="path")
     add_value(integrator, "integer", "max_depth", outgoing.max_depth + 1)  # edges of a path
-    add_sensor(root, outgoing)
-    baker = Baker(scene.textures, notes)
-    looks = [look_of(material, baker) for material in scene.materials]
+    sensor = add_sensor(root, outgoing)
+    media = Media(scene.fog, notes)
+    media.add_fog(root, sensor)
+    looks = Looks(scene, Baker(scene.textures, notes)).all()
     bsdfs = Bsdfs(root, folder, notes)
-    shapes = Shapes(root, looks, bsdfs, MeshFiles(scene, folder, notes, v_up=False))
+    shapes = Shapes(root, looks, bsdfs, MeshFiles(scene, folder, notes, v_up=False), media)
     for placed in placements(scene, notes):
         shapes.add(placed)
-    if shapes.absorbing:
+    if media.used:
         integrator.set("type", "volpath")
     add_lights(root, scene.lights, folder, notes)
     add_environment(root, scene.environment, folder)

@@ -11,20 +11,20 @@ import numpy as np
 from daguerre.files.notes import Notes
 from daguerre.io.outgoing.coats import sheet_ior
 from daguerre.io.outgoing.folder import OutgoingFolder
-from daguerre.io.outgoing.pictures import Colored, Picture, each, scaled
+from daguerre.io.outgoing.pictures import BLACK, WHITE, Colored, Number, Picture, each, scaled
 from daguerre.io.outgoing.surfaces import (
-    BLACK,
-    WHITE,
     Blend,
     Glass,
     Lambert,
     Look,
     Metal,
+    Nothing,
     Plastic,
+    Rough,
     Surface,
-    clear,
-    is_smooth,
+    Varnish,
 )
+from daguerre.scene.spectrum import Spectrum
 
 from .writer_xml import Element, Values, add, add_rgb, add_value
 
@@ -32,6 +32,7 @@ from .writer_xml import Element, Values, add, add_rgb, add_value
 _LEAST_STEP = 1e-4
 #: Share of a rough coat beside its base, in which it is that much brighter.
 _COAT_SHARE = 0.02
+_D_NM = 587.56
 
 
 class Bsdfs:
@@ -55,7 +56,7 @@ class Bsdfs:
             parent = add(parent, "bsdf", type="mask", id=name)
             self.values.number(parent, "opacity", look.opacity)
             name = ""
-        if not clear(look.surface):
+        if look.two_sided and not look.clear:
             parent = add(parent, "bsdf", type="twosided", id=name)
             name = ""
         if look.normals is not None:
@@ -66,6 +67,8 @@ class Bsdfs:
 
     def _add(self, parent: Element, surface: Surface, name: str = "") -> None:
         if isinstance(surface, Lambert):
+            if surface.through != BLACK:
+                self._notes.add("diffuse transmission is left out")
             bsdf = add(parent, "bsdf", type="diffuse", id=name)
             self.values.color(bsdf, "reflectance", surface.color)
         elif isinstance(surface, Metal):
@@ -74,6 +77,11 @@ class Bsdfs:
             self._add_plastic(parent, surface, name)
         elif isinstance(surface, Glass):
             self._add_glass(parent, surface, name)
+        elif isinstance(surface, Varnish):
+            self._notes.add("coat of a metal is left out")
+            self._add_metal(parent, surface.metal, name)
+        elif isinstance(surface, Nothing):
+            add(parent, "bsdf", type="null", id=name)
         else:
             self._add_blend(parent, surface, name)
 
@@ -86,41 +94,44 @@ class Bsdfs:
     def _add_metal(self, parent: Element, surface: Metal, name: str) -> None:
         if surface.schlick:
             self._notes.add("metal of a glTF material is written as Mitsuba's principled")
-            bsdf = self._principled(parent, surface.alpha, name)
+            bsdf = self._principled(parent, surface.rough.u, name)
             self.values.color(bsdf, "base_color", surface.color)
             add_value(bsdf, "float", "metallic", 1.0)
             return
-        smooth = is_smooth(surface.alpha)
-        kind = "conductor" if smooth else "roughconductor"
-        bsdf = add(parent, "bsdf", type=kind, id=name)
-        add_value(bsdf, "string", "material", "none")  # reflects all
-        self.values.color(bsdf, "specular_reflectance", surface.color)
-        if not smooth:
-            self._add_roughness(bsdf, surface.alpha)
+        smooth = surface.rough.smooth
+        bsdf = add(parent, "bsdf", type="conductor" if smooth else "roughconductor", id=name)
+        if surface.eta is None or surface.k is None:
+            add_value(bsdf, "string", "material", "none")  # reflects all
+        else:
+            self.values.color(bsdf, "eta", surface.eta)
+            self.values.color(bsdf, "k", surface.k)
+        self._add_factor(bsdf, "specular_reflectance", surface.color)
+        self._add_roughness(bsdf, surface.rough)
 
     def _add_plastic(self, parent: Element, surface: Plastic, name: str) -> None:
-        alpha = surface.alpha
+        alpha = surface.rough.u
         if isinstance(alpha, Picture):
-            self._notes.add(
-                "texture of roughness below a glTF dielectric is written with Mitsuba's "
-                "principled, whose diffuse part is another"
-            )
-            bsdf = self._principled(parent, alpha, name)
-            passed = 1 - ((surface.ior - 1) / (surface.ior + 1)) ** 2  # by the coat, head on
-            self.values.color(bsdf, "base_color", scaled(surface.color, passed))
-            add_value(bsdf, "float", "eta", max(surface.ior, 1 + _LEAST_STEP))
-            return
-        if not is_smooth(alpha):
-            self._add_rough_plastic(parent, surface, alpha, name)
-            return
-        bsdf = self._plastic(parent, "plastic", surface.ior, name)
-        self.values.color(bsdf, "diffuse_reflectance", surface.color)
-        if surface.tint != WHITE:
-            self.values.color(bsdf, "specular_reflectance", surface.tint)
+            self._add_textured_plastic(parent, surface, alpha, name)
+        elif not surface.rough.smooth:
+            self._add_rough_plastic(parent, surface, name)
+        else:
+            bsdf = self._plastic(parent, "plastic", surface, name)
+            self.values.color(bsdf, "diffuse_reflectance", surface.color)
+            self._add_factor(bsdf, "specular_reflectance", surface.tint)
 
-    def _add_rough_plastic(
-        self, parent: Element, surface: Plastic, alpha: float, name: str
+    def _add_textured_plastic(
+        self, parent: Element, surface: Plastic, alpha: Picture, name: str
     ) -> None:
+        self._notes.add(
+            "texture of roughness on a coat is written with Mitsuba's principled, whose diffuse "
+            "part is another"
+        )
+        bsdf = self._principled(parent, alpha, name)
+        passed = 1 - ((surface.ior - 1) / (surface.ior + 1)) ** 2  # by the coat, head on
+        self.values.color(bsdf, "base_color", scaled(surface.color, passed))
+        add_value(bsdf, "float", "eta", max(surface.ior, 1 + _LEAST_STEP))
+
+    def _add_rough_plastic(self, parent: Element, surface: Plastic, name: str) -> None:
         """Adds the base below a smooth coat, and beside it the rough coat on nothing.
 
         Mitsuba's ``roughplastic`` loses the light that facets send down: half of it at roughness
@@ -128,62 +139,83 @@ class Bsdfs:
         small.
         """
         self._notes.add(
-            "rough glTF dielectric is a blend of the base of a smooth plastic and a rough coat"
+            "rough coat on a diffuse base is a blend of that of a smooth plastic and a coat"
         )
         if _is_black(surface.color):
-            self._add_coat(parent, surface, alpha, 1.0, name)
+            self._add_coat(parent, surface, 1.0, name)
             return
         bsdf = add(parent, "bsdf", type="blendbsdf", id=name)
         add_value(bsdf, "float", "weight", _COAT_SHARE)
-        base = self._plastic(bsdf, "plastic", surface.ior, "")
-        self.values.color(base, "diffuse_reflectance", scaled(surface.color, 1 / (1 - _COAT_SHARE)))
+        base = self._plastic(bsdf, "plastic", surface, "")
+        brighter = scaled(surface.color, 1 / (1 - _COAT_SHARE))
+        self.values.color(base, "diffuse_reflectance", brighter)
         add_value(base, "spectrum", "specular_reflectance", 0.0)
-        self._add_coat(bsdf, surface, alpha, _COAT_SHARE, "")
+        self._add_coat(bsdf, surface, _COAT_SHARE, "")
 
-    def _add_coat(
-        self, parent: Element, surface: Plastic, alpha: float, share: float, name: str
-    ) -> None:
+    def _add_coat(self, parent: Element, surface: Plastic, share: float, name: str) -> None:
         """Adds a rough coat on nothing, which counts as if its share were 1."""
-        coat = self._plastic(parent, "roughplastic", surface.ior, name)
+        coat = self._plastic(parent, "roughplastic", surface, name)
         add_rgb(coat, "diffuse_reflectance", BLACK)
         add_value(coat, "spectrum", "specular_reflectance", _grey(surface.tint) / share)
-        self._add_roughness(coat, alpha)
+        if surface.rough.v is not None:
+            self._notes.add("anisotropy of a coat is left out: its roughness is round")
+        self._add_roughness(coat, Rough(surface.rough.u))
 
-    def _plastic(self, parent: Element, kind: str, ior: float, name: str) -> Element:
+    def _plastic(self, parent: Element, kind: str, surface: Plastic, name: str) -> Element:
         bsdf = add(parent, "bsdf", type=kind, id=name)
-        self._add_ior(bsdf, ior)
+        self._add_ior(bsdf, surface.ior)
+        if surface.saturates:
+            add_value(bsdf, "boolean", "nonlinear", True)
         return bsdf
 
     def _add_glass(self, parent: Element, surface: Glass, name: str) -> None:
-        if surface.thin:
-            self._add_sheet(parent, surface, name)
+        if surface.pane:
+            self._add_pane(parent, surface, name)
             return
-        smooth = is_smooth(surface.alpha)
-        bsdf = add(parent, "bsdf", type="dielectric" if smooth else "roughdielectric", id=name)
-        self._add_ior(bsdf, surface.ior)
-        if surface.tint != WHITE:
-            self.values.color(bsdf, "specular_transmittance", surface.tint)
-        if not smooth:
-            self._add_roughness(bsdf, surface.alpha)
+        kind = "dielectric" if surface.rough.smooth else "roughdielectric"
+        bsdf = add(parent, "bsdf", type=kind, id=name)
+        self._add_ior(bsdf, self._index(surface.ior))
+        self._add_factor(bsdf, "specular_transmittance", surface.tint)
+        self._add_factor(bsdf, "specular_reflectance", surface.reflection)
+        self._add_roughness(bsdf, surface.rough)
 
-    def _add_sheet(self, parent: Element, surface: Glass, name: str) -> None:
-        """Adds a sheet whose own internal reflections bring it to ours at normal incidence."""
-        if not is_smooth(surface.alpha):
+    def _add_pane(self, parent: Element, surface: Glass, name: str) -> None:
+        """Adds a sheet; one of our glTF's gets another index (``sheet_ior``)."""
+        ior = self._index(surface.ior)
+        if not surface.rough.smooth:
             self._notes.add("roughness of a thin sheet of glass is left out")
-        self._notes.add("thin sheet of glass reflects as ours at normal incidence alone")
+        if surface.pane == "single":
+            self._notes.add("thin sheet of glass reflects as ours at normal incidence alone")
+            ior = sheet_ior(ior)
         bsdf = add(parent, "bsdf", type="thindielectric", id=name)
-        self._add_ior(bsdf, sheet_ior(surface.ior))
-        if surface.tint != WHITE:
-            self.values.color(bsdf, "specular_transmittance", surface.tint)
+        self._add_ior(bsdf, ior)
+        self._add_factor(bsdf, "specular_transmittance", surface.tint)
+        self._add_factor(bsdf, "specular_reflectance", surface.reflection)
 
-    def _principled(self, parent: Element, alpha: float | Picture, name: str) -> Element:
+    def _index(self, ior: float | Spectrum) -> float:
+        if not isinstance(ior, Spectrum):
+            return ior
+        self._notes.add("dispersion of glass is left out: its index is at 587.6 nm")
+        return float(ior.at(_D_NM))
+
+    def _principled(self, parent: Element, alpha: Number, name: str) -> Element:
         bsdf = add(parent, "bsdf", type="principled", id=name)
         self.values.number(bsdf, "roughness", each(alpha, np.sqrt))
         return bsdf
 
-    def _add_roughness(self, bsdf: Element, alpha: float | Picture) -> None:
+    def _add_factor(self, bsdf: Element, name: str, color: Colored) -> None:
+        if color != WHITE:
+            self.values.color(bsdf, name, color)
+
+    def _add_roughness(self, bsdf: Element, rough: Rough) -> None:
+        if rough.smooth:
+            return
         add_value(bsdf, "string", "distribution", "ggx")
-        self.values.number(bsdf, "alpha", alpha)
+        if rough.v is None:
+            self.values.number(bsdf, "alpha", rough.u)
+        else:
+            self.values.number(bsdf, "alpha_u", rough.u)
+            self.values.number(bsdf, "alpha_v", rough.v)
 
     def _add_ior(self, bsdf: Element, ior: float) -> None:
         add_value(bsdf, "float", "int_ior", ior if abs(ior - 1) > _LEAST_STEP else 1 + _LEAST_STEP)
@@ -191,10 +223,14 @@ class Bsdfs:
 
 
 def _grey(tint: Colored) -> float:
-    mean = tint.linear.mean() if isinstance(tint, Picture) else sum(tint) / 3
-    return float(mean)
+    """Mean of a factor, where Mitsuba takes no colour above 1."""
+    if isinstance(tint, Picture):
+        return float(tint.linear.mean())
+    return float(np.mean(tint.values if isinstance(tint, Spectrum) else tint))
 
 
 def _is_black(color: Colored) -> bool:
     """Whether nothing is reflected; Mitsuba then divides 0 by 0 for its choice of lobes."""
-    return bool(color.pixels.max() <= 0) if isinstance(color, Picture) else max(color) <= 0
+    if isinstance(color, Picture):
+        return bool(color.pixels.max() <= 0)
+    return max(color.values if isinstance(color, Spectrum) else color) <= 0

@@ -46,8 +46,8 @@ class _Window:
         return cls(size, (abs(right) + right, abs(up) - up))
 
 
-def add_sensor(root: Element, outgoing: Outgoing) -> None:
-    """Adds the camera, its film and the number of samples."""
+def add_sensor(root: Element, outgoing: Outgoing) -> Element:
+    """Adds the camera, its film and the number of samples; returns the sensor."""
     view, size = outgoing.view, outgoing.resolution
     thin = view.aperture_radius_m > 0
     window = _Window.of(view, size, outgoing.notes) if thin else _Window(size, (0, 0))
@@ -65,6 +65,7 @@ def add_sensor(root: Element, outgoing: Outgoing) -> None:
     if view.lens is not None:
         outgoing.notes.add("lens with a prescription is written as a thin lens of its framing")
     _add_film(sensor, outgoing, window)
+    return sensor
 
 
 def _field(view: View, wider: float) -> float:

@@ -11,7 +11,7 @@ from daguerre.files.notes import Notes
 from daguerre.io.outgoing.folder import OutgoingFolder
 from daguerre.io.outgoing.lamps import plain, spot_factors, turned
 from daguerre.io.outgoing.picture_file import write_pixels
-from daguerre.io.outgoing.surfaces import BLACK
+from daguerre.io.outgoing.pictures import BLACK
 from daguerre.scene.lights import DirectionalLight, Light, PointLight, SphereLight, SpotLight
 from daguerre.scene.parts import Environment
 

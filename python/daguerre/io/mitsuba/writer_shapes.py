@@ -4,29 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from daguerre.io.outgoing.media import absorption
 from daguerre.io.outgoing.meshes import MeshFiles
 from daguerre.io.outgoing.placing import Placed, mirrored
-from daguerre.io.outgoing.surfaces import Absorption, Emission, Look
+from daguerre.io.outgoing.surfaces import Emission, Look
 
 from .writer_bsdfs import Bsdfs
-from .writer_xml import Element, add, add_matrix, add_rgb, add_value
-
-
-#: Least absorption, 1/m, of a medium.
-_LEAST = 1e-9
+from .writer_media import Media
+from .writer_xml import Element, add, add_matrix, add_value
 
 
 class Shapes:
-    """Shapes of a file.
+    """Shapes of a file."""
 
-    Attributes:
-        absorbing: Whether one of them is filled with an absorbing medium.
-    """
-
-    def __init__(self, root: Element, looks: list[Look], bsdfs: Bsdfs, meshes: MeshFiles) -> None:
+    def __init__(
+        self, root: Element, looks: list[Look], bsdfs: Bsdfs, meshes: MeshFiles, media: Media
+    ) -> None:
         self._root, self._looks, self._bsdfs, self._meshes = root, looks, bsdfs, meshes
-        self.absorbing = False
+        self._media = media
         self._groups = 0
 
     def add(self, placed: Placed) -> None:
@@ -36,6 +30,7 @@ class Shapes:
         corners, which are turned round for it.
         """
         look = self._looks[placed.material]
+        self._bsdfs.id_of(placed.material, look)  # stands before its use
         if len(placed.transforms) > 1 and not look.emission.present:
             self._add_group(placed)
             return
@@ -47,7 +42,6 @@ class Shapes:
     def _add_group(self, placed: Placed) -> None:
         name = f"group-{self._groups}"
         self._groups += 1
-        self._bsdfs.id_of(placed.material, self._looks[placed.material])  # before its use
         group = add(self._root, "shape", type="shapegroup", id=name)
         self._add_mesh(group, placed, reversed=False)
         for transform in placed.transforms:
@@ -57,17 +51,15 @@ class Shapes:
 
     def _add_mesh(self, parent: Element, placed: Placed, *, reversed: bool) -> Element:
         look = self._looks[placed.material]
-        bsdf = self._bsdfs.id_of(placed.material, look)
         shape = add(parent, "shape", type="ply")
         path = self._meshes.path(placed.mesh, look, reversed=reversed)
         add_value(shape, "string", "filename", path)
         if not self._meshes.has_normals(placed.mesh):
             add_value(shape, "boolean", "face_normals", True)
-        add(shape, "ref", id=bsdf)
+        add(shape, "ref", id=self._bsdfs.id_of(placed.material, look))
         if look.emission.present:
             self._add_emission(shape, look.emission)
-        if look.inside is not None:
-            self._add_inside(shape, look.inside)
+        self._media.add_sides(shape, look)
         return shape
 
     def _add_emission(self, shape: Element, emission: Emission) -> None:
@@ -75,14 +67,3 @@ class Shapes:
             self._meshes.notes.add("mesh that shines to both sides shines from its front alone")
         emitter = add(shape, "emitter", type="area")
         self._bsdfs.values.color(emitter, "radiance", emission.color)
-
-    def _add_inside(self, shape: Element, inside: Absorption) -> None:
-        """Adds the absorption of KHR_materials_volume: color^(x / distance)."""
-        self.absorbing = True
-        medium = add(shape, "medium", type="homogeneous", name="interior")
-        # A colour may be no more than 1, and ``scale`` multiplies it.
-        per_metre = absorption(inside)
-        most = max(*per_metre, _LEAST)
-        add_rgb(medium, "sigma_t", [value / most for value in per_metre])
-        add_value(medium, "float", "scale", most)
-        add_rgb(medium, "albedo", (0.0, 0.0, 0.0))

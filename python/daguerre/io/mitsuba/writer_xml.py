@@ -12,6 +12,8 @@ from daguerre.files.notes import Notes
 from daguerre.io.outgoing.folder import OutgoingFolder
 from daguerre.io.outgoing.picture_file import write_pixels
 from daguerre.io.outgoing.pictures import IDENTITY, Colored, Number, Picture
+from daguerre.io.outgoing.spectra import samples
+from daguerre.scene.spectrum import Spectrum
 
 Element = ElementTree.Element
 
@@ -64,6 +66,9 @@ class Values:
         """Adds a colour, or a bitmap of one."""
         if isinstance(value, Picture):
             self.bitmap(parent, name, value, raw=False)
+        elif isinstance(value, Spectrum):
+            pairs = ", ".join(f"{_text(nm)}:{_text(v)}" for nm, v in samples(value))
+            add_value(parent, "spectrum", name, pairs)
         else:
             add_rgb(parent, name, value)
 

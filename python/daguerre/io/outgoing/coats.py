@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.scene.spectrum import Spectrum
+
 from .pictures import Colored, Picture
 
 
@@ -47,6 +49,8 @@ def base_below(color: Colored, ior: float) -> Colored:
 
     if isinstance(color, Picture):
         return color.mapped(below)
+    if isinstance(color, Spectrum):
+        return Spectrum(color.wavelengths_nm, tuple(below(np.array(color.values)).tolist()))
     red, green, blue = (float(c) for c in below(np.asarray(color)))
     return red, green, blue
 

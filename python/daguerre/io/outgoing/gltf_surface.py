@@ -12,23 +12,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from daguerre.scene.materials import Gltf, TextureSlot
+from daguerre.scene.media import Medium
+from daguerre.scene.spectrum import Spectrum
 
-from .pictures import Baker, Color, Colored, Number, Picture, each
-from .surfaces import (
-    BLACK,
-    Absorption,
-    Blend,
-    Emission,
-    Glass,
-    Lambert,
-    Look,
-    Metal,
-    Plastic,
-    Surface,
-)
+from .pictures import BLACK, WHITE, Baker, Color, Colored, Number, Picture, each, scaled
+from .surfaces import Blend, Emission, Glass, Lambert, Look, Metal, Plastic, Rough, Surface
+from .texture_sets import uv_set_of
 
 #: Highest reflectance at normal incidence that an index of refraction stands for.
 MOST_F0 = 0.9
+#: Least share of light that passes over the distance of an absorption.
+_LEAST_SHARE = 1e-6
 _LEFT_OUT = {
     "clearcoat": "clear coat of a glTF material is left out",
     "sheen_color": "sheen of a glTF material is left out",
@@ -60,27 +54,27 @@ def gltf_look(kind: Gltf, baker: Baker) -> Look:
         _opacity(kind, baker),
         baker.normals(kind.normal_texture, kind.normal_scale),
         Emission(_emissive(kind, baker), kind.double_sided),
-        _inside(kind),
-        _uv_set(kind, baker),
+        inside=_inside(kind),
+        uv_set=_uv_set(kind, baker),
         vertex_colors=True,
     )
 
 
 def _rough(kind: Gltf, base: Colored, baker: Baker) -> Surface:
     texture = kind.metallic_roughness_texture
-    alpha = each(baker.number(texture, kind.roughness, 1), np.square)
+    rough = Rough(each(baker.number(texture, kind.roughness, 1), np.square))
     metallic = baker.number(texture, kind.metallic, 2)
-    dielectric = _dielectric(kind, base, alpha, baker)
-    return _mixed(dielectric, Metal(base, alpha, schlick=True), metallic)
+    dielectric = _dielectric(kind, base, rough, baker)
+    return _mixed(dielectric, Metal(base, rough, schlick=True), metallic)
 
 
-def _dielectric(kind: Gltf, base: Colored, alpha: Number, baker: Baker) -> Surface:
+def _dielectric(kind: Gltf, base: Colored, rough: Rough, baker: Baker) -> Surface:
     interface = _interface(kind, baker)
-    opaque: Surface = Plastic(base, interface.ior, alpha, interface.tint)
+    opaque: Surface = Plastic(base, interface.ior, rough, interface.tint)
     if interface.ior == 1 or interface.tint == BLACK:
         opaque = Lambert(base)
     transmission = baker.number(kind.transmission_texture, kind.transmission, 0)
-    glass = Glass(interface.ior, alpha, base, thin=kind.thickness == 0)
+    glass = Glass(interface.ior, rough, base, pane="single" if kind.thickness == 0 else "")
     return _mixed(opaque, glass, transmission)
 
 
@@ -89,15 +83,12 @@ def _glossy(kind: Gltf, base: Colored, baker: Baker) -> Surface:
     texture = kind.specular_glossiness_texture
     alpha = each(baker.number(texture, kind.glossiness, 3), lambda gloss: (1 - gloss) ** 2)
     f0 = baker.color(texture, kind.specular_color)
+    assert not isinstance(f0, Spectrum)  # glTF has none
     if isinstance(f0, Picture):
         baker.notes.add("texture of a glTF specular colour is written as its mean")
         f0 = _mean(f0)
-    left = 1 - max(f0)
-    shade = (
-        base.mapped(lambda light: light * left) if isinstance(base, Picture) else _times(base, left)
-    )
     interface = _of_f0(f0, baker)
-    return Plastic(shade, interface.ior, alpha, interface.tint)
+    return Plastic(scaled(base, 1 - max(f0)), interface.ior, Rough(alpha), interface.tint)
 
 
 def _interface(kind: Gltf, baker: Baker) -> _Interface:
@@ -107,8 +98,8 @@ def _interface(kind: Gltf, baker: Baker) -> _Interface:
             baker.notes.add("texture of glTF specular is left out: its factor is written")
     if kind.ior == 0:
         return _of_f0(_times(kind.specular_color, kind.specular), baker)
-    if kind.specular == 1 and kind.specular_color == (1.0, 1.0, 1.0):
-        return _Interface(kind.ior, (1.0, 1.0, 1.0))
+    if kind.specular == 1 and kind.specular_color == WHITE:
+        return _Interface(kind.ior, WHITE)
     f0 = _times(kind.specular_color, kind.specular * ((kind.ior - 1) / (kind.ior + 1)) ** 2)
     return _of_f0(_clipped(f0), baker)
 
@@ -152,11 +143,16 @@ def _emissive(kind: Gltf, baker: Baker) -> Colored:
     return baker.color(kind.emissive_texture, kind.emissive)
 
 
-def _inside(kind: Gltf) -> Absorption | None:
+def _inside(kind: Gltf) -> Medium | None:
+    """Absorption of KHR_materials_volume: color^(x / distance)."""
     absorbs = kind.transmission > 0 and kind.thickness > 0
     if not absorbs or math.isinf(kind.attenuation_distance):
         return None
-    return Absorption(kind.attenuation_color, kind.attenuation_distance)
+    red, green, blue = (
+        -math.log(max(share, _LEAST_SHARE)) / kind.attenuation_distance
+        for share in kind.attenuation_color
+    )
+    return Medium(absorption=(red, green, blue))
 
 
 def _note_extensions(kind: Gltf, baker: Baker) -> None:
@@ -167,20 +163,10 @@ def _note_extensions(kind: Gltf, baker: Baker) -> None:
 
 
 def _uv_set(kind: Gltf, baker: Baker) -> int:
-    """Set of texture coordinates of the material: that of its first texture."""
-    slots: list[TextureSlot] = [
-        slot for name, slot in vars(kind).items() if name.endswith("_texture") and slot is not None
-    ]
-    used = [slot for slot in slots if slot is not kind.occlusion_texture]
-    if not used:
-        return 0
-    others = sum(slot.uv_set != used[0].uv_set for slot in used)
-    if others:
-        baker.notes.add(
-            "texture on another set of coordinates than the first one of its material is written "
-            "on that one's", others,
-        )  # fmt: skip
-    return used[0].uv_set
+    """Set of texture coordinates of the material; occlusion is not used."""
+    slots = [slot for name, slot in vars(kind).items() if isinstance(slot, TextureSlot)
+             and name != "occlusion_texture"]  # fmt: skip
+    return uv_set_of(slots, baker.notes)
 
 
 def _mean(picture: Picture) -> Color:

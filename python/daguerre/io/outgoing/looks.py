@@ -3,48 +3,176 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
-from daguerre.scene.materials import Conductor, Dielectric, Diffuse, Gltf, Material
+from daguerre.scene.materials import (
+    Boundary,
+    Coated,
+    Conductor,
+    Dielectric,
+    Diffuse,
+    Gltf,
+    Material,
+    Mix,
+    TextureSlot,
+)
+from daguerre.scene.scene import Scene
+from daguerre.scene.spectrum import Spectrum
 
 from .gltf_surface import gltf_look
-from .pictures import Baker, Colored, Picture
-from .surfaces import BLACK, Emission, Glass, Lambert, Look, Metal
+from .pictures import Baker, Color, Colored, Number, Picture, each
+from .spectra import rgb_of, steps_of
+from .surfaces import (
+    Blend,
+    Emission,
+    Glass,
+    Lambert,
+    Look,
+    Metal,
+    Nothing,
+    Plastic,
+    Rough,
+    Surface,
+    Varnish,
+)
+from .texture_sets import uv_set_of
 
 
-def look_of(material: Material, baker: Baker) -> Look:
-    """Translates a material with its emission."""
-    look = _look(material, baker)
-    if material.profile is not None:
-        baker.notes.add("light profile of an emissive material is left out: it shines evenly")
-    if max(material.emission) <= 0:
-        return look
-    own = look.emission
-    if own.present and own.both_sides != material.two_sided_emission:
-        baker.notes.add("two emissions of a material, one to both sides, are written to both")
-    both = material.two_sided_emission or (own.present and own.both_sides)
-    return replace(look, emission=Emission(_sum(own.color, material.emission), both))
+class Looks:
+    """Looks of a scene's materials."""
 
+    def __init__(self, scene: Scene, baker: Baker) -> None:
+        self._materials, self._baker = scene.materials, baker
+        self._notes = baker.notes
 
-def _look(material: Material, baker: Baker) -> Look:
-    kind = material.kind
-    if isinstance(kind, Gltf):
-        return gltf_look(kind, baker)
-    if isinstance(kind, Conductor):
-        return Look(Metal(kind.reflectance, kind.alpha))
-    if isinstance(kind, Dielectric):
+    def all(self) -> list[Look]:
+        """Looks by the index of their material."""
+        return [self._look(material) for material in self._materials]
+
+    def _look(self, material: Material) -> Look:
+        kind = material.kind
+        look = gltf_look(kind, self._baker) if isinstance(kind, Gltf) else self._plain(material)
+        if not isinstance(kind, Gltf) or material.opacity_texture or material.opacity != 1:
+            own = self._baker.number(material.opacity_texture, material.opacity, 0)
+            if isinstance(own, Picture) and isinstance(look.opacity, Picture):
+                self._notes.add("second texture of opacity is written as its mean")
+            look = replace(look, opacity=_product(look.opacity, own))
+        if material.profile is not None:
+            self._notes.add("light profile of an emissive material is left out: it shines evenly")
+        inside = material.interior or look.inside
+        look = replace(look, inside=inside, outside=material.exterior, two_sided=material.two_sided)
+        return self._with_emission(look, material)
+
+    def _plain(self, material: Material) -> Look:
+        slots = [*_slots(material), *_slots(material.kind)]
+        if isinstance(material.kind, Coated):
+            slots += _slots(material.kind.base)
+        return Look(
+            self.surface(material.kind),
+            normals=self._baker.normals(material.normal_texture, material.normal_scale),
+            uv_set=uv_set_of(slots, self._notes),
+            vertex_colors=isinstance(material.kind, Diffuse),
+        )
+
+    def surface(self, kind: Any) -> Surface:
+        """Translates a kind of surface."""
+        if isinstance(kind, Gltf):
+            return gltf_look(kind, self._baker).surface
+        if isinstance(kind, Diffuse):
+            return Lambert(
+                self._baker.color(kind.reflectance_texture, kind.reflectance),
+                self._baker.color(kind.transmittance_texture, kind.transmittance),
+            )
+        if isinstance(kind, Conductor):
+            return self._metal(kind)
+        if isinstance(kind, Dielectric):
+            return self._glass(kind)
+        if isinstance(kind, Coated):
+            return self._coated(kind)
+        if isinstance(kind, Mix):
+            first, second = (self._materials[i].kind for i in (kind.first, kind.second))
+            amount = self._baker.number(kind.amount_texture, kind.amount, 0)
+            return Blend(self.surface(first), self.surface(second), amount)
+        assert isinstance(kind, Boundary)
+        return Nothing()
+
+    def _rough(self, kind: Conductor | Dielectric | Coated) -> Rough:
+        u = self._baker.number(kind.alpha_texture, kind.alpha, 0)
+        if kind.alpha_v is None:
+            return Rough(u)
+        return Rough(u, self._baker.number(kind.alpha_texture, kind.alpha_v, 1))
+
+    def _metal(self, kind: Conductor) -> Metal:
+        color = self._baker.color(kind.reflectance_texture, kind.reflectance)
+        return Metal(color, self._rough(kind), eta=self._index(kind.eta), k=self._index(kind.k))
+
+    def _index(self, value: Color | Spectrum | None) -> Spectrum | None:
+        if value is None or isinstance(value, Spectrum):
+            return value
+        if min(value) < max(value):
+            self._notes.add("index of a metal by colour is written in three steps of wavelength")
+        return steps_of(value)
+
+    def _glass(self, kind: Dielectric) -> Glass:
         if kind.dispersion > 0:
-            baker.notes.add("dispersion of a dielectric is left out: its index is that at 587.6 nm")
-        return Look(Glass(kind.ior, kind.alpha, kind.tint))
-    assert isinstance(kind, Diffuse)
-    return Look(Lambert(kind.reflectance))
+            self._notes.add("dispersion of a dielectric is left out: its index is at 587.6 nm")
+        if kind.energy_compensation and kind.alpha > 0:
+            self._notes.add("energy compensation of rough glass is left out: it is darker")
+        pane = "double" if kind.thin else ""
+        return Glass(kind.ior, self._rough(kind), kind.tint, kind.reflection_tint, pane)
+
+    def _coated(self, kind: Coated) -> Surface:
+        absorbs = (
+            kind.absorption.values if isinstance(kind.absorption, Spectrum) else kind.absorption
+        )
+        if kind.thickness > 0 and max(absorbs) > 0:
+            self._notes.add("absorption of a coat is left out: it is clear")
+        rough, tint = self._rough(kind), kind.specular_tint
+        base = self.surface(kind.base)
+        if isinstance(base, Metal):
+            return Varnish(base, kind.ior, rough, tint)
+        assert isinstance(base, Lambert)
+        return Plastic(base.color, kind.ior, rough, tint, kind.nonlinear)
+
+    def _with_emission(self, look: Look, material: Material) -> Look:
+        """Adds the emission of a material to that of its kind."""
+        if max(material.emission) <= 0:
+            return look
+        more = self._baker.color(material.emission_texture, material.emission)
+        own = look.emission
+        if not own.present:
+            return replace(look, emission=Emission(more, material.two_sided_emission))
+        if own.both_sides != material.two_sided_emission:
+            self._notes.add("two emissions of a material, one to both sides, are written to both")
+        both = material.two_sided_emission or own.both_sides
+        return replace(look, emission=Emission(self._sum(own.color, more), both))
+
+    def _sum(self, one: Colored, more: Colored) -> Colored:
+        if isinstance(one, Picture) and isinstance(more, Picture):
+            self._notes.add("second texture of emission is written as its mean")
+            more = _mean(more)
+        if isinstance(more, Picture):
+            one, more = more, one
+        assert not isinstance(more, Picture)
+        rgb = rgb_of(more) if isinstance(more, Spectrum) else more
+        if isinstance(one, Picture):
+            return one.mapped(lambda light: light + rgb)
+        own = rgb_of(one) if isinstance(one, Spectrum) else one
+        return own[0] + rgb[0], own[1] + rgb[1], own[2] + rgb[2]
 
 
-def _sum(own: Colored, more: tuple[float, float, float]) -> Colored:
-    if isinstance(own, Picture):
-        return own.mapped(lambda light: light + more)
-    return own[0] + more[0], own[1] + more[1], own[2] + more[2]
+def _slots(owner: Any) -> list[TextureSlot]:
+    return [slot for slot in vars(owner).values() if isinstance(slot, TextureSlot)]
 
 
-def dark(look: Look) -> bool:
-    """Whether nothing is reflected, as of a lamp."""
-    return isinstance(look.surface, Lambert) and look.surface.color == BLACK
+def _product(one: Number, other: Number) -> Number:
+    """Product of numbers; of two pictures the first one is kept."""
+    if isinstance(other, Picture) and not isinstance(one, Picture):
+        one, other = other, one
+    factor = float(other.linear.mean()) if isinstance(other, Picture) else other
+    return one if factor == 1 else each(one, lambda value: value * factor)
+
+
+def _mean(picture: Picture) -> Color:
+    red, green, blue = (float(x) for x in picture.linear.mean(axis=(0, 1)))
+    return red, green, blue

@@ -1,18 +1,47 @@
-"""Absorption inside of closed meshes."""
+"""Media on their way out: coefficients as colours."""
 
 from __future__ import annotations
 
-import math
+from dataclasses import dataclass
 
-from .surfaces import Absorption
+from daguerre.files.notes import Notes
+from daguerre.scene.media import Medium
+from daguerre.scene.spectrum import Spectrum
 
-#: Least share of light that passes over the distance of an absorption.
-_LEAST_SHARE = 1e-6
+from .spectra import Color, rgb_of
 
 
-def absorption(inside: Absorption) -> tuple[float, float, float]:
-    """Absorption coefficients, 1/m: light of share ``color`` is left after the distance."""
-    red, green, blue = (
-        -math.log(max(share, _LEAST_SHARE)) / inside.distance_m for share in inside.color
-    )
-    return red, green, blue
+@dataclass(frozen=True)
+class PlainMedium:
+    """An even medium: coefficients, 1/m, and the lobes of its phase function."""
+
+    absorption: Color
+    scattering: Color
+    lobes: tuple[tuple[float, float], ...]
+    emission: Color
+
+    @property
+    def extinction(self) -> Color:
+        """Sum of absorption and scattering, 1/m."""
+        (a, b, c), (d, e, f) = self.absorption, self.scattering
+        return a + d, b + e, c + f
+
+    @property
+    def empty(self) -> bool:
+        """Whether light passes as through nothing."""
+        return max(self.extinction) <= 0 and max(self.emission) <= 0
+
+
+def plain_medium(medium: Medium, notes: Notes) -> PlainMedium:
+    """Takes a medium apart, and notes what no written one has."""
+    if medium.density is not None:
+        notes.add("density grid of a medium is left out: it is even, with density 1")
+    values = []
+    for value in (medium.absorption, medium.scattering, medium.emission):
+        if isinstance(value, Spectrum):
+            notes.add("spectrum of a medium is written as a colour")
+            value = rgb_of(value)
+        values.append(value)
+    absorption, scattering, emission = values
+    lobes = tuple((g, weight) for g, weight in medium.lobes if weight > 0)
+    return PlainMedium(absorption, scattering, lobes, emission)

@@ -17,6 +17,9 @@ from daguerre.color import srgb
 from daguerre.files.notes import Notes
 from daguerre.scene.materials import TextureSlot
 from daguerre.scene.parts import Texture
+from daguerre.scene.spectrum import Spectrum
+
+from .spectra import rgb_of
 
 Color = tuple[float, float, float]
 Floats = NDArray[np.float32]
@@ -73,7 +76,9 @@ class Picture:
 
 
 Number = float | Picture
-Colored = Color | Picture
+Colored = Color | Spectrum | Picture
+BLACK: Color = (0.0, 0.0, 0.0)
+WHITE: Color = (1.0, 1.0, 1.0)
 
 
 class Baker:
@@ -83,14 +88,17 @@ class Baker:
         self._textures = textures
         self.notes = notes
 
-    def color(self, slot: TextureSlot | None, factor: Color) -> Colored:
+    def color(self, slot: TextureSlot | None, factor: Color | Spectrum) -> Colored:
         """Colour of a slot, times a factor."""
         if slot is None:
             return factor
+        if isinstance(factor, Spectrum):
+            self.notes.add("spectrum beside a texture is written as a colour")
+            factor = rgb_of(factor)
         texture = self._textures[slot.texture]
         rgb = _channels(texture, (0, 1, 2))
         made = _picture(texture, slot, rgb)
-        if factor == (1.0, 1.0, 1.0):
+        if factor == WHITE:
             return made
         return made.mapped(lambda light: light * np.asarray(factor, np.float32))
 
@@ -124,6 +132,9 @@ def scaled(color: Colored, factor: float) -> Colored:
     """Multiplies a colour by a number; no channel exceeds 1, as no surface reflects more."""
     if isinstance(color, Picture):
         return color.mapped(lambda light: np.minimum(light * factor, 1))
+    if isinstance(color, Spectrum):
+        values = np.minimum(np.multiply(color.values, factor), 1.0)
+        return Spectrum(color.wavelengths_nm, tuple(values.tolist()))
     red, green, blue = (min(c * factor, 1.0) for c in color)
     return red, green, blue
 

@@ -45,4 +45,4 @@ def ply_bytes(mesh: Mesh, uv: Array | None, *, reversed: bool) -> bytes:
         "property list uchar int vertex_indices",
         "end_header\n",
     ]
-    return "\n".join(lines).encode() + vertices.tobytes() + faces.tobytes()
+    return b"".join(["\n".join(lines).encode(), vertices.tobytes(), faces.tobytes()])

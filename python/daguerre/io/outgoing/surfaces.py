@@ -1,64 +1,112 @@
 """Surfaces in terms that pbrt and Mitsuba share: the small set from which both are written.
 
-A value may be a constant or a picture. Roughness is GGX alpha. Writers say in a note what their
-renderer lacks.
+A value may be a constant or a picture, and a constant colour a spectrum. Roughness is GGX alpha.
+Writers say in a note what their renderer lacks.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from .pictures import Colored, Number, Picture
+from daguerre.scene.media import Medium
+from daguerre.scene.spectrum import Spectrum
 
-BLACK = (0.0, 0.0, 0.0)
-WHITE = (1.0, 1.0, 1.0)
+from .pictures import BLACK, WHITE, Colored, Number, Picture
+
 #: Roughness (alpha) below which a surface is smooth, as in the core.
 SMOOTH = 1e-3
 
 
 @dataclass(frozen=True)
+class Rough:
+    """GGX roughness along u, and along v; None: the same."""
+
+    u: Number = 0.0
+    v: Number | None = None
+
+    @property
+    def smooth(self) -> bool:
+        """Whether it is that of a polished surface."""
+        return _is_smooth(self.u) and (self.v is None or _is_smooth(self.v))
+
+
+POLISHED = Rough()
+
+
+@dataclass(frozen=True)
 class Lambert:
-    """Diffuse reflection."""
+    """Diffuse reflection, and diffuse transmission."""
 
     color: Colored = (0.5, 0.5, 0.5)
+    through: Colored = BLACK
 
 
 @dataclass(frozen=True)
 class Metal:
-    """Microfacets that reflect ``color``; ``schlick``: at normal incidence, white at grazing."""
+    """Microfacets of a metal.
+
+    Attributes:
+        color: Share that facets reflect, or a factor on what ``eta`` and ``k`` say.
+        rough: Roughness.
+        schlick: Whether ``color`` is that of normal incidence, and grazing light is all reflected.
+        eta: Real part of the index of refraction; None: ``color`` alone.
+        k: Imaginary part.
+    """
 
     color: Colored = WHITE
-    alpha: Number = 0.1
+    rough: Rough = POLISHED
     schlick: bool = False
+    eta: Spectrum | None = None
+    k: Spectrum | None = None
 
 
 @dataclass(frozen=True)
 class Glass:
-    """Clear dielectric, its normal pointing outside; ``thin``: a sheet that bends nothing.
+    """Clear dielectric, its normal pointing outside.
 
-    A thin sheet reflects as one interface does, without what goes to and fro inside of it.
+    Attributes:
+        ior: Index of refraction.
+        rough: Roughness.
+        tint: Factor on what is transmitted.
+        reflection: Factor on what is reflected.
+        pane: ``""``: it bounds glass; ``"double"``: a sheet with all that goes to and fro inside;
+            ``"single"``: a sheet that reflects as one interface does.
     """
 
-    ior: float = 1.5
-    alpha: Number = 0.0
+    ior: float | Spectrum = 1.5
+    rough: Rough = POLISHED
     tint: Colored = WHITE
-    thin: bool = False
+    reflection: Colored = WHITE
+    pane: str = ""
 
 
 @dataclass(frozen=True)
 class Plastic:
-    """Diffuse base below a dielectric, whose light does not saturate between the two.
+    """Diffuse base below a dielectric coat.
 
     Attributes:
-        color: Diffuse colour as seen through the coat, without the light that this reflects.
-        ior: Index of the dielectric.
-        alpha: Its roughness.
+        color: Colour of the base.
+        ior: Index of the coat.
+        rough: Its roughness.
         tint: Factor on what it reflects.
+        saturates: Whether light between base and coat takes on the colour each time; otherwise
+            ``color`` is the one that is seen, without what the coat reflects.
     """
 
     color: Colored = (0.5, 0.5, 0.5)
     ior: float = 1.5
-    alpha: Number = 0.0
+    rough: Rough = POLISHED
+    tint: Colored = WHITE
+    saturates: bool = False
+
+
+@dataclass(frozen=True)
+class Varnish:
+    """Metal below a dielectric coat."""
+
+    metal: Metal
+    ior: float = 1.5
+    rough: Rough = POLISHED
     tint: Colored = WHITE
 
 
@@ -71,7 +119,12 @@ class Blend:
     amount: Number = 0.5
 
 
-Surface = Lambert | Metal | Glass | Plastic | Blend
+@dataclass(frozen=True)
+class Nothing:
+    """Boundary of a medium, which light passes unseen."""
+
+
+Surface = Lambert | Metal | Glass | Plastic | Varnish | Blend | Nothing
 
 
 @dataclass(frozen=True)
@@ -84,15 +137,9 @@ class Emission:
     @property
     def present(self) -> bool:
         """Whether there is any."""
-        return isinstance(self.color, Picture) or max(self.color) > 0
-
-
-@dataclass(frozen=True)
-class Absorption:
-    """Absorbing inside of a closed mesh: what is left of white after a distance, m."""
-
-    color: tuple[float, float, float]
-    distance_m: float
+        if isinstance(self.color, Picture):
+            return bool(self.color.pixels.max() > 0)
+        return not isinstance(self.color, Spectrum) and max(self.color) > 0
 
 
 @dataclass(frozen=True)
@@ -104,7 +151,9 @@ class Look:
         opacity: Share that is there; 1: opaque.
         normals: Normal map.
         emission: Emitted light.
-        inside: Absorption inside.
+        inside: Medium inside a closed mesh.
+        outside: Medium outside of it; None: that of the world.
+        two_sided: Whether the surface is seen from behind.
         uv_set: Set of texture coordinates that its pictures use.
         vertex_colors: Whether vertex colours multiply the colour of the surface.
     """
@@ -113,18 +162,23 @@ class Look:
     opacity: Number = 1.0
     normals: Picture | None = None
     emission: Emission = field(default_factory=Emission)
-    inside: Absorption | None = None
+    inside: Medium | None = None
+    outside: Medium | None = None
+    two_sided: bool = True
     uv_set: int = 0
     vertex_colors: bool = False
 
+    @property
+    def clear(self) -> bool:
+        """Whether light may pass the surface."""
+        return _clear(self.surface)
 
-def clear(surface: Surface) -> bool:
-    """Whether light may pass the surface."""
+
+def _clear(surface: Surface) -> bool:
     if isinstance(surface, Blend):
-        return clear(surface.first) or clear(surface.second)
-    return isinstance(surface, Glass)
+        return _clear(surface.first) or _clear(surface.second)
+    return isinstance(surface, Glass | Nothing)
 
 
-def is_smooth(alpha: Number) -> bool:
-    """Whether a roughness is that of a polished surface."""
+def _is_smooth(alpha: Number) -> bool:
     return not isinstance(alpha, Picture) and alpha < SMOOTH

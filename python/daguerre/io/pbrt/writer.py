@@ -13,7 +13,7 @@ import os
 from pathlib import Path
 
 from daguerre.io.outgoing.folder import OutgoingFolder
-from daguerre.io.outgoing.looks import look_of
+from daguerre.io.outgoing.looks import Looks
 from daguerre.io.outgoing.meshes import MeshFiles
 from daguerre.io.outgoing.pictures import Baker
 from daguerre.io.outgoing.placing import placements
@@ -22,6 +22,7 @@ from daguerre.io.outgoing.record import Outgoing
 from .writer_camera import add_camera
 from .writer_lights import add_environment, add_lights
 from .writer_materials import Materials
+from .writer_media import Media
 from .writer_shapes import Shapes
 from .writer_text import Text
 
@@ -35,12 +36,14 @@ def write(path: str | os.PathLike[str], outgoing: Outgoing) -> None:
     scene, notes = outgoing.scene, outgoing.notes
     folder = OutgoingFolder(Path(path))
     text = Text()
+    media = Media(text, scene.fog, notes)
+    media.add_fog()
     add_camera(text, outgoing, folder, Path(path).stem)
     text.line("WorldBegin")
-    baker = Baker(scene.textures, notes)
-    looks = [look_of(material, baker) for material in scene.materials]
+    looks = Looks(scene, Baker(scene.textures, notes)).all()
     materials = Materials(text, folder, notes)
-    shapes = Shapes(text, looks, materials, MeshFiles(scene, folder, notes, v_up=True))
+    meshes = MeshFiles(scene, folder, notes, v_up=True)
+    shapes = Shapes(text, looks, materials, meshes, media)
     add_lights(text, scene.lights, folder, notes)
     add_environment(text, scene.environment, folder, notes)
     for placed in placements(scene, notes):

@@ -11,7 +11,7 @@ from daguerre.files.notes import Notes
 from daguerre.io.outgoing.folder import OutgoingFolder
 from daguerre.io.outgoing.lamps import plain, spot_factors, turned
 from daguerre.io.outgoing.picture_file import write_pixels
-from daguerre.io.outgoing.surfaces import BLACK
+from daguerre.io.outgoing.pictures import BLACK
 from daguerre.scene.light_profile import LightProfile
 from daguerre.scene.lights import DirectionalLight, Light, SphereLight, SpotLight
 from daguerre.scene.parts import Environment
@@ -100,14 +100,14 @@ def _add_goniometric(
 
 def _lamp_directions() -> Array:
     """Directions of a goniometric picture in the lamp's frame: pbrt exchanges y and z."""
-    return directions(_LAMP_ROWS)[..., [0, 2, 1]]
+    return np.asarray(directions(_LAMP_ROWS)[..., [0, 2, 1]])
 
 
 def _profile(profile: LightProfile, notes: Notes) -> Array:
     found = profile.factors(_lamp_directions().reshape(-1, 3)).astype(np.float64)
     if not np.allclose(found, found[:, :1], rtol=1e-4, atol=1e-6 * max(found.max(), 1e-30)):
         notes.add("colours of a light profile are left out")
-    return found.mean(axis=1).reshape(_LAMP_ROWS, _LAMP_ROWS)
+    return np.asarray(found.mean(axis=1).reshape(_LAMP_ROWS, _LAMP_ROWS))
 
 
 def _at(transform: Array) -> Array:

@@ -6,24 +6,26 @@ from daguerre.files.notes import Notes
 from daguerre.io.outgoing.coats import base_below, sheet_ior
 from daguerre.io.outgoing.folder import OutgoingFolder
 from daguerre.io.outgoing.picture_file import write_pixels
-from daguerre.io.outgoing.pictures import Colored, Number, Picture
+from daguerre.io.outgoing.pictures import BLACK, IDENTITY, WHITE, Colored, Number, Picture
+from daguerre.io.outgoing.spectra import samples
 from daguerre.io.outgoing.surfaces import (
-    WHITE,
     Blend,
     Glass,
     Lambert,
     Look,
     Metal,
+    Nothing,
     Plastic,
+    Rough,
     Surface,
-    is_smooth,
+    Varnish,
 )
+from daguerre.scene.spectrum import Spectrum
 
-from .writer_text import Parameter, Text, flag, floats, integer, rgb, string, texture
+from .writer_text import Parameter, Text, flag, floats, integer, rgb, spectrum, string, texture
 
 #: Bounces between coat and base; pbrt's own limit of 10 loses light of bright bases.
-_COAT_BOUNCES = 100
-_COAT_SAMPLES = 4
+_COAT = (integer("maxdepth", 100), integer("nsamples", 4))
 
 
 class Materials:
@@ -37,6 +39,8 @@ class Materials:
     def name_of(self, index: int, look: Look) -> str:
         """Name of the material of a look, which is added before its first use."""
         if index not in self._known:
+            if not look.two_sided:
+                self.notes.add("surface that is black from behind is seen from there, too")
             self._known[index] = f"material-{index}"
             self._add(self._known[index], look.surface, self._normals(look))
         return self._known[index]
@@ -51,12 +55,14 @@ class Materials:
         """Makes a parameter of a colour or of a texture of colours."""
         if isinstance(value, Picture):
             return texture(name, self._texture("spectrum", value))
+        if isinstance(value, Spectrum):
+            return spectrum(name, samples(value))
         return rgb(name, value)
 
     def _normals(self, look: Look) -> list[Parameter]:
         if look.normals is None:
             return []
-        if look.normals.transform != (1, 0, 0, 0, 1, 0):
+        if look.normals.transform != IDENTITY:
             self.notes.add("transform of a normal map is left out: pbrt has none")
         if look.normals.wrap != ("repeat", "repeat"):
             self.notes.add("normal map repeats beyond its edges")
@@ -80,49 +86,94 @@ class Materials:
 
     def _parameters(self, surface: Surface) -> tuple[str, list[Parameter]]:
         if isinstance(surface, Lambert):
-            return "diffuse", [self.color("reflectance", surface.color)]
+            return self._diffuse(surface)
         if isinstance(surface, Metal):
-            return self._metal(surface)
+            return "conductor", [*self._metal(surface, ""), *self._rough(surface.rough)]
         if isinstance(surface, Plastic):
             return self._plastic(surface)
+        if isinstance(surface, Varnish):
+            return self._varnish(surface)
+        if isinstance(surface, Nothing):
+            return "interface", []
         assert isinstance(surface, Glass)
         return self._glass(surface)
 
-    def _metal(self, surface: Metal) -> tuple[str, list[Parameter]]:
+    def _diffuse(self, surface: Lambert) -> tuple[str, list[Parameter]]:
+        reflected = self.color("reflectance", surface.color)
+        if surface.through == BLACK:
+            return "diffuse", [reflected]
+        return "diffusetransmission", [reflected, self.color("transmittance", surface.through)]
+
+    def _metal(self, surface: Metal, prefix: str) -> list[Parameter]:
+        """Parameters of a metal; ``prefix``: that of their names below a coat."""
+        if surface.eta is not None and surface.k is not None:
+            if surface.color != WHITE:
+                self.notes.add("factor on the reflectance of a metal is left out")
+            return [
+                self.color(f"{prefix}eta", surface.eta),
+                self.color(f"{prefix}k", surface.k),
+            ]
         self.notes.add(
-            "metal of one colour at all angles is brighter at grazing angles in pbrt"
-            if not surface.schlick
-            else "metal of a glTF material has the Fresnel term of a conductor of that colour"
+            "metal of a glTF material has the Fresnel term of a conductor of that colour"
+            if surface.schlick
+            else "metal of one colour at all angles is brighter at grazing angles in pbrt"
         )
-        return "conductor", [self.color("reflectance", surface.color), *self._rough(surface.alpha)]
+        return [self.color("reflectance", surface.color)]
 
     def _plastic(self, surface: Plastic) -> tuple[str, list[Parameter]]:
-        if surface.tint != WHITE:
-            self.notes.add("factor on what a glTF dielectric reflects is left out")
-        self.notes.add(
-            "diffuse base of a glTF dielectric is written darker, as pbrt's coat saturates it"
-        )
+        self._note_tint(surface.tint)
+        color = surface.color
+        if not surface.saturates:
+            self.notes.add(
+                "diffuse base below a coat is written darker, as light between both saturates it "
+                "in pbrt"
+            )
+            color = base_below(color, surface.ior)
         return "coateddiffuse", [
-            self.color("reflectance", base_below(surface.color, surface.ior)),
+            self.color("reflectance", color),
             floats("eta", surface.ior),
-            integer("maxdepth", _COAT_BOUNCES),
-            integer("nsamples", _COAT_SAMPLES),
-            *self._rough(surface.alpha),
+            *_COAT,
+            *self._rough(surface.rough),
+        ]
+
+    def _varnish(self, surface: Varnish) -> tuple[str, list[Parameter]]:
+        self._note_tint(surface.tint)
+        return "coatedconductor", [
+            *self._metal(surface.metal, "conductor."),
+            floats("interface.eta", surface.ior),
+            *_COAT,
+            *self._rough(surface.rough, "interface."),
+            *self._rough(surface.metal.rough, "conductor.")[:-1],
         ]
 
     def _glass(self, surface: Glass) -> tuple[str, list[Parameter]]:
-        if surface.tint != WHITE:
+        if surface.tint != WHITE or surface.reflection != WHITE:
             self.notes.add("colour of glass is left out: pbrt's is clear")
-        if not surface.thin:
-            return "dielectric", [floats("eta", surface.ior), *self._rough(surface.alpha)]
-        if not is_smooth(surface.alpha):
+        if not surface.pane:
+            return "dielectric", [self._index(surface.ior), *self._rough(surface.rough)]
+        if not surface.rough.smooth:
             self.notes.add("roughness of a thin sheet of glass is left out")
+        if surface.pane == "double" or isinstance(surface.ior, Spectrum):
+            return "thindielectric", [self._index(surface.ior)]
         self.notes.add("thin sheet of glass reflects as ours at normal incidence alone")
         return "thindielectric", [floats("eta", sheet_ior(surface.ior))]
 
-    def _rough(self, alpha: Number) -> list[Parameter]:
-        given = 0.0 if is_smooth(alpha) else alpha
-        return [self.number("roughness", given), flag("remaproughness", False)]
+    def _index(self, ior: float | Spectrum) -> Parameter:
+        return self.color("eta", ior) if isinstance(ior, Spectrum) else floats("eta", ior)
+
+    def _note_tint(self, tint: Colored) -> None:
+        if tint != WHITE:
+            self.notes.add("factor on what a coat reflects is left out")
+
+    def _rough(self, rough: Rough, prefix: str = "") -> list[Parameter]:
+        plain = flag("remaproughness", False)
+        if rough.smooth:
+            return [floats(f"{prefix}roughness", 0.0), plain]
+        if rough.v is None:
+            return [self.number(f"{prefix}roughness", rough.u), plain]
+        u, v = (self.number(f"{prefix}{n}roughness", value)
+                for n, value in (("u", rough.u), ("v", rough.v)))  # fmt: skip
+        return [u, v, plain]
 
     def _texture(self, kind: str, picture: Picture) -> str:
         made = picture.without_mirrors()

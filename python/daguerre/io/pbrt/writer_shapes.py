@@ -2,34 +2,38 @@
 
 from __future__ import annotations
 
-from daguerre.io.outgoing.media import absorption
 from daguerre.io.outgoing.meshes import MeshFiles
 from daguerre.io.outgoing.picture_file import write_pixels
-from daguerre.io.outgoing.pictures import Picture
+from daguerre.io.outgoing.pictures import IDENTITY, Picture
 from daguerre.io.outgoing.placing import Placed
 from daguerre.io.outgoing.surfaces import Emission, Look
 
 from .writer_materials import Materials
-from .writer_text import Parameter, Text, flag, rgb, string
+from .writer_media import Media
+from .writer_text import Parameter, Text, flag, string
 
 
 class Shapes:
     """Shapes of a file."""
 
     def __init__(
-        self, text: Text, looks: list[Look], materials: Materials, meshes: MeshFiles
+        self,
+        text: Text,
+        looks: list[Look],
+        materials: Materials,
+        meshes: MeshFiles,
+        media: Media,
     ) -> None:
-        self._text, self._looks = text, looks
+        self._text, self._looks, self._media = text, looks, media
         self._materials, self._meshes = materials, meshes
         self._objects = 0
-        self._media: set[int] = set()
 
     def add(self, placed: Placed) -> None:
         """Adds a mesh at all of its places; pbrt has no instances of lights."""
         look = self._looks[placed.material]
         material = self._materials.name_of(placed.material, look)
         shape = self._shape(placed, look)
-        self._add_medium(placed.material, look)
+        self._media.names_of(placed.material, look)  # stand before their use
         if len(placed.transforms) > 1 and not look.emission.present:
             self._add_object(placed, material, shape)
             return
@@ -51,8 +55,8 @@ class Shapes:
     def _add_shape(self, placed: Placed, material: str, shape: list[Parameter]) -> None:
         look = self._looks[placed.material]
         self._text.line(f'NamedMaterial "{material}"')
-        if look.inside is not None:
-            self._text.line(f'MediumInterface "medium-{placed.material}" ""')
+        if sides := self._media.names_of(placed.material, look):
+            self._text.line('MediumInterface "{}" "{}"'.format(*sides))
         if look.emission.present:
             self._text.directive("AreaLightSource", "diffuse", *self._emission(look.emission))
         self._text.directive("Shape", "plymesh", *shape)
@@ -67,19 +71,9 @@ class Shapes:
         light = emission.color
         sides = flag("twosided", emission.both_sides)
         if not isinstance(light, Picture):
-            return [rgb("L", light), sides]
+            return [self._materials.color("L", light), sides]
         notes = self._materials.notes
-        if light.transform != (1, 0, 0, 0, 1, 0) or light.wrap != ("repeat", "repeat"):
+        if light.transform != IDENTITY or light.wrap != ("repeat", "repeat"):
             notes.add("picture of emitted light covers texture coordinates 0 to 1 once")
         path = write_pixels(self._materials.folder, "light", light.pixels)
         return [string("filename", path), sides]
-
-    def _add_medium(self, index: int, look: Look) -> None:
-        """Adds the absorption of KHR_materials_volume: color^(x / distance)."""
-        if look.inside is None or index in self._media:
-            return
-        self._media.add(index)
-        self._text.directive(
-            "MakeNamedMedium", f"medium-{index}", string("type", "homogeneous"),
-            rgb("sigma_a", absorption(look.inside)), rgb("sigma_s", (0.0, 0.0, 0.0)),
-        )  # fmt: skip

@@ -76,6 +76,11 @@ def string(name: str, *values: str) -> Parameter:
     return f'"string {name}" [ {" ".join(f"{chr(34)}{value}{chr(34)}" for value in values)} ]'
 
 
+def spectrum(name: str, pairs: Sequence[tuple[float, float]]) -> Parameter:
+    """Makes a parameter of values at wavelengths, nm."""
+    return f'"spectrum {name}" [ {numbers([v for pair in pairs for v in pair])} ]'
+
+
 def texture(name: str, value: str) -> Parameter:
     """Makes a parameter of a texture by its name."""
     return f'"texture {name}" [ "{value}" ]'

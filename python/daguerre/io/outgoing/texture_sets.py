@@ -1,0 +1,22 @@
+"""Sets of texture coordinates: a written mesh has one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from daguerre.files.notes import Notes
+from daguerre.scene.materials import TextureSlot
+
+
+def uv_set_of(slots: Sequence[TextureSlot], notes: Notes) -> int:
+    """Set that a material's mesh is written with: that of the first texture; notes the others."""
+    if not slots:
+        return 0
+    others = sum(slot.uv_set != slots[0].uv_set for slot in slots)
+    if others:
+        notes.add(
+            "texture on another set of coordinates than the first one of its material is written "
+            "on that one's",
+            others,
+        )
+    return slots[0].uv_set
