@@ -56,7 +56,7 @@ def test_a_wrong_command_is_one_error(
     told = capsys.readouterr().err
     assert "Traceback" not in told
     assert ".pbrt or .xml" in told
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["chart.glb"]
+    assert {path.stem for path in tmp_path.iterdir()} == {"chart"}
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
@@ -154,13 +154,11 @@ def test_what_a_camera_lacks_there_is_noted(
     assert any(words in text for text in notes), notes
 
 
-def test_flat_instances_are_noted_and_hidden_ones_are_not_written(tmp_path: Path) -> None:
+def test_hidden_instances_are_not_written(tmp_path: Path) -> None:
     scene = outgoing_scenes.box()
-    scene.add_instance(0, dg.Diffuse(), outgoing_scenes.placed(scale=(1, 1, 0)))
     hidden = outgoing_scenes.letter(scene)
     scene.add_instance(hidden, dg.Diffuse(), shown=False)
-    notes = dg.export_scene(scene, tmp_path / "a.xml", resolution=(8, 8))
-    assert any("flattened" in text for text in notes)
+    dg.export_scene(scene, tmp_path / "a.xml", resolution=(8, 8))
     root = ElementTree.fromstring((tmp_path / "a.xml").read_text())
     meshes = {item.get("value") for item in root.iter("string") if item.get("name") == "filename"}
     assert len([name for name in meshes if name and name.endswith(".ply")]) == 2

@@ -248,7 +248,8 @@ def lamps() -> dg.Scene:
 
 def layered() -> dg.Scene:
     """glTF: alpha masks and blends, roughness by a texture, a normal map, a sheet, emission."""
-    scene = room()
+    scene = room(0.9)
+    scene.set_environment(color=(2, 2, 2))
     square, round_ = card(scene), ball(scene)
     rng = np.random.default_rng(5)
     colors = scene.add_texture(
@@ -259,8 +260,8 @@ def layered() -> dg.Scene:
     rough = scene.add_texture(
         np.stack([0 * rng.random((4, 4)), 0.4 + 0.5 * rng.random((4, 4)), rng.random((4, 4))], -1)
     )
-    waves = np.sin(np.linspace(0, 6 * np.pi, 64))[None, :] * np.ones((64, 1)) * 0.4
-    normals = np.stack([waves, 0.2 * np.ones_like(waves), np.sqrt(1 - waves**2 - 0.04)], -1)
+    waves = np.sin(np.linspace(0, 6 * np.pi, 64))[None, :] * np.ones((64, 1)) * 0.2
+    normals = np.stack([waves, 0.1 * np.ones_like(waves), np.sqrt(1 - waves**2 - 0.01)], -1)
     bumps = scene.add_texture((normals / 2 + 0.5).astype(np.float32), min_filter="linear")
     kinds = [
         dg.Gltf(base_color_texture=slot, alpha_mode="mask", metallic=0.0),

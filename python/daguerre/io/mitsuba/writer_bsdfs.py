@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from daguerre.files.notes import Notes
-from daguerre.io.outgoing.coats import sheet_ior
+from daguerre.io.outgoing.coats import head_on, sheet_ior, smooth_share
 from daguerre.io.outgoing.folder import OutgoingFolder
 from daguerre.io.outgoing.pictures import BLACK, WHITE, Colored, Number, Picture, each, scaled
 from daguerre.io.outgoing.surfaces import (
@@ -127,30 +127,39 @@ class Bsdfs:
             "part is another"
         )
         bsdf = self._principled(parent, alpha, name)
-        passed = 1 - ((surface.ior - 1) / (surface.ior + 1)) ** 2  # by the coat, head on
-        self.values.color(bsdf, "base_color", scaled(surface.color, passed))
+        passed = scaled(surface.color, 1 - head_on(surface.ior))
+        self.values.color(bsdf, "base_color", passed)
         add_value(bsdf, "float", "eta", max(surface.ior, 1 + _LEAST_STEP))
 
     def _add_rough_plastic(self, parent: Element, surface: Plastic, name: str) -> None:
-        """Adds the base below a smooth coat, and beside it the rough coat on nothing.
+        """Adds the base below the coat, and beside it the rough coat on nothing.
 
         Mitsuba's ``roughplastic`` loses the light that facets send down: half of it at roughness
         0.7. It blends, and does not add, so both parts are as much brighter as their shares are
         small.
         """
         self._notes.add(
-            "rough coat on a diffuse base is a blend of that of a smooth plastic and a coat"
+            "rough coat on a diffuse base is a blend of Mitsuba's plastic, diffuse and a coat"
         )
         if _is_black(surface.color):
             self._add_coat(parent, surface, 1.0, name)
             return
         bsdf = add(parent, "bsdf", type="blendbsdf", id=name)
         add_value(bsdf, "float", "weight", _COAT_SHARE)
-        base = self._plastic(bsdf, "plastic", surface, "")
-        brighter = scaled(surface.color, 1 / (1 - _COAT_SHARE))
-        self.values.color(base, "diffuse_reflectance", brighter)
-        add_value(base, "spectrum", "specular_reflectance", 0.0)
+        self._add_base(bsdf, surface)
         self._add_coat(bsdf, surface, _COAT_SHARE, "")
+
+    def _add_base(self, parent: Element, surface: Plastic) -> None:
+        """Adds the base: the rougher its coat, the less its light depends on the angle."""
+        assert not isinstance(surface.rough.u, Picture)
+        bsdf = add(parent, "bsdf", type="blendbsdf")
+        add_value(bsdf, "float", "weight", 1 - smooth_share(surface.rough.u))
+        color = scaled(surface.color, 1 / (1 - _COAT_SHARE))
+        base = self._plastic(bsdf, "plastic", surface, "")
+        self.values.color(base, "diffuse_reflectance", color)
+        add_value(base, "spectrum", "specular_reflectance", 0.0)
+        passed = 1 - head_on(surface.ior)
+        self.values.color(add(bsdf, "bsdf", type="diffuse"), "reflectance", scaled(color, passed))
 
     def _add_coat(self, parent: Element, surface: Plastic, share: float, name: str) -> None:
         """Adds a rough coat on nothing, which counts as if its share were 1."""

@@ -40,8 +40,6 @@ def placements(scene: Scene, notes: Notes) -> Iterator[Placed]:
             notes.add("curves are left out")
         elif not len(scene.meshes[instance.mesh].indices):
             continue
-        elif np.linalg.det(instance.transform[:3, :3]) == 0:
-            notes.add("instance that is flattened to a plane is left out")
         else:
             key = instance.mesh, instance.material
             found.setdefault(key, []).append(instance.transform)
