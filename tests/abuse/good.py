@@ -117,6 +117,7 @@ ARGS: dict[str, Make] = {
     "dg.Camera.from_opentrackio": lambda w: {"calibration": w.opentrackio},
     "dg.Camera.with_": _CAMERA,
     "dg.Categories.read": lambda w: {"path": w.categories},
+    "dg.export_scene": lambda w: {"scene": w.scene, "path": w.out / "a.xml", "resolution": SIZE},
     "dg.export_camera": lambda w: {"camera": w.camera, "path": w.out / "a.usda"},
     "dg.Frame": lambda w: {"rgb": w.image, "metadata": {}},
     "dg.Frame.encoded": constant(tone="srgb"),
