@@ -79,7 +79,7 @@ def room(size: float = 0.3) -> dg.Scene:
     scene = dg.Scene()
     square = card(scene)
     grey = scene.add_material(dg.Diffuse((0.6, 0.6, 0.6)))
-    sides = {"red": (0.6, 0.2, 0.15), "green": (0.2, 0.5, 0.2)}
+    sides = {"red": (0.6, 0.4, 0.35), "green": (0.4, 0.5, 0.4)}  # spectra are not RGB
     red, green = (scene.add_material(dg.Diffuse(color)) for color in sides.values())
     scene.add_instance(square, grey, placed(z=-1))
     scene.add_instance(square, grey, turned(placed(y=-1), "x", -90))
@@ -139,7 +139,7 @@ def glass() -> dg.Scene:
     smooth, rough = dg.Dielectric(1.5), dg.Dielectric(1.5, alpha=0.3)
     absorbing = dg.Gltf(
         metallic=0.0, roughness=0.0, transmission=1.0, thickness=0.5,
-        attenuation_distance=0.4, attenuation_color=(0.9, 0.4, 0.3),
+        attenuation_distance=0.4, attenuation_color=(0.8, 0.6, 0.55),
     )  # fmt: skip
     round_ = ball(scene)
     scene.add_instance(round_, smooth, placed(-0.5, -0.6, 0.2, 0.35))

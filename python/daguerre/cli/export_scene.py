@@ -37,9 +37,7 @@ def export_scene(
     res: Annotated[
         Text, option("--res", metavar="WxH", help="Size of the picture, px [1280x720].")
     ] = None,
-    spp: Annotated[
-        int | None, option("--spp", metavar="N", help="Samples per pixel [64].")
-    ] = None,
+    spp: Annotated[int | None, option("--spp", metavar="N", help="Samples per pixel [64].")] = None,
 ) -> int:
     """Writes a scene for pbrt-v4 or Mitsuba 3, so that its picture can be checked against theirs.
 

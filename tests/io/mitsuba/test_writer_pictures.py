@@ -15,7 +15,7 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(not mitsuba_pictures.installed(), reason="needs mitsuba, a test extra"),
 ]
-SPP = 256
+SPP = 128
 #: Scene, and the largest difference of its blocks and their median, as shares.
 SCENES: dict[str, tuple[Callable[[], dg.Scene], float, float]] = {
     "box": (outgoing_scenes.box, 0.05, 0.01),

