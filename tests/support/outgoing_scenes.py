@@ -151,7 +151,7 @@ def glass() -> dg.Scene:
 
 def metals() -> dg.Scene:
     """Metals: a mirror, rough ones, one of glTF, and a glossy dielectric of glTF."""
-    scene = room()
+    scene = room(0.9)
     round_ = ball(scene)
     kinds = [
         dg.Conductor((0.9, 0.9, 0.9), alpha=0.0),
@@ -260,7 +260,7 @@ def layered() -> dg.Scene:
     rough = scene.add_texture(
         np.stack([0 * rng.random((4, 4)), 0.4 + 0.5 * rng.random((4, 4)), rng.random((4, 4))], -1)
     )
-    waves = np.sin(np.linspace(0, 6 * np.pi, 64))[None, :] * np.ones((64, 1)) * 0.2
+    waves = np.sin(np.linspace(0, 6 * np.pi, 64))[None, :] * np.ones((64, 1)) * 0.1
     normals = np.stack([waves, 0.1 * np.ones_like(waves), np.sqrt(1 - waves**2 - 0.01)], -1)
     bumps = scene.add_texture((normals / 2 + 0.5).astype(np.float32), min_filter="linear")
     kinds = [

@@ -85,5 +85,6 @@ def test_a_rough_coat_is_a_blend_of_a_smooth_one_and_a_constant(alpha: float) ->
     share = smooth_share(alpha)
     for cosine in (0.2, 0.5, 1.0):
         smooth = float(fresnel(np.array([cosine]), 1.5)[0])
-        blend = share * smooth + (1 - share) * head_on(1.5)
+        blend = share * smooth + (1 - share) * head_on(1.5, alpha)
         assert blend == pytest.approx(rough_albedo(cosine, alpha), abs=0.05)
+    assert head_on(1.5, alpha) == pytest.approx(rough_albedo(0.999, alpha), abs=0.004)

@@ -158,7 +158,7 @@ class Bsdfs:
         base = self._plastic(bsdf, "plastic", surface, "")
         self.values.color(base, "diffuse_reflectance", color)
         add_value(base, "spectrum", "specular_reflectance", 0.0)
-        passed = 1 - head_on(surface.ior)
+        passed = 1 - head_on(surface.ior, surface.rough.u)
         self.values.color(add(bsdf, "bsdf", type="diffuse"), "reflectance", scaled(color, passed))
 
     def _add_coat(self, parent: Element, surface: Plastic, share: float, name: str) -> None:

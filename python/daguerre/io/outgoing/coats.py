@@ -63,9 +63,9 @@ def smooth_share(alpha: float) -> float:
     return math.exp(-6 * alpha)
 
 
-def head_on(ior: float) -> float:
-    """Reflectance at normal incidence."""
-    return ((ior - 1) / (ior + 1)) ** 2
+def head_on(ior: float, alpha: float = 0.0) -> float:
+    """Reflectance at normal incidence; facets of a rough surface hide some of it (fitted)."""
+    return ((ior - 1) / (ior + 1)) ** 2 * (1 - 0.65 * alpha)
 
 
 def sheet_ior(ior: float) -> float:
