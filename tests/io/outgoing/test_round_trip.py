@@ -1,4 +1,4 @@
-"""What is written for pbrt and Mitsuba, read back by our own readers: the same scene."""
+"""Scenes written for pbrt and Mitsuba, read back by our own readers: they are the same."""
 
 from __future__ import annotations
 

@@ -42,9 +42,11 @@ class OutgoingFolder:
 
     def add(self, kind: str, suffix: str, data: bytes) -> str:
         """Writes bytes, once for equal ones; returns the path relative to the scene file."""
-        return self.write(
-            kind, suffix, hashlib.sha256(data), lambda path: path.write_bytes(data) and None
-        )
+
+        def write(path: Path) -> None:
+            path.write_bytes(data)
+
+        return self.write(kind, suffix, hashlib.sha256(data), write)
 
     def write(
         self, kind: str, suffix: str, content: hashlib._Hash, write: Callable[[Path], None]

@@ -53,4 +53,4 @@ class MeshFiles:
         uv = mesh.uv1 if uv_set else mesh.uv
         if uv is None or not self._v_up:
             return uv
-        return np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1)
+        return np.asarray(np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1), np.float32)

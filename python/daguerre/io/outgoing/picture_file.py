@@ -37,8 +37,12 @@ def _write(path: Path, pixels: NDArray[Any]) -> None:
     if not eight:
         spec.attribute("compression", "zip")
     output = oiio.ImageOutput.create(str(path))
-    done = output is not None and output.open(str(path), spec)
-    done = done and output.write_image(pixels) and output.close()
-    if not done:
-        reason = str(output.geterror() if output is not None else oiio.geterror())
-        raise OutputError(f"{path.parent}: cannot write: {(reason.splitlines() or ['?'])[0]}")
+    if output is None:
+        raise _error(path, str(oiio.geterror()))
+    if not (output.open(str(path), spec) and output.write_image(pixels) and output.close()):
+        raise _error(path, str(output.geterror()))
+
+
+def _error(path: Path, reason: str) -> OutputError:
+    first = (reason.splitlines() or ["unknown reason"])[0]
+    return OutputError(f"{path.parent}: cannot write: {first}")

@@ -69,7 +69,7 @@ class Glass:
         rough: Roughness.
         tint: Factor on what is transmitted.
         reflection: Factor on what is reflected.
-        pane: ``""``: it bounds glass; ``"double"``: a sheet with all that goes to and fro inside;
+        pane: ``""``: it bounds glass; ``"double"``: a sheet with all reflections inside of it;
             ``"single"``: a sheet that reflects as one interface does.
     """
 
