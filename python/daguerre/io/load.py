@@ -24,7 +24,7 @@ def load(
     strict: bool = False,
     **options: Any,
 ) -> Scene:
-    """Reads a scene file (.glb, .gltf, .usd, .usda, .usdc, .usdz, .pbrt, .xml, or a registered one).
+    """Reads a scene (.glb, .gltf, .usd, .usda, .usdc, .usdz, .pbrt, .xml, or a registered format).
 
     A file without a camera gets a camera named ``framing`` that has everything in view.
 
