@@ -246,7 +246,7 @@ void def_shapes(nb::class_<Builder>& c) {
              "Makes an instance a part of the set: which effects of objects it catches.");
 }
 
-/// What fills meshes, and the world around them.
+/// Media that fill meshes, and the world around them.
 void def_media(nb::class_<Builder>& c) {
     c.def("add_medium", &Builder::add_medium, "absorption"_a, "scattering"_a, "emission"_a, "lobes"_a,
              "density"_a.none())

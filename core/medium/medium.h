@@ -24,7 +24,7 @@ struct Medium {
     MediumAt at(const Wavelengths& wavelengths) const;
 };
 
-/// What is left of light after `length` metres (infinite: what neither absorbs nor scatters leaves all).
+/// The share of light left after `length` metres (infinite: what neither absorbs nor scatters leaves all).
 inline Spectrum transmittance(Spectrum extinction, float length) {
     Spectrum left;
     for (int i = 0; i < kWavelengths; ++i) left.set(i, extinction[i] > 0 ? std::exp(-extinction[i] * length) : 1.f);

@@ -41,7 +41,7 @@ class Segment {
     /// Radiance that the whole way adds.
     Spectrum emitted() const;
 
-    /// Of a path that passes, or collides at a distance: factor on what it carries, and its lanes from there on.
+    /// A path that passes, or collides at a distance: factor on what it carries, and its lanes from there on.
     /// Every collision scatters; what is absorbed there is a factor. A weight of 0: it carries nothing.
     struct Onward {
         Spectrum weight, lanes;

@@ -15,7 +15,7 @@ struct GridRay {
     float density(double t) const { return grid.at(origin + direction * t); }
 };
 
-/// What is left of light after the way from `begin` to `end`, on average: residual ratio tracking, with the least
+/// The share of light left after the way from `begin` to `end`, on average: residual ratio tracking, with the least
 /// density of each block as its control. Source: Novak, Selle and Jarosz 2014, Residual Ratio Tracking for Estimating
 /// Attenuation in Participating Media, ACM TOG 33(6).
 Spectrum ratio_tracking(const GridRay& ray, Spectrum extinction, double begin, double end, RayRandom random);

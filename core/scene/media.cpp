@@ -63,7 +63,7 @@ Interior Scene::medium_around(Ray ray) const {
     return around;
 }
 
-/// As intersect() of the tracer, as if surfaces where nothing but media changes were not there.
+/// Does as intersect() of the tracer, as if surfaces where nothing but media changes were not there.
 std::optional<RawHit> Scene::first_visible(Ray ray) const {
     for (;;) {
         const auto raw = intersector_->intersect(ray);

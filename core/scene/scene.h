@@ -102,9 +102,9 @@ class Scene {
 
     // Media (media.cpp).
     bool has_media() const { return has_media_; }
-    /// What a ray begins in, found by what it meets: for the first ray of a path.
+    /// The medium that a ray begins in, found by what it meets: for the first ray of a path.
     Interior medium_around(Ray ray) const;
-    /// What lies behind a surface of an instance that is met in `here`; `inside` and `bounds_volume` are its BSDF's.
+    /// The medium behind a surface of an instance that is met in `here`; `inside` and `bounds_volume` are its BSDF's.
     Interior beyond(const Interior& here, std::uint32_t instance, const Interior& inside, bool bounds_volume,
                     bool entering) const {
         if (has_media_) return medium_behind(here, instance, inside, bounds_volume, entering);

@@ -40,7 +40,7 @@ std::optional<LightWalk> LightWalk::begin(const Scene& scene, const LightSharing
     return walk;
 }
 
-/// What a material absorbs; a medium takes its place.
+/// Light that a material absorbs; a medium takes its place.
 void LightWalk::absorb(float length) {
     if (medium_.medium) return;
     if (volume_.where == VolumeWalk::Where::unknown) unknown_ += length;

@@ -78,7 +78,7 @@ PathSettings deep(int depth) {
     return settings;
 }
 
-/// What a lamp of 1 cd brings by light scattered once: the integral along the ray.
+/// The light that a lamp of 1 cd brings by light scattered once: the integral along the ray.
 double scattered_once(Vec3d lamp, double albedo, double extinction, const Phase& phase, double end) {
     constexpr int kSteps = 200000;
     double sum = 0;

@@ -44,7 +44,7 @@ Path::WayRandom Path::WayRandom::nth(int i, int of) const {
     return {chosen, turned(from, y), turned(where, x), {turned(place.x, x), turned(place.y, y)}};
 }
 
-/// As far as what the ray meets, `t` m from its origin.
+/// Goes as far as what the ray meets, `t` m from its origin.
 Path::Way Path::cross_medium(float t, int vertex) {
     const Medium& medium = *walk_.medium.medium;
     const MediumAt here = medium.at(wavelengths_);
@@ -107,7 +107,7 @@ bool Path::take(const Segment::Onward& onward) {
     return !walk_.throughput.is_black();
 }
 
-/// What guides of a denoiser see where the path is scattered first: a white that has no normal.
+/// The guides that a denoiser sees where the path is scattered first: a white that has no normal.
 void Path::note_medium() {
     if (!first_hit_ || walk_.seen) return;
     const float share = walk_.throughput.average();

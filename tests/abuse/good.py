@@ -117,6 +117,8 @@ ARGS: dict[str, Make] = {
     "dg.Camera.from_opentrackio": lambda w: {"calibration": w.opentrackio},
     "dg.Camera.with_": _CAMERA,
     "dg.Categories.read": lambda w: {"path": w.categories},
+    "dg.Conductor.of_metal": constant(name="Au", alpha=0.2),
+    "dg.Spectrum": constant(wavelengths_nm=(400.0, 700.0), values=(0.5, 1.0)),
     "dg.export_scene": lambda w: {"scene": w.scene, "path": w.out / "a.xml", "resolution": SIZE},
     "dg.export_camera": lambda w: {"camera": w.camera, "path": w.out / "a.usda"},
     "dg.Frame": lambda w: {"rgb": w.image, "metadata": {}},
@@ -513,6 +515,7 @@ ARGS |= {
 
 #: The object of methods, by the path of its class.
 RECEIVERS: dict[str, Make] = {
+    "dg.Spectrum": lambda w: dg.Spectrum((400.0, 700.0), (0.5, 1.0)),
     "dg.Camera": lambda w: w.camera,
     "dg.Categories": lambda w: dg.Categories(),
     "dg.ClusterSession": lambda w: w.cluster_session,

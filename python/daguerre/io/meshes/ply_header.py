@@ -70,7 +70,7 @@ class Element:
 
 @dataclass(frozen=True)
 class Header:
-    """What the file says about its data.
+    """Elements and properties of a file, as its header lists them.
 
     Attributes:
         order: Byte order, "<" or ">"; empty for text.

@@ -55,7 +55,7 @@ class Rows:
     """Rows of an element in a file.
 
     Args:
-        element: What the header says.
+        element: Its row of the header.
         data: Bytes of the file.
         begin: Where the rows begin.
         order: Byte order, "<" or ">".

@@ -20,7 +20,7 @@ class NotANumberError(ValueError):
 
     Attributes:
         line: Its line in the text, from 0.
-        wanted: What was wanted.
+        wanted: Words for an error: what belongs here.
         word: The word, for messages.
     """
 

@@ -1,4 +1,4 @@
-"""What all parts of a reader share."""
+"""State that all parts of a reader share."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ class Textures:
         self._known: dict[int, Value | None] = {}
         self._checkers: dict[tuple[float, ...], NDArray[np.float32]] = {}
 
-    # What materials ask for -----------------------------------------------------------------------
+    # Questions of materials -----------------------------------------------------------------------
 
     def tint(
         self, node: Node, name: str, default: Color | float, most: float = 1.0

@@ -44,7 +44,7 @@ _FAR = 1e6
 
 @dataclass(frozen=True)
 class Eye:
-    """What readers of cameras need.
+    """Values that readers of cameras need.
 
     Attributes:
         made: Directive.

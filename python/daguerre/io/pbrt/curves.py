@@ -57,7 +57,7 @@ class Strands:
 
 
 def group_of(made: Made) -> tuple[object, ...]:
-    """What strands of one mesh share."""
+    """Values that strands of one mesh share."""
     state = made.state
     material = state.material if isinstance(state.material, str) else id(state.material)
     return material, state.inside, state.outside, id(state.emission), state.reversed

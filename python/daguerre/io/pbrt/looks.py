@@ -28,7 +28,7 @@ class Looks:
 
     Args:
         scene: Receives materials.
-        tools: What readers of materials need; without ``part``.
+        tools: Those of readers of materials; without ``part``.
         media: Media of the scene.
         ledger: Counts directives.
     """

@@ -57,7 +57,7 @@ class Look:
 
 @dataclass(frozen=True)
 class Tools:
-    """What readers of materials need.
+    """Tools that readers of materials need.
 
     Attributes:
         textures: Textures of the scene.

@@ -18,7 +18,7 @@ TARGETS = ("light", "material", "medium", "shape", "texture")
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """What counts for the next directive.
+    """State that counts for the next directive.
 
     Attributes:
         transform: World from local; before ``WorldBegin`` camera from world.

@@ -39,7 +39,7 @@ class Image:
         pixels: Shape (H, W, C), uint8 or float32, row 0 on top.
         curve: ``srgb``, or the exponent of its values.
         mapping: Its place on surfaces.
-        wrap: What is beyond its edges: repeat, clamp or black.
+        wrap: Values beyond its edges: repeat, clamp or black.
         filter: ``linear`` or ``nearest``.
         scale: Factor.
         invert: Whether the value is 1 minus that.
