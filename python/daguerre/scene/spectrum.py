@@ -46,9 +46,8 @@ class Spectrum:
 
     def at(self, wavelengths_nm: ArrayLike) -> NDArray[np.float64]:
         """Values at wavelengths in nm, of any shape."""
-        return np.asarray(
-            np.interp(np.asarray(wavelengths_nm, float), self.wavelengths_nm, self.values)
-        )
+        nm = to_numbers(wavelengths_nm, "spectrum", "wavelengths_nm", "numbers").astype(float)
+        return np.asarray(np.interp(nm, self.wavelengths_nm, self.values))
 
     def __repr__(self) -> str:
         """Tells the range alone: a measured spectrum has many samples."""

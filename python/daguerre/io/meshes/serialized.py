@@ -141,7 +141,7 @@ def _mesh(stream: _Stream, version: int, where: str) -> FileMesh:
     corners = check_corners(stream.numbers("<u4", 3 * faces), vertices, where)
     if flags & _FACETED:
         normals = None
-    return FileMesh(positions, corners, None, normals, uv, colors, name)
+    return FileMesh(positions, corners, None, normals, uv, colors, name=name)
 
 
 def _single(values: NDArray[Any], where: str, what: str) -> Floats:

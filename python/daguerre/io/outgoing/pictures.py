@@ -47,7 +47,7 @@ class Picture:
     uv_set: int = 0
     transform: Transform = IDENTITY
 
-    def mapped(self, change: Callable[[Floats], Floats]) -> Picture:
+    def mapped(self, change: Callable[[Floats], NDArray[Any]]) -> Picture:
         """Returns a picture of changed linear values."""
         return replace(self, pixels=np.asarray(change(self.linear), np.float32), srgb=False)
 
