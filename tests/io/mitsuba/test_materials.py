@@ -146,6 +146,26 @@ def test_normal_maps_have_green_by_the_hand_of_the_coordinates(tmp_path: Path) -
     assert np.allclose(along[0, 0] * 255, (150, 55, 220), atol=0.01)
 
 
+def test_a_normal_map_around_a_blend_is_on_both_of_its_parts(tmp_path: Path) -> None:
+    texture = _picture(tmp_path, np.full((4, 4, 3), (150, 200, 220), np.uint8))
+    body = (
+        f'<bsdf type="normalmap" id="outer"><texture type="bitmap" name="t">{texture}'
+        '<boolean name="raw" value="true"/></texture><bsdf type="blendbsdf">'
+        '<float name="weight" value="0.25"/><bsdf type="diffuse" id="one"/>'
+        '<bsdf type="conductor"/></bsdf></bsdf>'
+    )
+    scene = loaded(tmp_path, f'{body}<shape type="rectangle"><ref id="outer"/></shape>')
+    outer = scene.materials[-1]
+    assert isinstance(outer.kind, dg.Mix)
+    assert (outer.normal_texture, outer.name, outer.kind.amount) == (None, "outer", 0.25)
+    parts = [scene.materials[i] for i in (outer.kind.first, outer.kind.second)]
+    assert [part.name for part in parts] == ["one", ""]
+    for part in parts:
+        slot = part.normal_texture
+        assert slot is not None
+        assert np.allclose(scene.textures[slot.texture].pixels[0, 0] * 255, (150, 55, 220), atol=1)
+
+
 def test_bump_maps_are_slopes_of_their_heights(tmp_path: Path) -> None:
     ramp = np.repeat(np.arange(0, 64, 4, dtype=np.uint8)[None], 16, axis=0)
     texture = _picture(tmp_path, np.stack([ramp] * 3, axis=2))

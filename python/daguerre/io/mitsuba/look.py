@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from daguerre.io.shading.channels import Channel, Value
 from daguerre.scene.materials import Diffuse, Kind, TextureSlot
@@ -24,16 +24,28 @@ class Relief:
 
 
 @dataclass(frozen=True)
+class Blend:
+    """Two looks, and the share of the second: a factor on a texture."""
+
+    first: Look
+    second: Look
+    amount: float = 0.5
+    amount_texture: TextureSlot | None = None
+
+
+@dataclass(frozen=True)
 class Look:
     """Appearance of a surface.
 
     Attributes:
-        kind: Kind of the material.
+        kind: Kind of the material, unless it is a blend.
         two_sided: Whether it is seen from behind, too; others are black there.
         opacity: Share of the surface that is there, a factor on a texture.
         opacity_texture: Texture of opacity.
         relief: Normal map or bump map.
         attribute: Attribute of the mesh whose colours are factors on the kind's, or empty.
+        blend: Looks that it is blended of, which have the relief, or None.
+        name: Name of the material.
     """
 
     kind: Kind = field(default_factory=Diffuse)
@@ -42,6 +54,22 @@ class Look:
     opacity_texture: TextureSlot | None = None
     relief: Relief | None = None
     attribute: str = ""
+    blend: Blend | None = None
+    name: str = ""
+
+    @property
+    def reliefs(self) -> list[Relief]:
+        """Its relief, and those of what it is blended of."""
+        parts = () if self.blend is None else (self.blend.first, self.blend.second)
+        inner = [relief for part in parts for relief in part.reliefs]
+        return inner if self.relief is None else [self.relief, *inner]
+
+    def with_relief(self, relief: Relief) -> Look:
+        """Returns the look with another relief; a blend hands it to its parts."""
+        if self.blend is None:
+            return replace(self, relief=relief)
+        first, second = (part.with_relief(relief) for part in (self.blend.first, self.blend.second))
+        return replace(self, blend=replace(self.blend, first=first, second=second))
 
 
 @dataclass(frozen=True)

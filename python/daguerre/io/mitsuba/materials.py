@@ -17,7 +17,7 @@ from daguerre.scene.media import Medium
 
 from .bsdfs import Surfaces
 from .context import Context
-from .look import Chart, Look, Relief
+from .look import Blend, Chart, Look, Relief
 from .node import Node, leave_out
 from .relief import normal_map
 from .textures import Textures
@@ -62,22 +62,24 @@ class Materials:
     ) -> int:
         """Index of the material of a shape; ``black``: what it is without a look of its own."""
         look = self._default(black=black) if bsdf is None else self.look(bsdf)
-        if look.relief is None or look.relief.heights is None:
-            chart = Chart(chart.right_handed and look.relief is not None)
-        name = "" if bsdf is None else bsdf.id
+        return self._index(look, chart, glow, sides)
+
+    def _index(self, look: Look, chart: Chart, glow: Glow, sides: Sides) -> int:
+        if all(relief.heights is None for relief in look.reliefs):
+            chart = Chart(chart.right_handed and bool(look.reliefs))
         key = (id(look), chart, glow, id(sides.interior), id(sides.exterior))
         if key not in self._known:
-            made = self._material(look, name, chart, glow, sides)
+            made = self._material(look, chart, glow, sides)
             self._known[key] = self._scene.add_material(made)
         return self._known[key]
 
     def _default(self, *, black: bool) -> Look:
         return _BLACK if black else _GREY
 
-    def _material(self, look: Look, name: str, chart: Chart, glow: Glow, sides: Sides) -> Material:
+    def _material(self, look: Look, chart: Chart, glow: Glow, sides: Sides) -> Material:
         made = Material(
-            look.kind,
-            name,
+            look.kind if look.blend is None else self._mix(look.blend, chart),
+            look.name,
             emission=glow.radiance,
             emission_texture=glow.texture,
             opacity=look.opacity,
@@ -92,6 +94,12 @@ class Materials:
         if isinstance(look.kind, Gltf):
             return replace(made, kind=replace(look.kind, normal_texture=slot))
         return replace(made, normal_texture=slot)
+
+    def _mix(self, blend: Blend, chart: Chart) -> Mix:
+        first, second = (
+            self._index(part, chart, Glow(), Sides()) for part in (blend.first, blend.second)
+        )
+        return Mix(first, second, min(blend.amount, 1.0), blend.amount_texture)
 
     def _normals(self, look: Look, chart: Chart) -> TextureSlot | None:
         if look.relief is None:
@@ -116,7 +124,7 @@ class Materials:
             leave_out(node, self._notes, f"a material {node.plugin[:40]!r} is grey: not supported")
             return Look()
         node.use()
-        return look
+        return replace(look, name=node.id)
 
     # Adapters -------------------------------------------------------------------------------------
 
@@ -164,20 +172,19 @@ class Materials:
         return self._textures.texture_of(found)
 
     def _with(self, look: Look, relief: Relief) -> Look:
-        if look.relief is not None:
+        if look.reliefs:
             self._notes.add("a relief on a relief replaces it")
-        return replace(look, relief=relief)
+        return look.with_relief(relief)
 
     def _blend(self, node: Node) -> Look:
         found = node.nested("bsdf")
         if len(found) != 2:
             node.fail(f"wanted two materials inside, got {len(found)}")
         amount, slot = self._textures.scalar(node, "weight", 0.5)
-        looks = [self.look(one) for one in found]
-        first, second = (self.index(one, Chart(), Glow(), Sides()) for one in found)
+        first, second = (self.look(one) for one in found)
         return Look(
-            Mix(first, second, min(amount, 1.0), slot),
-            two_sided=all(one.two_sided for one in looks),
+            two_sided=first.two_sided and second.two_sided,
+            blend=Blend(first, second, amount, slot),
         )
 
 

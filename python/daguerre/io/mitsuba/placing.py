@@ -96,7 +96,7 @@ class Placing:
         placed = pose @ local @ inner
         name = name or self._named(node, placed)
         chart = Chart()
-        if look.relief is not None:
+        if look.reliefs:
             chart = chart_of(self._scene.meshes[mesh], placed)
         material = self._material(node, chart, placed)
         self._scene.add_instance(mesh, material, placed, name=name)
