@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.io.pbrt.writer_octahedral import directions, looked_up, resampled, sphere
+from daguerre.io.pbrt.octahedral import directions_of
+from daguerre.io.pbrt.writer_octahedral import directions, looked_up, resampled
 from tests.support import outgoing_scenes, pbrt_syntax, ply_file
 from tests.support.pbrt_syntax import Directive
 
@@ -116,11 +117,11 @@ def test_the_octahedral_map_has_equal_areas_and_pbrts_corners() -> None:
     np.testing.assert_allclose(np.linalg.norm(found, axis=-1), 1, atol=1e-12)
     moments = np.einsum("ija,ijb->ab", found, found) / rows**2
     np.testing.assert_allclose(moments, np.eye(3) / 3, atol=1e-3)  # equal areas
-    middle, corner, right = sphere(np.array([0.0, 1.0, 1.0]), np.array([0.0, 1.0, 0.0]))
+    middle, corner, right = directions_of(np.array([0.5, 1.0, 1.0]), np.array([0.5, 1.0, 0.5]))
     np.testing.assert_allclose(middle, (0, 0, 1), atol=1e-12)
     np.testing.assert_allclose(corner, (0, 0, -1), atol=1e-12)
     np.testing.assert_allclose(right, (1, 0, 0), atol=1e-12)
-    (down,) = sphere(np.array([0.0]), np.array([1.0]))
+    (down,) = directions_of(np.array([0.5]), np.array([1.0]))
     np.testing.assert_allclose(down, (0, 1, 0), atol=1e-12)
 
 
@@ -133,7 +134,7 @@ def test_a_resampled_panorama_has_its_light_in_its_directions() -> None:
     weights = np.sin(rows)[:, None] * np.ones((64, 128))
     mean = np.average(panorama[..., 0], weights=weights)
     assert made[..., 0].mean() == pytest.approx(mean, rel=2e-3)  # equal areas
-    axis = sphere(np.array([0.001]), np.array([0.0]))[0]  # +z of the map is +y
+    axis = directions_of(np.array([0.5005]), np.array([0.5]))[0]  # +z of the map is +y
     assert axis[2] == pytest.approx(1, abs=1e-5)
     middle = made[made.shape[0] // 2, made.shape[1] // 2, 0]
     assert middle == pytest.approx(float(panorama[0, :, 0].mean()), rel=0.15)

@@ -1,8 +1,4 @@
-"""Equal-area octahedral maps, in which pbrt-v4 holds light by direction.
-
-Source: P. Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD", 2008, as the
-documentation of pbrt-v4 names it: the square's inner diamond is the half sphere of z > 0.
-"""
+"""Panoramas as equal-area octahedral maps, in which pbrt-v4 holds light by direction."""
 
 from __future__ import annotations
 
@@ -10,6 +6,8 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .octahedral import directions_of
 
 Array = NDArray[np.float64]
 
@@ -26,22 +24,8 @@ def directions(rows: int, offset: tuple[float, float] = (0.5, 0.5)) -> Array:
         rows: Number of rows and of columns.
         offset: Place within each pixel, along columns and rows; default: its middle.
     """
-    u = 2 * (np.arange(rows) + offset[0]) / rows - 1
-    v = 2 * (np.arange(rows) + offset[1]) / rows - 1
-    return sphere(*np.meshgrid(u, v))
-
-
-def sphere(u: Array, v: Array) -> Array:
-    """Unit directions of points of the square [-1, 1]^2, shape (..., 3)."""
-    across, down = np.abs(u), np.abs(v)
-    inside = 1 - (across + down)
-    r = 1 - np.abs(inside)
-    turn = np.where(r > 0, (down - across) / np.where(r > 0, r, 1) + 1, 1) * math.pi / 4
-    z = np.copysign(1 - r**2, inside)
-    flat = r * np.sqrt(np.maximum(0.0, 2 - r**2))
-    x = np.copysign(np.cos(turn), u) * flat
-    y = np.copysign(np.sin(turn), v) * flat
-    return np.stack([x, y, z], axis=-1)
+    s, t = ((np.arange(rows) + within) / rows for within in offset)
+    return directions_of(*np.meshgrid(s, t))
 
 
 def resampled(panorama: NDArray[np.float32]) -> NDArray[np.float32]:
