@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -68,6 +70,33 @@ def test_meshes_and_camera_come_back(
 
 
 @pytest.mark.parametrize("suffix", [".pbrt", ".xml"])
+def test_normals_of_a_mirrored_mesh_point_outside(suffix: str, tmp_path: Path) -> None:
+    reader_of(suffix)
+    scene = dg.Scene()
+    shape = outgoing_scenes.ball(scene, 12)
+    scales = np.array((-0.4, 0.3, 0.8))
+    scene.add_instance(shape, dg.Diffuse(), outgoing_scenes.placed(1, 2, 3, scales))
+    scene.set_environment(color=(1, 1, 1))
+    scene.add_camera("main", outgoing_scenes.camera())
+    file = tmp_path / f"scene{suffix}"
+    dg.export_scene(scene, file, resolution=SIZE, spp=4)
+    again = dg.load(file)
+    (found,) = again.instances
+    mesh = again.meshes[found.mesh]
+    linear = found.transform[:3, :3]
+    points = mesh.positions @ linear.T + found.transform[:3, 3] - (1, 2, 3)
+    assert mesh.normals is not None
+    normals = mesh.normals @ np.linalg.inv(linear)
+    expected = points / scales**2  # of an ellipsoid
+    cosines = np.einsum("ij,ij->i", unit(normals), unit(expected))
+    assert cosines.min() > 1 - 1e-5
+
+
+def unit(vectors: np.ndarray) -> np.ndarray:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
+
+
+@pytest.mark.parametrize("suffix", [".pbrt", ".xml"])
 def test_light_comes_back(suffix: str, tmp_path: Path) -> None:
     """One unit: 1 cd/m2 of the world, a lamp's candelas, lux of the sun."""
     reader_of(suffix)
@@ -93,3 +122,129 @@ def test_light_comes_back(suffix: str, tmp_path: Path) -> None:
     shining = [m for m in again.materials if max(m.emission) > 0]
     assert len({m.emission for m in shining}) == 1
     np.testing.assert_allclose(shining[0].emission, (20, 18, 15), rtol=1e-5)
+
+
+def back(kind: object, suffix: str, folder: Path) -> tuple[dg.Scene, dg.Material]:
+    """A ball of a material that was written and read: the scene, and the material."""
+    reader_of(suffix)
+    scene = dg.Scene()
+    made = kind if isinstance(kind, dg.Material) else dg.Material(kind)  # type: ignore[arg-type]
+    scene.add_instance(outgoing_scenes.ball(scene, 8), scene.add_material(made))
+    scene.set_environment(color=(1, 1, 1))
+    scene.add_camera("main", outgoing_scenes.camera())
+    file = folder / f"scene{suffix}"
+    dg.export_scene(scene, file, resolution=SIZE, spp=4)
+    again = dg.load(file)
+    return again, again.materials[again.instances[0].material]
+
+
+GOLD = dg.Conductor.of_metal("Au", alpha=0.2)
+KINDS: list[Any] = [
+    dg.Diffuse((0.2, 0.4, 0.6)),
+    GOLD,
+    dg.Conductor.of_metal("Ag", alpha=0.0),
+    dg.Conductor.of_metal("Cu", alpha=0.1, alpha_v=0.3),
+    dg.Dielectric(1.33),
+    dg.Dielectric(1.7, alpha=0.25),
+    dg.Dielectric(1.5, thin=True),
+    dg.Coated(dg.Diffuse((0.3, 0.5, 0.1)), ior=1.4, nonlinear=True),
+    dg.Boundary(),
+]
+
+
+@pytest.mark.parametrize("suffix", [".pbrt", ".xml"])
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: type(kind).__name__)
+def test_materials_come_back(kind: Any, suffix: str, tmp_path: Path) -> None:
+    _, found = back(kind, suffix, tmp_path)
+    assert type(found.kind) is type(kind)
+    assert plain(found.kind) == pytest.approx(plain(kind), rel=1e-4, abs=1e-6)
+    assert found.two_sided
+
+
+def plain(kind: Any) -> list[float]:
+    """Numbers of a kind of material that has no textures; spectra at three wavelengths."""
+    numbers: list[float] = []
+    for field in dataclasses.fields(kind):
+        value = getattr(kind, field.name)
+        if value is None:
+            numbers.append(-1.0)
+        elif isinstance(value, dg.Spectrum):
+            numbers += np.asarray(value.at(np.array([450.0, 550.0, 650.0]))).tolist()
+        elif dataclasses.is_dataclass(value):
+            numbers += plain(value)
+        else:
+            numbers += np.ravel(np.asarray(value, float)).tolist()
+    return numbers
+
+
+@pytest.mark.parametrize("suffix", [".pbrt", ".xml"])
+def test_textures_and_masks_come_back(suffix: str, tmp_path: Path) -> None:
+    pixels = outgoing_scenes.checks()
+    scene = dg.Scene()
+    slot = dg.TextureSlot(scene.add_texture(pixels, srgb=True, min_filter="linear"))
+    mask = np.arange(64, dtype=np.float32).reshape(8, 8, 1) / 64
+    holes = dg.TextureSlot(scene.add_texture(mask, min_filter="linear"))
+    made = dg.Material(dg.Diffuse((1, 1, 1), slot), opacity=0.5, opacity_texture=holes)
+    scene.add_instance(outgoing_scenes.card(scene), made)
+    scene.set_environment(color=(1, 1, 1))
+    scene.add_camera("main", outgoing_scenes.camera())
+    reader_of(suffix)
+    file = tmp_path / f"scene{suffix}"
+    dg.export_scene(scene, file, resolution=SIZE, spp=4)
+    again = dg.load(file)
+    found = again.materials[again.instances[0].material]
+    assert isinstance(found.kind, dg.Diffuse)
+    color, opacity = found.kind.reflectance_texture, found.opacity_texture
+    assert color is not None
+    assert opacity is not None
+    texture = again.textures[color.texture]
+    assert texture.srgb
+    np.testing.assert_array_equal(texture.pixels, pixels)
+    assert color.transform == pytest.approx((1, 0, 0, 0, 1, 0), abs=1e-6)
+    seen = again.textures[opacity.texture].pixels[:, :, :1] * found.opacity
+    np.testing.assert_allclose(seen, mask * 0.5, atol=1e-4)
+    uv = [one.meshes[one.instances[0].mesh].uv for one in (scene, again)]
+    np.testing.assert_allclose(uv[1], uv[0], atol=1e-6)
+
+
+def leaves(scene: dg.Scene, material: dg.Material) -> list[dg.Material]:
+    """Parts of a mixture that are none."""
+    kind = material.kind
+    if not isinstance(kind, dg.Mix):
+        return [material]
+    return [leaf for i in (kind.first, kind.second) for leaf in leaves(scene, scene.materials[i])]
+
+
+@pytest.mark.parametrize("suffix", [".pbrt", ".xml"])
+def test_normals_over_a_mixture_come_back(suffix: str, tmp_path: Path) -> None:
+    """All parts have the normal map, its green as it was."""
+    scene = dg.Scene()
+    code = np.tile(np.array((0.6, 0.7, 0.9), np.float32), (4, 4, 1))
+    code = 0.5 + 0.5 * (2 * code - 1) / np.linalg.norm(2 * code - 1, axis=2, keepdims=True)
+    bumps = dg.TextureSlot(scene.add_texture(code.astype(np.float32), min_filter="linear"))
+    made = dg.Gltf(metallic=0.5, roughness=0.5, normal_texture=bumps)
+    scene.add_instance(outgoing_scenes.card(scene), made)
+    scene.set_environment(color=(1, 1, 1))
+    scene.add_camera("main", outgoing_scenes.camera())
+    reader_of(suffix)
+    file = tmp_path / f"scene{suffix}"
+    dg.export_scene(scene, file, resolution=SIZE, spp=4)
+    again = dg.load(file)
+    whole = again.materials[again.instances[0].material]
+    assert isinstance(whole.kind, dg.Mix)
+    for part in leaves(again, whole):
+        inner = part.kind.normal_texture if isinstance(part.kind, dg.Gltf) else part.normal_texture
+        assert inner is not None
+        pixels = again.textures[inner.texture].pixels
+        linear = pixels / 255 if pixels.dtype == np.uint8 else pixels
+        np.testing.assert_allclose(linear[1, 1], code[1, 1], atol=3e-3)
+
+
+@pytest.mark.parametrize("suffix", [".pbrt", ".xml"])
+def test_media_come_back(suffix: str, tmp_path: Path) -> None:
+    inside = dg.Medium(absorption=(0.1, 0.2, 0.3), scattering=(1, 2, 4), lobes=((0.3, 1.0),))
+    _, found = back(dg.Material(dg.Boundary(), interior=inside), suffix, tmp_path)
+    assert found.interior is not None
+    np.testing.assert_allclose(found.interior.absorption, inside.absorption, rtol=1e-4)
+    np.testing.assert_allclose(found.interior.scattering, inside.scattering, rtol=1e-4)
+    assert found.interior.lobes[0][0] == pytest.approx(0.3)

@@ -6,6 +6,7 @@ import numpy as np
 
 from daguerre.io.outgoing.meshes import MeshFiles
 from daguerre.io.outgoing.placing import Placed, mirrored
+from daguerre.io.outgoing.ply import Place
 from daguerre.io.outgoing.surfaces import Emission, Look
 
 from .writer_bsdfs import Bsdfs
@@ -26,8 +27,8 @@ class Shapes:
     def add(self, placed: Placed) -> None:
         """Adds a mesh at all of its places.
 
-        Mitsuba has no instances of emitters, and takes the sides of a mirrored mesh from its
-        corners, which are turned round for it.
+        Mitsuba has no instances of emitters. Versions differ in the sides of a mesh that its
+        transform mirrors, so that the file of such a mesh is in the world.
         """
         look = self._looks[placed.material]
         self._bsdfs.id_of(placed.material, look)  # stands before its use
@@ -35,24 +36,25 @@ class Shapes:
             self._add_group(placed)
             return
         for transform in placed.transforms:
-            shape = self._add_mesh(self._root, placed, reversed=mirrored(transform))
-            if not np.array_equal(transform, np.eye(4)):
+            baked = transform if mirrored(transform) else None
+            shape = self._add_mesh(self._root, placed, baked)
+            if baked is None and not np.array_equal(transform, np.eye(4)):
                 add_matrix(shape, "to_world", transform)
 
     def _add_group(self, placed: Placed) -> None:
         name = f"group-{self._groups}"
         self._groups += 1
         group = add(self._root, "shape", type="shapegroup", id=name)
-        self._add_mesh(group, placed, reversed=False)
+        self._add_mesh(group, placed)
         for transform in placed.transforms:
             instance = add(self._root, "shape", type="instance")
             add(instance, "ref", id=name)
             add_matrix(instance, "to_world", transform)
 
-    def _add_mesh(self, parent: Element, placed: Placed, *, reversed: bool) -> Element:
+    def _add_mesh(self, parent: Element, placed: Placed, baked: Place | None = None) -> Element:
         look = self._looks[placed.material]
         shape = add(parent, "shape", type="ply")
-        path = self._meshes.path(placed.mesh, look, reversed=reversed)
+        path = self._meshes.path(placed.mesh, look, baked)
         add_value(shape, "string", "filename", path)
         if not self._meshes.has_normals(placed.mesh):
             add_value(shape, "boolean", "face_normals", True)

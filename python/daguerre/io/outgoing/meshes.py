@@ -10,7 +10,7 @@ from daguerre.scene.parts import Mesh
 from daguerre.scene.scene import Scene
 
 from .folder import OutgoingFolder
-from .ply import ply_bytes
+from .ply import Place, ply_bytes
 from .surfaces import Look
 
 
@@ -32,16 +32,22 @@ class MeshFiles:
         """
         self._scene, self._folder, self.notes = scene, folder, notes
         self._v_up = v_up
-        self._known: dict[tuple[int, int, bool], str] = {}
+        self._known: dict[tuple[int, int, bytes], str] = {}
 
-    def path(self, index: int, look: Look, *, reversed: bool = False) -> str:
-        """Path of a mesh for a material, relative to the scene file."""
+    def path(self, index: int, look: Look, place: Place | None = None) -> str:
+        """Path of a mesh for a material, relative to the scene file.
+
+        Args:
+            index: Index of the mesh.
+            look: The material.
+            place: World from mesh, shape (4, 4), if the file is to be in the world.
+        """
         mesh = self._scene.meshes[index]
         if look.vertex_colors and mesh.colors is not None and bool((mesh.colors != 1).any()):
             self.notes.add("vertex colours of a mesh are left out")
-        key = index, look.uv_set, reversed
+        key = index, look.uv_set, b"" if place is None else place.tobytes()
         if key not in self._known:
-            data = ply_bytes(mesh, self._uv(mesh, look.uv_set), reversed=reversed)
+            data = ply_bytes(mesh, self._uv(mesh, look.uv_set), place)
             self._known[key] = self._folder.add("mesh", ".ply", data)
         return self._known[key]
 

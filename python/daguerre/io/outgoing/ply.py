@@ -13,28 +13,32 @@ from daguerre.compiled import __version__
 from daguerre.scene.parts import Mesh
 
 Array = NDArray[np.float32]
+Triangles = NDArray[np.uint32]
+Place = NDArray[np.float64]
 
 
-def ply_bytes(mesh: Mesh, uv: Array | None, *, reversed: bool) -> bytes:
-    """Makes the bytes of a file of a mesh in its own space.
+def ply_bytes(mesh: Mesh, uv: Array | None, place: Place | None = None) -> bytes:
+    """Makes the bytes of a file of a mesh.
 
     Args:
         mesh: Mesh, whose positions, normals and triangles are written.
         uv: Texture coordinates, shape (N, 2), or None.
-        reversed: Whether triangles run the other way round, for a mirrored placement that only
-            winding tells; normals stay.
+        place: World from mesh, shape (4, 4); the file is in the world then, and its triangles
+            have the sides that they have here. None: in the mesh's own space.
     """
-    columns: list[tuple[str, Array]] = [("x y z", mesh.positions)]
-    if mesh.normals is not None:
-        columns.append(("nx ny nz", mesh.normals))
+    positions, normals, triangles = mesh.positions, mesh.normals, mesh.indices.reshape(-1, 3)
+    if place is not None:
+        positions, normals, triangles = _placed(positions, normals, triangles, place)
+    columns: list[tuple[str, Array]] = [("x y z", positions)]
+    if normals is not None:
+        columns.append(("nx ny nz", normals))
     if uv is not None:
         columns.append(("u v", uv))
     names = " ".join(name for name, _ in columns).split()
     vertices = np.concatenate([np.asarray(v, "<f4") for _, v in columns], axis=1)
-    triangles = mesh.indices.reshape(-1, 3)
     faces = np.empty(len(triangles), [("count", "u1"), ("corners", "<i4", 3)])
     faces["count"] = 3
-    faces["corners"] = triangles[:, ::-1] if reversed else triangles
+    faces["corners"] = triangles
     lines = [
         "ply",
         "format binary_little_endian 1.0",
@@ -46,3 +50,16 @@ def ply_bytes(mesh: Mesh, uv: Array | None, *, reversed: bool) -> bytes:
         "end_header\n",
     ]
     return b"".join(["\n".join(lines).encode(), vertices.tobytes(), faces.tobytes()])
+
+
+def _placed(
+    positions: Array, normals: Array | None, triangles: Triangles, place: Place
+) -> tuple[Array, Array | None, Triangles]:
+    """Moves a mesh to its place; a mirror image has its corners the other way round."""
+    linear = place[:3, :3]
+    moved = (positions @ linear.T + place[:3, 3]).astype(np.float32)
+    if normals is not None:
+        turned = normals @ np.linalg.inv(linear)
+        length = np.linalg.norm(turned, axis=1, keepdims=True)
+        normals = (turned / np.maximum(length, 1e-30)).astype(np.float32)
+    return moved, normals, triangles[:, ::-1] if np.linalg.det(linear) < 0 else triangles
