@@ -111,3 +111,12 @@ def test_the_tables_have_the_colours_of_the_metals() -> None:
     assert reflectance("Ag", 550) > 0.95
     assert 0.87 < reflectance("Al", 550) < 0.94
     assert 0.4 < reflectance("W", 550) < 0.6
+
+
+def test_materials_print_what_differs_from_their_defaults() -> None:
+    told = {repr(dg.Material(kind, opacity=0.5)) for kind in KINDS}
+    assert len(told) == len(KINDS)
+    assert all(text.endswith(", opacity=0.5)") and "None" not in text for text in told)
+    assert repr(dg.Material()) == "Material()"
+    assert repr(dg.Dielectric(1.6, thin=True)) == "Dielectric(ior=1.6, thin=True)"
+    assert repr(dg.Coated(dg.Diffuse((1, 0, 0)))) == "Coated(base=Diffuse(reflectance=(1, 0, 0)))"

@@ -63,6 +63,14 @@ class FixedArrays(Value):
                 freeze_in_place(part)
 
 
+class BriefRecord:
+    """Base of dataclasses (``repr=False``) that print the fields not at their defaults."""
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{name}={text}" for name, text in changed(self).items())
+        return f"{type(self).__name__}({told})"
+
+
 def same(a: Any, b: Any) -> bool:
     """Whether two values are equal: numbers by value, NaN equals NaN, arrays by elements.
 
@@ -122,4 +130,6 @@ def _default(field: Field[Any]) -> Any:
 
 
 def _brief(value: Any) -> str:
-    return f"<array {value.shape}>" if isinstance(value, np.ndarray) else short(value)
+    if isinstance(value, np.ndarray):
+        return f"<array {value.shape}>"
+    return repr(value) if isinstance(value, BriefRecord) else short(value)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from daguerre.checks import short, shown
 from daguerre.errors import InputError
+from daguerre.files.value import BriefRecord
 
 from .light_profile import LightProfile, check_profile
 from .media import Medium, check_media
@@ -43,8 +44,8 @@ Kind = Diffuse | Conductor | Dielectric | Coated | Mix | Boundary | Gltf
 KINDS = "Diffuse, Conductor, Dielectric, Coated, Mix, Boundary or Gltf"
 
 
-@dataclass(frozen=True)
-class Material:
+@dataclass(frozen=True, repr=False)
+class Material(BriefRecord):
     """A named material: a kind of surface, and emission added to it.
 
     Attributes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from daguerre.files.value import BriefRecord
 from daguerre.scene.spectrum import Spectrum
 
 from .conductor import Conductor
@@ -11,8 +12,8 @@ from .diffuse import Color, Diffuse
 from .texture_slot import TextureSlot
 
 
-@dataclass(frozen=True)
-class Coated:
+@dataclass(frozen=True, repr=False)
+class Coated(BriefRecord):
     """A clear dielectric coat over a diffuse surface (plastic, varnish) or a metal, both sides.
 
     Light that the base reflects and the coat reflects back is counted, which makes colours more

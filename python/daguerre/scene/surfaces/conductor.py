@@ -6,14 +6,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from daguerre.errors import UsageError
+from daguerre.files.value import BriefRecord
 from daguerre.scene.spectrum import Spectrum
 
 from .diffuse import Color
 from .texture_slot import TextureSlot
 
 
-@dataclass(frozen=True)
-class Conductor:
+@dataclass(frozen=True, repr=False)
+class Conductor(BriefRecord):
     """Metal: GGX microfacets, both sides; ``alpha`` < 1e-3: a mirror.
 
     Without ``eta`` and ``k`` the facets reflect the same share at every angle. With them they

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from daguerre.files.value import BriefRecord
 from daguerre.scene.spectrum import Spectrum
 
 from .diffuse import Color
 from .texture_slot import TextureSlot
 
 
-@dataclass(frozen=True)
-class Dielectric:
+@dataclass(frozen=True, repr=False)
+class Dielectric(BriefRecord):
     """Clear glass, smooth (``alpha`` < 1e-3) or GGX rough; the normal points outside.
 
     Attributes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from daguerre.files.value import BriefRecord
 from daguerre.scene.spectrum import Spectrum
 
 from .texture_slot import TextureSlot
@@ -12,8 +13,8 @@ from .texture_slot import TextureSlot
 Color = tuple[float, float, float]
 
 
-@dataclass(frozen=True)
-class Diffuse:
+@dataclass(frozen=True, repr=False)
+class Diffuse(BriefRecord):
     """Lambertian diffuse material, on both sides.
 
     Where reflectance and transmittance are more than 1 together, both are scaled down.

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from daguerre.files.value import changed
+from daguerre.files.value import BriefRecord
 
 from .diffuse import Color
 from .texture_slot import TextureSlot
 
 
-@dataclass(frozen=True)
-class Gltf:
+@dataclass(frozen=True, repr=False)
+class Gltf(BriefRecord):
     """glTF metallic-roughness material with extensions; fields have the names of glTF properties.
 
     The extensions are KHR anisotropy, clearcoat, diffuse_transmission, dispersion (20 / Abbe
@@ -77,7 +77,3 @@ class Gltf:
     glossiness: float = 1.0
     specular_glossiness_texture: TextureSlot | None = None
     unlit: bool = False
-
-    def __repr__(self) -> str:
-        """Lists only fields that differ from their defaults, as there are 52 fields."""
-        return f"Gltf({', '.join(f'{name}={text}' for name, text in changed(self).items())})"

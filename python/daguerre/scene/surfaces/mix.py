@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from daguerre.files.value import BriefRecord
+
 from .texture_slot import TextureSlot
 
 
-@dataclass(frozen=True)
-class Mix:
+@dataclass(frozen=True, repr=False)
+class Mix(BriefRecord):
     """A mixture of two materials of the scene, each of which covers a share of every point.
 
     The mixture has an emission of its own; its parts emit nothing.

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from daguerre.files.value import BriefRecord
 
-@dataclass(frozen=True)
-class TextureSlot:
+
+@dataclass(frozen=True, repr=False)
+class TextureSlot(BriefRecord):
     """Reference of a material to a texture.
 
     Attributes:
