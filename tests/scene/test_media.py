@@ -34,6 +34,13 @@ def test_a_grid_keeps_its_numbers_whatever_becomes_of_the_array() -> None:
     assert grid.values.dtype == np.float32
 
 
+def _spike(density: float) -> dg.DensityGrid:
+    """Empty but for one cell: rays would take a step for each free path in its whole block."""
+    values = np.zeros((8, 8, 8))
+    values[4, 4, 4] = density
+    return dg.DensityGrid(values)
+
+
 @pytest.mark.parametrize(
     ("made", "says"),
     [
@@ -46,6 +53,7 @@ def test_a_grid_keeps_its_numbers_whatever_becomes_of_the_array() -> None:
         (lambda: dg.Medium(lobes=((0, -1),)), r"lobes\[0\]: weight: wanted"),
         (lambda: dg.Medium(lobes=((0, 0),)), "wanted a weight above 0"),
         (lambda: dg.Medium(density=np.ones((2, 2, 2))), "wanted a DensityGrid or None"),
+        (lambda: dg.Medium((1, 2, 1), density=_spike(600_000.0)), "1e\\+06 mean free paths.*1.2e"),
         (lambda: dg.DensityGrid(np.ones((2, 2))), r"wanted shape \(Z, Y, X\)"),
         (lambda: dg.DensityGrid(np.zeros((0, 2, 2))), r"wanted shape \(Z, Y, X\)"),
         (lambda: dg.DensityGrid([[[-1.0]]]), "wanted finite numbers of at least 0"),

@@ -23,6 +23,9 @@ Color = tuple[float, float, float]
 #: Maximum number of lobes of a phase function, and of elements of a density grid.
 MAX_LOBES = 8
 MAX_DENSITIES = 1 << 29
+#: Maximum number of mean free paths along the longest edge of a density grid, all at its densest:
+#: a ray takes as many steps there if its densest cells are few.
+MAX_FREE_PATHS = 1e6
 #: Maximum mean cosine: beyond it a lobe is narrower than a float direction resolves.
 MAX_COSINE = 0.999
 
@@ -88,7 +91,8 @@ class Medium(Value):
         density: Grid of factors on absorption, scattering and emission; None: 1 everywhere.
 
     Raises:
-        InputError: A value is wrong; the message names it.
+        InputError: A value is wrong, or the grid is thicker than a ray can be followed through;
+            the message names it.
     """
 
     absorption: Color | Spectrum = (0.0, 0.0, 0.0)
@@ -104,6 +108,15 @@ class Medium(Value):
         grid: object = self.density
         if grid is not None and not isinstance(grid, DensityGrid):
             raise InputError(f"medium: density: wanted a DensityGrid or None, got {short(grid)}")
+        if grid is not None and not (paths := self._free_paths(grid)) <= MAX_FREE_PATHS:
+            raise InputError(
+                f"medium: density: wanted at most {MAX_FREE_PATHS:g} mean free paths along the "
+                f"grid's longest edge, at its densest, got {paths:g}"
+            )
+
+    def _free_paths(self, grid: DensityGrid) -> float:
+        edge = float(np.linalg.norm(grid.transform[:3, :3], axis=0).max())
+        return float(grid.values.max()) * edge * (_most(self.absorption) + _most(self.scattering))
 
 
 def check_medium(medium: Any, where: str) -> None:
@@ -144,7 +157,11 @@ def check_fog(medium: Any, where: str) -> None:
 
 
 def _any(value: Color | Spectrum) -> bool:
-    return any(value.values if isinstance(value, Spectrum) else value)
+    return _most(value) > 0
+
+
+def _most(value: Color | Spectrum) -> float:
+    return max(value.values if isinstance(value, Spectrum) else value)
 
 
 def _coefficient(value: Any, where: str) -> Color | Spectrum:
