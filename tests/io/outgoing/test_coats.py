@@ -10,6 +10,7 @@ from daguerre.io.outgoing.coats import (
     head_on,
     mean_inside,
     mean_outside,
+    seen_above,
     sheet_ior,
     smooth_share,
 )
@@ -46,6 +47,7 @@ def test_a_base_below_a_coat_sends_what_ours_sends() -> None:
         left = left * inside
     ours = np.array(color)  # (1 - E) c (1 - E) / (1 - mean E), without the interface's factors
     np.testing.assert_allclose(sent, ours, rtol=1e-9)
+    np.testing.assert_allclose(seen_above(base_below(color, ior), ior), color, rtol=1e-9)
 
 
 def test_a_sheet_reflects_as_one_interface() -> None:

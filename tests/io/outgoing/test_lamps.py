@@ -9,7 +9,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.files.notes import Notes
-from daguerre.io.outgoing.lamps import plain, spot_factors, turned
+from daguerre.io.outgoing.lamps import plain, reach_of, spot_factors, turned
 
 
 def test_the_falloff_of_a_spot_is_that_of_our_pictures() -> None:
@@ -53,3 +53,13 @@ def test_what_other_lamps_lack_is_noted_and_balls_keep_their_intensity() -> None
     assert isinstance(sun, dg.DirectionalLight)
     assert sun.angle == 0
     assert [text.split(" ")[0] for text in notes.sentences()] == ["range", "angle"]
+
+
+def test_the_reach_of_a_profile_is_the_cone_around_its_light() -> None:
+    table = dg.LightProfile.table
+    assert reach_of(table([0, 30], [1.0, 0.0])) == pytest.approx(30, abs=0.1)
+    one_side = table([0, 20, 60], [[1.0, 1, 1, 1], [0, 1, 0, 0], [0, 0, 0, 0]], [0, 90, 180, 270])
+    assert reach_of(one_side) == pytest.approx(60, abs=0.1)
+    assert reach_of(dg.LightProfile.cone(45.0)) == pytest.approx(45, abs=0.1)
+    assert reach_of(dg.LightProfile()) == 180
+    assert reach_of(table([0, 10], [0.0, 0.0])) == 0

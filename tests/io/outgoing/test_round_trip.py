@@ -248,3 +248,31 @@ def test_media_come_back(suffix: str, tmp_path: Path) -> None:
     np.testing.assert_allclose(found.interior.absorption, inside.absorption, rtol=1e-4)
     np.testing.assert_allclose(found.interior.scattering, inside.scattering, rtol=1e-4)
     assert found.interior.lobes[0][0] == pytest.approx(0.3)
+
+
+def test_a_light_profile_within_a_cone_comes_back_from_mitsuba(tmp_path: Path) -> None:
+    """Its light is where it was, around the axis as well."""
+    reader_of(".xml")
+    theta, phi = np.linspace(0, 50, 11), np.arange(0, 360, 30)
+    around = 1 + 0.8 * np.cos(np.radians(phi - 40))
+    values = np.cos(np.radians(theta))[:, None] * around * np.linspace(1, 0, 11)[:, None]
+    lamp = dg.PointLight((3.0, 2.0, 1.0), profile=dg.LightProfile.table(theta, values, phi))
+    scene = dg.Scene()
+    place = dg.look_at((1, 2, 3), (0, 0.5, -1))
+    scene.add_light(lamp, place)
+    scene.add_instance(outgoing_scenes.card(scene), dg.Diffuse())
+    scene.add_camera("main", outgoing_scenes.camera())
+    file = tmp_path / "scene.xml"
+    dg.export_scene(scene, file, resolution=SIZE, spp=4)
+    again = dg.load(file)
+    rng = np.random.default_rng(4)
+    ways = rng.normal(size=(400, 3)) @ np.diag((1, 1, 0.5)) - (0, 0, 1.5)
+    world = ways @ place[:3, :3].T
+    expected = lamp.profile.factors(ways) * np.array(lamp.intensity)  # type: ignore[union-attr]
+    found = np.zeros((400, 3))
+    for light, pose in again.lights:
+        assert isinstance(light, dg.PointLight)
+        assert light.profile is not None
+        found += light.profile.factors(world @ pose[:3, :3]) * np.array(light.intensity)
+        np.testing.assert_allclose(pose[:3, 3], (1, 2, 3), atol=1e-6)
+    np.testing.assert_allclose(found, expected, atol=0.01 * expected.max())

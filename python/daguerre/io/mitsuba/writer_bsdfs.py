@@ -6,10 +6,12 @@ glTF materials have, (1 - E(wo)) (1 - E(wi)) / (1 - mean E); its ``principled`` 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from daguerre.files.notes import Notes
-from daguerre.io.outgoing.coats import head_on, sheet_ior, smooth_share
+from daguerre.io.outgoing.coats import head_on, seen_above, sheet_ior, smooth_share
 from daguerre.io.outgoing.folder import OutgoingFolder
 from daguerre.io.outgoing.pictures import BLACK, WHITE, Colored, Number, Picture, each, scaled
 from daguerre.io.outgoing.surfaces import (
@@ -144,6 +146,9 @@ class Bsdfs:
         if _is_black(surface.color):
             self._add_coat(parent, surface, 1.0, name)
             return
+        if surface.saturates:  # neither a factor on the colour nor ``diffuse`` would know of it
+            seen = seen_above(surface.color, surface.ior)
+            surface = replace(surface, color=seen, saturates=False)
         bsdf = add(parent, "bsdf", type="blendbsdf", id=name)
         add_value(bsdf, "float", "weight", _COAT_SHARE)
         self._add_base(bsdf, surface)

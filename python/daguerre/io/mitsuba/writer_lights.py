@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.files.notes import Notes
 from daguerre.io.outgoing.folder import OutgoingFolder
-from daguerre.io.outgoing.lamps import plain, spot_factors, turned
+from daguerre.io.outgoing.lamps import plain, reach_of, spot_factors, turned
 from daguerre.io.outgoing.picture_file import write_pixels
 from daguerre.io.outgoing.pictures import BLACK
 from daguerre.scene.lights import DirectionalLight, Light, PointLight, SphereLight, SpotLight
@@ -19,6 +21,7 @@ from .writer_xml import Element, add, add_matrix, add_point, add_rgb, add_value
 
 #: Widest half angle of a spot light, degrees: its falloff is a picture on a plane across its axis.
 _WIDEST = 85.0
+_NARROWEST = 0.05
 #: Difference of the angles between which Mitsuba's own falloff goes to 0, degrees.
 _EDGE = 1e-3
 _MOST_TEXELS = 2048
@@ -42,9 +45,7 @@ def add_lights(
         elif isinstance(one, SpotLight):
             _add_spot(root, one, transform, folder, notes)
         else:
-            if one.profile is not None:
-                notes.add("light profile of a point lamp is left out: it shines evenly")
-            _add_point_lamp(root, one, transform)
+            _add_point_lamp(root, one, transform, folder, notes)
 
 
 def add_environment(root: Element, environment: Environment | None, folder: OutgoingFolder) -> None:
@@ -68,7 +69,17 @@ def add_environment(root: Element, environment: Environment | None, folder: Outg
     add_matrix(emitter, "to_world", turn)
 
 
-def _add_point_lamp(root: Element, light: PointLight, transform: Array) -> None:
+def _add_point_lamp(
+    root: Element, light: PointLight, transform: Array, folder: OutgoingFolder, notes: Notes
+) -> None:
+    """Adds a point lamp; one whose profile is within a cone is a spot light with a picture."""
+    if light.profile is not None:
+        outer = reach_of(light.profile)
+        if outer <= _WIDEST:
+            beam = _Beam(light.intensity, max(outer, _NARROWEST), transform)
+            beam.add(root, light.profile.factors(beam.directions().reshape(-1, 3)), folder)
+            return
+        notes.add("light profile of a point lamp is left out: it shines evenly")
     emitter = add(root, "emitter", type="point")
     add_point(emitter, "point", "position", transform[:3, 3])
     add_rgb(emitter, "intensity", light.intensity)
@@ -90,22 +101,50 @@ def _add_spot(
     if outer > _WIDEST:
         notes.add(f"spot light wider than {_WIDEST:g} degrees is cut off there")
         outer = _WIDEST
-    emitter = add(root, "emitter", type="spot")
-    add_matrix(emitter, "to_world", turned(transform, "+z"))
-    add_rgb(emitter, "intensity", light.intensity)
-    add_value(emitter, "float", "cutoff_angle", outer)
-    add_value(emitter, "float", "beam_width", outer - _EDGE)
-    texture = add(emitter, "texture", type="bitmap", name="texture")
-    path = write_pixels(folder, "lamp", _falloff(light, outer))
-    add_value(texture, "string", "filename", path)
-    add_value(texture, "string", "wrap_mode", "clamp")
-    add_value(texture, "boolean", "raw", True)
+    beam = _Beam(light.intensity, outer, transform)
+    ways = beam.directions()
+    cosines = -ways[..., 2] / np.linalg.norm(ways, axis=-1)
+    beam.add(root, spot_factors(light, cosines).reshape(-1, 1), folder)
 
 
-def _falloff(light: SpotLight, outer: float) -> NDArray[np.float32]:
-    """Factors on a plane across the axis, whose edges touch the cone."""
-    reach = math.tan(math.radians(outer))
-    count = min(_MOST_TEXELS, max(_TEXELS_PER_TANGENT, math.ceil(_TEXELS_PER_TANGENT * reach)))
-    x = (2 * (np.arange(count) + 0.5) / count - 1) * reach
-    cosines = 1 / np.sqrt(1 + x[:, None] ** 2 + x[None, :] ** 2)
-    return spot_factors(light, cosines).astype(np.float32)[:, :, None]
+@dataclass(frozen=True)
+class _Beam:
+    """A spot light of Mitsuba whose falloff is a picture on a plane across its axis.
+
+    Attributes:
+        intensity: Intensity, cd, at a factor of 1.
+        outer: Half angle of the cone around its light, degrees; the picture's edges touch it.
+        transform: World from lamp, shape (4, 4).
+    """
+
+    intensity: tuple[float, float, float]
+    outer: float
+    transform: Array
+
+    @property
+    def _count(self) -> int:
+        reach = math.tan(math.radians(self.outer))
+        wanted = max(_TEXELS_PER_TANGENT, math.ceil(_TEXELS_PER_TANGENT * reach))
+        return min(_MOST_TEXELS, wanted)
+
+    def directions(self) -> Array:
+        """Directions of the texels in the lamp's own frame, of any length, shape (N, N, 3)."""
+        count = self._count
+        x = (2 * (np.arange(count) + 0.5) / count - 1) * math.tan(math.radians(self.outer))
+        plane = np.stack([*np.meshgrid(x, x), np.ones((count, count))], axis=-1)
+        lamp = self.transform[:3, :3] / np.linalg.norm(self.transform[:3, :3], axis=0)
+        return np.asarray(plane @ turned(self.transform, "+z")[:3, :3].T @ lamp)
+
+    def add(self, root: Element, factors: NDArray[Any], folder: OutgoingFolder) -> None:
+        """Adds the light; ``factors``: those of the texels, shape (N * N, 1 or 3)."""
+        count = self._count
+        emitter = add(root, "emitter", type="spot")
+        add_matrix(emitter, "to_world", turned(self.transform, "+z"))
+        add_rgb(emitter, "intensity", self.intensity)
+        add_value(emitter, "float", "cutoff_angle", self.outer)
+        add_value(emitter, "float", "beam_width", self.outer - _EDGE)
+        texture = add(emitter, "texture", type="bitmap", name="texture")
+        pixels = factors.astype(np.float32).reshape(count, count, -1)
+        add_value(texture, "string", "filename", write_pixels(folder, "lamp", pixels))
+        add_value(texture, "string", "wrap_mode", "clamp")
+        add_value(texture, "boolean", "raw", True)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from daguerre.scene.spectrum import Spectrum
 
@@ -43,15 +43,21 @@ def base_below(color: Colored, ior: float) -> Colored:
     inside; ours sends c / (1 - F). So r = c / (1 - F + c F).
     """
     inside = mean_inside(ior)
+    return _each(color, lambda shade: shade / (1 - inside + shade * inside))
 
-    def below(shade: NDArray[Any]) -> NDArray[Any]:
-        return np.asarray(shade / (1 - inside + shade * inside))
 
+def seen_above(color: Colored, ior: float) -> Colored:
+    """Colour that a base shows through a coat, with all light between both; see ``base_below``."""
+    inside = mean_inside(ior)
+    return _each(color, lambda shade: shade * (1 - inside) / (1 - shade * inside))
+
+
+def _each(color: Colored, change: Callable[[Any], Any]) -> Colored:
     if isinstance(color, Picture):
-        return color.mapped(below)
+        return color.mapped(change)
     if isinstance(color, Spectrum):
-        return Spectrum(color.wavelengths_nm, tuple(below(np.array(color.values)).tolist()))
-    red, green, blue = (float(c) for c in below(np.asarray(color)))
+        return Spectrum(color.wavelengths_nm, tuple(change(np.array(color.values)).tolist()))
+    red, green, blue = (float(change(c)) for c in color)
     return red, green, blue
 
 

@@ -9,9 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.files.notes import Notes
+from daguerre.scene.light_profile import LightProfile
 from daguerre.scene.lights import DirectionalLight, Light, PointLight, SphereLight, SpotLight
 
 Array = NDArray[np.float64]
+#: Steps of a profile's angle from its axis, degrees about it, and the share of light that is none.
+_STEPS, _AROUND, _DARK = 3600, 5, 1e-6
 
 
 def spot_factors(light: SpotLight, cosines: Array) -> Array:
@@ -27,6 +30,18 @@ def spot_factors(light: SpotLight, cosines: Array) -> Array:
     inner = math.cos(math.radians(light.inner_angle))
     ramp = np.clip((cosines - outer) / max(1e-3, inner - outer), 0.0, 1.0)
     return np.asarray(ramp**2)
+
+
+def reach_of(profile: LightProfile) -> float:
+    """Half angle of the cone around -z, degrees, outside of which a profile gives no light."""
+    theta = np.radians(np.linspace(0, 180, _STEPS + 1))[:, None]
+    phi = np.radians(np.arange(0, 360, _AROUND))
+    flat = np.sin(theta)
+    ways = np.stack([flat * np.cos(phi), flat * np.sin(phi), -np.cos(theta) + 0 * phi], axis=-1)
+    factors = profile.factors(ways.reshape(-1, 3)).reshape(len(theta), -1).max(axis=1)
+    lit = np.flatnonzero(factors > _DARK * factors.max())
+    last = int(lit[-1]) + 1 if len(lit) else 0
+    return min(last, _STEPS) * 180 / _STEPS
 
 
 def plain(light: Light, notes: Notes) -> Light:
