@@ -278,3 +278,19 @@ def layered() -> dg.Scene:
     textured = dg.Gltf(metallic_roughness_texture=dg.TextureSlot(rough), base_color=(0.8, 0.7, 0.5))
     scene.add_instance(round_, textured, placed(0.65, -0.4, 0.2, 0.28))
     return scene
+
+
+def coats() -> dg.Scene:
+    """Coats on bases: smooth and rough, with and without saturation, and a lamp with a profile."""
+    scene = room(0.9)
+    round_ = ball(scene)
+    for i, (alpha, nonlinear) in enumerate([(0.0, True), (0.1, True), (0.3, True), (0.1, False)]):
+        base = dg.Diffuse((0.7, 0.5, 0.3))
+        kind = dg.Coated(base, ior=1.5, alpha=alpha, nonlinear=nonlinear)
+        scene.add_instance(round_, kind, placed(-0.75 + 0.5 * i, -0.7, 0, 0.24))
+    theta, phi = np.linspace(0, 50, 11), np.arange(0, 360, 30)
+    around = 1 + 0.8 * np.cos(np.radians(phi - 40))
+    profile = dg.LightProfile.table(theta, np.linspace(1, 0, 11)[:, None] * around, phi)
+    lamp = dg.PointLight((12.0, 10.0, 8.0), profile=profile)
+    scene.add_light(lamp, dg.look_at((0.2, 0.3, 1.5), (0, -0.2, -1)))
+    return scene

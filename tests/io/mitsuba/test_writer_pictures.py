@@ -26,6 +26,7 @@ SCENES: dict[str, tuple[Callable[[], dg.Scene], float, float]] = {
     "mirrored": (outgoing_scenes.mirrored, 0.05, 0.01),
     "depth": (outgoing_scenes.depth, 0.05, 0.01),
     "lamps": (outgoing_scenes.lamps, 0.05, 0.01),
+    "coats": (outgoing_scenes.coats, 0.05, 0.015),
     "layered": (outgoing_scenes.layered, 0.05, 0.015),
 }
 

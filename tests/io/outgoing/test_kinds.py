@@ -117,6 +117,30 @@ def test_mitsuba_has_each_of_them(tmp_path: Path) -> None:
         assert words in notes
 
 
+def test_a_rough_coat_that_saturates_shows_mitsuba_its_darker_colour(tmp_path: Path) -> None:
+    """Its base of 0.6 sends 0.6 (1 - F) / (1 - 0.6 F) of what comes through; F is 0.596."""
+    scene = dg.Scene()
+    kinds = [
+        dg.Coated(dg.Diffuse((0.6, 0.6, 0.6)), alpha=0.2, nonlinear=on) for on in (True, False)
+    ]
+    for kind in kinds:
+        scene.add_instance(outgoing_scenes.card(scene), kind)
+    file = tmp_path / "a.xml"
+    mitsuba_writer.write(file, outgoing(scene))
+    root = ElementTree.fromstring(file.read_text())
+    colors = [
+        [float(one.get("value", "").split(",")[0]) for one in bsdf.iter("rgb")]
+        for bsdf in root.findall("bsdf")
+    ]
+    inside = 0.596
+    ratio = (1 - inside) / (1 - 0.6 * inside)
+    for saturated, plain in zip(*colors, strict=True):
+        assert saturated == pytest.approx(plain * ratio, rel=2e-3)
+    assert len(colors[0]) == 3  # a plastic, a diffuse, and the coat's black
+    assert all(one.get("value") == "false" for one in root.iter("boolean")
+               if one.get("name") == "nonlinear")  # fmt: skip
+
+
 def test_a_grid_is_noted(tmp_path: Path) -> None:
     scene = gallery()
     scene.set_fog(Medium(scattering=(1, 1, 1), density=DensityGrid(np.ones((2, 2, 2)))))
