@@ -3,7 +3,8 @@
     python bench/fog.py --json [--extinction 0.05 0.2] [--spp 16] [--seeds 4] [--w 192] [--h 128]
 
 The scene is that of the demo, scenes/night_table.py, through the double Gauss 50 mm at f/2. Fog
-fills the world: --extinction per metre, nine tenths of it scattered, by one lobe of mean cosine 0.7.
+fills the world: --extinction per metre, nine tenths of it scattered, by one lobe of mean cosine
+0.7.
 Both sides draw --spp samples per pixel with each seed, in turn, on one thread.
 
 Error is relMSE = mean((A - B)^2 / 2 / (R^2 + 0.01)) of pairs of seeds A and B, where R is the mean

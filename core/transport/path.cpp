@@ -218,12 +218,11 @@ class Path {
         LightSample light;
         Evaluation seen;
         Spectrum scattered;   // share of light that is scattered there, per m and sr, and reaches the start
-        float t, weight, worth;
+        float t, weight;
     };
     struct WayRandom {
         float select, from, where;   // which lamp, as seen from where; where it is sampled from
         Vec2f place;                 // on the lamp
-        WayRandom nth(int i, int of) const;
     };
     Way cross_medium(float t, int vertex);
     Way cross_even(const Medium& medium, const MediumAt& here, float t, int vertex);

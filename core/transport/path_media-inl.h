@@ -18,8 +18,9 @@
 namespace dg {
 namespace {
 
-/// Light samples for each scattering of paths that the lens does not look along.
-constexpr float kSamplesPerCollision = 4;
+/// Light samples for each scattering of a path that carries all of its light: where the lens looks, and elsewhere. More
+/// of them, or the best of several for each, were measured to cost more time than noise (bench/fog.py).
+constexpr float kSamplesInView = 8, kSamplesPerCollision = 4;
 constexpr float kEquiangularShare = 0.5f;
 
 /// Point of the ray, in the form of a surface's. No side of it matters.
@@ -30,18 +31,6 @@ SurfaceHit in_medium(const Ray& ray, float t) {
     at.t = t;
     at.time = ray.time;
     return at;
-}
-
-float turned(float u, float by) {
-    const float x = u + by;
-    return std::min(x - std::floor(x), 0x1.fffffep-1f);
-}
-
-/// Numbers of the i-th of several samples, spread wherever those of the first are (light.cpp: turned()).
-Path::WayRandom Path::WayRandom::nth(int i, int of) const {
-    const float n = float(i), x = 0.75487767f * n, y = 0.56984029f * n;
-    const float chosen = std::min((select + n) / float(of), 0x1.fffffep-1f);
-    return {chosen, turned(from, y), turned(where, x), {turned(place.x, x), turned(place.y, y)}};
 }
 
 /// Goes as far as what the ray meets, `t` m from its origin.
@@ -116,39 +105,27 @@ void Path::note_medium() {
 }
 
 /// Adds what one light sample brings to one place on the way. Returns the odds of such a sample over a collision of the
-/// path, for whatever that meets. Where there are many lamps, one of several samples is picked (light_pick.h).
+/// path, for whatever that meets: fewer than one sample where little can be scattered.
 float Path::light_way(const Phase& phase, const Segment& way) {
-    const int tries = light_tries(scene_.lights(), walk_.in_view);
-    const float chance = walk_.in_view ? 1 : std::min(1.f, kSamplesPerCollision * way.collides());
-    const float odds = chance * float(std::max(tries, 1)) / way.collides();
+    const float carried = std::min(1.f, walk_.throughput.average() * walk_.eta_squared);
+    const float samples = (walk_.in_view ? kSamplesInView : kSamplesPerCollision) * carried;
+    const float chance = std::min(1.f, samples * way.collides()), odds = chance / way.collides();
     const float u_chance = sampler_.next_1d();
     WayRandom u;
     u.select = sampler_.next_1d(), u.from = sampler_.next_1d(), u.where = sampler_.next_1d();
     u.place = sampler_.next_2d();
-    const float u_pick = tries > 1 ? sampler_.next_1d() : 0;
     if (u_chance >= chance) return odds;
-    std::array<LampOnWay, LightSet::kMostSamples> lamps;
-    float sum = 0;
-    for (int i = 0; i < tries; ++i) {
-        lamps[i] = find_lamp(phase, way, odds, u.nth(i, tries));
-        sum += lamps[i].worth;
-    }
-    if (!(sum > 0) || !std::isfinite(sum)) return odds;
-    float left = u_pick * sum;
-    int chosen = -1;
-    for (int i = 0; i < tries && (chosen < 0 || left >= 0); ++i)
-        if (lamps[i].worth > 0) chosen = i, left -= lamps[i].worth;
-    const LampOnWay& lamp = lamps[chosen];
-    const float weight = lamp.weight * sum / (float(tries) * lamp.worth * chance);
+    const LampOnWay lamp = find_lamp(phase, way, odds, u);
+    if (!(lamp.weight > 0)) return odds;
     const Spectrum before = walk_.throughput;
     walk_.throughput *= lamp.scattered;
-    arriving(PhaseBsdf{phase}, in_medium(walk_.ray, lamp.t), lamp.light, weight, lamp.seen, nullptr);
+    arriving(PhaseBsdf{phase}, in_medium(walk_.ray, lamp.t), lamp.light, lamp.weight / chance, lamp.seen, nullptr);
     walk_.throughput = before;
     return odds;
 }
 
 /// A sample of a lamp and of a place on the way. The lamp is chosen as seen from some collision, and sampled from the
-/// place; worth 0: it brings nothing.
+/// place; weight 0: it brings nothing.
 Path::LampOnWay Path::find_lamp(const Phase& phase, const Segment& way, float odds, const WayRandom& u) const {
     const LightSet& lights = scene_.lights();
     LampOnWay lamp{};
@@ -166,8 +143,9 @@ Path::LampOnWay Path::find_lamp(const Phase& phase, const Segment& way, float od
     lamp.scattered = way.medium().scattering * way.left(t);
     const float as_seen = lights.choice_probability(choice->light, at.position) * light->pdf;
     const float share = light->delta ? 1 : share_of_light(odds * as_seen, lamp.seen.pdf);
-    lamp.weight = share / (choice->probability * density * light->pdf);
-    lamp.worth = (walk_.throughput * lamp.scattered * lamp.seen.f_cos * light->radiance).average() * lamp.weight;
+    const float weight = share / (choice->probability * density * light->pdf);
+    const float worth = (lamp.scattered * lamp.seen.f_cos * light->radiance).average() * weight;
+    if (worth > 0 && std::isfinite(worth)) lamp.weight = weight;
     return lamp;
 }
 
