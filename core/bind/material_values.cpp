@@ -36,7 +36,11 @@ struct Fields {
         if (auto spectrum = sampled(key)) return spectrum;
         return rgb(key);
     }
-    Roughness roughness() const { return {number("alpha"), number("alpha_v"), slot("alpha_texture")}; }
+    Roughness roughness() const {
+        return {number("alpha"), number("alpha_v"), slot("alpha_texture"),
+                choose<Distribution>("distribution", nb::cast<std::string>(values["distribution"]),
+                                     {{"ggx", Distribution::ggx}, {"beckmann", Distribution::beckmann}})};
+    }
 };
 
 DiffuseMaterial to_diffuse(const Fields& f) {

@@ -50,7 +50,7 @@ Spectrum returned(float n, Spectrum depth) {
 CoatedBsdf::CoatedBsdf(Vec3f ns, Vec3f ng, const ClearCoat& coat, const CoatedBase& base)
     : ns(ns), ng(ng), coat_(coat), base_(base), absorbs_(!coat.depth.is_black()) {
     const float f0 = normal_reflectance(coat.ior);
-    if (!coat.facets.smooth) rough_.emplace(coat.ior, coat.facets.ggx);
+    if (!coat.facets.smooth) rough_.emplace(coat.ior, coat.facets);
     passed_mean_ = 1 - (rough_ ? rough_->mean().reflected(f0) : mean_fresnel(coat.ior));
     if (base.metal) {
         base_.facets = blurred(base.facets, coat.facets, coat.ior);
@@ -64,9 +64,9 @@ CoatedBsdf::CoatedBsdf(Vec3f ns, Vec3f ng, const ClearCoat& coat, const CoatedBa
 void CoatedBsdf::catch_below() {
     const StretchedGgx& g = base_.facets.ggx;
     const float alpha = std::sqrt(g.alpha_t * g.alpha_b);
-    caught_.emplace(coat_.ior, alpha);
+    caught_.emplace(coat_.ior, alpha, base_.facets.distribution);
     if (!(caught_->mean() > 1e-6f)) return caught_.reset();
-    const float passed = weigh(GgxAlbedo::instance().row(std::sqrt(alpha)).mean, {1, 1, 0, 0});   // G
+    const float passed = mean_passed(alpha, base_.facets.distribution);   // G
     const Spectrum r = base_.reflectance.at(2 / 3.f), k = to_and_fro();
     const float k0 = 1 - passed_mean_ / (coat_.ior * coat_.ior);
     even_ = r * r * (passed * (1 - k0)) * k / ((Spectrum(1.f) - r * passed * k) * (k0 * caught_->mean()));
@@ -107,7 +107,7 @@ Spectrum CoatedBsdf::below_mirrored(const Bent& o) const {
 
 Evaluation CoatedBsdf::coat_lobe(const Facing& side, Vec3f wo, Vec3f wi, float cos_i) const {
     if (coat_.facets.smooth) return {};
-    const Facet f = reflecting_facet(side.ns, wo, wi, side.cos_o, cos_i, coat_.facets.ggx);
+    const Facet f = coat_.facets.reflecting(side.ns, wo, wi, side.cos_o, cos_i);
     return {coat_.tint * (fresnel_dielectric(f.cos_h, coat_.ior) * f.f_cos), f.pdf};
 }
 
@@ -117,8 +117,7 @@ Evaluation CoatedBsdf::diffuse_lobe(const Bent& o, const Bent& i) const {
 
 Evaluation CoatedBsdf::metal_lobe(const Facing& side, Vec3f wo, Vec3f wi, const Bent& o, const Bent& i) const {
     if (base_.facets.smooth) return {};
-    const Facet f = reflecting_facet(side.ns, into(side.ns, wo, o), into(side.ns, wi, i), o.inside, i.inside,
-                                     base_.facets.ggx);
+    const Facet f = base_.facets.reflecting(side.ns, into(side.ns, wo, o), into(side.ns, wi, i), o.inside, i.inside);
     const float solid_angle = i.outside / (i.inside * coat_.ior * coat_.ior);   // inside over outside
     const Spectrum r = base_.reflectance.at(f.cos_h);
     const Spectrum way = absorbs_ ? exp(coat_.depth * (-1 / o.inside - 1 / i.inside)) : Spectrum(1.f);

@@ -6,14 +6,14 @@ namespace dg {
 namespace {
 
 /// Facets as rough in every direction: as many of two roughnesses block, whatever the direction, near the normal.
-StretchedGgx rounded(StretchedGgx g) {
-    g.alpha_t = g.alpha_b = std::sqrt(g.alpha_t * g.alpha_b);
-    return g;
+Facets rounded(Facets f) {
+    f.ggx.alpha_t = f.ggx.alpha_b = std::sqrt(f.ggx.alpha_t * f.ggx.alpha_b);
+    return f;
 }
 
 }  // namespace
 
-GlassCompensation::GlassCompensation(float n, const Facets& facets) : albedo(n, rounded(facets.ggx)) {
+GlassCompensation::GlassCompensation(float n, const Facets& facets) : albedo(n, rounded(facets)) {
     const float thin = albedo.mean().missing_thin, dense = albedo.mean().missing_dense, both = std::min(thin, dense);
     const float mean = mean_fresnel(n), passes = 1 - mean;
     transmitted_pane = passes / (1 + mean);
@@ -45,10 +45,10 @@ GlassBsdf::Split GlassBsdf::split(float cos_h, float eta, bool front) const {
 }
 
 Facet GlassBsdf::joined(const Facing& side, Vec3f wo, Vec3f wi, float cos_i, bool reflected) const {
-    if (reflected) return reflecting_facet(side.ns, wo, wi, side.cos_o, cos_i, facets.ggx);
-    if (!thin) return refracting_facet(side.ns, wo, wi, side.cos_o, cos_i, facets.ggx, eta(side.front));
+    if (reflected) return facets.reflecting(side.ns, wo, wi, side.cos_o, cos_i);
+    if (!thin) return facets.refracting(side.ns, wo, wi, side.cos_o, cos_i, eta(side.front));
     const Vec3f mirrored = wi - side.ns * (2 * cos_i);
-    return reflecting_facet(side.ns, wo, mirrored, side.cos_o, -cos_i, facets.ggx);
+    return facets.reflecting(side.ns, wo, mirrored, side.cos_o, -cos_i);
 }
 
 GlassBsdf::Even GlassBsdf::even(const Facing& side, Vec3f wo) const {

@@ -1,5 +1,5 @@
-// bsdf_metal.h -- GGX facets of a metal: round or stretched ones, which reflect by their index of refraction or the
-// same at every angle.
+// bsdf_metal.h -- facets of a metal: round or stretched ones, which reflect by their index of refraction or the same
+// at every angle.
 #pragma once
 #include <optional>
 
@@ -30,7 +30,7 @@ struct MetalBsdf {
         const Facing side(ns, ng, wo);
         const float cos_i = dot(side.ns, wi);
         if (is_specular() || side.cos_o <= 0 || cos_i <= 0 || !side.reflects(wi)) return {};
-        const Facet f = reflecting_facet(side.ns, wo, wi, side.cos_o, cos_i, facets.ggx);
+        const Facet f = facets.reflecting(side.ns, wo, wi, side.cos_o, cos_i);
         return {reflectance.at(f.cos_h) * f.f_cos, f.pdf};
     }
     Spectrum evaluate(Vec3f wo, Vec3f wi) const { return evaluate_with_pdf(wo, wi).f_cos; }

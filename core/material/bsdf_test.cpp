@@ -260,6 +260,28 @@ void add_coated(std::vector<Case>& cases, Vec3f ns) {
     }
 }
 
+void add_beckmann(std::vector<Case>& cases, Vec3f ns) {
+    for (const auto& [u, v] : {Vec2f{0.3f, 0.3f}, {0.15f, 0.6f}}) {
+        const std::string name = " " + std::to_string(u);
+        Facets f = facets(ns, u, v), below = facets(ns, 0.25f, 0.25f);
+        f.distribution = below.distribution = Distribution::beckmann;
+        cases.push_back({"Beckmann gold" + name, MetalBsdf{ns, kNg, kGold, f}});
+        for (const bool thin : {false, true}) {
+            GlassBsdf g = glass(ns, f);
+            g.thin = thin;
+            cases.push_back({(thin ? "Beckmann pane" : "Beckmann glass") + name, g, thin ? 1 : 1.5f, false, true});
+            g.compensation.emplace(1.5f, g.facets);
+            cases.push_back({(thin ? "Beckmann even pane" : "Beckmann even glass") + name, g, thin ? 1 : 1.5f, false, true});
+        }
+        const auto add_coated = [&](const std::string& kind, const CoatedBase& base) {
+            cases.push_back({kind + name, CoatedBsdf(ns, kNg, {1.5f, f}, base)});
+        };
+        add_coated("Beckmann white plastic", {.diffuse = 1.f});
+        add_coated("Beckmann coated gold", {.metal = true, .reflectance = kGold, .facets = below});
+        add_coated("Beckmann coat on white metal", {.metal = true, .facets = below});
+    }
+}
+
 std::vector<Case> all_cases(bool straight) {
     // A shading normal some 20 degrees off the geometric one.
     const Vec3f ns = straight ? kNg : normalize(kNg + Vec3f{0.2f, 0.3f, 0.1f});
@@ -274,7 +296,10 @@ std::vector<Case> all_cases(bool straight) {
     add_glass(cases, ns);
     const std::size_t coated = cases.size();
     add_coated(cases, ns);
-    for (std::size_t i = first; i < cases.size(); ++i) cases[i].rounding = i < coated ? 0.025 : 0.02;
+    const std::size_t beckmann = cases.size();
+    add_beckmann(cases, ns);
+    for (std::size_t i = first; i < cases.size(); ++i)
+        cases[i].rounding = i >= beckmann ? 0.035 : i < coated ? 0.025 : 0.02;
     return cases;
 }
 
@@ -424,6 +449,7 @@ TEST_CASE("the checks find planted faults") {
     all_found(plastic);
     all_found(GltfBsdf(brushed(surface(1, 0.5f), kNg, 0.8f), kNg, kNg));
     all_found(MetalBsdf{kNg, kNg, kGold, facets(kNg, 0.5f, 0.3f)});
+    all_found(MetalBsdf{kNg, kNg, kGold, {kNg, brushed_along(kNg), 0.5f, 0.3f, Distribution::beckmann}});
     all_found(CoatedBsdf(kNg, kNg, {1.5f, facets(kNg, 0.4f, 0.4f)}, {.diffuse = kColor}));
     all_found(GltfBsdf(filmed(surface(0.5f, 0.5f), 1, 1.8f, 400), kNg, kNg));
     all_found(LayeredBsdf(surface(0, 0.5f), kNg, kNg, {}, Sheen(kColor, 1, 0.5f)));

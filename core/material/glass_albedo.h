@@ -1,8 +1,8 @@
-// glass_albedo.h -- how much light rough GGX glass returns by index, angle and roughness, for light that meets one
+// glass_albedo.h -- how much light rough glass returns by index, angle and roughness, for light that meets one
 // facet alone. What it returns less than 1 facets block; a glass that keeps its energy returns it otherwise
 // (bsdf_glass.h). What the outside reflects is what a rough coat reflects (bsdf_coated.h).
 #pragma once
-#include "material/ggx.h"
+#include "material/facets.h"
 #include "material/indexed_albedo.h"
 
 namespace dg {
@@ -25,8 +25,8 @@ struct GlassLobes {
 /// they are seen from (StretchedGgx::alpha_toward).
 class GlassAlbedo {
   public:
-    /// The first one of all fills the table (0.3 s).
-    GlassAlbedo(float n, const StretchedGgx& facets);
+    /// The first one of all of a distribution fills its table (0.3 s).
+    GlassAlbedo(float n, const Facets& facets);
 
     GlassLobes toward(Vec3f w, float cosine) const;
     const GlassLobes& mean() const { return mean_; }   // weighted by cos
@@ -34,6 +34,7 @@ class GlassAlbedo {
   private:
     float n_;
     StretchedGgx facets_;
+    Distribution distribution_;
     IndexedAlbedo::Row row_;   // of round ones
     GlassLobes mean_;
 };
@@ -44,9 +45,12 @@ class GlassAlbedo {
 struct CaughtBelow {
     IndexedAlbedo::Row row;
 
-    CaughtBelow(float n, float alpha);
+    CaughtBelow(float n, float alpha, Distribution distribution);
     float of_passed(float cosine) const { return row.at(cosine)[0]; }
     float mean() const { return row.mean[1]; }
 };
+
+/// Mean share of diffuse light that round facets of reflectance 1 let pass.
+float mean_passed(float alpha, Distribution distribution);
 
 }  // namespace dg

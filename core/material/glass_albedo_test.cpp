@@ -50,7 +50,7 @@ TEST_CASE("the mean of Fresnel's reflectance, in closed form and by quadrature, 
 TEST_CASE("the tables are what glass of one bounce returns") {
     for (const float n : {1.33f, 1.5f, 2.2f}) {
         for (const float alpha : {0.1f, 0.35f, 0.8f}) {
-            const GlassAlbedo table(n, {{1, 0, 0}, {0, 1, 0}, alpha, alpha});
+            const GlassAlbedo table(n, {kUp, {1, 0, 0}, alpha, alpha});
             for (const float z : {0.95f, 0.5f, 0.15f}) {
                 CAPTURE(n);
                 CAPTURE(alpha);

@@ -36,8 +36,8 @@ auto fields(Is<Iridescence> auto& l) {
     return std::tie(a, b, c, d, e, f);
 }
 auto fields(Is<Roughness> auto& a) {
-    auto& [u, v, texture] = a;
-    return std::tie(u, v, texture);
+    auto& [u, v, texture, distribution] = a;
+    return std::tie(u, v, texture, distribution);
 }
 auto fields(Is<SpectralColor> auto& c) {
     auto& [rgb, sampled] = c;

@@ -73,6 +73,8 @@ TEST_CASE("keys of another kind, texture or mode are refused, and so are numbers
     const std::vector<Texture> textures{{"one", 1, 1, 1, std::vector<std::uint8_t>{1}}};
     GltfMaterial a;
     validate(std::vector{gltf(a), gltf(a)}, textures);
+    const auto metal = [](Distribution d) { return Material{"it", ConductorMaterial{{1, 1, 1}, {0.2f, 0.2f, {}, d}}}; };
+    CHECK_THROWS_AS(validate(std::vector{metal(Distribution::ggx), metal(Distribution::beckmann)}, textures), Error);
     for (int fault = 0; fault < 5; ++fault) {
         GltfMaterial b = a;
         Material other = gltf(b);

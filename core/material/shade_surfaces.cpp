@@ -44,7 +44,7 @@ Alphas read_alphas(const Roughness& a, bool clear, const Textures& textures, con
 
 Facets read_facets(const Roughness& a, bool clear, const Textures& textures, const SurfaceHit& hit) {
     const Alphas alphas = read_alphas(a, clear, textures, hit);
-    return {hit.ns, tangent_across(hit), alphas.u, alphas.v};
+    return {hit.ns, tangent_across(hit), alphas.u, alphas.v, a.distribution};
 }
 
 /// `outside`: index of what lies above the metal.
@@ -90,8 +90,9 @@ Bsdf shade_kind(const ConductorMaterial& m, const Textures& textures, const Surf
                 const Wavelengths& wavelengths) {
     const MetalReflectance r = metal_of(m, 1, textures, hit, wavelengths);
     const Alphas a = read_alphas(m.alpha, false, textures, hit);
-    if (!m.fresnel && a.u == a.v) return ConductorBsdf{hit.ns, hit.ng, r.factor, a.u};
-    return MetalBsdf{hit.ns, hit.ng, r, {hit.ns, tangent_across(hit), a.u, a.v}};
+    const bool ggx = m.alpha.distribution == Distribution::ggx;
+    if (!m.fresnel && a.u == a.v && ggx) return ConductorBsdf{hit.ns, hit.ng, r.factor, a.u};
+    return MetalBsdf{hit.ns, hit.ng, r, {hit.ns, tangent_across(hit), a.u, a.v, m.alpha.distribution}};
 }
 
 Bsdf shade_kind(const DielectricMaterial& m, const Textures& textures, const SurfaceHit& hit,
@@ -99,7 +100,8 @@ Bsdf shade_kind(const DielectricMaterial& m, const Textures& textures, const Sur
     const Spectrum tint = share(m.tint, wavelengths);
     const Index n = index_of(m, wavelengths);
     const Alphas a = read_alphas(m.alpha, true, textures, hit);
-    if (!m.thin && !m.energy_compensation && a.u == a.v && is_white(m.reflection_tint))
+    const bool ggx = m.alpha.distribution == Distribution::ggx;
+    if (!m.thin && !m.energy_compensation && a.u == a.v && is_white(m.reflection_tint) && ggx)
         return DielectricBsdf{hit.ns, hit.ng, tint, n.hero, a.u, n.disperses, n.each};
     GlassBsdf glass;
     glass.ns = hit.ns, glass.ng = hit.ng;
@@ -108,7 +110,7 @@ Bsdf shade_kind(const DielectricMaterial& m, const Textures& textures, const Sur
     glass.thin = m.thin;
     glass.disperses = n.disperses && !m.thin;
     glass.iors = n.each;
-    glass.facets = {hit.ns, tangent_across(hit), a.u, a.v};
+    glass.facets = {hit.ns, tangent_across(hit), a.u, a.v, m.alpha.distribution};
     if (m.energy_compensation && !glass.is_specular())
         glass.compensation.emplace(std::max(n.hero, 1 / n.hero), glass.facets);
     return glass;

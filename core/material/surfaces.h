@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "material/bsdf_sample.h"
+#include "material/facets.h"
 #include "material/texture.h"
 #include "spectrum/sampled_spectrum.h"
 
@@ -11,13 +12,15 @@ namespace dg {
 struct Material;
 struct MaterialChange;
 
-/// GGX alpha (roughness squared) of slopes along u and along v; both < 1e-3: smooth.
+/// Alpha of slopes along u and along v (of GGX: roughness squared); both < 1e-3: smooth.
 struct Roughness {
     float u = 0, v = 0;
     TextureSlot texture;   // R is a factor on u, G on v
+    Distribution distribution = Distribution::ggx;
 
     Roughness(float alpha = 0) : u(alpha), v(alpha) {}  // NOLINT: a number is one
-    Roughness(float u, float v, TextureSlot texture = {}) : u(u), v(v), texture(texture) {}
+    Roughness(float u, float v, TextureSlot texture = {}, Distribution distribution = Distribution::ggx)
+        : u(u), v(v), texture(texture), distribution(distribution) {}
     /// The same everywhere and in all directions.
     bool plain() const { return u == v && !texture.used(); }
     bool may_be_smooth() const { return texture.used() || (u < kSmoothAlpha && v < kSmoothAlpha); }
@@ -32,7 +35,7 @@ struct DiffuseMaterial {
     TextureSlot transmittance_texture = {};
 };
 
-/// GGX microfacets, both sides, whose reflectance is `reflectance` at every angle, or with `fresnel` that times the
+/// Microfacets, both sides, whose reflectance is `reflectance` at every angle, or with `fresnel` that times the
 /// Fresnel reflectance of the index eta + i k.
 struct ConductorMaterial {
     SpectralColor reflectance{1, 1, 1};
@@ -42,7 +45,7 @@ struct ConductorMaterial {
     SpectralColor eta = {}, k = {};
 };
 
-/// Clear dielectric, smooth or GGX rough; the normal's side is outside.
+/// Clear dielectric, smooth or rough; the normal's side is outside.
 struct DielectricMaterial {
     float ior = 1.5f;
     Roughness alpha = {};

@@ -87,6 +87,24 @@ TEST_CASE("roughness textures: R on alpha along u, G along v; the kind of BSDF i
     CHECK(clearness(made(glass)) == Clear::no);
 }
 
+TEST_CASE("Beckmann's facets go to the kinds of BSDF that have them; smooth ones are as smooth as those of GGX") {
+    const Roughness rough{0.3f, 0.3f, {}, Distribution::beckmann};
+    ConductorMaterial metal{{1, 1, 1}, rough};
+    const auto facets_of = [](const auto& b) { return b.facets.distribution; };
+    CHECK(facets_of(std::get<MetalBsdf>(shaded(made(metal), {}, hit_from(kUp)))) == Distribution::beckmann);
+    CHECK(facets_of(std::get<GlassBsdf>(shaded(made(DielectricMaterial{1.5f, rough}), {}, hit_from(kUp)))) ==
+          Distribution::beckmann);
+    CoatedMaterial coated;
+    coated.alpha = rough;
+    const Vec3f wo = normalize(Vec3f{0.3f, 0, 1}), tail = normalize(Vec3f{0.7f, 0, 0.6f});
+    const float beckmann = evaluate_with_pdf(shaded(made(coated), {}, hit_from(wo)), wo, tail).f_cos[0];
+    coated.alpha = {0.3f, 0.3f};
+    const float ggx = evaluate_with_pdf(shaded(made(coated), {}, hit_from(wo)), wo, tail).f_cos[0];
+    CHECK(std::abs(ggx - beckmann) > 1e-3f * ggx);
+    metal.alpha = {0, 0, {}, Distribution::beckmann};
+    CHECK(is_specular(shaded(made(metal), {}, hit_from(kUp))));
+}
+
 TEST_CASE("glass by a table of indices goes the hero's way, and reflects each wavelength by its own") {
     DielectricMaterial m;
     m.ior_by_wavelength = spectrum({400, 700}, {1.6, 1.5});

@@ -45,6 +45,7 @@ WHITE = (1.0, 1.0, 1.0)
         (dg.Dielectric(alpha=0.4, energy_compensation=True, thin=True), 0.02),
         (dg.Coated(dg.Diffuse(WHITE)), 0.02),
         (dg.Coated(dg.Diffuse(WHITE), alpha=0.3), 0.02),
+        (dg.Coated(dg.Diffuse(WHITE), alpha=0.3, distribution="beckmann"), 0.02),
         (dg.Coated(dg.Conductor(alpha=0.0)), 1e-3),
         (dg.Boundary(), 0.01),
     ],

@@ -20,6 +20,7 @@ KINDS: tuple[Any, ...] = (
     dg.Coated(dg.Conductor.of_metal("Cu"), absorption=GREEN, thickness=1e-4),
     dg.Coated(dg.Diffuse((0.5, 0.2, 0.1)), alpha=0.2, nonlinear=False),
     dg.Mix(0, 1, 0.25, SLOT),
+    dg.Dielectric(alpha=0.3, distribution="beckmann"),
     dg.Boundary(),
 )
 
@@ -57,6 +58,8 @@ def test_a_spectrum_that_is_none_is_refused(nm: Any, values: Any, place: str) ->
         (dg.Diffuse(0.5), "reflectance: wanted three numbers, got 0.5"),  # type: ignore[arg-type]
         (dg.Conductor(eta=(1, 1, 1)), "k: wanted it too with eta, got None"),
         (dg.Conductor(alpha_v="x"), "alpha_v: wanted a number"),  # type: ignore[arg-type]
+        (dg.Dielectric(distribution="GGX"), "distribution: wanted ggx or beckmann, got 'GGX'"),  # type: ignore[arg-type]
+        (dg.Coated(distribution=1), "distribution: wanted ggx or beckmann, got 1"),  # type: ignore[arg-type]
         (dg.Dielectric(ior=(1, 1, 1)), "ior: wanted a number"),  # type: ignore[arg-type]
         (dg.Dielectric(thin=2), "thin: wanted True or False, got 2"),  # type: ignore[arg-type]
         (dg.Coated(dg.Gltf()), "base: wanted Diffuse or Conductor"),  # type: ignore[arg-type]
@@ -94,7 +97,7 @@ def test_metals_have_a_source_and_cover_the_visible_range() -> None:
         assert metal.eta.wavelengths_nm == metal.k.wavelengths_nm
         assert metal.eta.wavelengths_nm[0] <= 400
         assert metal.eta.wavelengths_nm[-1] >= 700
-    assert {"Au", "Ag", "Al", "Cu", "Cr", "Fe", "Ti", "W", "Ni", "Pt"} <= set(metals.names())
+    assert {"Au", "Ag", "Al", "Cu", "Cr", "Fe", "Ti", "W", "Ni", "Pt", "a-C"} <= set(metals.names())
     with pytest.raises(dg.UsageError, match=r"metal: wanted .*, got 'Unobtainium'"):
         dg.Conductor.of_metal("Unobtainium")
     with pytest.raises(dg.UsageError, match="eta: wanted it from the table"):

@@ -16,6 +16,7 @@ from daguerre.scene.spectrum import Spectrum
 
 from .conductor import Conductor
 from .diffuse import Diffuse
+from .facets import DISTRIBUTIONS
 from .texture_slot import TextureSlot
 
 Check = Callable[[Any, str], object]
@@ -76,6 +77,11 @@ def _slot(value: Any, where: str) -> None:
     numbers(value.transform, f"{where}: transform", 6, "six numbers")
 
 
+def _distribution(value: Any, where: str) -> None:
+    if not isinstance(value, str) or value not in DISTRIBUTIONS:
+        raise InputError(f"{where}: wanted {' or '.join(DISTRIBUTIONS)}, got {shown(value)}")
+
+
 def _base(value: Any, where: str) -> None:
     """Checks what lies under a coat."""
     if not isinstance(value, Diffuse | Conductor):
@@ -99,6 +105,7 @@ _CHECKS: Mapping[str, Check] = MappingProxyType(
         "str": _text,
         "TextureSlot | None": _slot,
         "Diffuse | Conductor": _base,
+        "Distribution": _distribution,
     }
 )
 

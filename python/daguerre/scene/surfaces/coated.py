@@ -9,6 +9,7 @@ from daguerre.scene.spectrum import Spectrum
 
 from .conductor import Conductor
 from .diffuse import Color, Diffuse
+from .facets import Distribution
 from .texture_slot import TextureSlot
 
 
@@ -22,9 +23,9 @@ class Coated(BriefRecord):
     Attributes:
         base: Surface below. The ``eta`` and ``k`` of a metal are those in air.
         ior: Index of refraction of the coat, 1 to 10.
-        alpha: GGX roughness of the coat, of slopes along u where ``alpha_v`` is given; < 1e-3:
+        alpha: Roughness of the coat, of slopes along u where ``alpha_v`` is given; < 1e-3:
             smooth.
-        alpha_v: GGX roughness along v; None: ``alpha``.
+        alpha_v: Roughness along v; None: ``alpha``.
         alpha_texture: Factors: R on ``alpha``, G on ``alpha_v``.
         specular_tint: Factor on what the coat reflects.
         thickness: Thickness of the coat, m.
@@ -32,6 +33,8 @@ class Coated(BriefRecord):
         nonlinear: Whether light that the coat reflects back takes on the base's colour once more.
             Otherwise the base is lit as a white one would be, and scaled by its colour, which is
             the default of Mitsuba's plastic.
+        distribution: Distribution of the normals of the coat's facets: "ggx", or "beckmann",
+            whose lobes lack the long tails.
     """
 
     base: Diffuse | Conductor = field(default_factory=Diffuse)
@@ -43,3 +46,4 @@ class Coated(BriefRecord):
     thickness: float = 0.0
     absorption: Color | Spectrum = (0.0, 0.0, 0.0)
     nonlinear: bool = True
+    distribution: Distribution = "ggx"

@@ -10,12 +10,13 @@ from daguerre.files.value import BriefRecord
 from daguerre.scene.spectrum import Spectrum
 
 from .diffuse import Color
+from .facets import Distribution
 from .texture_slot import TextureSlot
 
 
 @dataclass(frozen=True, repr=False)
 class Conductor(BriefRecord):
-    """Metal: GGX microfacets, both sides; ``alpha`` < 1e-3: a mirror.
+    """Metal: microfacets, both sides; ``alpha`` < 1e-3: a mirror.
 
     Without ``eta`` and ``k`` the facets reflect the same share at every angle. With them they
     have the Fresnel reflectance of the index eta + i k (Born and Wolf, Principles of Optics,
@@ -23,12 +24,14 @@ class Conductor(BriefRecord):
 
     Attributes:
         reflectance: Share of light that facets reflect, or a factor on what ``eta`` and ``k`` say.
-        alpha: GGX roughness, of slopes along u where ``alpha_v`` is given.
+        alpha: Roughness, of slopes along u where ``alpha_v`` is given.
         reflectance_texture: RGB, a factor on ``reflectance``.
-        alpha_v: GGX roughness along v; None: ``alpha``.
+        alpha_v: Roughness along v; None: ``alpha``.
         alpha_texture: Factors: R on ``alpha``, G on ``alpha_v``.
         eta: Real part of the index of refraction; a colour is one value for red, green and blue.
         k: Imaginary part, the extinction coefficient; given if ``eta`` is.
+        distribution: Distribution of the facets' normals: "ggx", or "beckmann", whose lobes have no
+            long tails.
     """
 
     reflectance: Color | Spectrum = (1.0, 1.0, 1.0)
@@ -38,6 +41,7 @@ class Conductor(BriefRecord):
     alpha_texture: TextureSlot | None = None
     eta: Color | Spectrum | None = None
     k: Color | Spectrum | None = None
+    distribution: Distribution = "ggx"
 
     @classmethod
     def of_metal(cls, name: str, **fields: Any) -> Conductor:
