@@ -30,7 +30,9 @@ def kinds(scene: dg.Scene) -> dict[str, dg.Material]:
         "through": dg.Material(dg.Diffuse((0.3, 0.3, 0.3), transmittance=(0.4, 0.3, 0.2))),
         "spectral": dg.Material(dg.Diffuse(Spectrum((400.0, 700.0), (0.2, 0.8)))),
         "gold": dg.Material(dg.Conductor(alpha=0.2, eta=GOLD, k=GOLD_K)),
-        "brushed": dg.Material(dg.Conductor((0.9, 0.8, 0.7), 0.3, alpha_v=0.1)),
+        "brushed": dg.Material(
+            dg.Conductor((0.9, 0.8, 0.7), 0.3, alpha_v=0.1, distribution="beckmann")
+        ),
         "textured": dg.Material(dg.Conductor(alpha=0.4, alpha_texture=grey)),
         "plastic": dg.Material(dg.Coated(dg.Diffuse((0.3, 0.5, 0.7)), alpha=0.2)),
         "linear": dg.Material(dg.Coated(dg.Diffuse((0.3, 0.5, 0.7)), nonlinear=False)),
@@ -91,7 +93,13 @@ def test_pbrt_has_each_of_them(tmp_path: Path) -> None:
     assert smoke.values("sigma_s") == [1.0, 0.8, 0.6]
     assert smoke.values("g") == [pytest.approx((0.5 * 3 - 0.3) / 4)]
     notes = " ".join(made.notes.sentences())
-    for words in ("several lobes", "energy compensation", "colour of glass", "black from behind"):
+    for words in (
+        "several lobes",
+        "energy compensation",
+        "colour of glass",
+        "black from behind",
+        "distribution of facets",
+    ):
         assert words in notes
 
 
@@ -106,6 +114,13 @@ def test_mitsuba_has_each_of_them(tmp_path: Path) -> None:
     inner = [[one.get("type") for one in names[f"material-{i}"].iter("bsdf")] for i in range(18)]
     assert inner[3] == ["twosided", "roughconductor"]
     assert inner[9] == ["thindielectric"]
+    spread = [
+        one.get("value")
+        for i in (3, 4)
+        for one in names[f"material-{i}"].iter("string")
+        if one.get("name") == "distribution"
+    ]
+    assert spread == ["ggx", "beckmann"]
     assert inner[12] == ["null"]
     assert inner[13] == ["mask", "twosided", "diffuse"]
     assert inner[15] == ["diffuse"]

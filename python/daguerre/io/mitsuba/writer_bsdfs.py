@@ -173,7 +173,7 @@ class Bsdfs:
         add_value(coat, "spectrum", "specular_reflectance", _grey(surface.tint) / share)
         if surface.rough.v is not None:
             self._notes.add("anisotropy of a coat is left out: its roughness is round")
-        self._add_roughness(coat, Rough(surface.rough.u))
+        self._add_roughness(coat, replace(surface.rough, v=None))
 
     def _plastic(self, parent: Element, kind: str, surface: Plastic, name: str) -> Element:
         bsdf = add(parent, "bsdf", type=kind, id=name)
@@ -224,7 +224,7 @@ class Bsdfs:
     def _add_roughness(self, bsdf: Element, rough: Rough) -> None:
         if rough.smooth:
             return
-        add_value(bsdf, "string", "distribution", "ggx")
+        add_value(bsdf, "string", "distribution", rough.distribution)
         if rough.v is None:
             self.values.number(bsdf, "alpha", rough.u)
         else:

@@ -99,8 +99,9 @@ class Looks:
     def _rough(self, kind: Conductor | Dielectric | Coated) -> Rough:
         u = self._baker.number(kind.alpha_texture, kind.alpha, 0)
         if kind.alpha_v is None:
-            return Rough(u)
-        return Rough(u, self._baker.number(kind.alpha_texture, kind.alpha_v, 1))
+            return Rough(u, distribution=kind.distribution)
+        v = self._baker.number(kind.alpha_texture, kind.alpha_v, 1)
+        return Rough(u, v, kind.distribution)
 
     def _metal(self, kind: Conductor) -> Metal:
         color = self._baker.color(kind.reflectance_texture, kind.reflectance)

@@ -1,6 +1,6 @@
 """Surfaces in terms that pbrt and Mitsuba share: the small set from which both are written.
 
-A value may be a constant or a picture, and a constant colour a spectrum. Roughness is GGX alpha.
+A value may be a constant or a picture, and a constant colour a spectrum. Roughness is alpha.
 Writers say in a note what their renderer lacks.
 """
 
@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from daguerre.scene.media import Medium
 from daguerre.scene.spectrum import Spectrum
+from daguerre.scene.surfaces.facets import Distribution
 
 from .pictures import BLACK, WHITE, Colored, Number, Picture
 
@@ -19,10 +20,11 @@ SMOOTH = 1e-3
 
 @dataclass(frozen=True)
 class Rough:
-    """GGX roughness along u, and along v; None: the same."""
+    """Roughness along u, and along v (None: the same), and the distribution of normals."""
 
     u: Number = 0.0
     v: Number | None = None
+    distribution: Distribution = "ggx"
 
     @property
     def smooth(self) -> bool:

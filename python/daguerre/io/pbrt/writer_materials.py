@@ -169,6 +169,10 @@ class Materials:
         plain = flag("remaproughness", False)
         if rough.smooth:
             return [floats(f"{prefix}roughness", 0.0), plain]
+        if rough.distribution != "ggx":
+            self.notes.add(
+                "Beckmann's distribution of facets is written as GGX of the same roughness"
+            )
         if rough.v is None:
             return [self.number(f"{prefix}roughness", rough.u), plain]
         u, v = (self.number(f"{prefix}{n}roughness", value)
