@@ -160,7 +160,18 @@ def test_a_panorama_has_its_poles_half_a_row_away() -> None:
     made, rotation = panorama(pixels, np.eye(3))
     assert rotation == 0
     # the value at the angle theta is theta / pi, here and there
-    assert np.allclose(made[:, 0, 0], (np.arange(9) + 0.5) / 9, atol=1e-6)
+    count = len(made)
+    assert np.allclose(made[:, 0, 0], (np.arange(count) + 0.5) / count, atol=1e-6)
+
+
+def test_a_panorama_stays_sharp_toward_its_poles() -> None:
+    stripes = (np.arange(64) % 2).astype(np.float32)
+    made, _ = panorama(
+        np.repeat(np.repeat(stripes[:, None, None], 8, axis=1), 3, axis=2), np.eye(3)
+    )
+    at = np.linspace(0, 1, 64) * len(made) - 0.5  # where the first and last row are the poles
+    found = np.interp(at, np.arange(len(made)), made[:, 0, 0])
+    assert np.abs(found - stripes).max() < 0.2
 
 
 def test_what_is_around_a_scene_is_one(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from daguerre.io.panorama import resampled
 
 Picture = NDArray[np.float32]
-#: Rows up to which a panorama that is tilted is drawn finer, which keeps it sharp.
+#: Rows up to which a panorama becomes finer as it is resampled, which keeps it sharp.
 _FINE = 1024
 
 
@@ -29,9 +29,11 @@ def panorama(pixels: Picture, turn: NDArray[np.float64]) -> tuple[Picture, float
     Returns:
         A panorama with -z in its middle, and its rotation about +y, degrees.
     """
-    rows = _between_poles(pixels)
+    count = len(pixels)
+    finer = max(count, min(4 * count, _FINE))
     if turn[1, 1] < 1 - 1e-9:
-        return resampled(rows, turn, max(len(rows), min(4 * len(rows), _FINE))), 0.0
+        return resampled(_between_poles(pixels, count), turn, finer), 0.0
+    rows = _between_poles(pixels, finer)
     half = rows.shape[1] // 2
     rotation = math.degrees(math.atan2(turn[0, 2], turn[2, 2]))
     if rows.shape[1] % 2:  # no whole number of columns is half a turn
@@ -39,12 +41,15 @@ def panorama(pixels: Picture, turn: NDArray[np.float64]) -> tuple[Picture, float
     return np.roll(rows, half, axis=1), rotation
 
 
-def _between_poles(pixels: Picture) -> Picture:
-    """Rows half a step from the poles, from rows that begin and end at the poles."""
+def _between_poles(pixels: Picture, rows: int) -> Picture:
+    """Rows half a step from the poles, from rows that begin and end at the poles.
+
+    As many as before would be means of two neighbours near the poles.
+    """
     count = len(pixels)
     if count < 2:
         return pixels
-    at = (np.arange(count) + 0.5) * ((count - 1) / count)
+    at = (np.arange(rows) + 0.5) * ((count - 1) / rows)
     first = np.minimum(at.astype(np.int64), count - 2)
     share = (at - first).astype(np.float32)[:, None, None]
     made: Picture = pixels[first] * (1 - share) + pixels[first + 1] * share
