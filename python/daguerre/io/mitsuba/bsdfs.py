@@ -1,7 +1,7 @@
 """Materials of Mitsuba: plugins that are surfaces by themselves.
 
 Mitsuba's opaque surfaces are black from behind unless ``twosided`` is around them. Its microfacets
-are Beckmann's by default; ours are GGX of the same roughness, with a note.
+are Beckmann's by default.
 
 Source: Mitsuba 3, documentation of BSDFs.
 """
@@ -27,6 +27,7 @@ from .ior import relative_index
 from .look import Look
 from .node import Node
 from .principled import principled, principled_thin
+from .rough_plastic import Loss
 from .textures import Textures
 
 _WHITE = (1.0, 1.0, 1.0)
@@ -117,15 +118,24 @@ class Surfaces:
         return self._coated(node, self._roughness(node))
 
     def _coated(self, node: Node, fields: dict[str, Any]) -> Look:
-        reflectance, texture = self.textures.tint(node, "diffuse_reflectance", 0.5)
+        ior = relative_index(node, "polypropylene")
+        nonlinear = node.flag("nonlinear", False)
+        loss = None
+        if fields and "alpha_texture" not in fields and ior > 1:
+            loss = Loss(ior, fields["alpha"], fields["distribution"], nonlinear)
         kind = Coated(
-            Diffuse(reflectance, texture),
-            ior=relative_index(node, "polypropylene"),
+            self._base(node, loss),
+            ior=ior,
             specular_tint=self.textures.color(node, "specular_reflectance", 1.0),
-            nonlinear=node.flag("nonlinear", False),
+            nonlinear=nonlinear,
             **fields,
         )
         return Look(kind)
+
+    def _base(self, node: Node, loss: Loss | None) -> Diffuse:
+        """Diffuse surface below a coat."""
+        change = None if loss is None else loss.base
+        return Diffuse(*self.textures.tint(node, "diffuse_reflectance", 0.5, change=change))
 
     def _null(self, node: Node) -> Look:
         return Look(Boundary(), two_sided=True)
@@ -137,10 +147,14 @@ class Surfaces:
         return principled_thin(node, self.textures, self.notes)
 
     def _roughness(self, node: Node) -> dict[str, Any]:
-        """Roughness along u and v."""
-        if node.choice("distribution", "beckmann", _DISTRIBUTIONS) != "ggx":
-            self.notes.add("microfacets of Beckmann's distribution are drawn as GGX ones")
+        """Roughness along u and v, and the distribution of normals."""
+        name = node.choice("distribution", "beckmann", _DISTRIBUTIONS)
+        if name not in ("beckmann", "ggx"):
+            self.notes.add("microfacets of Phong's distribution are drawn as Beckmann's")
         node.skip("sample_visible")
+        return {"distribution": "ggx" if name == "ggx" else "beckmann"} | self._alphas(node)
+
+    def _alphas(self, node: Node) -> dict[str, Any]:
         if not (node.has("alpha_u") or node.has("alpha_v")):
             alpha, slot = self.textures.scalar(node, "alpha", 0.1)
             return {"alpha": alpha} | ({"alpha_texture": slot} if slot is not None else {})

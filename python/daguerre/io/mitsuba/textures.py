@@ -5,8 +5,10 @@ Texture coordinates (0, 0) are the top left of a bitmap in Mitsuba, as here.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,16 +71,33 @@ class Textures:
     # Questions of materials -----------------------------------------------------------------------
 
     def tint(
-        self, node: Node, name: str, default: Color | float, most: float = 1.0
+        self,
+        node: Node,
+        name: str,
+        default: Color | float,
+        most: float = 1.0,
+        change: Callable[[Any], Any] | None = None,
     ) -> tuple[Color | Spectrum, TextureSlot | None]:
-        """Colour or spectrum of a property, and a texture of factors on it."""
+        """Colour or spectrum of a property, and a texture of factors on it.
+
+        Args:
+            node: Element with the property.
+            name: Its name.
+            default: Colour where it has none.
+            most: Most that a texture of factors holds.
+            change: Function of arrays that each colour goes through.
+        """
         found = node.find(name)
         if found is None or not self._is_texture(found):
-            return self._color(node, found, default), None
+            color = self._color(node, found, default)
+            return color if change is None else _changed(color, change), None
         value = self._texture(found)
         if value is None:
             return _triple(default), None
-        packed = self.packer.packed(broadcast(value, 3), most=most)
+        value = broadcast(value, 3)
+        if change is not None:
+            value = tuple(self.baker.combined(change, channel) for channel in value)
+        packed = self.packer.packed(value, most=most)
         r, g, b = packed.factors
         return (r, g, b), packed.slot
 
@@ -255,6 +274,13 @@ def _shifted(six: Six) -> Six:
     """Transform that moves u by half a period."""
     a, b, c, d, e, f = six
     return a, b, c + 0.5, d, e, f
+
+
+def _changed(color: Color | Spectrum, change: Callable[[Any], Any]) -> Color | Spectrum:
+    if isinstance(color, Spectrum):
+        return Spectrum(color.wavelengths_nm, tuple(change(np.array(color.values)).tolist()))
+    r, g, b = (float(c) for c in change(np.array(color)))
+    return r, g, b
 
 
 def _triple(value: Color | float) -> Color:
