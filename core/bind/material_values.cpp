@@ -22,7 +22,8 @@ struct Fields {
     const nb::dict& values;
 
     float number(const char* key) const { return nb::cast<float>(values[key]); }
-    bool flag(const char* key) const { return nb::cast<bool>(values[key]); }
+    /// True or false, also as a number.
+    bool flag(const char* key) const { return bool(nb::bool_(nb::object(values[key]))); }
     std::uint32_t index(const char* key) const { return nb::cast<std::uint32_t>(values[key]); }
     Rgb rgb(const char* key) const { return to_rgb(nb::cast<Triple>(values[key])); }
     TextureSlot slot(const char* key) const { return to_slot(values[key]); }

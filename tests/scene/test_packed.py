@@ -105,6 +105,24 @@ def test_another_moment_is_that_of_plain_gltf(glb: Path, asked: dict[str, Any]) 
         dg.load(glb, strict=True, **asked)
 
 
+def test_pictures_of_media_have_the_same_bits(tmp_path: Path) -> None:
+    made = dg.Scene()
+    smoke = dg.Medium(
+        (0.1, 0.2, 0.1), (1, 1, 2), lobes=((0.5, 1.0),), density=dg.DensityGrid(np.ones((2, 3, 4)))
+    )
+    bound = made.add_material(dg.Material(dg.Boundary(), interior=smoke))
+    shapes.cube((0, 0, 0), (1, 1, 1)).add_to(made)
+    made.add_instance(0, bound)
+    made.set_fog(dg.Medium((0.01, 0.01, 0.01), (0.1, 0.1, 0.1)))
+    made.add_light(dg.PointLight((9, 9, 9)), dg.look_at((0, 2, 2), (0, 0, 0)))
+    made.add_camera("main", dg.Camera(look_at=((0.5, 0.5, 4), (0.5, 0.5, 0))))
+    path = tmp_path / "fog.glb"
+    embed(path, made)
+    before, after = (dg.render(s, s.camera(), **TINY).rgb for s in (made, dg.load(path)))
+    assert before.max() > 0
+    assert np.array_equal(before, after)
+
+
 def test_frames_of_a_sequence_are_those_of_plain_gltf(
     glb: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

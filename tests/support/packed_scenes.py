@@ -63,7 +63,6 @@ def _surfaces(made: dg.Scene, slot: TextureSlot) -> None:
     ):
         made.add_material(dg.Material(kind, opacity=0.5, opacity_texture=slot, normal_texture=slot))
     made.add_material(dg.Mix(0, 1, 0.25, slot))
-    made.add_material(dg.Boundary())
     shining = dg.Material(emission=(1, 2, 3), emission_texture=slot, two_sided=False)
     made.add_material(shining)
 

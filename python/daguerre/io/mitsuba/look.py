@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from daguerre.cached import cached_property
 from daguerre.io.shading.channels import Channel, Value
 from daguerre.scene.materials import Diffuse, Kind, TextureSlot
 
@@ -57,18 +58,27 @@ class Look:
     blend: Blend | None = None
     name: str = ""
 
-    @property
-    def reliefs(self) -> list[Relief]:
+    @cached_property
+    def reliefs(self) -> frozenset[Relief]:
         """Its relief, and those of what it is blended of."""
         parts = () if self.blend is None else (self.blend.first, self.blend.second)
-        inner = [relief for part in parts for relief in part.reliefs]
-        return inner if self.relief is None else [self.relief, *inner]
+        own = frozenset(() if self.relief is None else (self.relief,))
+        return own.union(*(part.reliefs for part in parts))
 
-    def with_relief(self, relief: Relief) -> Look:
-        """Returns the look with another relief; a blend hands it to its parts."""
+    def with_relief(self, relief: Relief, made: dict[int, Look] | None = None) -> Look:
+        """Returns the look with another relief; a blend hands it to its parts.
+
+        Args:
+            relief: The relief.
+            made: Looks made of others, by their id: parts may be shared.
+        """
         if self.blend is None:
             return replace(self, relief=relief)
-        first, second = (part.with_relief(relief) for part in (self.blend.first, self.blend.second))
+        made = {} if made is None else made
+        for part in (self.blend.first, self.blend.second):
+            if id(part) not in made:
+                made[id(part)] = part.with_relief(relief, made)
+        first, second = made[id(self.blend.first)], made[id(self.blend.second)]
         return replace(self, blend=replace(self.blend, first=first, second=second))
 
 

@@ -222,8 +222,8 @@ def _mark(top: Node) -> None:
         node.entry.noted = True
         for one in node.properties:
             for entry in (one.entry, *one.parts):
-                entry.noted = True
-            if isinstance(one.value, Node):
+                entry.noted, entry.used = True, False
+            if isinstance(one.value, Node) and one.entry is one.value.entry:  # no reference
                 waiting.append(one.value)
 
 

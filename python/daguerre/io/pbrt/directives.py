@@ -90,8 +90,8 @@ def _directive(lexer: Lexer, token: bytes) -> Directive:
         lexer.place().fail(f"wanted a directive, got {what}{suggest(name[:40], NAMES)}")
     place = lexer.place(name)
     strings, numbers, has_parameters = _ARGUMENTS[name]
-    whats = _WHAT.get(name, ("a name",) * strings)
-    given = tuple(lexer.string(place, what) for what in whats)
+    wanted = _WHAT.get(name, ("a name",) * strings)
+    given = tuple(lexer.string(place, what) for what in wanted)
     given += _more_strings(lexer, place, name)
     return Directive(
         name,
