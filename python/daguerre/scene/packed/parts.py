@@ -45,6 +45,7 @@ def parts_of(scene: Scene) -> dict[str, Any]:
         "camera aliases": [list(pair) for pair in scene.camera_aliases.items()],
         "environment": scene.environment,
         "environment motion": _known(motion.environment, "environment"),
+        "fog": scene.fog,
         "nodes": _nodes(scene),
         "duration": scene.duration,
         "variants": list(scene.variants),

@@ -58,6 +58,8 @@ class Rebuild:
             self._light(light, motion, f"lights[{k}]")
         self._cameras()
         self._environment()
+        if (fog := self._parts.get("fog")) is not None:
+            self.scene.set_fog(fog)
         self._nodes()
         self._rest()
         return self.scene
