@@ -56,9 +56,9 @@ python scenes/lens_scenes.py
 ```
 
 `--denoise` needs the extra `denoise`, and the garden the extra `compression`
-([install](../install.md#extras)). The pictures use `--tone soft`, which rolls off highlights.
-`DATA` stands for a folder with the chess sets (as glTF, and `OpenChessSet` as USD) and the
-panorama, which the repository does not ship.
+([install](../install.md#extras)). Most pictures use `--tone soft`, which rolls off highlights.
+`DATA` stands for a folder with the chess sets (as glTF, and `OpenChessSet` as USD), the panorama
+and pbrt's killeroos, which the repository does not ship.
 """
 
 ABOUT_MOTION = """## Motion
@@ -160,7 +160,8 @@ CREDITS = """
 ## Credits
 
 The chess set is "Open Chess Set" (c) Academy Software Foundation; Moeen and Mujtaba Sayed, SideFX,
-CC BY 4.0. The panorama is "St. Peter's Square Night", Poly Haven, CC0.
+CC BY 4.0. The panorama is "St. Peter's Square Night", Poly Haven, CC0. The killeroo is a model by
+headus/Rezard, from the [scenes of pbrt](https://github.com/mmp/pbrt-v4-scenes).
 """
 
 

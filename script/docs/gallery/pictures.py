@@ -38,7 +38,9 @@ class Picture:
             frames = ".####" if "--frames" in given else ""
             output = f"{folder}/{self.name}{number}{frames}.png"
             common = COMMON if "--res" not in given else "--tone soft"
-            made.append((f"daguerre render {self.scene} {given} {common} -o {output}", output))
+            common = "" if "--ev" in given else common
+            words = ("daguerre render", self.scene, given, common, f"-o {output}")
+            made.append((" ".join(word for word in words if word), output))
         return made
 
 
@@ -267,6 +269,24 @@ MOTION = [
         "--time 0.15 --shutter 1/12 --f-stop 8 --env DATA/hdri/st_peters_square_night_1k.hdr "
         f"{FULL}",
         needs_data=True,
+    ),
+    Picture(
+        "killeroo_moving",
+        "pbrt's killeroos move for one second, through a double Gauss at f/2: with the shutter "
+        "open all the time; and by the slit of a focal-plane shutter, which exposes each line for "
+        "1/10 s and travels from the bottom of the picture to the top in 0.9 s, so that tails are "
+        "seen later than feet.",
+        "DATA/killeroos/killeroo-moving.pbrt",
+        tuple(
+            "--lens double-gauss-50mm-f2 --f-stop 2 --sensor 30x30 --ev 1.5 --time 0.5 "
+            f"{shutter} --res 320x320 --spp 64 --denoise"
+            for shutter in (
+                "--shutter 1s",
+                "--shutter 0.1 --exposure-time 1 --shutter-type focal_plane --rolling bottom,0.9",
+            )
+        ),
+        needs_data=True,
+        columns=2,
     ),
 ]
 

@@ -120,7 +120,11 @@ class Baker:
         if scale == 1 and not texture.srgb:
             return made
         stretch = np.array([scale, scale, 1], np.float32)
-        return made.mapped(lambda code: _unit((2 * code - 1) * stretch) / 2 + 0.5)
+
+        def stretched(code: Floats) -> Floats:
+            return np.asarray(_unit((2 * code - 1) * stretch) / 2 + 0.5, np.float32)
+
+        return made.mapped(stretched)
 
 
 def each(value: Number, change: Callable[[Any], Any]) -> Number:
