@@ -162,12 +162,14 @@ def test_materials_come_back(kind: Any, suffix: str, tmp_path: Path) -> None:
 
 
 def plain(kind: Any) -> list[float]:
-    """Numbers of a kind of material that has no textures; spectra at three wavelengths."""
+    """Numbers of a kind without textures; spectra at three wavelengths, words by their letters."""
     numbers: list[float] = []
     for field in dataclasses.fields(kind):
         value = getattr(kind, field.name)
         if value is None:
             numbers.append(-1.0)
+        elif isinstance(value, str):
+            numbers += [float(ord(letter)) for letter in value]
         elif isinstance(value, dg.Spectrum):
             numbers += np.asarray(value.at(np.array([450.0, 550.0, 650.0]))).tolist()
         elif dataclasses.is_dataclass(value):
