@@ -44,7 +44,7 @@ def panorama(pixels: Picture, turn: NDArray[np.float64]) -> tuple[Picture, float
 def _between_poles(pixels: Picture, rows: int) -> Picture:
     """Rows half a step from the poles, from rows that begin and end at the poles.
 
-    As many as before would be means of two neighbours near the poles.
+    Rows as many as before would be means of two neighbours near the poles.
     """
     count = len(pixels)
     if count < 2:
