@@ -205,6 +205,7 @@ def _normals(folder: Path, shape: str, plugin: str, texture: str) -> Any:
     scene = loaded(folder, body)
     slot = scene.materials[-1].normal_texture
     assert slot is not None
+    assert scene.textures[slot.texture].min_filter == "linear"  # Mitsuba has no mipmaps
     pixels = scene.textures[slot.texture].pixels
     return pixels / 255 if pixels.dtype == np.uint8 else pixels
 

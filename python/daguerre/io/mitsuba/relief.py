@@ -1,12 +1,15 @@
 """Normal maps and bump maps of Mitsuba as the normal maps of glTF: R along u, G against v.
 
 A bump map has heights; its slopes depend on how far a unit of texture coordinates reaches, for
-which the mean over the mesh is taken.
+which the mean over the mesh is taken. Neither is read from a mipmap, as Mitsuba has none: the mean
+of normals is another normal.
 
 Source: Mitsuba 3, documentation of ``normalmap`` and ``bumpmap``.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +26,18 @@ Heights = NDArray[np.float64]
 
 def normal_map(relief: Relief, chart: Chart, arithmetic: Arithmetic) -> Value | None:
     """Channels of a normal map; None: the relief is flat."""
+    made = _normals(relief, chart, arithmetic)
+    return None if made is None else tuple(_without_mipmap(channel) for channel in made)
+
+
+def _without_mipmap(channel: Channel) -> Channel:
+    if not isinstance(channel, Texel):
+        return channel
+    mapping = channel.mapping
+    return replace(channel, mapping=replace(mapping, min_filter=mapping.filter))
+
+
+def _normals(relief: Relief, chart: Chart, arithmetic: Arithmetic) -> Value | None:
     if relief.normals is not None:
         x, y, z = relief.normals
         if chart.right_handed:

@@ -64,6 +64,8 @@ class Bsdfs:
         if look.normals is not None:
             parent = add(parent, "bsdf", type="normalmap", id=name)
             self.values.bitmap(parent, "normalmap", look.normals, raw=True)
+            # Mitsuba 3.7.1 and later darken normal maps near the terminator; pictures here do not.
+            add_value(parent, "boolean", "use_shadowing_function", False)
             name = ""
         self._add(parent, look.surface, name)
 

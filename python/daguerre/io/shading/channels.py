@@ -63,12 +63,14 @@ class Mapping:
         transform: Affine transform of these coordinates, by rows.
         wrap: Wrapping along s and t.
         filter: Filter of magnification.
+        min_filter: Filter of minification, with the names of ``Scene.add_texture``.
     """
 
     primvar: str = "st"
     transform: Six = IDENTITY
     wrap: tuple[str, str] = ("repeat", "repeat")
     filter: str = "linear"
+    min_filter: str = "linear_mipmap_linear"
 
 
 @dataclass(frozen=True)

@@ -80,21 +80,29 @@ class Textures:
         srgb: bool,
         wrap: tuple[str, str],
         filter: str,
+        min_filter: str = "linear_mipmap_linear",
         name: str,
         key: Any = None,
     ) -> int:
         """Adds pixels to the scene once; ``key`` stands for their content if they are new."""
-        known = (id(pixels) if key is None else key, srgb, wrap, filter)
+        known = (id(pixels) if key is None else key, srgb, wrap, filter, min_filter)
         if known not in self._textures:
             self._kept.append(pixels)
             self._textures[known] = self._scene.add_texture(
-                freeze_in_place(pixels), srgb=srgb, wrap=wrap, filter=filter, name=name
+                freeze_in_place(pixels),
+                srgb=srgb,
+                wrap=wrap,
+                filter=filter,
+                min_filter=min_filter,
+                name=name,
             )
         return self._textures[known]
 
-    def known(self, key: Any, srgb: bool, wrap: tuple[str, str], filter: str) -> int | None:
+    def known(
+        self, key: Any, srgb: bool, wrap: tuple[str, str], filter: str, min_filter: str
+    ) -> int | None:
         """Index of a texture that was added with this key."""
-        return self._textures.get((key, srgb, wrap, filter))
+        return self._textures.get((key, srgb, wrap, filter, min_filter))
 
     def keep(self, value: Any) -> None:
         """Keeps an array alive, so that its identity stays a key."""

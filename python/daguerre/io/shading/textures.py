@@ -115,7 +115,9 @@ class Packer:
         """Texture of planes; None is a plane of ones."""
         encoded = _common_curve(planes)
         key = (tuple(None if plane is None else plane.key for plane in planes), encoded)
-        found = self._images.known(key, bool(encoded), mapping.wrap, mapping.filter)
+        found = self._images.known(
+            key, bool(encoded), mapping.wrap, mapping.filter, mapping.min_filter
+        )
         if found is not None:
             return found
         first = next(plane for plane in planes if plane is not None)
@@ -130,6 +132,7 @@ class Packer:
             srgb=bool(encoded),
             wrap=mapping.wrap,
             filter=mapping.filter,
+            min_filter=mapping.min_filter,
             name=first.name,
             key=key,
         )
