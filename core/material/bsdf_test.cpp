@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <variant>
 
 #include "material/bsdf_check.h"
 
@@ -20,8 +21,14 @@ struct Case {
     bool two_sided = false;  // also looked at from behind
     bool disperses = false;  // the hero's lane has four times its light
     bool reciprocal = true;
-    double rounding = 0.003;  // of energy that tables give back
 };
+
+/// Energy that a surface may gain, as tables of albedos are interpolated.
+double rounding_of(const Case& c) {
+    if (c.name == "Beckmann even pane 0.150000") return 0.035;  // two roughnesses, at grazing angles
+    if (std::holds_alternative<GlassBsdf>(c.bsdf)) return 0.025;
+    return std::holds_alternative<CoatedBsdf>(c.bsdf) ? 0.02 : 0.003;
+}
 
 const Vec3f kNg = normalize(Vec3f{0.3f, -0.5f, 0.8f});
 const Spectrum kColor{0.2f, 0.5f, 0.8f, 1.f};
@@ -292,14 +299,9 @@ std::vector<Case> all_cases(bool straight) {
     add_iridescent(cases, ns);
     add_layered(cases, ns, straight);
     add_translucent_and_metals(cases, ns, straight);
-    const std::size_t first = cases.size();
     add_glass(cases, ns);
-    const std::size_t coated = cases.size();
     add_coated(cases, ns);
-    const std::size_t beckmann = cases.size();
     add_beckmann(cases, ns);
-    for (std::size_t i = first; i < cases.size(); ++i)
-        cases[i].rounding = i >= beckmann ? 0.035 : i < coated ? 0.025 : 0.02;
     return cases;
 }
 
@@ -364,7 +366,7 @@ TEST_CASE("furnace: sampling and quadrature agree and never exceed 1") {
             const Albedo q = albedo_by_quadrature(b, s);
             CHECK(furnace_deviation(b, s, q, ++seed) < 4.5);
             for (int k = 0; k < kWavelengths; ++k) {
-                CHECK(q.value[k] < (c.disperses && k == 0 ? 4 : 1) + c.rounding);
+                CHECK(q.value[k] < (c.disperses && k == 0 ? 4 : 1) + rounding_of(c));
                 if (c.lossless) CHECK(q.value[k] == doctest::Approx(1).epsilon(3e-4));
             }
         });
