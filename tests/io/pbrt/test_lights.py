@@ -132,6 +132,19 @@ def test_a_projection_light_is_upright(tmp_path: Path) -> None:
     assert sum(_flux(light) for light, _ in powered.lights) == pytest.approx(90, rel=0.05)
 
 
+def test_a_projection_light_of_v3_is_45_degrees_wide(tmp_path: Path) -> None:
+    """Across the shorter side, unless it says otherwise; those of pbrt-v4 are 90 degrees wide."""
+    picture(tmp_path / "slide.png", np.full((8, 8, 3), 255, np.uint8))
+    text = 'LightSource "projection" "string mapname" "slide.png"'
+    for more, half in (("", 45.0), ("WorldEnd", 22.5)):
+        ((light, _), *_) = read(tmp_path, f"{text} {more}").lights
+        assert isinstance(light, PointLight)
+        assert light.profile is not None
+        angles = np.radians([half - 3, half + 3])
+        ways = np.stack([np.sin(angles), np.zeros(2), -np.cos(angles)], axis=1)
+        assert light.profile.factors(ways)[:, 1] == pytest.approx((1, 0), abs=0.01)
+
+
 def test_areas_on_the_square_are_areas_on_the_sphere() -> None:
     """The map is equal-area: the mean of any function is that over the sphere."""
     middle = (np.arange(256) + 0.5) / 256
@@ -264,6 +277,31 @@ def test_areas_have_their_power(tmp_path: Path) -> None:
         assert _emission(uneven, i)[1] == pytest.approx(100 / (math.pi * area))
         areas.discard(round(area, 3))
     assert not areas
+
+
+def test_patches_have_their_power_and_triangles_of_no_area_none(tmp_path: Path) -> None:
+    """A bilinear patch is one light, and so is a quadrangle of a file, which pbrt draws as one."""
+    light = 'AreaLightSource "diffuse" "float power" 100'
+    two = '"point3 P" [0 0 0 2 0 0 0 1 0 2 1 0 4 0 0 4 1 0] "integer indices" [0 1 2 3 1 4 3 5]'
+    patches = read(tmp_path, f'{light} Shape "bilinearmesh" {two}')
+    assert len(patches.instances) == 1
+    assert _emission(patches)[1] == pytest.approx(100 / (math.pi * 2))
+    (tmp_path / "quads.ply").write_text(
+        "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0\n2 0 0\n2 1 0\n0 1 0\n1 5 0\n4 0 1 2 3\n3 3 2 4\n"
+    )
+    quads = read(tmp_path, f'{light} Shape "plymesh" "string filename" "quads.ply"')
+    assert sorted(_emission(quads, i)[1] for i in (0, 1)) == pytest.approx(
+        [100 / (math.pi * 4), 100 / (math.pi * 2)]
+    )
+    flat = read(
+        tmp_path,
+        f'{light} Shape "trianglemesh" "point3 P" [0 0 0 2 0 0 0 2 0] '
+        '"integer indices" [0 1 2 0 0 1]',
+    )
+    lit = [_emission(flat, i)[1] for i in range(len(flat.instances))]
+    assert max(lit) == pytest.approx(100 / (math.pi * 2))
 
 
 def test_the_front_shines_and_reverse_orientation_turns_it(tmp_path: Path) -> None:

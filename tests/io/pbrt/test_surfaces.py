@@ -255,6 +255,36 @@ def test_a_planar_mapping_is_that_of_the_world(tmp_path: Path) -> None:
     assert slot.uv_set == 1
 
 
+@pytest.mark.parametrize("version", [3, 4])
+def test_round_mappings_begin_where_those_of_pbrt_do(tmp_path: Path, version: int) -> None:
+    """Half a turn from +x on a cylinder, whose height pbrt-v3 takes on the unit sphere."""
+    for kind in ("cylindrical", "spherical"):
+        scene = read(
+            tmp_path,
+            f'Texture "c" "spectrum" "checkerboard" "string mapping" "{kind}" '
+            'Material "diffuse" "texture reflectance" "c" Shape "trianglemesh" "point3 P" '
+            '[3 0 4 0 3 4 -3 -1e-6 4] "integer indices" [0 1 2] ' + "WorldEnd" * (version == 3),
+        )
+        uv = scene.meshes[0].uv1
+        assert uv is not None
+        if kind == "cylindrical":
+            height = 0.8 if version == 3 else 4
+            wanted = [(0.5, 1 - height), (0.75, 1 - height), (0, 1 - height)]
+        else:
+            theta = math.acos(0.8) / math.pi
+            wanted = [(theta, 1), (theta, 0.75), (theta, 0.5)]
+        assert uv == pytest.approx(np.array(wanted), abs=1e-5)
+
+
+def test_a_plane_of_v3_lies_in_the_world(tmp_path: Path) -> None:
+    text = 'Translate 1 0 0 Texture "c" "spectrum" "checkerboard" "string mapping" "planar" '
+    text += f'Material "diffuse" "texture reflectance" "c" {SQUARE}'
+    new, old = (read(tmp_path, text + more).meshes[0].uv1 for more in ("", " WorldEnd"))
+    assert new is not None
+    assert old is not None
+    assert old - new == pytest.approx(np.array([(1, 0)] * len(old)), abs=1e-6)
+
+
 def test_roughness_becomes_alpha_as_in_pbrt(tmp_path: Path) -> None:
     def alpha(parameters: str, more: str = "") -> tuple[float, float | None]:
         name = "metal" if more else "conductor"
@@ -296,6 +326,7 @@ def test_materials_of_v4_are_their_kinds(tmp_path: Path) -> None:
     assert coat.base == Conductor.of_metal("Cu", alpha=pytest.approx(0.2))
     through = kind('"diffusetransmission" "float scale" 2 "rgb transmittance" [0.1 0.1 0.1]')
     assert through == Diffuse((0.5, 0.5, 0.5), None, (0.2, 0.2, 0.2))
+    assert kind('"hair" "rgb reflectance" [0.1 0.2 0.3]') == Diffuse((0.1, 0.2, 0.3))
     assert kind('"interface"') == Boundary()
     assert kind('""') == Boundary()
 

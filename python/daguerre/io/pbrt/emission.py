@@ -1,7 +1,7 @@
 """Reads ``AreaLightSource``: the light of surfaces.
 
-In pbrt each triangle of a mesh is a light of its own, and so has the whole ``power``; a sphere, a
-disk and a cylinder are one.
+In pbrt each triangle and each bilinear patch of a mesh is a light of its own, and so has the whole
+``power``; a sphere, a disk and a cylinder are one.
 
 Source: ``DiffuseAreaLight`` of pbrt-v4, ``DiffuseAreaLight`` of pbrt-v3.
 """
@@ -102,19 +102,19 @@ class Emissions:
         per_area = power / (sides * math.pi * mean) if mean > 0 else 0.0
         if surface.area is not None:
             return [(_with(emission, per_area / surface.area if surface.area > 0 else 0.0), None)]
-        areas = _areas(surface, world)
-        total = float(areas.sum())
+        areas, total, count = _areas_of_lights(surface, world)
         if not total > 0:
             return [(DARK, None)]
         rounded = np.round(np.log(np.maximum(areas, 1e-30)) / 1e-3)
         sizes, groups = np.unique(rounded, return_inverse=True)
         if len(sizes) > _MOST_GROUPS:
             self._ledger.notes.add("a mesh of many sizes of triangles spreads its power evenly")
-            return [(_with(emission, per_area * len(areas) / total), None)]
+            return [(_with(emission, per_area * count / total), None)]
         found: list[tuple[Emission, NDArray[np.bool_] | None]] = []
         for group in range(len(sizes)):
             chosen = groups.reshape(-1) == group
-            found.append((_with(emission, per_area / float(areas[chosen].mean())), chosen))
+            area = float(areas[chosen].mean())
+            found.append((_with(emission, per_area / area if area > 0 else 0.0), chosen))
         return [(found[0][0], None)] if len(found) == 1 else found
 
     def _mean_of(self, emission: Emission) -> float:
@@ -145,7 +145,11 @@ def _with(emission: Emission, luminance_factor: float) -> Emission:
     return Emission(color, emission.two_sided, emission.picture, emission.directive)
 
 
-def _areas(surface: Surface, world: Array) -> Array:
+def _areas_of_lights(surface: Surface, world: Array) -> tuple[Array, float, int]:
+    """Area of the light of each triangle, m2; area and number of all lights."""
     corners = surface.positions[surface.triangles].astype(np.float64) @ world[:3, :3].T
     sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return np.asarray(0.5 * np.linalg.norm(sides, axis=1))
+    areas = 0.5 * np.linalg.norm(sides, axis=1)
+    patch = np.arange(len(areas)) if surface.patch is None else surface.patch
+    sums = np.bincount(patch, areas)
+    return sums[patch], float(sums.sum()), int(np.count_nonzero(sums))

@@ -66,7 +66,6 @@ class Interpreter:
         self._blocks: list[tuple[str, Place, State]] = []
         self._in_world = False
         self._object: list[Made] | None = None
-        self._object_name = ""
         self._handlers: dict[str, Callable[[Directive], None]] = {
             name: getattr(self, f"_on_{name}") for name in _handled(type(self))
         }

@@ -140,17 +140,13 @@ def _cone(start: float, end: float, version: int) -> LightProfile:
         version: Version of pbrt; version 3 has the fourth power in place of a smooth step.
     """
     inner, outer = math.cos(math.radians(start)), math.cos(math.radians(end))
-    soft = end > start
-    angles = np.linspace(start, end, _EDGE) if soft else np.array([end])
-    share = np.zeros(len(angles))
-    if soft and inner > outer:
-        x = np.clip((np.cos(np.radians(angles)) - outer) / (inner - outer), 0, 1)
-        share = x**4 if version == 3 else x * x * (3 - 2 * x)
-    elif not soft:
-        share = np.ones(1)
-    theta = np.concatenate([[0.0], angles]) if angles[0] > 0 else angles
-    values = np.concatenate([[1.0], share]) if angles[0] > 0 else share
-    return LightProfile.table(theta, values)
+    if not inner > outer:
+        return LightProfile.table([0.0, end], [1.0, 1.0])
+    angles = np.linspace(start, end, _EDGE)
+    x = np.clip((np.cos(np.radians(angles)) - outer) / (inner - outer), 0, 1)
+    share = x**4 if version == 3 else x * x * (3 - 2 * x)
+    begins = [0.0] if start > 0 else []
+    return LightProfile.table([*begins, *angles], [1.0 for _ in begins] + share.tolist())
 
 
 def _distant(lights: Lights, made: Made) -> list[Placed]:
@@ -190,7 +186,8 @@ def _projection(lights: Lights, made: Made) -> list[Placed]:
     name = made.parameters.text("filename") or made.parameters.text("mapname")
     pixels = _picture(lights, made, name)
     height, width = pixels.shape[:2]
-    half = math.tan(math.radians(made.parameters.number("fov", 90.0, 0.1, 179.0)) / 2)
+    usual = 45.0 if lights.version == 3 else 90.0
+    half = math.tan(math.radians(made.parameters.number("fov", usual, 0.1, 179.0)) / 2)
     across, down = half * max(width / height, 1), half * max(height / width, 1)
     power = made.parameters.number("power", -1.0)
     if power > 0:

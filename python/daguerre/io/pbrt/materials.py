@@ -197,7 +197,8 @@ def hair(made: Made, tools: Tools) -> Kind:
     tools.note("a material of kind 'hair' is drawn as a diffuse surface of its color")
     for name in ("sigma_a", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"):
         made.parameters.find(name)
-    shade = tools.textures.color(made, "color", (0.15, 0.08, 0.04))
+    name = "reflectance" if tools.textures.has(made, "reflectance") else "color"
+    shade = tools.textures.color(made, name, (0.15, 0.08, 0.04))
     return Diffuse(shade.color, shade.slot)
 
 

@@ -40,7 +40,8 @@ class Surface:
         triangles: Shape (M, 3); their fronts are those of the surface.
         normals: Shape (N, 3), or None.
         uv: Texture coordinates, shape (N, 2), with (0, 0) at the bottom left; or None.
-        area: Exact area of a whole shape that is one light; None: each triangle is a light.
+        area: Exact area of a whole shape that is one light; None: each triangle or patch is one.
+        patch: Patch of each triangle, shape (M,); None: there are none.
         level: Times that it is subdivided by Loop's rules; 0: it is not.
         size: Factor on all positions.
         key: Content of a shape that many directives share; None: there is no other.
@@ -52,6 +53,7 @@ class Surface:
     normals: NDArray[np.floating] | None = None
     uv: NDArray[np.floating] | None = None
     area: float | None = None
+    patch: IntArray | None = None
     level: int = 0
     size: float = 1.0
     key: tuple[object, ...] | None = None
@@ -158,7 +160,11 @@ def _patches(made: Made, files: Files, notes: Notes) -> Surface | str | None:
         None if normals is None else normals[rows],
         None if uv is None else _down(uv[rows]),
     )
-    return _of_solid(found, None, None)
+    surface = _of_solid(found, None, None)
+    if surface is None:
+        return None
+    each = len(surface.positions) // len(rows)  # patches share no vertices
+    return replace(surface, patch=surface.triangles[:, 0] // each)
 
 
 def _plymesh(made: Made, files: Files, notes: Notes) -> Surface | str | None:
@@ -172,14 +178,15 @@ def _plymesh(made: Made, files: Files, notes: Notes) -> Surface | str | None:
     mesh = ply.read(path, notes)
     corners = mesh.corners.astype(np.int64)
     if mesh.sizes is None:
-        triangles = corners.reshape(-1, 3)
+        triangles, patch = corners.reshape(-1, 3), None
     else:
-        found, _ = triangulate(mesh.sizes, corners, mesh.positions)
+        found, patch = triangulate(mesh.sizes, corners, mesh.positions)
         triangles = corners[found]
     count = len(mesh.positions)
     normals = mesh.normals if mesh.normals is not None and len(mesh.normals) == count else None
     uv = mesh.uv if mesh.uv is not None and len(mesh.uv) == count else None
-    made_of = Surface(mesh.positions, triangles, normals, uv, name=path.stem.split(".")[0])
+    name = path.stem.split(".")[0]
+    made_of = Surface(mesh.positions, triangles, normals, uv, patch=patch, name=name)
     return made_of.faced() if len(triangles) else None
 
 

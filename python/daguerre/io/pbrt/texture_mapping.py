@@ -53,31 +53,34 @@ class SpaceMapping:
         from_world: Texture space from world, shape (4, 4).
         axes: Vectors of s and t of a plane, shape (2, 3).
         offset: Offsets of s and t of a plane.
+        on_sphere: Whether t on a cylinder is the height on the unit sphere, as in pbrt-v3.
     """
 
     kind: str
     from_world: Matrix
     axes: Array
     offset: tuple[float, float]
+    on_sphere: bool = False
 
     def coordinates(self, world: Array) -> Array:
         """Coordinates s, t of points of the world, shape (N, 2)."""
         points = world @ self.from_world[:3, :3].T + self.from_world[:3, 3]
         if self.kind == "planar":
             return points @ self.axes.T + self.offset
-        around = np.mod(np.arctan2(points[:, 1], points[:, 0]) / (2 * np.pi), 1.0)
-        if self.kind == "cylindrical":
-            return np.stack([around, points[:, 2]], axis=1)
+        around = np.arctan2(points[:, 1], points[:, 0]) / (2 * np.pi)
         lengths = np.linalg.norm(points, axis=1)
-        down = np.arccos(np.clip(points[:, 2] / np.where(lengths > 0, lengths, 1), -1, 1)) / np.pi
-        return np.stack([down, around], axis=1)
+        height = points[:, 2] / np.where(lengths > 0, lengths, 1)
+        if self.kind == "cylindrical":
+            return np.stack([around + 0.5, height if self.on_sphere else points[:, 2]], axis=1)
+        down = np.arccos(np.clip(height, -1, 1)) / np.pi
+        return np.stack([down, np.mod(around, 1.0)], axis=1)
 
 
 Mapping = UvMapping | SpaceMapping
 
 
-def mapping_of(made: Made) -> Mapping:
-    """Reads the mapping of a texture.
+def mapping_of(made: Made, version: int) -> Mapping:
+    """Reads the mapping of a texture; planes of pbrt-v3 lie in the world.
 
     Raises:
         InputError: It is not known, or a parameter is wrong.
@@ -91,8 +94,10 @@ def mapping_of(made: Made) -> Mapping:
     if kind == "uv":
         return UvMapping((number("uscale", 1.0), number("vscale", 1.0)), offset)
     axes = np.zeros((2, 3))
+    from_world = inverse(made.state.transform.start, made.place)
     if kind == "planar":
         axes = np.stack([parameters.point("v1", (1, 0, 0)), parameters.point("v2", (0, 1, 0))])
+        from_world = np.eye(4) if version == 3 else from_world
     else:
         offset = (0.0, 0.0)
-    return SpaceMapping(kind, inverse(made.state.transform.start, made.place), axes, offset)
+    return SpaceMapping(kind, from_world, axes, offset, on_sphere=version == 3)

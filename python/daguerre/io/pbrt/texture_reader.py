@@ -133,11 +133,11 @@ class TextureReader:
         if made.parameters.integer("dimension", 2, 2, 3) == 3:
             self._ledger.notes.add("a checkerboard in space shows its mean value")
             return _blend(first, second, _grey(0.5))
-        return Checkerboard(mapping_of(made), first, second)
+        return Checkerboard(mapping_of(made, self._version), first, second)
 
     def _dots(self, made: Made, kind: str, depth: int) -> Node:
         self._ledger.notes.add("a texture of class 'dots' shows its mean value")
-        mapping_of(made)
+        mapping_of(made, self._version)
         inside = self.node(made, "inside", kind, _grey(1.0), depth)
         outside = self.node(made, "outside", kind, _grey(0.0), depth)
         return _blend(outside, inside, _grey(_DOTS))
@@ -149,11 +149,11 @@ class TextureReader:
             if not isinstance(corner, Constant):
                 made.place.fail(f"{name}: wanted a color, got a texture")
             colors.append(corner.color)
-        return Bilinear(mapping_of(made), tuple(colors))
+        return Bilinear(mapping_of(made, self._version), tuple(colors))
 
     def _uv(self, made: Made, kind: str, depth: int) -> Node:
         del kind, depth
-        return Bilinear(mapping_of(made), ((0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)))
+        return Bilinear(mapping_of(made, self._version), ((0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)))
 
     def _image(self, made: Made, kind: str, depth: int) -> Node:
         del depth
@@ -178,7 +178,7 @@ class TextureReader:
         return Image(
             pixels,
             self._curve(made, name, pixels.dtype == np.uint8),
-            mapping_of(made),
+            mapping_of(made, self._version),
             "clamp" if wrap == "octahedralsphere" else wrap,
             _FILTERS[chosen],
             parameters.number("scale", 1.0, 0.0),
@@ -190,15 +190,15 @@ class TextureReader:
     def _curve(self, made: Made, name: str, is_bytes: bool) -> str | float:
         """Curve of a picture's values. pbrt chooses it for PNG alone; light is linear."""
         parameters, suffix = made.parameters, name.lower().rsplit(".", 1)[-1]
-        is_light = suffix in ("exr", "hdr", "pfm", "qoi") and suffix != "qoi"
+        is_light = suffix in ("exr", "hdr", "pfm")
         if self._version == 3 or parameters.has("gamma"):
             encoded = parameters.flag("gamma", suffix in ("png", "tga"))
             return _SRGB if encoded and not is_light else _LINEAR
         chosen = parameters.text("encoding", _SRGB).strip().lower()
-        if is_light or (suffix != "png" and not is_bytes):
-            return _LINEAR
+        if suffix != "png":
+            return _SRGB if is_bytes and not is_light else _LINEAR
         if chosen in (_SRGB, "linear"):
-            return _LINEAR if chosen == "linear" and suffix == "png" else _SRGB
+            return _SRGB if chosen == _SRGB else _LINEAR
         words = chosen.split()
         try:
             exponent = float(words[1]) if words[0] == "gamma" and len(words) == 2 else 0.0
