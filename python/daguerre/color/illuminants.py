@@ -60,11 +60,20 @@ def rgb_reflectances() -> FloatArray:
     return np.asarray(_color_tables()[:, 4:])
 
 
+def _planck_shape(nm: FloatArray, kelvin: float) -> FloatArray:
+    with np.errstate(over="ignore"):
+        rise = np.expm1(PLANCK * LIGHT / (nm * 1e-9 * BOLTZMANN * kelvin))
+    return np.asarray(nm**-5.0 / rise)
+
+
+def blackbody(nm: FloatArray, kelvin: float) -> FloatArray:
+    """Radiance of a black body at wavelengths, W / (m2 sr nm), shape (L,); Planck's law."""
+    return 2e36 * PLANCK * LIGHT**2 * _planck_shape(nm, kelvin)
+
+
 def planck(kelvin: float) -> FloatArray:
     """Black body with Y = 1 at ``NM``, shape (L,)."""
-    with np.errstate(over="ignore"):
-        rise = np.expm1(PLANCK * LIGHT / (NM * 1e-9 * BOLTZMANN * kelvin))
-    shape = NM**-5.0 / rise
+    shape = _planck_shape(NM, kelvin)
     return np.asarray(shape / (observer()[:, 1] @ shape))
 
 

@@ -393,6 +393,12 @@ def test_media_are_those_of_their_names(tmp_path: Path) -> None:
     inside = preset.materials[preset.instances[0].material].interior
     assert inside is not None
     assert inside.scattering == pytest.approx(MEASURED["Cream"][0])
+    colored = read(
+        tmp_path,
+        'MakeNamedMedium "m" "string type" "rgbgrid" MediumInterface "m" "" Shape "sphere"',
+    )
+    assert colored.materials[colored.instances[0].material].interior is None
+    assert any("a medium of kind 'rgbgrid' is left out" in note for note in colored.warnings)
 
 
 def test_a_grid_of_densities_stands_in_its_box(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color import srgb
+from daguerre.color.illuminants import blackbody
 from daguerre.color.spectra import rgb_of_emission, rgb_of_reflectance
 from daguerre.errors import InputError
 from daguerre.scene.materials import Color
@@ -25,11 +26,11 @@ from .ledger import Entry
 from .node import Node, Property
 from .numbers import MAX_NUMBERS, numbers, words
 
-#: Planck's first constant of radiance, W m2 / sr, and the second one, m K (CODATA 2014).
-_C1, _C2 = 2 * 6.62607004e-34 * 299792458.0**2, 6.62607004e-34 * 299792458.0 / 1.38064852e-23
 #: Wavelengths at which a blackbody is sampled, nm.
 _PLANCK_NM = np.linspace(360.0, 830.0, 95)
 _MOST_FILE = 1 << 24
+#: Luminance of red, green and blue in Mitsuba.
+LUMINANCE = (0.212671, 0.715160, 0.072169)
 #: Plugins that are colours or spectra, not textures.
 PLUGINS = (
     *("rgb", "srgb", "uniform", "regular", "irregular", "d65", "blackbody"),
@@ -74,7 +75,7 @@ class Spectra:
             return self._text(text, file, one.entry)
         if one.tag == "blackbody":
             kelvin, scale = one.value
-            return blackbody(kelvin, scale, one.entry)
+            return glowing(kelvin, scale, one.entry)
         one.wrong("a colour or spectrum")
 
     def _text(self, text: str, file: str, entry: Entry) -> Color | Spectrum:
@@ -106,7 +107,7 @@ class Spectra:
                 node.fail("wanted a property 'temperature', got none")
             node.skip("wavelength_min", "wavelength_max", "lambda_min", "lambda_max")
             temperature = node.number("temperature", 0.0, above=0)
-            return blackbody(temperature, node.number("scale", 1.0), node.entry)
+            return glowing(temperature, node.number("scale", 1.0), node.entry)
         return self._samples(node)
 
     def _color(self, node: Node) -> Color:
@@ -150,14 +151,11 @@ def sampled(wavelengths: object, values: object, entry: Entry) -> Spectrum:
         entry.fail(str(error).removeprefix("spectrum: "))
 
 
-def blackbody(kelvin: float, scale: float, entry: Entry) -> Spectrum:
-    """Radiance of a blackbody, W / (m2 sr nm), by Planck's law."""
+def glowing(kelvin: float, scale: float, entry: Entry) -> Spectrum:
+    """Radiance of a blackbody, W / (m2 sr nm), times a factor."""
     if not 0 < kelvin < 1e9:
         entry.fail(f"wanted a temperature above 0 K, got {kelvin:g}")
-    metres = _PLANCK_NM * 1e-9
-    with np.errstate(over="ignore"):
-        radiance = 1e-9 * _C1 / (metres**5 * np.expm1(_C2 / (metres * kelvin)))
-    return sampled(_PLANCK_NM, scale * radiance, entry)
+    return sampled(_PLANCK_NM, scale * blackbody(_PLANCK_NM, kelvin), entry)
 
 
 def emitted_rgb(value: Color | Spectrum) -> Color:
@@ -201,4 +199,4 @@ def _lines(data: bytes, entry: Entry) -> list[str]:
 
 def luminance(color: Color) -> float:
     """Luminance of linear Rec.709."""
-    return math.fsum(w * c for w, c in zip((0.212671, 0.715160, 0.072169), color, strict=True))
+    return math.fsum(w * c for w, c in zip(LUMINANCE, color, strict=True))

@@ -34,14 +34,13 @@ from daguerre.scene.spectrum import Spectrum
 from .context import Context
 from .ledger import Entry
 from .node import Node, Property, leave_out
-from .spectra import PLUGINS, Spectra, luminance, reflected_rgb
+from .spectra import LUMINANCE, PLUGINS, Spectra, luminance, reflected_rgb
 from .transforms import uv_part
 
 UV = "uv"
 _WRAPS = ("repeat", "mirror", "clamp")
 #: Formats whose numbers are light; those of others are encoded as sRGB.
 _LINEAR = (".exr", ".hdr", ".rgbe", ".pfm")
-_LUMINANCE = (0.212671, 0.715160, 0.072169)
 
 
 @dataclass(frozen=True)
@@ -154,10 +153,8 @@ class Textures:
         """Luminance of channels."""
         if len(value) == 1:
             return value[0]
-        weights = np.array(_LUMINANCE)
-        return self.baker.combined(
-            lambda r, g, b: weights[0] * r + weights[1] * g + weights[2] * b, *value[:3]
-        )
+        x, y, z = (np.float64(weight) for weight in LUMINANCE)
+        return self.baker.combined(lambda r, g, b: x * r + y * g + z * b, *value[:3])
 
     def texture_of(self, node: Node) -> Value | None:
         """Channels of a nested texture, by itself."""

@@ -19,40 +19,35 @@ class Media:
 
     def __init__(self, fog: Medium | None, notes: Notes) -> None:
         self._notes = notes
-        self._fog = None if fog is None else plain_medium(fog, notes)
+        self._fog = plain_medium(fog, notes)
         self.used = False
 
     def add_fog(self, root: Element, sensor: Element) -> None:
         """Adds the fog of the world, in which the camera stands."""
-        if self._fog is None or self._fog.empty:
+        if self._fog is None:
             return
         self._add(root, self._fog, id="fog")
         add(sensor, "ref", name="medium", id="fog")
 
     def add_sides(self, shape: Element, look: Look) -> None:
         """Adds the media on both sides of a shape; glass keeps the fog out."""
-        inside = self._plain(look.inside)
+        inside = plain_medium(look.inside, self._notes)
         if inside is not None:
             self._add(shape, inside, name="interior")
-        outside = self._plain(look.outside)
+        outside = plain_medium(look.outside, self._notes)
         if outside is not None:
             self._add(shape, outside, name="exterior")
-        elif self._fog is not None and not self._fog.empty and (look.clear or inside):
+        elif self._fog is not None and (look.clear or inside):
             add(shape, "ref", name="exterior", id="fog")
-
-    def _plain(self, medium: Medium | None) -> PlainMedium | None:
-        made = None if medium is None else plain_medium(medium, self._notes)
-        return None if made is None or made.empty else made
 
     def _add(self, parent: Element, medium: PlainMedium, **attributes: str) -> None:
         self.used = True
         element = add(parent, "medium", type="homogeneous", **attributes)
         total = medium.extinction
         # A colour may be no more than 1, and ``scale`` multiplies it.
-        most = max(total)
+        most = max(total) or 1.0
         if max(medium.emission) > 0:
             self._notes.add("emission of a medium is left out")
-        most = most or 1.0
         add_rgb(element, "sigma_t", [value / most for value in total])
         add_value(element, "float", "scale", float(most))
         pairs = zip(medium.scattering, total, strict=True)

@@ -26,14 +26,11 @@ class PlainMedium:
         (a, b, c), (d, e, f) = self.absorption, self.scattering
         return a + d, b + e, c + f
 
-    @property
-    def empty(self) -> bool:
-        """Whether light passes as through nothing."""
-        return max(self.extinction) <= 0 and max(self.emission) <= 0
 
-
-def plain_medium(medium: Medium, notes: Notes) -> PlainMedium:
-    """Takes a medium apart, and notes what no written one has."""
+def plain_medium(medium: Medium | None, notes: Notes) -> PlainMedium | None:
+    """Takes a medium apart, and notes what no written one has; None: light passes freely."""
+    if medium is None:
+        return None
     if medium.density is not None:
         notes.add("density grid of a medium is left out: it is even, with density 1")
     values = []
@@ -44,4 +41,5 @@ def plain_medium(medium: Medium, notes: Notes) -> PlainMedium:
         values.append(value)
     absorption, scattering, emission = values
     lobes = tuple((g, weight) for g, weight in medium.lobes if weight > 0)
-    return PlainMedium(absorption, scattering, lobes, emission)
+    made = PlainMedium(absorption, scattering, lobes, emission)
+    return made if max(made.extinction) > 0 or max(emission) > 0 else None

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from daguerre.color.spectra import rgb_mixes
+from daguerre.color.spectra import rgb_of_reflectance
 from daguerre.scene.spectrum import Spectrum
 
 Color = tuple[float, float, float]
 #: First and last wavelength of written spectra, nm: others take them to be 0 beyond their samples.
 _FIRST_NM, _LAST_NM = 360.0, 830.0
-#: Wavelengths of sums over D65.
-_COUNT = 60
 #: Wavelengths, nm, at which blue ends and red begins for an index by colour.
 _BLUE_NM, _RED_NM = 490.0, 580.0
 
@@ -28,9 +24,7 @@ def samples(spectrum: Spectrum) -> list[tuple[float, float]]:
 
 def rgb_of(spectrum: Spectrum) -> Color:
     """Linear Rec.709 of a reflectance under D65; not below 0."""
-    nm, mixes = rgb_mixes(_COUNT)
-    rgb = np.einsum("l,lij->i", spectrum.at(nm), mixes)
-    red, green, blue = (float(c) for c in np.maximum(rgb, 0.0))
+    red, green, blue = (max(float(c), 0.0) for c in rgb_of_reflectance(spectrum.at))
     return red, green, blue
 
 

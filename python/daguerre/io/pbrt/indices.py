@@ -116,5 +116,5 @@ def _sampled(found: Parameter, samples: Samples) -> Spectrum:
     nm, values = samples.nm, samples.values
     if len(nm) > 4096:
         at = np.linspace(360.0, 830.0, 941)
-        nm, values = at, samples.at(at, "constant")
+        nm, values = at, samples.constant_beyond(at)
     return Spectrum(tuple(nm.tolist()), tuple(values.tolist()))

@@ -82,12 +82,12 @@ class Media:
             self._ledger.notes.add(f"the medium {name[:40]!r} is not defined and counts as none")
             return None
         kind = made.parameters.text("type")
-        if kind not in ("homogeneous", "uniformgrid", "heterogeneous", "rgbgrid"):
+        if kind not in ("homogeneous", "uniformgrid", "heterogeneous"):
             if not kind:
                 made.place.fail("type: wanted a kind of medium, got none")
             self._ledger.note(made.place, f"a medium of kind {kind[:40]!r} is left out")
             return None
-        medium = self._homogeneous(made) if kind == "homogeneous" else self._grid(made, kind)
+        medium = self._homogeneous(made) if kind == "homogeneous" else self._grid(made)
         self._ledger.use(made.place)
         self._ledger.tell_unread(made.parameters, made.place, kind)
         return medium
@@ -126,15 +126,13 @@ class Media:
         lobes = ((float(np.clip(g, -_MOST_G, _MOST_G)), 1.0),)
         return Medium(absorbed, scattered, lobes, glow, density)
 
-    def _grid(self, made: Made, kind: str) -> Medium:
+    def _grid(self, made: Made) -> Medium:
         parameters = made.parameters
         size = [parameters.integer(name, 1, 1, 1 << 20) for name in ("nx", "ny", "nz")]
         count = size[0] * size[1] * size[2]
         if count > _MOST_CELLS:
             made.place.fail(f"nx, ny, nz: wanted at most {_MOST_CELLS} cells, got {count}")
         usual = (_ONE, _ONE) if self._version == 4 else (_MILK[1], _MILK[0])
-        if kind == "rgbgrid":
-            made.place.fail("a medium of kind 'rgbgrid' is not supported: wanted uniformgrid")
         values = parameters.numbers("density", count)
         if values is None:
             made.place.fail("density: wanted numbers, got none")

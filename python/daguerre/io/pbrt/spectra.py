@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color.adaptation import adaptation
-from daguerre.color.illuminants import D65_XY, NM, d65, observer, planck, xyz_of_xy
-from daguerre.color.spectra import luminance_of_rgb, rgb_from_xyz
+from daguerre.color.illuminants import D65_XY, NM, blackbody, observer, planck, xyz_of_xy
+from daguerre.color.spectra import luminance_of_rgb, rgb_from_xyz, rgb_of_reflectance
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.files.text_lines import text_of
@@ -37,6 +37,8 @@ _SPACES = {
 #: Colour temperatures of named illuminants that are black bodies, K (CIE 015:2018).
 _KELVIN = {"stdillum-A": 2856.0}
 _LIKE_D65 = ("stdillum-D65", "illum-acesD60", "stdillum-D50")
+#: Wavelength of the peak of a black body times its temperature, nm K (Wien's law, CODATA 2018).
+_WIEN = 2.897771955e6
 _MOST_SAMPLES = 100_000
 _MAX_FILE = 16_000_000
 
@@ -53,10 +55,13 @@ class Samples:
     nm: FloatArray
     values: FloatArray
 
-    def at(self, nm: FloatArray, beyond: str = "zero") -> FloatArray:
-        """Values at wavelengths; beyond the ends 0, or constant."""
-        ends = {"left": 0.0, "right": 0.0} if beyond == "zero" else {}
-        return np.interp(nm, self.nm, self.values, **ends)
+    def zero_beyond(self, nm: FloatArray) -> FloatArray:
+        """Values at wavelengths; beyond the ends 0."""
+        return np.interp(nm, self.nm, self.values, left=0.0, right=0.0)
+
+    def constant_beyond(self, nm: FloatArray) -> FloatArray:
+        """Values at wavelengths; beyond the ends those of the ends."""
+        return np.interp(nm, self.nm, self.values)
 
 
 class Spectra:
@@ -92,7 +97,7 @@ class Spectra:
         samples = self.samples(parameter)
         if samples is None:
             return WHITE
-        return _of_radiance(samples.at(NM), self._version)
+        return _of_radiance(samples.zero_beyond(NM), self._version)
 
     def coefficient(self, parameter: Parameter) -> Color:
         """Numbers of at least 0 for red, green and blue: a reflectance, or a coefficient of media.
@@ -106,7 +111,7 @@ class Spectra:
         samples = self.samples(parameter)
         if samples is None:
             return (0.5, 0.5, 0.5)
-        return _clipped(_rgb(samples.at(NM, "constant") * d65() @ observer()), np.inf)
+        return _clipped(rgb_of_reflectance(samples.constant_beyond), np.inf)
 
     def samples(self, parameter: Parameter) -> Samples | None:
         """Samples of a spectrum, from numbers or a file; None, and a note: the name is not known.
@@ -161,24 +166,11 @@ class Spectra:
         kelvin = float(numbers[0])
         if not 100 <= kelvin <= 1e6:
             parameter.fail(f"wanted 100 .. 1e6 K, got {kelvin:g}")
-        shape = planck(kelvin)
         if self._version == 4:
-            return _of_radiance(shape, None)
+            return _of_radiance(planck(kelvin), None)
         scale = float(numbers[1]) if len(numbers) == 2 else 1.0
-        peak = planck_peak(kelvin)
-        return _of_radiance(shape / peak * scale, self._version)
-
-
-def planck_peak(kelvin: float) -> float:
-    """Peak over all wavelengths of a black body in the units of ``planck`` (Wien's law)."""
-    nm = 2.897771955e6 / kelvin
-
-    def radiance(at: FloatArray) -> FloatArray:
-        with np.errstate(over="ignore"):
-            return np.asarray((at * 1e-9) ** -5.0 / np.expm1(1.438776877e-2 / (at * 1e-9 * kelvin)))
-
-    ratio = float(radiance(np.array([nm]))[0] / radiance(NM[:1])[0])
-    return ratio * float(planck(kelvin)[0])
+        peak = blackbody(np.array([_WIEN / kelvin]), kelvin)
+        return _of_radiance(blackbody(NM, kelvin) / peak * scale, self._version)
 
 
 def to_rec709(space: str) -> FloatArray:

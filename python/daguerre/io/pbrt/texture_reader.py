@@ -153,7 +153,8 @@ class TextureReader:
 
     def _uv(self, made: Made, kind: str, depth: int) -> Node:
         del kind, depth
-        return Bilinear(mapping_of(made, self._version), ((0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)))
+        corners = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0))
+        return Bilinear(mapping_of(made, self._version), corners)
 
     def _image(self, made: Made, kind: str, depth: int) -> Node:
         del depth

@@ -17,8 +17,7 @@ class Media:
 
     def __init__(self, text: Text, fog: Medium | None, notes: Notes) -> None:
         self._text, self._notes = text, notes
-        plain = None if fog is None else plain_medium(fog, notes)
-        self._fog = None if plain is None or plain.empty else plain
+        self._fog = plain_medium(fog, notes)
         self._known: dict[int, tuple[str, str]] = {}
 
     def add_fog(self) -> None:
@@ -45,8 +44,8 @@ class Media:
         return "" if self._fog is None else _FOG
 
     def _named(self, medium: Medium | None, name: str, otherwise: str) -> str:
-        plain = None if medium is None else plain_medium(medium, self._notes)
-        if plain is None or plain.empty:
+        plain = plain_medium(medium, self._notes)
+        if plain is None:
             return otherwise
         self._make(name, plain)
         return name
