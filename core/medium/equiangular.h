@@ -1,6 +1,6 @@
 // equiangular.h -- distances along a ray at which a small lamp lights the medium.
 //
-// What a lamp at the distance h from the ray's line brings falls as 1 / (h^2 + s^2), with s from the foot of the lamp's
+// The light of a lamp at the distance h from the ray's line falls as 1 / (h^2 + s^2), with s from the foot of the lamp's
 // perpendicular. Distances of even angles as seen from the lamp have that density, so that what remains has no peak.
 // Source: Kulla and Fajardo 2012, Importance Sampling Techniques for Path Tracing in Participating Media, EGSR.
 #pragma once

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.color.illuminants import planck, xy_of
-from daguerre.color.spectra import luminance_of_rgb
+from daguerre.color.illuminants import planck, white_xy, xy_of
+from daguerre.color.spectra import luminance_of_rgb, rgb_from_xyz
 from daguerre.io.pbrt.environment import _upward
 from daguerre.io.pbrt.octahedral import directions_of, panorama_of, square_of
 from daguerre.scene.lights import DirectionalLight, PointLight
@@ -250,6 +250,17 @@ def test_black_bodies_and_spectra_have_luminance_1_in_v4_alone(tmp_path: Path) -
     old = read(tmp_path, 'LightSource "infinite" "spectrum L" "twice.spd" WorldEnd')
     assert old.environment is not None
     assert luminance_of_rgb() @ np.array(old.environment.color) == pytest.approx(2, rel=1e-3)
+
+
+def test_named_illuminants_have_their_white(tmp_path: Path) -> None:
+    """Against daylight of 5003 K, and a black body of 2856 K (CIE 015:2018)."""
+    whites = {"D65": white_xy(), "D50": white_xy(5003), "A": xy_of(planck(2856.0))}
+    for name, (x, y) in whites.items():
+        light, _ = _one(tmp_path, f'LightSource "point" "spectrum I" "stdillum-{name}"')
+        rgb = np.array(light.intensity)
+        assert float(luminance_of_rgb() @ rgb) == pytest.approx(1, rel=1e-6)
+        xyz = np.linalg.inv(rgb_from_xyz()) @ rgb
+        assert xyz[:2] / xyz.sum() == pytest.approx((x, y), abs=5e-4)
 
 
 def _emission(scene: dg.Scene, i: int = 0) -> np.ndarray:

@@ -61,7 +61,8 @@ class Materials:
         self, bsdf: Node | None, chart: Chart, glow: Glow, sides: Sides, *, black: bool = False
     ) -> int:
         """Index of the material of a shape; ``black``: what it is without a look of its own."""
-        look = self._default(black=black) if bsdf is None else self.look(bsdf)
+        usual = _BLACK if black else _GREY
+        look = usual if bsdf is None else self.look(bsdf)
         return self._index(look, chart, glow, sides)
 
     def _index(self, look: Look, chart: Chart, glow: Glow, sides: Sides) -> int:
@@ -72,9 +73,6 @@ class Materials:
             made = self._material(look, chart, glow, sides)
             self._known[key] = self._scene.add_material(made)
         return self._known[key]
-
-    def _default(self, *, black: bool) -> Look:
-        return _BLACK if black else _GREY
 
     def _material(self, look: Look, chart: Chart, glow: Glow, sides: Sides) -> Material:
         made = Material(

@@ -87,7 +87,7 @@ class Placing:
     def _shape(self, node: Node, pose: Matrix, name: str) -> None:
         """Adds a shape in the space of a pose; ``name``: of its instance, or empty."""
         local = node.transform()
-        bsdf = _bsdf(node)
+        bsdf = node.nested_one("bsdf")
         look = Look() if bsdf is None else self._materials.look(bsdf)
         made = self._mesh(node, look.attribute)
         if made is None:
@@ -137,7 +137,7 @@ class Placing:
 
     def _material(self, node: Node, chart: Chart, local: Matrix) -> int:
         """Material of a shape; ``local``: scene from its mesh."""
-        bsdf = _bsdf(node)
+        bsdf = node.nested_one("bsdf")
         emitter = node.nested_one("emitter")
         glow = Glow() if emitter is None else self._glow(emitter)
         sides = Sides(self._side(node, "interior", local), self._side(node, "exterior", local))
@@ -161,7 +161,3 @@ class Placing:
         emitter.skip("sampling_weight")
         radiance, texture = self._textures.tint(emitter, "radiance", 1.0, most=1e30)
         return Glow(emitted_rgb(radiance), texture)
-
-
-def _bsdf(node: Node) -> Node | None:
-    return node.nested_one("bsdf")

@@ -157,8 +157,10 @@ class Textures:
         return self.baker.combined(lambda r, g, b: x * r + y * g + z * b, *value[:3])
 
     def texture_of(self, node: Node) -> Value | None:
-        """Channels of a nested texture, by itself."""
-        return self._nested(node)
+        """Channels of a texture; None, and a note: it is not supported."""
+        if id(node) not in self._known:
+            self._known[id(node)] = self._read(node)
+        return self._known[id(node)]
 
     # ----------------------------------------------------------------------------------------------
 
@@ -178,13 +180,7 @@ class Textures:
 
     def _texture(self, found: Property) -> Value | None:
         found.take()
-        return self._nested(found.value)
-
-    def _nested(self, node: Node) -> Value | None:
-        """Channels of a texture; None, and a note: it is not supported."""
-        if id(node) not in self._known:
-            self._known[id(node)] = self._read(node)
-        return self._known[id(node)]
+        return self.texture_of(found.value)
 
     def _read(self, node: Node) -> Value | None:
         read = {
@@ -239,7 +235,7 @@ class Textures:
         nested = node.nested_one("texture")
         if nested is None:
             node.fail("wanted a texture inside, got none")
-        value = self._nested(nested)
+        value = self.texture_of(nested)
         factors = reflected_rgb(self.color(node, "scale", 1.0))
         if value is None:
             return None

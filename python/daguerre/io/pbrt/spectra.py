@@ -34,9 +34,13 @@ _SPACES = {
     "dci-p3": ((0.680, 0.320), (0.265, 0.690), (0.150, 0.060), D65_XY),
     "aces2065-1": ((0.7347, 0.2653), (0.0, 1.0), (0.0001, -0.077), (0.32168, 0.33767)),
 }
-#: Colour temperatures of named illuminants that are black bodies, K (CIE 015:2018).
-_KELVIN = {"stdillum-A": 2856.0}
-_LIKE_D65 = ("stdillum-D65", "illum-acesD60", "stdillum-D50")
+#: Chromaticities of named illuminants (CIE 015:2018; SMPTE ST 2065-1).
+_ILLUMINANTS = {
+    "stdillum-A": (0.44758, 0.40745),
+    "stdillum-D50": (0.34567, 0.35851),
+    "illum-acesD60": _SPACES["aces2065-1"][3],
+    "stdillum-D65": D65_XY,
+}
 #: Wavelength of the peak of a black body times its temperature, nm K (Wien's law, CODATA 2018).
 _WIEN = 2.897771955e6
 _MOST_SAMPLES = 100_000
@@ -90,10 +94,8 @@ class Spectra:
         if parameter.type == "blackbody":
             return self._blackbody(parameter)
         name = _name(parameter)
-        if name in _KELVIN:
-            return _of_radiance(planck(_KELVIN[name]), None)
-        if name in _LIKE_D65:
-            return WHITE
+        if name in _ILLUMINANTS:
+            return _visible(xyz_of_xy(_ILLUMINANTS[name]))
         samples = self.samples(parameter)
         if samples is None:
             return WHITE
