@@ -28,6 +28,7 @@ class FileMesh(FixedArrays):
         normals: Shape (N, 3), or None.
         uv: Texture coordinates as the file has them, shape (N, 2), or None.
         colors: Linear RGB or RGBA, shape (N, 3) or (N, 4), or None.
+        face_colors: The same of faces, shape (F, 3) or (F, 4), or None.
         name: Name in the file.
     """
 

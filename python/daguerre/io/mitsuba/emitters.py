@@ -23,12 +23,10 @@ from .projections import Shine, lamps, looked_up
 from .sensors import field_of_view
 from .spectra import PLUGINS, emitted_rgb
 from .textures import Textures
-from .transforms import rigid
+from .transforms import TURN, frame, rigid
 
 Array = NDArray[np.float64]
 Matrix = Array
-#: Our lamp from Mitsuba's: half a turn about +y.
-_TURN = np.diag([-1.0, 1.0, -1.0, 1.0])
 
 
 class Emitters:
@@ -122,7 +120,8 @@ class Emitters:
             length = float(np.linalg.norm(direction))
             if not 0 < length < math.inf:
                 node.fail("wanted a direction, got one of length 0")
-            pose = _facing(direction / length)
+            pose = np.eye(4)
+            pose[:3, :3] = frame(-direction / length)
         else:
             pose = self._pose(node)
             pose[:3, 3] = 0
@@ -130,7 +129,7 @@ class Emitters:
         self._scene.add_light(light, pose)
 
     def _pose(self, node: Node) -> Matrix:
-        return rigid(self._world @ node.transform(), node, self._notes) @ _TURN
+        return rigid(self._world @ node.transform(), node, self._notes) @ TURN
 
     # The sky --------------------------------------------------------------------------------------
 
@@ -186,16 +185,6 @@ def _slide(picture: Value, scale: float, half: float, aspect: float) -> Shine:
         return np.asarray(looked_up(picture, u, v) * (scale * inside / depth**3)[:, None])
 
     return shine
-
-
-def _facing(direction: Matrix) -> Matrix:
-    """Pose of a lamp whose -z runs along a direction."""
-    z = -direction
-    x = np.cross((0.0, 1.0, 0.0), z) if abs(z[1]) < 0.9 else np.cross((1.0, 0.0, 0.0), z)
-    x /= np.linalg.norm(x)
-    pose = np.eye(4)
-    pose[:3, 0], pose[:3, 1], pose[:3, 2] = x, np.cross(z, x), z
-    return pose
 
 
 _PLUGINS: dict[str, Callable[[Emitters, Node], None]] = {

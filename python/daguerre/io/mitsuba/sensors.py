@@ -20,14 +20,12 @@ from daguerre.files.notes import Notes
 
 from .node import Node
 from .settings import Settings
-from .transforms import rigid
+from .transforms import TURN, rigid
 
 #: Diagonal of a frame of 36 mm x 24 mm.
 DIAGONAL_MM = math.hypot(36, 24)
 PERSPECTIVE = ("perspective", "thinlens")
 _AXES = ("x", "y", "diagonal", "smaller", "larger")
-#: Our camera from Mitsuba's: half a turn about +y.
-_TURN = np.diag([-1.0, 1.0, -1.0, 1.0])
 
 
 def read_camera(node: Node, world: NDArray[np.float64], settings: Settings, notes: Notes) -> Camera:
@@ -58,7 +56,7 @@ def read_camera(node: Node, world: NDArray[np.float64], settings: Settings, note
     node.skip("focus_distance")
     pose = rigid(world @ node.transform(), node, notes)
     try:
-        return Camera(transform=pose @ _TURN, **values)
+        return Camera(transform=pose @ TURN, **values)
     except (UsageError, InputError) as error:
         node.fail(str(error).removeprefix("camera: "))
 

@@ -15,6 +15,7 @@ from daguerre.scene import shapes
 from daguerre.scene.shapes import SQUARE, ShapeMesh
 
 from .node import Node
+from .transforms import frame
 
 Array = NDArray[np.float64]
 
@@ -70,7 +71,7 @@ def _cylinder(node: Node) -> Solid:
     if not length > 0:
         node.fail("wanted two points apart, got the same twice")
     inner = np.eye(4)
-    inner[:3, :3] = _frame((end - begin) / length) * (radius, radius, length)
+    inner[:3, :3] = frame((end - begin) / length) * (radius, radius, length)
     inner[:3, 3] = begin
     return Solid(_v_up(_mesh(shapes.cylinder(low=0.0, high=1.0))), inner)
 
@@ -87,17 +88,6 @@ def _cube(node: Node) -> Solid:
 def _v_up(mesh: ShapeMesh) -> ShapeMesh:
     """The same mesh whose v rises the other way."""
     return replace(mesh, uv=mesh.uv * (1, -1) + (0, 1))
-
-
-def _frame(axis: Array) -> Array:
-    """Columns x, y, z with z along an axis (Duff et al. 2017), shape (3, 3)."""
-    x, y, z = axis
-    sign = np.copysign(1.0, z)
-    a = -1 / (sign + z)
-    b = x * y * a
-    first = (1 + sign * x * x * a, sign * b, -sign * x)
-    second = (b, sign + y * y * a, -y)
-    return np.stack([first, second, axis], axis=1)
 
 
 #: Corners of the faces of a cube, each with the lower left of a picture first.

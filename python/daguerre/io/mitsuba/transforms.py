@@ -19,6 +19,8 @@ from .numbers import numbers
 
 Matrix = NDArray[np.float64]
 Attributes = dict[str, str]
+#: Our lamp or camera from Mitsuba's: half a turn about +y.
+TURN = np.diag([-1.0, 1.0, -1.0, 1.0])
 
 
 def step(tag: str, attributes: Attributes, entry: Entry) -> Matrix:
@@ -91,7 +93,7 @@ def _look_at(attributes: Attributes, entry: Entry) -> Matrix:
     up = np.array(numbers(attributes.get("up", "0 0 0"), entry, 3))
     forward = _unit(target - origin, entry, "a target apart from the origin")
     if not up.any():
-        up = _across(forward)
+        up = frame(forward)[:, 0]
     left = _unit(np.cross(up, forward), entry, "an up that is not along the view")
     made = np.eye(4)
     made[:3, 0], made[:3, 1], made[:3, 2] = left, np.cross(forward, left), forward
@@ -99,12 +101,18 @@ def _look_at(attributes: Attributes, entry: Entry) -> Matrix:
     return made
 
 
-def _across(direction: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Some direction across a unit vector: its first axis in the frame of Duff et al. 2017."""
-    x, y, z = direction
+def frame(axis: NDArray[np.float64]) -> Matrix:
+    """Columns x, y, z with z along a unit vector, shape (3, 3).
+
+    Source: Duff et al. 2017, Building an Orthonormal Basis, Revisited, JCGT 6(1).
+    """
+    x, y, z = axis
     sign = math.copysign(1.0, z)
     a = -1 / (sign + z)
-    return np.array([1 + sign * x * x * a, sign * x * y * a, -sign * x])
+    b = x * y * a
+    first = (1 + sign * x * x * a, sign * b, -sign * x)
+    second = (b, sign + y * y * a, -y)
+    return np.stack([first, second, axis], axis=1)
 
 
 def _unit(vector: NDArray[np.float64], entry: Entry, wanted: str) -> NDArray[np.float64]:

@@ -8,11 +8,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from daguerre.files.notes import Notes
 from daguerre.io.outgoing.record import Outgoing, View
 
+from .transforms import TURN
 from .writer_xml import Element, add, add_matrix, add_value
 
 #: Distances, m, that stand for none and for infinity.
@@ -52,7 +51,7 @@ def add_sensor(root: Element, outgoing: Outgoing) -> Element:
     thin = view.aperture_radius_m > 0
     window = _Window.of(view, size, outgoing.notes) if thin else _Window(size, (0, 0))
     sensor = add(root, "sensor", type="thinlens" if thin else "perspective")
-    add_matrix(sensor, "to_world", view.world_from_camera @ np.diag([-1.0, 1.0, -1.0, 1.0]))
+    add_matrix(sensor, "to_world", view.world_from_camera @ TURN)
     add_value(sensor, "string", "fov_axis", "x")
     add_value(sensor, "float", "fov", _field(view, window.size[0] / size[0]))
     add_value(sensor, "float", "near_clip", view.near_m or _NEAR)

@@ -151,5 +151,5 @@ def _areas_of_lights(surface: Surface, world: Array) -> tuple[Array, float, int]
     sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas = 0.5 * np.linalg.norm(sides, axis=1)
     patch = np.arange(len(areas)) if surface.patch is None else surface.patch
-    sums = np.bincount(patch, areas)
+    sums = np.asarray(np.bincount(patch, areas), np.float64)
     return sums[patch], float(sums.sum()), int(np.count_nonzero(sums))

@@ -17,7 +17,6 @@ from .writer_text import Text, floats, integer, string
 
 #: Distance, m, that stands for infinity.
 _INFINITY = 1e8
-_MM = 1e-3
 
 
 def add_camera(text: Text, outgoing: Outgoing, folder: OutgoingFolder, stem: str) -> None:
