@@ -127,6 +127,7 @@ ARGS: dict[str, Make] = {
     "dg.Frame.exposure_truth": constant(sensor="ideal", iso=200.0),
     "dg.Frame.save": lambda w: {"path": w.out / "a.exr"},
     "dg.Keys": constant(times=np.array([0.0, 1.0]), values=(1.0, 2.0), interpolation="linear"),
+    "dg.DensityGrid.load": lambda w: {"path": w.density_file},
     "dg.DensityGrid": lambda w: {"values": np.ones((2, 3, 4), np.float32), "transform": np.eye(4)},
     "dg.LightProfile": constant(scale=2.0),
     "dg.LightProfile.cone": constant(angle=40.0, softness=0.2),

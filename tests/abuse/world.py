@@ -14,7 +14,7 @@ from daguerre import analysis, polynomial
 from daguerre.analysis.iris import Iris
 from daguerre.rendering.passes import pass_of, write_pass
 from tests.cluster.fake import Fake
-from tests.support import light_probes, tracked
+from tests.support import light_probes, mesh_files, tracked
 from tests.support.plate_frames import of_light, ramp
 
 SIZE = (8, 6)
@@ -227,6 +227,11 @@ class World:
     @property
     def chart_file(self) -> Path:
         return self._once("chart.glb", self.chart.save)
+
+    @property
+    def density_file(self) -> Path:
+        grid = mesh_files.vol(np.ones((2, 2, 2, 1), np.float32))
+        return self._once("smoke.vol", lambda path: Path(path).write_bytes(grid))
 
     @property
     def photo(self) -> Path:

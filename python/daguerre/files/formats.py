@@ -18,7 +18,9 @@ from daguerre.errors import InputError, UsageError, suggest
 
 from . import extras
 
-Kind = Literal["scene", "frame", "picture", "raw", "environment", "camera", "exchange", "profile"]
+Kind = Literal[
+    "scene", "frame", "picture", "raw", "environment", "camera", "exchange", "profile", "density"
+]
 #: A function, or "module:function", which is imported on first use.
 Function = str | Callable[..., Any]
 #: Suffix that matches every suffix without another row of the kind.
@@ -53,6 +55,7 @@ class Format:
 
 
 _GLTF, _FRAMES = "daguerre.io.gltf.reader", "daguerre.io.frame_files"
+_DENSITY = "daguerre.io.volumes.density"
 _DEVELOPED = "daguerre.development.raw_files"
 _EXR, _PNG, _JPEG, _TIFF = (".exr",), (".png",), (".jpg", ".jpeg"), (".tif", ".tiff")
 _READ_EXR = "daguerre.io.exr.read:load_frame"
@@ -85,6 +88,8 @@ _FORMATS = [
     Format("Mitsuba 3", "exchange", (".xml",), None, "daguerre.io.mitsuba.writer:write"),
     Format("an image", "environment", (ANY,), "daguerre.io.images:read_environment"),
     Format("IES LM-63", "profile", (".ies",), "daguerre.io.ies:read"),
+    Format("NanoVDB", "density", (".nvdb",), f"{_DENSITY}:of_nanovdb", takes=("grid",)),
+    Format("Mitsuba's grid", "density", (".vol",), f"{_DENSITY}:of_vol"),
 ]  # fmt: skip
 
 

@@ -6,6 +6,7 @@ an even medium. Source: Pharr, Jakob and Humphreys 2023, Physically Based Render
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any
@@ -14,7 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import as_readonly, color, given_matrix, number, short, to_numbers
+from daguerre.doors import guarded
 from daguerre.errors import InputError
+from daguerre.files import formats
 from daguerre.files.value import FixedArrays, Value
 
 from .spectrum import Spectrum
@@ -69,6 +72,24 @@ class DensityGrid(FixedArrays):
             )
         object.__setattr__(self, "values", values)
         object.__setattr__(self, "transform", transform)
+
+    @classmethod
+    @guarded
+    def load(cls, path: str | os.PathLike[str], grid: str = "") -> DensityGrid:
+        """Loads a grid from a file of NanoVDB (``.nvdb``) or Mitsuba (``.vol``).
+
+        The box stands where the file has it, in metres.
+
+        Args:
+            path: The file.
+            grid: Name of a grid of NanoVDB. Default: the first one.
+
+        Raises:
+            InputError: The file is damaged, has no such grid, or its numbers are no densities.
+            UsageError: A file of Mitsuba has no grids by name.
+        """
+        given = {"grid": grid} if grid else {}
+        return formats.read("density", path, **given)  # type: ignore[no-any-return]
 
     def __repr__(self) -> str:
         return "<DensityGrid {2}x{1}x{0}>".format(*self.values.shape)

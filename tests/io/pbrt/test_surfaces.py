@@ -13,6 +13,7 @@ import daguerre as dg
 from daguerre.color import srgb
 from daguerre.io.pbrt.subsurface import MEASURED, diffuse_reflectance
 from daguerre.scene.materials import Boundary, Coated, Conductor, Dielectric, Diffuse, Mix
+from tests.support import nanovdb_files
 
 from .text import MIRROR, SQUARE, picture, read, world_points
 
@@ -422,6 +423,36 @@ def test_a_grid_of_densities_stands_in_its_box(tmp_path: Path) -> None:
             'MakeNamedMedium "m" "string type" "uniformgrid" "integer nx" 8 "float density" [1] '
             'MediumInterface "m" "" Shape "sphere"',
         )
+
+
+def test_a_grid_of_nanovdb_stands_where_its_file_says(tmp_path: Path) -> None:
+    cells = nanovdb_files.Writer({(0, 0, 0): 0.5, (3, 1, 2): 2.0})
+    grid = cells.bytes((0.1, 0, 0, 0, 0.1, 0, 0, 0, 0.1), (1, 0, 0))
+    (tmp_path / "smoke.nvdb").write_bytes(nanovdb_files.segment([("density", grid)]))
+    medium = (
+        'Translate 0 0 5 MakeNamedMedium "m" "string type" "nanovdb" {} "rgb sigma_s" [2 3 4] '
+        '"float scale" 0.5 MediumInterface "m" "" Material "interface" Shape "sphere"'
+    )
+    scene = read(tmp_path, medium.format('"string filename" "smoke.nvdb"'))
+    inside = scene.materials[scene.instances[0].material].interior
+    assert inside is not None
+    assert inside.density is not None
+    assert inside.scattering == pytest.approx((1, 1.5, 2))
+    z, y, x = np.unravel_index(inside.density.values.argmax(), inside.density.values.shape)
+    size = inside.density.values.shape[::-1]
+    centre = (np.array((x, y, z)) + 0.5) / size
+    placed = scene.instances[0].transform @ inside.density.transform @ (*centre, 1)
+    assert placed[:3] == pytest.approx(MIRROR @ (1.3, 0.1, 5.2))
+    missing = read(tmp_path, medium.format('"string filename" "other.nvdb"'))
+    assert any("a medium whose file is missing is left out" in note for note in missing.warnings)
+    for wrong, error in (
+        ("", "filename: wanted a .nvdb file"),
+        ('"string filename" "smoke.nvdb" "string gridname" "heat"', "wanted a grid 'heat'"),
+    ):
+        with pytest.raises(
+            dg.InputError, match=rf"line \d+, column \d+: MakeNamedMedium: .*{error}"
+        ):
+            read(tmp_path, medium.format(wrong))
 
 
 def test_light_below_a_surface_keeps_its_limits() -> None:

@@ -5,14 +5,17 @@ Source: pbrt-v4's user's guide ("Participating media").
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.errors import InputError
+from daguerre.io.volumes.density import of_nanovdb
 from daguerre.scene.media import DensityGrid, Medium
 
+from .files import Files
 from .ledger import Ledger
 from .parameters import Parameters
 from .spectra import Color, Spectra, scaled
@@ -25,6 +28,8 @@ _MILK = MEASURED["Wholemilk"]
 _MOST_CELLS = 1 << 29
 #: Largest mean cosine of a lobe here.
 _MOST_G = 0.999
+#: Parameters of flames in a medium of NanoVDB.
+_FLAMES = ("temperaturename", "temperatureoffset", "temperaturecutoff", "temperaturescale")
 
 
 class Media:
@@ -35,6 +40,7 @@ class Media:
         spectra: Spectra of the scene.
         version: Version of pbrt, 3 or 4.
         axes: Scene from world of pbrt, shape (4, 4).
+        files: Files of the scene.
         ledger: Counts directives.
     """
 
@@ -44,10 +50,11 @@ class Media:
         spectra: Spectra,
         version: int,
         axes: NDArray[np.float64],
+        files: Files,
         ledger: Ledger,
     ) -> None:
         self._made, self._spectra, self._version = made, spectra, version
-        self._axes, self._ledger = axes, ledger
+        self._axes, self._files, self._ledger = axes, files, ledger
         self._media: dict[str, Medium | None] = {}
         self._local: dict[tuple[str, bytes], Medium] = {}
 
@@ -82,12 +89,15 @@ class Media:
             self._ledger.notes.add(f"the medium {name[:40]!r} is not defined and counts as none")
             return None
         kind = made.parameters.text("type")
-        if kind not in ("homogeneous", "uniformgrid", "heterogeneous"):
-            if not kind:
-                made.place.fail("type: wanted a kind of medium, got none")
+        if not kind:
+            made.place.fail("type: wanted a kind of medium, got none")
+        if kind not in _KINDS:
             self._ledger.note(made.place, f"a medium of kind {kind[:40]!r} is left out")
             return None
-        medium = self._homogeneous(made) if kind == "homogeneous" else self._grid(made)
+        medium = _KINDS[kind](self, made)
+        if medium is None:
+            self._ledger.note(made.place, "a medium whose file is missing is left out")
+            return None
         self._ledger.use(made.place)
         self._ledger.tell_unread(made.parameters, made.place, kind)
         return medium
@@ -132,7 +142,6 @@ class Media:
         count = size[0] * size[1] * size[2]
         if count > _MOST_CELLS:
             made.place.fail(f"nx, ny, nz: wanted at most {_MOST_CELLS} cells, got {count}")
-        usual = (_ONE, _ONE) if self._version == 4 else (_MILK[1], _MILK[0])
         values = parameters.numbers("density", count)
         if values is None:
             made.place.fail("density: wanted numbers, got none")
@@ -145,10 +154,40 @@ class Media:
         box[:3, 3] = low
         transform = self._axes @ made.state.transform.start @ box
         cells = values.astype(np.float32).reshape(size[2], size[1], size[0])
+        return self._dense(made, DensityGrid(cells, transform))
+
+    def _nanovdb(self, made: Made) -> Medium | None:
+        """Medium of a file's grid; None: the file is missing."""
+        parameters = made.parameters
+        name = parameters.text("filename")
+        if not name:
+            made.place.fail("filename: wanted a .nvdb file, got none")
+        path = self._files.find(name, made.place, "filename")
+        if path is None:
+            return None
+        if any(parameters.find(key) is not None for key in _FLAMES):
+            self._ledger.notes.add("the temperature of a medium is left out")
+        try:
+            found = of_nanovdb(path, parameters.text("gridname") or "density")
+            transform = self._axes @ made.state.transform.start @ found.transform
+            return self._dense(made, DensityGrid(found.values, transform))
+        except InputError as error:
+            made.place.fail(str(error))
+
+    def _dense(self, made: Made, density: DensityGrid) -> Medium:
+        usual = (_ONE, _ONE) if self._version == 4 else (_MILK[1], _MILK[0])
         absorbed, scattered = self._coefficients(made, usual)
-        return self._medium(made, absorbed, scattered, DensityGrid(cells, transform))
+        return self._medium(made, absorbed, scattered, density)
 
 
 def _is_number(parameters: Parameters) -> bool:
     found = parameters.find("Lescale")
     return found is None or len(found.values) == 1
+
+
+_KINDS: dict[str, Callable[[Media, Made], Medium | None]] = {
+    "homogeneous": Media._homogeneous,
+    "uniformgrid": Media._grid,
+    "heterogeneous": Media._grid,
+    "nanovdb": Media._nanovdb,
+}

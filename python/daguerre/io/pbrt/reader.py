@@ -99,7 +99,7 @@ class _Builder:
         spectra = Spectra(files, version, ledger.notes)
         textures = Textures(images, TextureReader(images, spectra, version, ledger), ledger)
         indices = Indices(spectra, ledger.notes)
-        self._media = Media(described.media.now, spectra, version, axes, ledger)
+        self._media = Media(described.media.now, spectra, version, axes, files, ledger)
         tools = Tools(textures, indices, spectra, version, ledger, _no_part)
         looks = Looks(scene, tools, self._media, ledger)
         emissions = Emissions(spectra, images, version, ledger)
