@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.color.spectra import rgb_of_emission, rgb_of_reflectance, unit_d65
+from daguerre.color.illuminants import blackbody
+from daguerre.color.spectra import (
+    luminance_of_rgb,
+    rgb_of_emission,
+    rgb_of_reflectance,
+    unit_d65,
+)
 
 from .scene_files import loaded
 
@@ -83,8 +90,10 @@ def test_blackbodies_have_plancks_radiance(tmp_path: Path) -> None:
     white = np.array(_radiance(tmp_path, element.format(6500) + "</spectrum>"))
     assert warm[0] > 2 * warm[2]
     assert np.allclose(white / white.mean(), 1, atol=0.1)
-    # 555 nm, 6500 K: 2 h c^2 / l^5 / (exp(h c / (l k T)) - 1) = 4.27e4 W / (m2 sr nm)
-    assert white.mean() == pytest.approx(4.27e4, rel=0.05)
+    # 2 h c^2 / l^5 / (exp(h c / (l k T)) - 1) at 555 nm, where the eye sees most
+    at_555 = 1.191042972e-16 / 555e-9**5 / math.expm1(1.438776877e-2 / (555e-9 * 6500)) * 1e-9
+    assert blackbody(np.array([555.0]), 6500)[0] == pytest.approx(at_555, rel=1e-6)
+    assert luminance_of_rgb() @ white == pytest.approx(at_555, rel=0.02)
 
 
 def test_names_of_indices_and_of_metals(tmp_path: Path) -> None:
