@@ -1,4 +1,4 @@
-"""Resamples a panorama of USD into one of the scene.
+"""Resamples panoramas of other formats into those of the scene.
 
 A sun of 0.53 degrees keeps its light within 2 %, wherever it is.
 
@@ -48,7 +48,7 @@ def resampled(image: Picture, turn: Array, rows: int) -> Picture:
         latitude = (0.5 - (fine + 0.5) / (across * rows)) * math.pi
         flat = np.cos(latitude).astype(np.float32)
         high = np.outer(turn[1], np.sin(latitude)).astype(np.float32)
-        seen = _looked_up(smooth, flat[:, None] * equator[:, None] + high[..., None])
+        seen = looked_up(smooth, flat[:, None] * equator[:, None] + high[..., None])
         weights = flat.reshape(-1, across)
         weights /= weights.sum(axis=1, keepdims=True) * across
         boxes = seen.reshape(-1, across, 2 * rows, across, 3)
@@ -78,8 +78,16 @@ def _between(sums: Array, start: float, count: int) -> Array:
     return sums[first : first + count] * (1 - share) + sums[first + 1 : first + 1 + count] * share
 
 
-def _looked_up(image: Picture, directions: Picture) -> Picture:
-    """Pixels of a picture of USD in directions of the dome, shape (3, N, M), interpolated."""
+def looked_up(image: Picture, directions: Picture) -> Picture:
+    """Bilinear values of a panorama with +z of a dome at its centre.
+
+    Args:
+        image: Shape (H, W, 3).
+        directions: Directions of the dome, of any length, +y up, shape (3, N, M).
+
+    Returns:
+        Shape (N, M, 3).
+    """
     height, width = image.shape[:2]
     pixels = image.reshape(-1, 3)
     x, y, z = directions

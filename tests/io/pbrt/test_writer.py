@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.io.panorama import looked_up
 from daguerre.io.pbrt.octahedral import directions_of
-from daguerre.io.pbrt.writer_octahedral import directions, looked_up, resampled
+from daguerre.io.pbrt.writer_octahedral import directions, resampled
 from tests.support import outgoing_scenes, pbrt_syntax, ply_file
 from tests.support.pbrt_syntax import Directive
 
@@ -138,7 +139,7 @@ def test_a_resampled_panorama_has_its_light_in_its_directions() -> None:
     assert axis[2] == pytest.approx(1, abs=1e-5)
     middle = made[made.shape[0] // 2, made.shape[1] // 2, 0]
     assert middle == pytest.approx(float(panorama[0, :, 0].mean()), rel=0.15)
-    ahead = looked_up(panorama, np.array([[0.0, 0, -1]]))[0]
+    ahead = looked_up(panorama, np.array([0, 0, 1], np.float32).reshape(3, 1, 1))[0, 0]
     expected = panorama[31:33, 63:65].reshape(-1, 3).mean(axis=0)
     np.testing.assert_allclose(ahead, expected, rtol=1e-5)
 

@@ -27,9 +27,9 @@ from daguerre.io.shading.channels import (
 )
 from daguerre.io.shading.color_spaces import Encoding
 from daguerre.io.shading.evaluate import Arguments, known_encoding
+from daguerre.io.shading.lookup import looked_up
 from daguerre.io.shading.texture_nodes import file_of, sampled
 
-from .lookup import looked_up
 from .outputs import Outputs
 from .sockets import Sockets
 

@@ -13,8 +13,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.io.shading import lookup
 from daguerre.io.shading.channels import Channel, Texel, Value, broadcast
-from daguerre.io.shading.textures import top_down
 from daguerre.scene.light_profile import LightProfile
 from daguerre.scene.materials import Color
 
@@ -78,28 +78,4 @@ def looked_up(value: Value, u: Array, v: Array) -> Array:
 def _channel(channel: Channel, u: Array, v: Array) -> Array:
     if not isinstance(channel, Texel):
         return np.full(len(u), channel if isinstance(channel, float) else 1.0)
-    a, b, c, d, e, f = top_down(channel.mapping.transform)
-    pixels = channel.values()
-    rows, columns = pixels.shape
-    x, y = (a * u + b * v + c) * columns, (d * u + e * v + f) * rows
-    wrap_u, wrap_v = channel.mapping.wrap
-    if channel.mapping.filter == "nearest":
-        across, down = np.floor(x).astype(np.int64), np.floor(y).astype(np.int64)
-        return np.asarray(pixels[_index(down, rows, wrap_v), _index(across, columns, wrap_u)])
-    left, top = np.floor(x - 0.5), np.floor(y - 0.5)
-    s, t = x - 0.5 - left, y - 0.5 - top
-    i, j = left.astype(np.int64), top.astype(np.int64)
-    near = [_index(j + k, rows, wrap_v) for k in (0, 1)]
-    side = [_index(i + k, columns, wrap_u) for k in (0, 1)]
-    upper = pixels[near[0], side[0]] * (1 - s) + pixels[near[0], side[1]] * s
-    lower = pixels[near[1], side[0]] * (1 - s) + pixels[near[1], side[1]] * s
-    return np.asarray(upper * (1 - t) + lower * t)
-
-
-def _index(index: NDArray[np.int64], count: int, wrap: str) -> NDArray[np.int64]:
-    if wrap == "repeat":
-        return index % count
-    if wrap == "mirror":
-        there = index % (2 * count)
-        return np.minimum(there, 2 * count - 1 - there)
-    return np.clip(index, 0, count - 1)
+    return np.asarray(lookup.looked_up(channel, u, 1 - v), np.float64)

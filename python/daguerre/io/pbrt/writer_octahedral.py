@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
+
+from daguerre.io.panorama import looked_up
 
 from .octahedral import directions_of
 
@@ -38,23 +38,6 @@ def resampled(panorama: NDArray[np.float32]) -> NDArray[np.float32]:
     steps = (np.arange(_WITHIN) + 0.5) / _WITHIN
     for y in steps:
         for x in steps:
-            found = directions(rows, (float(x), float(y)))
-            total += looked_up(
-                panorama, np.stack([found[..., 0], found[..., 2], -found[..., 1]], -1)
-            )
+            east, north, up = np.moveaxis(directions(rows, (float(x), float(y))), -1, 0)
+            total += looked_up(panorama, np.stack([-east, up, north]).astype(np.float32))
     return (total / _WITHIN**2).astype(np.float32)
-
-
-def looked_up(panorama: NDArray[np.float32], toward: Array) -> Array:
-    """Bilinear values of a panorama toward unit directions with +y up, as the core reads them."""
-    height, width = panorama.shape[:2]
-    column = (0.5 + np.arctan2(toward[..., 0], -toward[..., 2]) / (2 * math.pi)) * width - 0.5
-    polar = np.arctan2(np.hypot(toward[..., 0], toward[..., 2]), toward[..., 1])
-    row = np.clip(polar / math.pi * height - 0.5, 0, height - 1)
-    left, top = np.floor(column).astype(int), np.minimum(np.floor(row).astype(int), height - 1)
-    s, t = (column - left)[..., None], (row - top)[..., None]
-    right, low = (left + 1) % width, np.minimum(top + 1, height - 1)
-    left = left % width
-    upper = panorama[top, left] * (1 - s) + panorama[top, right] * s
-    lower = panorama[low, left] * (1 - s) + panorama[low, right] * s
-    return np.asarray(upper * (1 - t) + lower * t)

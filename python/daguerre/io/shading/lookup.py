@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.io.shading.channels import Texel
+from .channels import Texel
 
 Array = NDArray[Any]
 
