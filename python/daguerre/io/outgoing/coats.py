@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
-from daguerre.scene.spectrum import Spectrum
-
-from .pictures import Colored, Picture
+from .pictures import Colored, changed
 
 
 def mean_inside(ior: float) -> float:
@@ -43,22 +39,13 @@ def base_below(color: Colored, ior: float) -> Colored:
     inside; ours sends c / (1 - F). So r = c / (1 - F + c F).
     """
     inside = mean_inside(ior)
-    return _each(color, lambda shade: shade / (1 - inside + shade * inside))
+    return changed(color, lambda shade: shade / (1 - inside + shade * inside))
 
 
 def seen_above(color: Colored, ior: float) -> Colored:
     """Colour that a base shows through a coat, with all light between both; see ``base_below``."""
     inside = mean_inside(ior)
-    return _each(color, lambda shade: shade * (1 - inside) / (1 - shade * inside))
-
-
-def _each(color: Colored, change: Callable[[Any], Any]) -> Colored:
-    if isinstance(color, Picture):
-        return color.mapped(change)
-    if isinstance(color, Spectrum):
-        return Spectrum(color.wavelengths_nm, tuple(change(np.array(color.values)).tolist()))
-    red, green, blue = (float(change(c)) for c in color)
-    return red, green, blue
+    return changed(color, lambda shade: shade * (1 - inside) / (1 - shade * inside))
 
 
 def smooth_share(alpha: float) -> float:

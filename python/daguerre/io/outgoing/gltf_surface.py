@@ -86,7 +86,7 @@ def _glossy(kind: Gltf, base: Colored, baker: Baker) -> Surface:
     assert not isinstance(f0, Spectrum)  # glTF has none
     if isinstance(f0, Picture):
         baker.notes.add("texture of a glTF specular colour is written as its mean")
-        f0 = _mean(f0)
+        f0 = f0.mean
     interface = _of_f0(f0, baker)
     return Plastic(scaled(base, 1 - max(f0)), interface.ior, Rough(alpha), interface.tint)
 
@@ -167,11 +167,6 @@ def _uv_set(kind: Gltf, baker: Baker) -> int:
     slots = [slot for name, slot in vars(kind).items() if isinstance(slot, TextureSlot)
              and name != "occlusion_texture"]  # fmt: skip
     return uv_set_of(slots, baker.notes)
-
-
-def _mean(picture: Picture) -> Color:
-    red, green, blue = (float(x) for x in picture.linear.mean(axis=(0, 1)))
-    return red, green, blue
 
 
 def _times(color: Color, factor: float) -> Color:

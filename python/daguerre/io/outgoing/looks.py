@@ -151,7 +151,7 @@ class Looks:
     def _sum(self, one: Colored, more: Colored) -> Colored:
         if isinstance(one, Picture) and isinstance(more, Picture):
             self._notes.add("second texture of emission is written as its mean")
-            more = _mean(more)
+            more = more.mean
         if isinstance(more, Picture):
             one, more = more, one
         assert not isinstance(more, Picture)
@@ -172,8 +172,3 @@ def _product(one: Number, other: Number) -> Number:
         one, other = other, one
     factor = float(other.linear.mean()) if isinstance(other, Picture) else other
     return one if factor == 1 else each(one, lambda value: value * factor)
-
-
-def _mean(picture: Picture) -> Color:
-    red, green, blue = (float(x) for x in picture.linear.mean(axis=(0, 1)))
-    return red, green, blue

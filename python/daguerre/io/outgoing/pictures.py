@@ -59,6 +59,12 @@ class Picture:
         plain = self.pixels.astype(np.float32) / 255
         return np.asarray(srgb.to_linear(plain) if self.srgb else plain, np.float32)
 
+    @property
+    def mean(self) -> Color:
+        """Mean linear colour."""
+        red, green, blue = np.broadcast_to(self.linear.mean(axis=(0, 1)), 3).tolist()
+        return red, green, blue
+
     def without_mirrors(self, axes: tuple[bool, bool] = (True, True)) -> Picture:
         """Returns a picture that repeats where this one is mirrored: it holds the mirror image."""
         pixels, wrap, rows = (
@@ -132,15 +138,19 @@ def each(value: Number, change: Callable[[Any], Any]) -> Number:
     return value.mapped(change) if isinstance(value, Picture) else float(change(value))
 
 
+def changed(color: Colored, change: Callable[[Any], Any]) -> Colored:
+    """Applies a function to a colour, to each sample of a spectrum, or to each pixel."""
+    if isinstance(color, Picture):
+        return color.mapped(change)
+    if isinstance(color, Spectrum):
+        return Spectrum(color.wavelengths_nm, tuple(change(np.array(color.values)).tolist()))
+    red, green, blue = (float(change(c)) for c in color)
+    return red, green, blue
+
+
 def scaled(color: Colored, factor: float) -> Colored:
     """Multiplies a colour by a number; no channel exceeds 1, as no surface reflects more."""
-    if isinstance(color, Picture):
-        return color.mapped(lambda light: np.minimum(light * factor, 1))
-    if isinstance(color, Spectrum):
-        values = np.minimum(np.multiply(color.values, factor), 1.0)
-        return Spectrum(color.wavelengths_nm, tuple(values.tolist()))
-    red, green, blue = (min(c * factor, 1.0) for c in color)
-    return red, green, blue
+    return changed(color, lambda light: np.minimum(light * factor, 1))
 
 
 def _unit(vectors: Floats) -> Floats:
