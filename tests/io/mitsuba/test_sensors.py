@@ -83,6 +83,9 @@ def test_a_thin_lens_has_its_aperture_and_focus(tmp_path: Path) -> None:
     assert camera.aperture_diameter == pytest.approx(40)
     assert camera.focus_distance == pytest.approx(3)
     assert camera.f_stop is None
+    far = inner.replace("focus_distance", "far_clip")
+    scene = loaded(tmp_path, _sensor(far, "thinlens"), '<shape type="sphere"/>', unit_m=0.01)
+    assert scene.camera().focus_distance == pytest.approx(3)
 
 
 def test_clipping_and_shutter(tmp_path: Path) -> None:

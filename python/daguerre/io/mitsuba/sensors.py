@@ -124,9 +124,9 @@ def _shutter(node: Node) -> dict[str, Any]:
 
 
 def _lens(node: Node, metres: float) -> dict[str, Any]:
-    """Aperture and focus of a thin lens."""
+    """Aperture and focus of a thin lens, which is at its far clip unless it says otherwise."""
     if not node.has("aperture_radius"):
         node.fail("wanted a property 'aperture_radius', got none")
     radius = node.number("aperture_radius", 0.0, above=0)
-    focus = node.number("focus_distance", 1e4, above=0)
+    focus = node.number("focus_distance", node.number("far_clip", 1e4, above=0), above=0)
     return {"aperture_diameter": 2000 * radius * metres, "focus_distance": focus * metres}
