@@ -15,6 +15,7 @@ __all__ = [
     "MismatchError",
     "OutputError",
     "UsageError",
+    "asked_by",
     "core_errors",
     "suggest",
 ]
@@ -60,6 +61,18 @@ def core_errors(raised: type[DaguerreError], where: str = "") -> Iterator[None]:
         yield
     except CoreError as error:
         raise raised(f"{where}: {error}" if where else str(error)) from None
+
+
+@contextmanager
+def asked_by(place: object) -> Iterator[None]:
+    """Puts the place that asks for a file in front of messages about this file.
+
+    ``place`` becomes text only when there is a message.
+    """
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{place}: {error}") from None
 
 
 def suggest(name: object, known: Iterable[str], *, few: bool = False) -> str:

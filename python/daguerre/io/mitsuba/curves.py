@@ -32,7 +32,7 @@ def add_curves(node: Node, context: Context) -> int:
     name = node.text("filename")
     data = context.document.files_of(node).read(name, node.entry)
     place = context.world @ node.transform()
-    where = f"{node.entry.file}: line {node.entry.line}: {node.entry.label}: {name[:200]}"
+    where = str(node.entry.about(name))
     rows, counts = _rows(data, where)
     short = [count for count in counts if count < _LEAST[basis]]
     if not counts or short:

@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.errors import asked_by
 from daguerre.io.images import read_environment
 from daguerre.io.shading.channels import Texel, Value
 from daguerre.scene.light_profile import LightProfile
@@ -143,7 +144,9 @@ class Emitters:
         node.skip("mis_compensation", "gamma", "cache")
         scale = node.number("scale", 1.0, 0.0)
         turn = rigid(node.transform(), node, self._notes)[:3, :3]
-        pixels, rotation = panorama(read_environment(file), turn)
+        with asked_by(node.entry):
+            picture = read_environment(file)
+        pixels, rotation = panorama(picture, turn)
         self._scene.set_environment(pixels, scale=scale, rotation=rotation)
 
     def _check_only(self, node: Node) -> None:

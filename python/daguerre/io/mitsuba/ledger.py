@@ -30,9 +30,16 @@ class Entry:
     used: bool = False
     noted: bool = False
 
+    def __str__(self) -> str:
+        return f"{self.file}: line {self.line}: {self.label}"
+
     def fail(self, message: str) -> NoReturn:
         """Raises ``InputError`` at this element."""
-        raise InputError(f"{self.file}: line {self.line}: {self.label}: {message}")
+        raise InputError(f"{self}: {message}")
+
+    def about(self, file: str) -> Entry:
+        """The same element in messages about a file that it asks for."""
+        return Entry(self.file, self.line, f"{self.label}: {file[:200]}")
 
 
 @dataclass

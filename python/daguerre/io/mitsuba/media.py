@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.errors import InputError
+from daguerre.errors import InputError, asked_by
 from daguerre.io.volumes import vol
 from daguerre.scene.materials import Color, Spectrum
 from daguerre.scene.media import MAX_COSINE, MAX_LOBES, DensityGrid, Medium
@@ -128,7 +128,9 @@ class Media:
         volume.use()
         volume.skip("filter_type", "wrap_mode", "accel", "raw", "max_value")
         files = self._context.document.files_of(volume)
-        read = vol.read(files.find(volume.text("filename"), volume.entry))
+        file = files.find(volume.text("filename"), volume.entry)
+        with asked_by(volume.entry):
+            read = vol.read(file)
         inner = read.transform if volume.flag("use_grid_bbox", False) else np.eye(4)
         placed = np.linalg.inv(local) @ self._world @ volume.transform() @ inner
         values = read.values.mean(axis=3)
@@ -140,7 +142,7 @@ class Media:
         try:
             return Grid(DensityGrid(values, placed), color)
         except InputError as error:
-            volume.fail(str(error))
+            volume.fail(f"{file}: {error}")
 
     def _emission(self, node: Node) -> Color | Spectrum:
         found = node.find("emission")

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from daguerre.errors import asked_by
 from daguerre.io.meshes import obj, ply, serialized
 from daguerre.io.meshes.file_mesh import FileMesh
 
@@ -77,7 +78,8 @@ class MeshFiles:
         if attribute and not wanted.attribute:
             self._context.notes.add(f"the attribute {attribute[:40]!r} of a mesh is left out")
         if wanted not in self._known:
-            self._known[wanted] = self._add(self._read(wanted), wanted)
+            with asked_by(node.entry):
+                self._known[wanted] = self._add(self._read(wanted), wanted)
         return self._known[wanted]
 
     def _read(self, wanted: Wanted) -> FileMesh:

@@ -81,14 +81,19 @@ class Spectra:
     def _text(self, text: str, file: str, entry: Entry) -> Color | Spectrum:
         """Constant, or pairs ``wavelength:value``, or a file of such pairs."""
         if file:
-            lines = _lines(self._read(file, entry), entry)
-            pairs = [numbers(line, entry, 2) for line in lines if line.split()]
-        elif ":" not in text:
+            return self._of_file(file, entry)
+        if ":" not in text:
             found = numbers(text, entry, 1, 3)
             return found if len(found) == 3 else _grey(found[0])
-        else:
-            pairs = [numbers(word.replace(":", " "), entry, 2) for word in words(text)]
+        pairs = [numbers(word.replace(":", " "), entry, 2) for word in words(text)]
         return sampled([p[0] for p in pairs], [p[1] for p in pairs], entry)
+
+    def _of_file(self, file: str, entry: Entry) -> Spectrum:
+        """Pairs of a wavelength and a value, one on each line."""
+        about = entry.about(file)
+        lines = _lines(self._read(file, entry), about)
+        pairs = [numbers(line, about, 2) for line in lines if line.split()]
+        return sampled([p[0] for p in pairs], [p[1] for p in pairs], about)
 
     def _node(self, node: Node) -> Color | Spectrum:
         node.use()
@@ -124,9 +129,7 @@ class Spectra:
     def _samples(self, node: Node) -> Spectrum:
         """Samples of ``regular`` and ``irregular`` spectra."""
         if node.has("filename"):
-            lines = _lines(self._read(node.text("filename"), node.entry), node.entry)
-            pairs = [numbers(line, node.entry, 2) for line in lines if line.split()]
-            return sampled([p[0] for p in pairs], [p[1] for p in pairs], node.entry)
+            return self._of_file(node.text("filename"), node.entry)
         values = numbers(node.text("values"), node.entry)
         if node.plugin == "irregular":
             return sampled(numbers(node.text("wavelengths"), node.entry), values, node.entry)

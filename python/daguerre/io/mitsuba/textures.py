@@ -32,7 +32,6 @@ from daguerre.scene.materials import Color, TextureSlot
 from daguerre.scene.spectrum import Spectrum
 
 from .context import Context
-from .ledger import Entry
 from .node import Node, Property, leave_out
 from .spectra import LUMINANCE, PLUGINS, Spectra, luminance, reflected_rgb
 from .transforms import uv_part
@@ -204,7 +203,7 @@ class Textures:
         filter_ = node.choice("filter_type", "bilinear", (*_FILTERS,))
         wrap = node.choice("wrap_mode", "repeat", _WRAPS)
         file = self._document.files_of(node).find(name, entry)
-        picture = self.images.picture(place_of(entry), str(file))
+        picture = self.images.picture(str(entry), str(file))
         if picture is None:
             return None
         encoded = not raw and file.suffix.lower() not in _LINEAR
@@ -287,8 +286,3 @@ def _means(value: Value) -> Color:
 
 def _number(channel: Channel) -> float:
     return channel if isinstance(channel, float) else 1.0
-
-
-def place_of(entry: Entry) -> str:
-    """Place of an element, for messages."""
-    return f"{entry.file}: line {entry.line}: {entry.label}"

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.errors import asked_by
 from daguerre.files import formats
 from daguerre.io.panorama import resampled
 from daguerre.scene.scene import Scene
@@ -103,14 +104,15 @@ class Skies:
     def _pictured(
         self, made: Made, path: Path, color: Color, illuminance: float, turn: Array, old: bool
     ) -> Sky:
-        image: Picture = formats.read("environment", path)
+        with asked_by(made.place):
+            image: Picture = formats.read("environment", path)
         if old:
             if illuminance > 0:
                 self._ledger.notes.add("'illuminance' of a light of pbrt-v3 is left out")
             return Sky(color, resampled(image, turn @ _DOME, min(len(image), _MOST_ROWS)))
         if image.shape[0] != image.shape[1]:
             made.place.fail(
-                "filename: wanted a square equal-area picture (imgtool makeequiarea), got "
+                f"filename: {path}: wanted a square equal-area picture (imgtool makeequiarea), got "
                 f"{image.shape[1]} x {image.shape[0]} pixels"
             )
         if illuminance > 0:

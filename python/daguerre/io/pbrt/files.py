@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from daguerre.errors import InputError
+from daguerre.errors import InputError, asked_by
 from daguerre.files.json_item import Item
 from daguerre.files.uris import Folder
 from daguerre.io.meshes.file_bytes import read_bytes
@@ -82,7 +82,8 @@ class Files:
             place.fail(f"wanted at most {MAX_FILES} files, got more")
         self._open.append(path)
         self._included(place)
-        return self._source(path)
+        with asked_by(place):
+            return self._source(path)
 
     def leave(self) -> None:
         """Closes the last one that is open."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from daguerre.errors import InputError
+from daguerre.errors import InputError, asked_by
 from daguerre.lenses import Lens
 from daguerre.lenses import read as read_lens
 from daguerre.lenses.focus import Focused
@@ -46,7 +46,8 @@ def lens_of(
     path = files.find(name, made.place, "lensfile")
     if path is None:
         made.place.fail(f"lensfile: missing file: wanted {name[:200]!r}, got no such file")
-    lens = read_lens(path)
+    with asked_by(made.place):
+        lens = read_lens(path)
     f_stop = _f_stop(made, lens, parameters.number("aperturediameter", 1.0, 1e-6), ledger)
     distance = parameters.number("focusdistance", 10.0, 1e-6)
     try:

@@ -15,6 +15,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.errors import asked_by
 from daguerre.files.notes import Notes
 from daguerre.io.meshes import ply
 from daguerre.scene import shapes as solids
@@ -175,7 +176,8 @@ def _plymesh(made: Made, files: Files, notes: Notes) -> Surface | str | None:
             notes.add(f"{unused!r} of a plymesh is not used")
     if path is None:
         return "a mesh whose file is missing is left out"
-    mesh = ply.read(path, notes)
+    with asked_by(made.place):
+        mesh = ply.read(path, notes)
     corners = mesh.corners.astype(np.int64)
     if mesh.sizes is None:
         triangles, patch = corners.reshape(-1, 3), None

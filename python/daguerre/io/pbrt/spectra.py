@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from daguerre.color.adaptation import adaptation
 from daguerre.color.illuminants import D65_XY, NM, blackbody, observer, planck, xyz_of_xy
 from daguerre.color.spectra import luminance_of_rgb, rgb_from_xyz, rgb_of_reflectance
-from daguerre.errors import InputError
+from daguerre.errors import InputError, asked_by
 from daguerre.files.notes import Notes
 from daguerre.files.text_lines import text_of
 
@@ -122,7 +122,8 @@ class Spectra:
             InputError: The samples are wrong.
         """
         if isinstance(parameter.values, np.ndarray):
-            return _samples(parameter, parameter.numbers)
+            with asked_by(parameter.place):
+                return _samples(parameter.numbers, parameter.name)
         name = _name(parameter)
         if not name:
             parameter.fail("wanted one name, got others")
@@ -136,10 +137,11 @@ class Spectra:
             )
             return None
         if path not in self._read:
-            self._read[path] = self._of_file(path, parameter)
+            with asked_by(f"{parameter.place}: {parameter.name}"):
+                self._read[path] = self._of_file(path)
         return self._read[path]
 
-    def _of_file(self, path: Path, parameter: Parameter) -> Samples:
+    def _of_file(self, path: Path) -> Samples:
         words = [
             word
             for line in text_of(path, most=_MAX_FILE).splitlines()
@@ -149,7 +151,7 @@ class Spectra:
             numbers = np.array([float(word) for word in words], np.float64)
         except ValueError:
             raise InputError(f"{path}: wanted numbers, got something else") from None
-        return _samples(parameter, numbers)
+        return _samples(numbers, str(path))
 
     def _triple(self, parameter: Parameter) -> Color:
         numbers = parameter.numbers
@@ -200,14 +202,16 @@ def _name(parameter: Parameter) -> str:
     return str(parameter.values[0])
 
 
-def _samples(parameter: Parameter, numbers: FloatArray) -> Samples:
+def _samples(numbers: FloatArray, where: str) -> Samples:
     if len(numbers) < 2 or len(numbers) % 2 or len(numbers) > 2 * _MOST_SAMPLES:
-        parameter.fail(f"wanted pairs of wavelength and value, got {len(numbers)} numbers")
+        raise InputError(
+            f"{where}: wanted pairs of wavelength and value, got {len(numbers)} numbers"
+        )
     nm, values = numbers.reshape(-1, 2).T
     if not (np.diff(nm) > 0).all():
-        parameter.fail("wanted wavelengths that rise, got others")
+        raise InputError(f"{where}: wanted wavelengths that rise, got others")
     if not np.isfinite(numbers).all():
-        parameter.fail("wanted finite numbers, got others")
+        raise InputError(f"{where}: wanted finite numbers, got others")
     return Samples(nm.copy(), values.copy())
 
 
