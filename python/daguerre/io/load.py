@@ -39,8 +39,8 @@ def load(
             names of purposes to draw besides ``default`` (default: ``("render",)``), and
             ``camera_units``, the unit of focal lengths and apertures in mm (default: a tenth of a
             scene unit). glTF has ``animated``: other moments than ``time`` will be drawn, too.
-            Mitsuba has ``define``, values of the file's parameters by name or as ``name=value``,
-            and ``unit_m``, the length of a unit in m (default: 1).
+            pbrt and Mitsuba have ``unit_m``, the length of a unit in m (default: 1), and Mitsuba
+            ``define``, values of the file's parameters by name or as ``name=value``.
 
     Raises:
         InputError: The file cannot be used; the message names the file and the place in it. Or

@@ -76,7 +76,7 @@ class SceneFileFlags:
         option(
             "--scene-unit",
             metavar="UNIT",
-            help="Unit of lengths in a Mitsuba scene, such as cm [m].",
+            help="Unit of lengths in a scene of pbrt or Mitsuba, such as cm [m].",
             panel=_FILE,
         ),
     ] = None

@@ -27,6 +27,7 @@ from .film import PBRT_F_STOP, FilmSize, film_of
 from .ledger import Ledger
 from .realistic import lens_of
 from .state import Made
+from .transforms import unit_of
 
 Array = NDArray[np.float64]
 #: Camera of pbrt from camera of the scene: both see x to the right and y up.
@@ -50,6 +51,7 @@ class Eye:
         made: Directive.
         film: Film.
         size: Length of a unit of the camera's space, m.
+        unit: Length of a unit of the world, m.
         version: Version of pbrt, 3 or 4.
         files: Files of the scene.
         ledger: Counts directives.
@@ -58,6 +60,7 @@ class Eye:
     made: Made
     film: FilmSize
     size: float
+    unit: float
     version: int
     files: Files
     ledger: Ledger
@@ -91,7 +94,7 @@ def read_camera(described: Description, files: Files, axes: Array, ledger: Ledge
     if pose is None:
         ledger.note(made.place, "a camera that is scaled to nothing is left out")
         return None
-    eye = Eye(made, film, size, described.version, files, ledger)
+    eye = Eye(made, film, size, unit_of(axes), described.version, files, ledger)
     fields = {"transform": pose, **_shutter(eye), **film.exposure}
     ahead, more = reader(eye)
     fields = {**fields, **more}
@@ -197,7 +200,7 @@ def _distance(distance: float, eye: Eye) -> float:
 
 
 def _realistic(eye: Eye) -> tuple[float, dict[str, Any]]:
-    return lens_of(eye.made, eye.film, eye.files, eye.version, eye.ledger)
+    return lens_of(eye.made, eye.film, eye.unit, eye.files, eye.version, eye.ledger)
 
 
 def _spherical(eye: Eye) -> tuple[float, dict[str, Any]]:

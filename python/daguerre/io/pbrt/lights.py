@@ -1,6 +1,6 @@
 """Reads lights without size: point, spot, distant, goniometric and projection.
 
-One unit of pbrt is 1 cd of a point light, and 1 lux of a distant one.
+One unit of pbrt is 1 cd of a point light where lengths are in metres, and 1 lux of a distant one.
 
 Source: pbrt-v4's user's guide ("Lights"), and ``lights.cpp`` for ``power`` and ``illuminance``.
 """
@@ -23,6 +23,7 @@ from .ledger import Ledger
 from .octahedral import square_of
 from .spectra import Color, Spectra, scaled
 from .state import Made
+from .transforms import unit_of
 
 Array = NDArray[np.float64]
 #: Steps of the soft edge of a spot light.
@@ -56,7 +57,7 @@ class Lights:
         self, spectra: Spectra, images: Images, axes: Array, version: int, ledger: Ledger
     ) -> None:
         self.spectra, self.images, self.version, self.ledger = spectra, images, version, ledger
-        self._axes = axes
+        self._axes, self._unit = axes, unit_of(axes)
         self._left = _MOST_PICTURES
 
     def count(self, made: Made) -> None:
@@ -87,6 +88,10 @@ class Lights:
         """Color and scale of a light."""
         return scaled_by(made, self.spectra.light(made.parameters.find(name)), self.spectra)
 
+    def intensity(self, made: Made) -> Color:
+        """Color of a light without size; ``power`` and all else are factors on it."""
+        return scaled(self.color(made, "I"), self._unit**2)  # so that surfaces get the same light
+
     def world(self, made: Made) -> Array:
         """Scene from the light's own space."""
         return np.asarray(self._axes @ made.state.transform.start)
@@ -105,14 +110,14 @@ class Lights:
 
 
 def _point(lights: Lights, made: Made) -> list[Placed]:
-    color = lights.color(made, "I")
+    color = lights.intensity(made)
     power = made.parameters.number("power", -1.0)
     color = scaled(color, power / (4 * math.pi)) if power > 0 else color
     return [Placed(PointLight(color), _moved(lights.world(made), _from(made)))]
 
 
 def _spot(lights: Lights, made: Made) -> list[Placed]:
-    color = lights.color(made, "I")
+    color = lights.intensity(made)
     number = made.parameters.number
     end = number("coneangle", 30.0, 0.0, 180.0)
     start = end - number("conedeltaangle", 5.0, 0.0)
@@ -160,7 +165,7 @@ def _distant(lights: Lights, made: Made) -> list[Placed]:
 
 
 def _goniometric(lights: Lights, made: Made) -> list[Placed]:
-    color = lights.color(made, "I")
+    color = lights.intensity(made)
     name = made.parameters.text("filename") or made.parameters.text("mapname")
     values = _grey(lights, made, name)
     power = made.parameters.number("power", -1.0)
@@ -182,7 +187,7 @@ def _goniometric(lights: Lights, made: Made) -> list[Placed]:
 
 
 def _projection(lights: Lights, made: Made) -> list[Placed]:
-    color = lights.color(made, "I")
+    color = lights.intensity(made)
     name = made.parameters.text("filename") or made.parameters.text("mapname")
     pixels = _picture(lights, made, name)
     height, width = pixels.shape[:2]

@@ -21,7 +21,7 @@ from .parameters import Parameters
 from .spectra import Color, Spectra, scaled
 from .state import Made
 from .subsurface import MEASURED
-from .transforms import inverse
+from .transforms import inverse, unit_of
 
 _ONE: Color = (1.0, 1.0, 1.0)
 _MILK = MEASURED["Wholemilk"]
@@ -54,7 +54,8 @@ class Media:
         ledger: Ledger,
     ) -> None:
         self._made, self._spectra, self._version = made, spectra, version
-        self._axes, self._files, self._ledger = axes, files, ledger
+        self._axes, self._unit, self._files = axes, unit_of(axes), files
+        self._ledger = ledger
         self._media: dict[str, Medium | None] = {}
         self._local: dict[tuple[str, bytes], Medium] = {}
 
@@ -117,7 +118,7 @@ class Media:
         if preset not in MEASURED:
             absorbed = absorbed if found[0] is None else self._spectra.coefficient(found[0])
             scattered = scattered if found[1] is None else self._spectra.coefficient(found[1])
-        factor = made.parameters.number("scale", 1.0, 0.0)
+        factor = made.parameters.number("scale", 1.0, 0.0) / self._unit
         return scaled(absorbed, factor), scaled(scattered, factor)
 
     def _medium(

@@ -4,8 +4,8 @@ Start reading here. The text is read first, as a whole (``interpreter``), then e
 made of it: one file each. Any fault in a file gives one ``InputError`` with file, line, column and
 directive; every directive is used, or told in a note (``ledger``).
 
-One unit of pbrt's radiance is 1 cd/m2, and one of its lengths 1 m. pbrt's frame is left-handed: the
-scene is its mirror image in z, so that pictures are the same.
+One unit of pbrt's radiance is 1 cd/m2; its lengths have no unit, and ``unit_m`` chooses one. pbrt's
+frame is left-handed: the scene is its mirror image in z, so that pictures are the same.
 """
 
 from __future__ import annotations
@@ -42,13 +42,14 @@ from .spectra import Spectra
 from .state import Made
 from .texture_reader import TextureReader
 from .textures import Textures
-from .transforms import Moving
+from .transforms import Matrix, Moving, scaling
 
 
 def read(
     path: str | os.PathLike[str],
     *,
     time: float = 0.0,
+    unit_m: float = 1.0,
     allow_dirs: Iterable[str | os.PathLike[str]] = (),
 ) -> Scene:
     """Reads a scene: .pbrt, or .pbrt.gz among the files that it includes.
@@ -56,6 +57,7 @@ def read(
     Args:
         path: The file.
         time: Scene time, s.
+        unit_m: Length of a unit of the scene, m.
         allow_dirs: Folders, besides the file's own, from which it may read files.
 
     Returns:
@@ -63,19 +65,23 @@ def read(
 
     Raises:
         InputError: A file cannot be read or is invalid.
+        UsageError: The time is not finite, or the unit is no length.
     """
-    return read_counted(path, time=time, allow_dirs=allow_dirs)[0]
+    return read_counted(path, time=time, unit_m=unit_m, allow_dirs=allow_dirs)[0]
 
 
 def read_counted(
     path: str | os.PathLike[str],
     *,
     time: float = 0.0,
+    unit_m: float = 1.0,
     allow_dirs: Iterable[str | os.PathLike[str]] = (),
 ) -> tuple[Scene, Ledger]:
     """Reads a scene; see :func:`read`. Returns the counts of its directives, too."""
     if not math.isfinite(time):
         raise UsageError(f"time: wanted a finite number of seconds, got {time}")
+    if not 1e-9 <= unit_m <= 1e9:
+        raise UsageError(f"unit_m: wanted a length of 1e-9 to 1e9 m, got {unit_m}")
     file = Path(path)
     scene, ledger = Scene(path=file, time=float(time)), Ledger(Notes())
     files = Files(file, ledger.include, allow_dirs)
@@ -83,7 +89,8 @@ def read_counted(
     with np.errstate(all="ignore"):
         described = Interpreter(files, ledger).read(file)
         with closing(Images(scene, files.picture, ledger.notes)) as images:
-            _Builder(scene, described, files, images, ledger).build()
+            axes = scaling(np.full(3, unit_m)) @ mirror_of(described.camera)
+            _Builder(scene, described, axes, files, images, ledger).build()
     ledger.close()
     scene.note(*ledger.notes.sentences())
     return scene, ledger
@@ -91,11 +98,17 @@ def read_counted(
 
 class _Builder:
     def __init__(
-        self, scene: Scene, described: Description, files: Files, images: Images, ledger: Ledger
+        self,
+        scene: Scene,
+        described: Description,
+        axes: Matrix,
+        files: Files,
+        images: Images,
+        ledger: Ledger,
     ) -> None:
         self._scene, self._described, self._files = scene, described, files
         self._ledger, version = ledger, described.version
-        self._axes = axes = mirror_of(described.camera)
+        self._axes = axes
         spectra = Spectra(files, version, ledger.notes)
         textures = Textures(images, TextureReader(images, spectra, version, ledger), ledger)
         indices = Indices(spectra, ledger.notes)

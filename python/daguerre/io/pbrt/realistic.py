@@ -29,9 +29,17 @@ _WIDENED = 2 * 3 * math.sqrt(2) / 1024
 
 
 def lens_of(
-    made: Made, film: FilmSize, files: Files, version: int, ledger: Ledger
+    made: Made, film: FilmSize, unit: float, files: Files, version: int, ledger: Ledger
 ) -> tuple[float, dict[str, Any]]:
     """Reads a realistic camera.
+
+    Args:
+        made: Directive.
+        film: Film.
+        unit: Length of a unit of the world, m; lens files and irises are in mm.
+        files: Files of the scene.
+        version: Version of pbrt, 3 or 4.
+        ledger: Counts directives.
 
     Returns:
         Distance from its film to the entrance pupil, m, and the fields of ``Camera``.
@@ -49,7 +57,7 @@ def lens_of(
     with asked_by(made.place):
         lens = read_lens(path)
     f_stop = _f_stop(made, lens, parameters.number("aperturediameter", 1.0, 1e-6), ledger)
-    distance = parameters.number("focusdistance", 10.0, 1e-6)
+    distance = parameters.number("focusdistance", 10.0, 1e-6) * unit
     try:
         focused = lens.focused(distance, f_stop=f_stop, measured_from="sensor")
     except InputError as error:

@@ -33,6 +33,11 @@ def scaling(factors: NDArray[np.float64]) -> Matrix:
     return np.diag([*factors.tolist(), 1.0])
 
 
+def unit_of(axes: Matrix) -> float:
+    """Length of a unit of pbrt's world in the scene, m; ``axes`` is the scene from it, (4, 4)."""
+    return float(abs(np.linalg.det(axes[:3, :3])) ** (1 / 3))
+
+
 def rotation(degrees: float, axis: NDArray[np.float64], place: Place) -> Matrix:
     """Rotation about an axis (3,), counter-clockwise as its tip sees it (Rodrigues' formula)."""
     length = float(np.linalg.norm(axis))
