@@ -17,7 +17,7 @@ from daguerre.motion.values import Dynamic
 from .mesh import COLUMNS, mesh_of, with_alpha
 from .motion import Vertices
 from .parts import Mesh, vertices_of
-from .polygons import check_sizes, triangulate, weld
+from .polygons import check_sizes, triangulate, vertices_of_triangles, weld
 from .subdivision import Refiner, Subdivision
 from .subdivision.rules import integers
 
@@ -137,11 +137,12 @@ def mesh_of_polygons(
 def _triangles_of(polygons: Polygons, over: Over, name: str) -> tuple[Mesh, Over]:
     """Makes a mesh of polygons; vertices become several where values per corner differ."""
     where, count = polygons.where, len(polygons.positions)
-    corners, _ = triangulate(polygons.sizes, polygons.vertices, polygons.positions)
+    divided = polygons.sizes, polygons.vertices, polygons.positions
     given = polygons.corner_values()
     if not given:
-        triangles = polygons.vertices[corners]
+        triangles = vertices_of_triangles(*divided)
         return mesh_of(polygons.positions, triangles, polygons.values, where, name), over
+    corners, _ = triangulate(*divided)
     apart = "normals" in given and over.normals is not None  # equal now, not at other times
     every = [np.arange(len(polygons.vertices))] if apart else []
     leaders, index = weld(polygons.vertices, *given.values(), *every)

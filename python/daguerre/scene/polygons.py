@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -15,16 +15,8 @@ from .ears import Effort, clipped, plane_of
 IntArray = NDArray[np.int64]
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
-#: Quadrangles at a time, so that their points stay in the cache of the processor.
+#: Polygons at a time, so that their points stay in the cache of the processor.
 _CHUNK = 1 << 14
-
-
-@dataclass(frozen=True)
-class _Part:
-    """Polygons of one size: their numbers (B,) and corners (B, n)."""
-
-    faces: IntArray
-    corners: IntArray
 
 
 def triangulate(
@@ -49,40 +41,65 @@ def triangulate(
         InputError: Concave polygons with too many corners would take minutes.
     """
     each = np.asarray(sizes, np.int64)
-    flat = np.asarray(vertices, np.int64)
-    places = None if points is None else np.asarray(points, np.float64)
-    starts, effort = np.cumsum(each) - each, Effort()
-    if len(each) and (each == each[0]).all():
-        corners = np.arange(len(flat)).reshape(len(each), -1)
-        part = _Part(np.arange(len(each)), corners)
-        return _divided(part, flat, places, effort).reshape(-1, 3), np.repeat(part.faces, each - 2)
-    first = np.cumsum(each - 2) - (each - 2)
-    triangles = np.empty((int((each - 2).sum()), 3), np.int64)
-    for size in np.unique(each):
-        faces = np.flatnonzero(each == size)
-        part = _Part(faces, starts[faces][:, None] + np.arange(size))
-        rows = first[faces][:, None] + np.arange(size - 2)
-        triangles[rows] = _divided(part, flat, places, effort)
+    triangles = np.empty((int(each.sum()) - 2 * len(each), 3), np.int64)
+    for rows, corners in _divisions(each, np.asarray(vertices), points):
+        triangles[rows] = corners
     return triangles, np.repeat(np.arange(len(each)), each - 2)
 
 
-def _divided(
-    part: _Part, vertices: IntArray, points: FloatArray | None, effort: Effort
-) -> IntArray:
-    """Triangles of polygons of one size, shape (B, n - 2, 3)."""
-    corners, size = part.corners, part.corners.shape[1]
+def vertices_of_triangles(
+    sizes: ArrayLike, vertices: ArrayLike, points: ArrayLike | None = None
+) -> NDArray[np.uint32]:
+    """Divides polygons, as ``triangulate`` does.
+
+    Returns:
+        Vertices of triangles, shape (T, 3).
+    """
+    each, flat = np.asarray(sizes, np.int64), np.asarray(vertices)
+    triangles = np.empty((int(each.sum()) - 2 * len(each), 3), np.uint32)
+    for rows, corners in _divisions(each, flat, points):
+        triangles[rows] = flat[corners]
+    return triangles
+
+
+def _divisions(
+    sizes: IntArray, vertices: NDArray[Any], points: ArrayLike | None
+) -> Iterator[tuple[IntArray, IntArray]]:
+    """Rows of triangles, shape (B, n - 2), and their corners, shape (B, n - 2, 3)."""
+    places, effort = None if points is None else np.asarray(points), Effort()
+    corner, row = 0, 0
+    for begin in range(0, len(sizes), _CHUNK):
+        some = sizes[begin : begin + _CHUNK]
+        starts = corner + np.cumsum(some) - some
+        first = row + np.cumsum(some - 2) - (some - 2)
+        for size in np.flatnonzero(np.bincount(some)).tolist():
+            own = slice(None) if size == some[0] and (some == size).all() else some == size
+            corners = starts[own, None] + np.arange(size)
+            near = None
+            if places is not None and size > 3:
+                near = places.take(vertices[corners], axis=0).astype(np.float64, copy=False)
+            yield first[own, None] + np.arange(size - 2), _divided(corners, near, effort)
+        corner += int(some.sum())
+        row += int(some.sum()) - 2 * len(some)
+
+
+def _divided(corners: IntArray, near: FloatArray | None, effort: Effort) -> IntArray:
+    """Triangles of polygons of one size, shape (B, n - 2, 3).
+
+    Args:
+        corners: Their corners, shape (B, n).
+        near: Positions of these, shape (B, n, 3), or None.
+        effort: Limit of the time that concave polygons may take.
+    """
+    size = corners.shape[1]
     fan = np.empty((len(corners), size - 2, 3), np.int64)
     fan[:, :, 0], fan[:, :, 1], fan[:, :, 2] = corners[:, :1], corners[:, 1:-1], corners[:, 2:]
-    if size == 3 or points is None:
+    if size == 3 or near is None:
         return fan
     if size == 4:
-        for begin in range(0, len(fan), _CHUNK):
-            some = slice(begin, begin + _CHUNK)
-            near = points.take(vertices[corners[some]], axis=0)
-            take = begin + np.flatnonzero(_takes_other(near))
-            fan[take] = corners[take][:, [[1, 2, 3], [1, 3, 0]]]
+        take = np.flatnonzero(_takes_other(near))
+        fan[take] = corners[take][:, [[1, 2, 3], [1, 3, 0]]]
         return fan
-    near = points[vertices[corners]]
     flat = plane_of(near)
     bad = np.flatnonzero(~_fans_fit(flat))
     if len(bad):

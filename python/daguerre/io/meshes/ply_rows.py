@@ -93,12 +93,15 @@ class Rows:
     def lists(self, name: str) -> Lists:
         """A column of lists."""
         number = next(i for i, one in enumerate(self._lists) if one.name == name)
-        sizes, values = [], []
+        sizes = _joined([block.sizes(number) for block in self._blocks])
+        if not self._blocks:
+            return Lists(sizes, sizes)
+        key, end = self._key(name), 0
+        values = np.empty(int(sizes.sum()), self._blocks[0].kind(key))
         for block in self._blocks:
-            own, numbers = block.lists(number, self._key(name))
-            sizes.append(own)
-            values.append(numbers)
-        return Lists(_joined(sizes), _joined(values))
+            begin, end = end, end + int(block.sizes(number).sum())
+            block.copy_lists(number, key, values[begin:end])
+        return Lists(sizes, values)
 
     def _key(self, name: str) -> str:
         """Field of a property: names in the file may be empty or odd for NumPy."""
@@ -258,19 +261,25 @@ class _Block:
         self.count, self.parts = count, parts
         self._sizes = np.broadcast_to(sizes, (count, sizes.shape[1]))
 
-    def lists(self, number: int, key: str) -> tuple[Integers, NDArray[Any]]:
-        """Lengths (F,) and values (C,) of a column of lists."""
-        sizes = self._sizes[:, number]
+    def sizes(self, number: int) -> Integers:
+        """Lengths of a column of lists, shape (F,)."""
+        return self._sizes[:, number]
+
+    def kind(self, key: str) -> np.dtype[Any]:
+        """Type of the numbers of a column of lists, in the byte order of the machine."""
+        return self.parts[0][0].dtype[key].base.newbyteorder("=")
+
+    def copy_lists(self, number: int, key: str, out: NDArray[Any]) -> None:
+        """Copies a column of lists, one list after the other, shape (C,)."""
         if len(self.parts) == 1:
             values = self.parts[0][0][key]
-            return sizes, values.astype(values.dtype.newbyteorder("="), order="C").reshape(-1)
+            out.reshape(values.shape)[...] = values
+            return
+        sizes = self.sizes(number)
         begins = np.cumsum(sizes) - sizes
-        kind = self.parts[0][0].dtype[key].base.newbyteorder("=")
-        out = np.empty(int(sizes.sum()), kind)
         for records, rows in self.parts:
             values = records[key]
             out[begins[rows][:, None] + np.arange(values.shape[1])] = values
-        return sizes, out
 
 
 def _copy(records: Records, keys: list[str], out: Floats, rows: Integers | None) -> None:
