@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.errors import InputError
+from daguerre.errors import asked_by
 from daguerre.io.volumes.density import of_nanovdb
 from daguerre.scene.media import DensityGrid, Medium
 
@@ -168,12 +168,10 @@ class Media:
             return None
         if any(parameters.find(key) is not None for key in _FLAMES):
             self._ledger.notes.add("the temperature of a medium is left out")
-        try:
+        with asked_by(made.place):
             found = of_nanovdb(path, parameters.text("gridname") or "density")
-            transform = self._axes @ made.state.transform.start @ found.transform
-            return self._dense(made, DensityGrid(found.values, transform))
-        except InputError as error:
-            made.place.fail(str(error))
+        transform = self._axes @ made.state.transform.start @ found.transform
+        return self._dense(made, DensityGrid(found.values, transform))
 
     def _dense(self, made: Made, density: DensityGrid) -> Medium:
         usual = (_ONE, _ONE) if self._version == 4 else (_MILK[1], _MILK[0])
