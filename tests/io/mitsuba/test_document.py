@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -10,6 +11,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.io.mitsuba.ledger import Entry
+from daguerre.io.mitsuba.parameters import Parameters
 from daguerre.io.mitsuba.reader import read_all
 from daguerre.io.mitsuba.upgrade import underscored
 
@@ -259,3 +262,53 @@ def test_elements_of_included_files_count(tmp_path: Path) -> None:
     used, noted, rest = ledger.counts()
     assert rest == 0
     assert used + noted == sum(len(list(ElementTree.parse(p).iter())) for p in (path, inner))
+
+
+def test_many_parameters_take_little_time(tmp_path: Path) -> None:
+    names = [f"a{i}" for i in range(20_000)]
+    parts = [f'<default name="{name}" value="1"/>' for name in names]
+    parts += [sphere(f"${name}") for name in names[:100]]
+    start = time.process_time()
+    dg.load(written(tmp_path, *parts))
+    assert time.process_time() - start < 6  # a pattern of all names, made anew each time: 10 x
+
+
+def test_parameters_have_the_longest_name_that_is_known(tmp_path: Path) -> None:
+    values = {"a": "1", "ab": "2"}
+    entry = Entry("scene.xml", 1, "<float>")
+    filled = Parameters(values)
+    assert filled.fill(r"$a $abc $ab\$a \$", entry) == "1 2c 2$a $"
+    with pytest.raises(dg.errors.InputError, match=r"of the parameter \$x, got none"):
+        filled.fill("$x y", entry)
+
+
+def test_a_reference_without_a_use_is_noted(tmp_path: Path) -> None:
+    path = written(
+        tmp_path,
+        '<shape type="sphere" id="one"/>',
+        '<shape type="sphere"><ref id="one"/></shape>',
+    )
+    assert "a reference to a shape of type 'sphere' is not supported" in str(dg.load(path).warnings)
+
+
+def test_spheres_share_a_mesh(tmp_path: Path) -> None:
+    turned = '<shape type="sphere"><boolean name="flip_normals" value="true"/></shape>'
+    scene = dg.load(written(tmp_path, sphere("1"), sphere("2"), turned, turned))
+    assert len(scene.meshes) == 2
+    assert len(scene.instances) == 4
+
+
+def test_digits_are_those_of_ascii(tmp_path: Path) -> None:
+    with pytest.raises(dg.errors.InputError, match="wanted a number"):
+        dg.load(written(tmp_path, sphere("\u0661")))
+
+
+def test_a_lens_that_is_too_large_has_a_place(tmp_path: Path) -> None:
+    lens = '<sensor type="thinlens"><float name="aperture_radius" value="1e29"/></sensor>'
+    with pytest.raises(dg.errors.InputError, match="line 2: <sensor"):
+        dg.load(written(tmp_path, lens))
+
+
+def sphere(radius: str) -> str:
+    """A sphere."""
+    return f'<shape type="sphere"><float name="radius" value="{radius}"/></shape>'

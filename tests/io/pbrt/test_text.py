@@ -16,7 +16,7 @@ from daguerre.io.pbrt.lexer import Lexer
 from daguerre.io.pbrt.place import Place, Source
 
 from .everything import everything
-from .text import count, counted, read, written
+from .text import SQUARE, count, counted, read, written
 
 
 class _NoFiles:
@@ -186,3 +186,32 @@ def test_the_folder_of_names_is_that_of_the_first_file(tmp_path: Path) -> None:
     (tmp_path / "parts" / "b.pbrt").write_text('Shape "sphere"')
     assert len(read(tmp_path, 'Include "parts/a.pbrt"').meshes) == 1
     assert Files(tmp_path / "x", lambda place: None).picture("x", "no.png").parent == tmp_path
+
+
+def test_a_mark_of_byte_order_is_no_text(tmp_path: Path) -> None:
+    path = written(tmp_path, SQUARE)
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    assert len(dg.load(path).meshes) == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "world", "wrong"),
+    [
+        ("", "Scale 1e30 1e30 1e30\n" * 20 + SQUARE, "line 6, column 1: Scale: wanted a matrix"),
+        ("", 'LightSource "point" "rgb I" [-1 0 0]', "line 3, column 21: LightSource: I: wanted"),
+        ("", 'AreaLightSource "diffuse" "rgb L" [0 -1 0]\n' + SQUARE, "AreaLightSource: L: wanted"),
+        ('Camera "perspective" "float lensradius" 1e30', SQUARE, "line 1, column 1: Camera: "),
+        ('Camera "perspective" "float shutterclose" 1e30', SQUARE, "line 1, column 1: Camera: "),
+    ],
+)
+def test_values_that_fit_nowhere_have_a_place(
+    options: str, world: str, wrong: str, tmp_path: Path
+) -> None:
+    with pytest.raises(dg.errors.InputError, match=f"scene.pbrt: .*{wrong}"):
+        dg.load(written(tmp_path, world, options))
+
+
+def test_a_light_outside_of_the_gamut_has_no_negative_part(tmp_path: Path) -> None:
+    world = 'ColorSpace "rec2020"\nLightSource "point" "rgb I" [1 0 0]\n' + SQUARE
+    ((light, _),) = dg.load(written(tmp_path, world)).lights
+    assert min(light.intensity) == 0 < light.intensity[0]

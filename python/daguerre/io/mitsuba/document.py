@@ -20,7 +20,7 @@ from daguerre.io.materialx.elements import MAX_BYTES, MAX_ELEMENTS, Element, par
 from .files import Files
 from .ledger import Entry, Ledger
 from .node import Node, Property
-from .parameters import Parameters
+from .parameters import MAX_NAME, Parameters
 from .transforms import product
 from .upgrade import upgraded
 from .values import VALUES, known, label_of, needed
@@ -218,6 +218,8 @@ class _Reader:
         name, value = needed(element, entry, "name", "value")
         if not name:
             entry.fail("wanted a name, got none")
+        if len(name) > MAX_NAME:
+            entry.fail(f"wanted a name of at most {MAX_NAME} characters, got more")
         self._document.parameters.default(name, value)
         entry.used = True
 

@@ -239,6 +239,11 @@ def unread(root: Node, notes: Notes) -> None:
         for one in reversed(node.properties):
             value = one.value
             if isinstance(value, Node) and value.entry.used:
+                if not (one.entry.used or one.entry.noted):
+                    notes.add(
+                        f"{node.kind} {short(node.plugin)}: a reference to "
+                        f"{_named(value)} is not supported"
+                    )
                 _settle(one)
                 waiting.append(value)
             elif isinstance(value, Node) and not value.entry.noted:

@@ -6,7 +6,7 @@ import re
 
 from .ledger import Entry
 
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\Z")
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\Z", re.ASCII)
 _SEPARATORS = re.compile(r"[,\s]+")
 #: Most numbers of one attribute.
 MAX_NUMBERS = 1 << 16

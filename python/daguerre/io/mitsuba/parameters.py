@@ -11,6 +11,8 @@ from .ledger import Entry
 
 #: Longest attribute after substitution: parameters in parameters could double it without end.
 MAX_LENGTH = 1 << 20
+#: Longest name of a default.
+MAX_NAME = 200
 _NAME = re.compile(r"\w+\Z", re.ASCII)
 
 
@@ -47,13 +49,13 @@ class Parameters:
     def __init__(self, given: Mapping[str, str]) -> None:
         self._values = dict(given)
         self._unused = set(given)
-        self._pattern = _pattern(self._values)
+        self._lengths = {len(name) for name in given}
 
     def default(self, name: str, value: str) -> None:
         """Sets a parameter that has no value yet."""
         if name not in self._values:
             self._values[name] = value
-            self._pattern = _pattern(self._values)
+            self._lengths.add(len(name))
 
     def fill(self, text: str, entry: Entry) -> str:
         r"""Text with the values of its parameters; ``\\$`` is a plain ``$``.
@@ -64,23 +66,25 @@ class Parameters:
         if "$" not in text:
             return text
         made, total = [], 0
-        for part in self._pattern.split(text):
-            made.append(self._part(part, entry))
+        first, *rest = re.split(r"(\\?\$)", text)
+        for sign, after in zip(["", *rest[::2]], [first, *rest[1::2]], strict=True):
+            made.append(self._part(sign, after, entry))
             total += len(made[-1])
             if total > MAX_LENGTH:
                 entry.fail(f"wanted at most {MAX_LENGTH} characters, got more")
         return "".join(made)
 
-    def _part(self, part: str, entry: Entry) -> str:
-        if part == r"\$":
-            return "$"
-        if not part.startswith("$"):
-            return part
-        name = part[1:]
-        if name not in self._values:
-            entry.fail(f"wanted a value of the parameter ${name[:40]}, got none")
-        self._unused.discard(name)
-        return self._values[name]
+    def _part(self, sign: str, after: str, entry: Entry) -> str:
+        """Text after a sign, and what stands for the sign and the longest name after it."""
+        if sign != "$":
+            return sign.removeprefix("\\") + after
+        for length in sorted(self._lengths, reverse=True):
+            name = after[:length]
+            if name in self._values:
+                self._unused.discard(name)
+                return self._values[name] + after[length:]
+        name = re.split(r"\W", after, maxsplit=1)[0]
+        entry.fail(f"wanted a value of the parameter ${name[:40]}, got none")
 
     def check_used(self) -> None:
         """Checks that the file has every parameter of the caller.
@@ -91,10 +95,3 @@ class Parameters:
         if self._unused:
             name = min(self._unused)
             raise UsageError(f"define: {name}: the file has no parameter ${name}")
-
-
-def _pattern(values: Mapping[str, str]) -> re.Pattern[str]:
-    """Matches known names, the longest first, then any other, and escaped signs."""
-    known = sorted(values, key=len, reverse=True)
-    names = [re.escape("$" + name) for name in known]
-    return re.compile("(" + "|".join([r"\\\$", *names, r"\$\w*"]) + ")")

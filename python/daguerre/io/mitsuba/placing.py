@@ -43,6 +43,7 @@ class Placing:
         self._materials, self._media, self._textures = materials, media, textures
         self._files = MeshFiles(context)
         self._meshes: dict[tuple[int, str], tuple[int, Matrix] | None] = {}
+        self._solids: dict[tuple[str, bool], int] = {}
         self._names: dict[str, int] = {}
 
     def add(self, node: Node) -> None:
@@ -116,11 +117,12 @@ class Placing:
         if solid is None:
             leave_out(node, self._notes, f"a shape {node.plugin[:40]!r} is left out")
             return None
-        mesh = solid.mesh
-        index = self._scene.add_mesh(
-            mesh.positions, mesh.triangles, mesh.normals, mesh.uv, name=node.id or node.plugin
-        )
-        return index, solid.inner
+        key = (node.plugin, node.flag("flip_normals", False))
+        if key not in self._solids:
+            mesh = solid.mesh
+            arrays = mesh.positions, mesh.triangles, mesh.normals, mesh.uv
+            self._solids[key] = self._scene.add_mesh(*arrays, name=node.plugin)
+        return self._solids[key], solid.inner
 
     def _named(self, node: Node, place: Matrix) -> str:
         """Adds a node to the scene; returns its name."""

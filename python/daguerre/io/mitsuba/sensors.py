@@ -14,7 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
+from daguerre.camera.parameters import OPTICS
 from daguerre.errors import InputError, UsageError
 from daguerre.files.notes import Notes
 
@@ -56,7 +58,10 @@ def read_camera(node: Node, world: NDArray[np.float64], settings: Settings, note
     node.skip("focus_distance")
     pose = rigid(world @ node.transform(), node, notes)
     try:
-        return Camera(transform=pose @ TURN, **values)
+        camera = Camera(transform=pose @ TURN, **values)
+        OPTICS.check(camera, "camera")
+        shutter.check(camera)
+        return camera
     except (UsageError, InputError) as error:
         node.fail(str(error).removeprefix("camera: "))
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,11 +47,16 @@ def _mesh(found: ShapeMesh | None) -> ShapeMesh:
     return found
 
 
+@cache
+def _unit_sphere() -> ShapeMesh:
+    return _mesh(shapes.sphere())
+
+
 def _sphere(node: Node) -> Solid:
     """Sphere; u from +x toward +y, v from +z down."""
     inner = np.diag([*[node.number("radius", 1.0, above=0)] * 3, 1.0])
     inner[:3, 3] = node.vector("center", (0, 0, 0))
-    return Solid(_mesh(shapes.sphere()), inner)
+    return Solid(_unit_sphere(), inner)
 
 
 def _rectangle(node: Node) -> Solid:

@@ -15,7 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
+from daguerre.camera.parameters import OPTICS
 from daguerre.camera.projection import Projection
 from daguerre.errors import InputError, UsageError
 from daguerre.motion.values import keys
@@ -103,7 +105,10 @@ def read_camera(described: Description, files: Files, axes: Array, ledger: Ledge
     ledger.use(made.place)
     ledger.tell_unread(made.parameters, made.place, made.kind)
     try:
-        return Camera(**fields)
+        camera = Camera(**fields)
+        OPTICS.check(camera, "camera")
+        shutter.check(camera)
+        return camera
     except (UsageError, InputError) as error:
         made.place.fail(str(error))
 

@@ -5,6 +5,7 @@ All names are relative to the folder of the first file, and none leaves it.
 
 from __future__ import annotations
 
+import codecs
 import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -128,4 +129,4 @@ class Files:
         self._bytes -= len(data)
         if data[:2] in _UTF_16:
             raise InputError(f"{path}: wanted text in UTF-8, got UTF-16")
-        return Source(str(path), data)
+        return Source(str(path), data.removeprefix(codecs.BOM_UTF8))

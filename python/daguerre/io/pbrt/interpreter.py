@@ -28,6 +28,8 @@ from .transforms import Matrix, Moving, look_at, rotation, scaling, translation
 
 #: Most blocks within blocks.
 MAX_DEPTH = 10_000
+#: Largest number of a matrix: those of objects and instances are multiplied later.
+MAX_ENTRY = 1e100
 #: Directives before ``WorldBegin`` alone, and after it alone.
 _OPTIONS = ("Accelerator", "Camera", "Film", "Integrator", "Option", "PixelFilter", "Sampler")
 _WORLD = (
@@ -174,7 +176,11 @@ class Interpreter:
     # Transforms ---------------------------------------------------------------------------------
 
     def _multiply(self, directive: Directive, matrix: Matrix) -> None:
-        self._set(directive.place, transform=self._now().times_matrix(matrix, *self._state.active))
+        made = self._now().times_matrix(matrix, *self._state.active)
+        for one in (made.start, made.end):
+            if not (abs(one) <= MAX_ENTRY).all():
+                directive.place.fail(f"wanted a matrix of numbers up to {MAX_ENTRY:g}, got larger")
+        self._set(directive.place, transform=made)
 
     def _replace(self, directive: Directive, matrix: Matrix) -> None:
         self._set(directive.place, transform=self._now().set_to(matrix, *self._state.active))

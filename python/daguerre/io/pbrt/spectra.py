@@ -90,7 +90,9 @@ class Spectra:
         if parameter is None:
             return WHITE
         if parameter.type in ("rgb", "xyz"):
-            return self._triple(parameter)
+            if (parameter.numbers < 0).any():
+                parameter.fail("wanted numbers of at least 0, got another")
+            return _clipped(self._triple(parameter), np.inf)
         if parameter.type == "blackbody":
             return self._blackbody(parameter)
         name = _name(parameter)
