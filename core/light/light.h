@@ -134,14 +134,14 @@ class LightSet {
     /// Several samples of the same law, spread over the lights: some of `found` are without light (pdf 0).
     void sample_several(float u_select, Vec2f u, Vec3f position, float time, const Wavelengths& wavelengths,
                         std::span<LightSample> found) const;
-    /// One light by the law of sample(): its index, or kEnvironment, and the chance of that. Empty when the choice
-    /// cannot light the position.
+    /// One light, for whoever samples it from elsewhere: its index, or kEnvironment, and the chance of that. It differs
+    /// from the law of sample() in that lights turned away from the position have a chance. Empty when no light shines.
     struct Choice {
         std::int32_t light;
         float probability;
     };
     std::optional<Choice> choose(float u, Vec3f position) const;
-    /// That chance.
+    /// The chance by the law of sample().
     float choice_probability(std::int32_t light, Vec3f position) const;
     /// A sample of one light, as sample() has it; its pdf is without the choice.
     std::optional<LightSample> sample_one(std::int32_t light, Vec2f u, Vec3f position, float time,

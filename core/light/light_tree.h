@@ -62,6 +62,10 @@ class LightTree {
     std::optional<Choice> sample(Vec3f position, float u) const { return sample(weigh(position), position, u); }
     /// The same with weigh(position) at hand, which a lone light has no use for.
     std::optional<Choice> sample(const Weights& weights, Vec3f position, float u) const;
+    /// The same for whoever samples the light from elsewhere: every light has probability > 0, also one that is turned
+    /// away from this position.
+    Weights weigh_aside(Vec3f position) const;
+    std::optional<Choice> sample_aside(const Weights& weights, Vec3f position, float u) const;
     /// Each `u` by itself as sample() would have it, probability 0 where that is empty; side by side, as the processor
     /// waits for each.
     void sample(const Weights& weights, Vec3f position, std::span<const float> u, std::span<Choice> found) const;
@@ -75,6 +79,7 @@ class LightTree {
         float probability, u;
     };
     Descent start(const Weights& weights, float u) const;
+    template <bool aside>
     void descend(Descent& d, Vec3f position) const;
     bool has_second() const { return nodes_.size() > 1 && parent_[1] < 0; }
 

@@ -131,6 +131,37 @@ TEST_CASE("many lamps in fog shine as each of them does") {
     CHECK(finds(look(*scene, test_ray({}, {0, 0, -1}), deep(1), 1 << 16), expected, 1));
 }
 
+TEST_CASE("a lamp of triangles in fog lights places that most of them are turned away from") {
+    // Each face lights a part of the ray alone, and none of them is seen from all of it.
+    constexpr float kHalf = 0.01f, kRadiance = 1000;
+    const Vec3f centre{0.4f, 0.1f, -2};
+    SceneDescription d;
+    fill_world(d, medium(grey(0.05f), grey(0.2f)));
+    Mesh cube = cube_mesh();
+    for (Vec3f& corner : cube.positions) corner = centre + corner * kHalf;
+    add(d, std::move(cube), {"lamp", DiffuseMaterial{{0, 0, 0}}, {kRadiance, kRadiance, kRadiance}});
+    const auto scene = Scene::build(std::move(d));
+    constexpr int kSteps = 200000;
+    double expected = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double t = 100 * (i + 0.5) / kSteps;
+        const Vec3d to = to_double(centre) - Vec3d{0, 0, -t};
+        const double r = length(to);
+        const double seen = 4 * kHalf * kHalf * (std::abs(to.x) + std::abs(to.y) + std::abs(to.z)) / r;
+        expected += 0.2 / (4 * kPiD) * std::exp(-0.25 * (t + r)) * kRadiance * seen / (r * r);
+    }
+    expected *= 100.0 / kSteps;
+    using Distances = PathSettings::Distances;
+    for (const auto distances : {Distances::both, Distances::equiangular, Distances::free}) {
+        PathSettings settings = deep(1);
+        settings.distances = distances;
+        const SampleMoments m = look(*scene, test_ray({}, {0, 0, -1}), settings, 1 << 16);
+        CAPTURE(expected);
+        CAPTURE(m.mean);
+        CHECK(finds(m, expected, distances == Distances::free ? 5 : 1));
+    }
+}
+
 TEST_CASE("a slab of a medium leaves exp(-optical depth) of what lies behind, and of what lights a surface") {
     for (const bool grid : {false, true}) {
         SceneDescription d;
