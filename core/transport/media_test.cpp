@@ -138,7 +138,9 @@ TEST_CASE("a lamp of triangles in fog lights places that most of them are turned
     SceneDescription d;
     fill_world(d, medium(grey(0.05f), grey(0.2f)));
     Mesh cube = cube_mesh();
-    for (Vec3f& corner : cube.positions) corner = centre + corner * kHalf;
+    std::vector<Vec3f> corners(cube.positions.begin(), cube.positions.end());
+    for (Vec3f& corner : corners) corner = centre + corner * kHalf;
+    cube.positions = corners;
     add(d, std::move(cube), {"lamp", DiffuseMaterial{{0, 0, 0}}, {kRadiance, kRadiance, kRadiance}});
     const auto scene = Scene::build(std::move(d));
     constexpr int kSteps = 200000;

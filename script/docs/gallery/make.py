@@ -57,8 +57,9 @@ python scenes/lens_scenes.py
 
 `--denoise` needs the extra `denoise`, and the garden the extra `compression`
 ([install](../install.md#extras)). Most pictures use `--tone soft`, which rolls off highlights.
-`DATA` stands for a folder with the chess sets (as glTF, and `OpenChessSet` as USD), the panorama
-and pbrt's killeroos, which the repository does not ship.
+`DATA` stands for a folder with the chess sets (as glTF, and `OpenChessSet` as USD), the panorama,
+pbrt's killeroos and Modern Hall for Mitsuba 3, with our file in its folder. The repository does
+not ship them.
 """
 
 ABOUT_MOTION = """## Motion
@@ -161,7 +162,10 @@ CREDITS = """
 
 The chess set is "Open Chess Set" (c) Academy Software Foundation; Moeen and Mujtaba Sayed, SideFX,
 CC BY 4.0. The panorama is "St. Peter's Square Night", Poly Haven, CC0. The killeroo is a model by
-headus/Rezard, from the [scenes of pbrt](https://github.com/mmp/pbrt-v4-scenes).
+headus/Rezard, from the [scenes of pbrt](https://github.com/mmp/pbrt-v4-scenes). "Modern Hall" is by
+NewSee2l035, [CC BY 3.0](https://creativecommons.org/licenses/by/3.0/), as Benedikt Bitterli
+[published it](https://benedikt-bitterli.me/resources/) for Mitsuba; fog, lamps and camera are
+added.
 """
 
 

@@ -288,6 +288,16 @@ MOTION = [
         needs_data=True,
         columns=2,
     ),
+    Picture(
+        "modern_hall",
+        "A well-known room, Modern Hall, in fog: a lamp and a string of small ones, through a "
+        "Nikkor 50 mm at f/1.4. Mitsuba reads the same file, `scenes/modern_hall_in_fog.xml`, "
+        "beside the room's own.",
+        "DATA/modern-hall/modern_hall_in_fog.xml",
+        "--lens nikon-ai-s-50mm-f1.4 --f-stop 1.4 --iso 2000 --wb 5000 --look filmic "
+        "--res 600x400 --spp 64 --denoise",
+        needs_data=True,
+    ),
 ]
 
 LAMPS, ARCADE = "out/lens_scenes/lamps.glb", "out/lens_scenes/arcade.glb"
