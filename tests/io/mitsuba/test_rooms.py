@@ -26,8 +26,7 @@ STEPS = 9
 #: Room, its film, samples per pixel, and the share of blocks within 5 %.
 ROOMS: dict[str, tuple[tuple[int, int], int, float]] = {
     "staircase2": ((160, 160), 256, 1.0),
-    "staircase": ((96, 160), 512, 0.9),
-    "living-room": ((128, 80), 1024, 0.9),
+    "staircase": ((96, 160), 256, 0.9),
 }
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
@@ -53,7 +52,7 @@ def theirs(path: Path, size: tuple[int, int], spp: int) -> Picture:
             node.props["width"], node.props["height"] = size
         elif node.props.plugin_name() == "tent":
             node.props.set_plugin_name("box")
-    (scene,) = mitsuba.parser.instantiate(config, state)
+    scene = mitsuba.parser.instantiate(config, state)
     path_tracer = mitsuba.load_dict({"type": "path", "max_depth": STEPS})
     drawn = mitsuba.render(scene, spp=spp, seed=1, integrator=path_tracer)
     return np.array(drawn, np.float64)[:, :, :3]
