@@ -339,6 +339,15 @@ TEST_CASE("an even sky is left to the BSDF") {
     CHECK(sky.environment_radiance({0, 1, 0}, 0, rgb_lanes())[0] == doctest::Approx(1));
 }
 
+TEST_CASE("illuminance: I / d^2 of a lamp, with what comes from infinity; nothing without lights") {
+    CHECK(LightSet().illuminance({}) == 0);
+    const DirectionalLight sun{{0, 0, -1}, {3, 3, 3}};
+    const LightSet one({PointLight{{0, 0, 2}, {8, 8, 8}}}, {}), both({PointLight{{0, 0, 2}, {8, 8, 8}}, sun}, {});
+    CHECK(one.illuminance({}) == doctest::Approx(2));
+    CHECK(one.illuminance({0, 0, -2}) == doctest::Approx(0.5));
+    CHECK(both.illuminance({}) == doctest::Approx(5));
+}
+
 TEST_CASE("no light, bad light") {
     CHECK(LightSet().empty());
     CHECK_FALSE(LightSet().sample(0.5f, {}, {}, 0, rgb_lanes()).has_value());

@@ -18,15 +18,19 @@ Phase::Phase(std::span<const PhaseLobe> lobes) : count_(lobes.size()) {
     if (!(sum > 0) || !std::isfinite(sum))
         throw input_error("medium", "lobes: weights", "a finite sum above 0", std::to_string(sum));
     for (std::size_t i = 0; i < count_; ++i) lobes_[i] = {lobes[i].mean_cosine, lobes[i].share / sum};
+    angles_ = PhaseAngles([this](float turn) { return of_turn(turn); });
+}
+
+float Phase::of_turn(float turn) const {
+    float sum = 0;
+    for (const PhaseLobe& lobe : lobes()) sum += lobe.share * lobe.value(turn);
+    return sum;
 }
 
 /// The angle by which light turns lies between -wo, in which it goes on, and wi. 1 - c by the difference of both: the
 /// dot product of directions that are almost one loses it.
 float Phase::value(Vec3f wo, Vec3f wi) const {
-    const float turn = 0.5f * length_squared(wo + wi);
-    float sum = 0;
-    for (const PhaseLobe& lobe : lobes()) sum += lobe.share * lobe.value(turn);
-    return sum;
+    return of_turn(0.5f * length_squared(wo + wi));
 }
 
 Vec3f Phase::sample(Vec3f wo, float u_lobe, Vec2f u) const {

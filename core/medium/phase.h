@@ -8,7 +8,7 @@
 #include <array>
 #include <span>
 
-#include "math/vec.h"
+#include "medium/phase_angles.h"
 
 namespace dg {
 
@@ -44,10 +44,13 @@ class Phase {
     float value(Vec3f wo, Vec3f wi) const;
     Vec3f sample(Vec3f wo, float u_lobe, Vec2f u) const;
     std::span<const PhaseLobe> lobes() const { return {lobes_.data(), count_}; }
+    const PhaseAngles& angles() const { return angles_; }
 
   private:
+    float of_turn(float turn) const;
     std::array<PhaseLobe, kMost> lobes_{};
     std::size_t count_ = 1;
+    PhaseAngles angles_;
 };
 
 }  // namespace dg

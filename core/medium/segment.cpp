@@ -41,9 +41,18 @@ float Segment::free_path(float u) const {
     return rate_[k] > 0 ? -std::log1p(-u) / rate_[k] : std::numeric_limits<float>::infinity();
 }
 
+float Segment::before_end(int k, float u) const {
+    return std::min(-std::log1p(-u * met_[k]) / rate_[k], length_);
+}
+
+float Segment::free_collision(float u) const {
+    const int k = choose(lanes_ * met_, u);
+    return before_end(k, u);
+}
+
 float Segment::collision(float u) const {
     const int k = choose(colliding_ * met_, u);
-    return std::min(-std::log1p(-u * met_[k]) / rate_[k], length_);
+    return before_end(k, u);
 }
 
 Spectrum Segment::emitted() const {

@@ -31,8 +31,10 @@ class Segment {
     /// Distance to a collision, m; that of none is infinite. `u` in [0, 1).
     float free_path(float u) const;
     /// The same among those that collide before the end; collides() > 0.
+    float free_collision(float u) const;
+    /// Distance to a collision before the end, by wavelengths that count as if each collided there for sure.
     float collision(float u) const;
-    /// Densities of both at a distance, per m: the mean over the wavelengths by which the path may have been drawn.
+    /// Densities of free_path() and collision() at a distance, per m: the mean over the wavelengths by which the path may have been drawn.
     float free_path_density(float t) const { return (lanes_ * densities(t)).average(); }
     float collision_density(float t) const { return (colliding_ * densities(t)).average(); }
 
@@ -42,18 +44,27 @@ class Segment {
     Spectrum emitted() const;
 
     /// A path that passes, or collides at a distance: factor on what it carries, and its lanes from there on.
-    /// Every collision scatters; what is absorbed there is a factor. A weight of 0: it carries nothing.
+    /// Every collision scatters; what is absorbed there is a factor. A weight of 0: it carries nothing. `drawn`: the
+    /// share of those that collide before the end which is scattered; the rest passes.
     struct Onward {
         Spectrum weight, lanes;
     };
-    Onward passed() const { return onward(left(length_), transmittance(rate_, length_)); }
-    Onward scattered(float t) const { return onward(medium_.scattering * left(t), densities(t)); }
+    Onward passed(float drawn = 1) const {
+        const Spectrum density = drawn < 1 ? Spectrum(1.f) - met_ * drawn : transmittance(rate_, length_);
+        return onward(left(length_), density);
+    }
+    Onward scattered(float t, float drawn = 1) const {
+        Onward to = onward(medium_.scattering * left(t), densities(t));
+        to.weight *= 1 / drawn;
+        return to;
+    }
 
   private:
     Onward onward(Spectrum value, Spectrum density) const;
     Spectrum densities(float t) const { return rate_ * transmittance(rate_, t); }
     void find_collisions();
     int choose(Spectrum shares, float& u) const;
+    float before_end(int k, float u) const;
 
     MediumAt medium_;
     Spectrum rate_, lanes_, met_{0.f};   // met: chance of a collision before the end, by wavelength

@@ -115,18 +115,58 @@ TEST_CASE("an endless way lets nothing pass but what meets nothing") {
     CHECK(colorful.passed().weight[3] == doctest::Approx(4));
 }
 
+TEST_CASE("a path that is scattered at a share of its collisions brings the same, passing and scattered") {
+    for (const MediumAt& m : {kGrey, kColorful})
+        for (const float drawn : {1.f, 0.5f, 0.1f})
+            for (const Spectrum lanes : {Spectrum(1.f), lanes_after(m, 0.3f)}) {
+                const Segment way(m, 1.5f, lanes, false);
+                const float scatters = drawn * way.collides();
+                const Spectrum passed = way.passed(drawn).weight * (1 - scatters);
+                Spectrum scattered(0.f);
+                constexpr int kCount = 20000;
+                for (int i = 0; i < kCount; ++i)
+                    scattered += way.scattered(way.free_collision((float(i) + 0.5f) / kCount), drawn).weight / kCount;
+                for (int k = 0; k < kWavelengths; ++k) {
+                    CHECK(passed[k] == doctest::Approx(way.left(1.5f)[k]).epsilon(1e-3));
+                    const float met = m.extinction[k] > 0 ? -std::expm1(-1.5f * m.extinction[k]) / m.extinction[k] : 0;
+                    CHECK(scattered[k] * scatters == doctest::Approx(m.scattering[k] * met).epsilon(5e-3));
+                }
+            }
+}
+
 TEST_CASE("equiangular distances are drawn by their density") {
     const Vec3f origin{1, 2, 3}, d = normalize(Vec3f{1, -1, 0.5f});
     int stream = 40;
+    const std::vector<PhaseLobe> lobes{{0.7f, 3}, {-0.4f, 1}};
     for (const Vec3f lamp : {Vec3f{2, 1.2f, 3}, Vec3f{0, 3, 3}, Vec3f{6, 0, 5}})
-        for (const float length : {4.f, kEndless}) {
-            const Equiangular e(origin, d, length, lamp);
+        for (const auto& [phase, length] : {std::pair{Phase(), 4.f}, {Phase(), kEndless}, {Phase(lobes), 4.f},
+                                            {Phase(lobes), kEndless}}) {
+            const Equiangular e(origin, d, length, lamp, phase.angles());
             const auto draw = [&](float u) { return e.sample(u); };
             const auto density = [&](float t) { return e.pdf(t); };
             REQUIRE(e.usable());
             CHECK(p_value(4, draw, density, ++stream) > 1e-3);
-            CHECK(p_value(4, draw, [&](float t) { return density(t) * (1.1f - 0.03f * t); }, stream) < 1e-3);
+            const float middle = e.sample(0.5f);
+            const auto wrong = [&](float t) { return density(t) * (t < middle ? 1.1f : 0.9f); };
+            CHECK(p_value(4, draw, wrong, stream) < 1e-3);
         }
+}
+
+TEST_CASE("with the phase function's angles, what a lamp brings falls evenly on its distances") {
+    const Vec3f origin{0, 0, 0}, d{0, 0, -1}, lamp{0.3f, 0.4f, -2};
+    for (const float g : {0.f, 0.4f, 0.7f, -0.6f}) {
+        const std::vector<PhaseLobe> lobe{{g, 1}};
+        const Phase phase(lobe);
+        const Equiangular e(origin, d, 6, lamp, phase.angles());
+        float least = kEndless, most = 0;
+        for (int i = 0; i < 500; ++i) {
+            const float t = e.sample((float(i) + 0.5f) / 500);
+            const Vec3f to = lamp - d * t;
+            const float brought = phase.value(-d, normalize(to)) / length_squared(to) / e.pdf(t);
+            least = std::min(least, brought), most = std::max(most, brought);
+        }
+        CHECK(most < 1.6f * least);   // some angles count too much by their even share, where little is scattered
+    }
 }
 
 }  // namespace dg

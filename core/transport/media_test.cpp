@@ -272,6 +272,44 @@ TEST_CASE("a medium of one number finds the same by one wavelength as by four, a
     for (const SampleMoments& m : found) CHECK(welch_p_value(found[0], m) > 1e-3);
 }
 
+TEST_CASE("a lamp in thin smoke is found the same by every strategy, though paths are scattered seldomer than light") {
+    SceneDescription d;
+    fill(d, cube_mesh(), medium(grey(0.02f), grey(0.3f), {{0.95f, 1}}));
+    d.lights.push_back(SphereLight{{{0.5f, 0, -0.4f}, 0.45f}, {10, 10, 10}});
+    const auto scene = Scene::build(std::move(d));
+    std::vector<SampleMoments> found;
+    using Strategy = PathSettings::Strategy;
+    for (const auto strategy : {Strategy::mis, Strategy::light, Strategy::bsdf}) {
+        PathSettings settings = deep(2);
+        settings.strategy = strategy;
+        found.push_back(look(*scene, test_ray({0, 0, 4}, {0, 0, -1}), settings, 1 << 17));
+    }
+    CHECK(welch_p_value(found[0], found[1]) > 1e-3);
+    CHECK(welch_p_value(found[0], found[2]) > 1e-3);
+    CAPTURE(found[0].mean);
+    CAPTURE(found[2].mean);
+    CHECK(finds(found[0], found[2].mean, 1));
+}
+
+TEST_CASE("paths that end in the dark are made up for by those that go on: a grid, where none ends, shines the same") {
+    std::vector<SampleMoments> found;
+    for (const bool grid : {false, true}) {
+        SceneDescription d;
+        const auto smoke = medium(grey(0.1f), grey(1.2f), {{0.5f, 1}});
+        fill(d, cube_mesh(), grid ? on_grid(*smoke) : smoke);
+        d.lights.push_back(PointLight{{0.8f, 0.7f, 1.3f}, {1, 1, 1}});
+        d.lights.push_back(SphereLight{{{0.7f, -0.8f, 1.3f}, 0.1f}, {30, 30, 30}});
+        const auto scene = Scene::build(std::move(d));
+        found.push_back(look(*scene, test_ray({0.75f, 0.4f, 4}, {-0.12f, 0, -1}), deep(12), 1 << 19));
+    }
+    CAPTURE(found[0].mean);
+    CAPTURE(found[1].mean);
+    CHECK(welch_p_value(found[0], found[1]) > 1e-3);
+    SampleMoments darker = found[0];
+    darker.mean *= 0.97;
+    CHECK(welch_p_value(darker, found[1]) < 1e-3);
+}
+
 TEST_CASE("media move with their meshes, at the time of the ray") {
     for (const bool grid : {false, true}) {
         SceneDescription d;

@@ -32,6 +32,7 @@ struct Walk {
     float straight = 0;          // m from there to the ray's origin, through clear sheets
     float eta_squared = 1;       // undoes the radiance scaling of refraction for Russian roulette
     Interior medium;
+    float brightest = 0;         // lux that lamps bring to the brightest point on its ways through media
     Spectrum lanes{1.f};         // by which wavelengths the path may have been drawn (medium/segment.h)
     const FirstRay* first = nullptr;   // while the path is one, and light paths may find the same
     PathMis* bounces = nullptr;        // while light paths may find what comes next
@@ -228,11 +229,13 @@ class Path {
     Way cross_even(const Medium& medium, const MediumAt& here, float t, int vertex);
     Way cross_grid(const Medium& medium, const MediumAt& here, float t, int vertex);
     bool take(const Segment::Onward& onward);
+    float scattering_drawn(const Segment& way) const;
+    bool survives_dark(Vec3f from, Vec3f at);
     void note_medium();
-    float light_way(const Phase& phase, const Segment& way);
+    float light_way(const Phase& phase, const Segment& way, float drawn);
     float share_of_light(float light_pdf, float phase_pdf) const;
     LampOnWay find_lamp(const Phase& phase, const Segment& way, float odds, const WayRandom& u) const;
-    Place aim(const Segment& way, const std::optional<Vec3f>& lamp, float u) const;
+    Place aim(const Segment& way, const std::optional<Vec3f>& lamp, const Phase& phase, float u) const;
 
     Spectrum environment_emission() const;
     Spectrum surface_emission(const Material& material, const SurfaceHit& hit) const;

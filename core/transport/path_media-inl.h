@@ -2,7 +2,7 @@
 //
 // In an even medium the light that the way itself emits is a closed form. What lamps send there to be scattered toward
 // the path is found in two ways, as light at a surface is: by one light sample at one distance, drawn as the lamp is
-// seen from the ray (equiangular.h) or as light is scattered, half and half; and by the path itself, which is scattered
+// seen from the ray (equiangular.h) or as light is scattered, four to one; and by the path itself, which is scattered
 // after a free path and may meet a lamp. With densities n(t) p_lamp and c(t) p_phase, the power heuristic would want
 // n / c at the distance. It gets that of distances drawn as light is scattered, 1 / chance of a collision, which both
 // know of each other whichever lamp it is: they weigh 1 together, and equiangular distances only improve the first.
@@ -20,8 +20,15 @@ namespace {
 
 /// Light samples for each scattering of a path that carries all of its light: where the lens looks, and elsewhere. More
 /// of them, or the best of several for each, were measured to cost more time than noise (bench/fog.py).
-constexpr float kSamplesInView = 8, kSamplesPerCollision = 4;
-constexpr float kEquiangularShare = 0.5f;
+constexpr float kSamplesInView = 8, kSamplesPerCollision = 0.5f;
+constexpr float kAlmostOne = 0x1.fffffep-1f;
+constexpr float kEquiangularShare = 0.8f;
+/// How much a path that is scattered brings, over one that passes with as much light: lamps that its way scatters once
+/// are sampled already.
+constexpr float kScatteredWorth = 0.3f;
+/// Least share of the light at a path's brightest point that any other is believed to get: the estimate knows lamps,
+/// and neither even skies nor media that shine.
+constexpr float kLeastLit = 0.1f;
 
 /// Point of the ray, in the form of a surface's. No side of it matters.
 SurfaceHit in_medium(const Ray& ray, float t) {
@@ -53,11 +60,13 @@ Path::Way Path::cross_even(const Medium& medium, const MediumAt& here, float t, 
         walk_.throughput *= way.left(way.length());
         return walk_.throughput.is_black() ? Way::ended : Way::passed;
     }
-    const float odds = light_way(medium.phase, way);
-    const float free_path = way.free_path(sampler_.next_1d());
-    const bool met = free_path < way.length();
-    if (!take(met ? way.scattered(free_path) : way.passed())) return Way::ended;
+    const float drawn = scattering_drawn(way), odds = light_way(medium.phase, way, drawn);
+    const float u = sampler_.next_1d(), scatters = drawn * way.collides();
+    const bool met = u < scatters;
+    const float free_path = met ? way.free_collision(std::min(u / scatters, kAlmostOne)) : 0;
+    if (!take(met ? way.scattered(free_path, drawn) : way.passed(drawn))) return Way::ended;
     if (!met) return Way::passed;
+    const Vec3f from = walk_.ray.origin;
     const SurfaceHit at = in_medium(walk_.ray, walk_.ray.t_min + free_path);
     const PhaseBsdf phase{medium.phase};
     const float u_lobe = sampler_.next_1d();
@@ -66,7 +75,30 @@ Path::Way Path::cross_even(const Medium& medium, const MediumAt& here, float t, 
     walk_.bounces = nullptr;   // no light path is scattered in a medium
     go(phase, at, *sample, nullptr);
     walk_.bsdf_pdf /= odds, walk_.tries = 1;
-    return Way::scattered;
+    return survives_dark(from, at.position) ? Way::scattered : Way::ended;
+}
+
+/// Share of the collisions at which the path is scattered; at the others it passes, and weighs less. Few where the lens
+/// looks and most light passes, all where none does. Elsewhere all of them: weights would multiply along long paths.
+float Path::scattering_drawn(const Segment& way) const {
+    if (!walk_.in_view || scene_.lights().empty()) return 1;
+    const float worth = kScatteredWorth * way.medium().scattering.average() / way.medium().extinction.average();
+    const float met = way.collides();
+    return std::min(1.f, worth / (worth * met + 1 - met));
+}
+
+/// Russian roulette of a path that is scattered `at` a point: by what it carries, and by what lamps bring there over
+/// what they bring to the brightest point of its ways. Endless fog would otherwise keep each path to its last vertex.
+bool Path::survives_dark(Vec3f from, Vec3f at) {
+    const LightSet& lights = scene_.lights();
+    const float now = lights.illuminance(at);
+    walk_.brightest = std::max({walk_.brightest, lights.illuminance(from), now});
+    const float lit = walk_.brightest > 0 ? std::max(kLeastLit, now / walk_.brightest) : 1;
+    const float survival = walk_.throughput.max() * walk_.eta_squared * lit;
+    if (!(survival < 1)) return true;
+    if (sampler_.next_1d() >= survival) return false;
+    walk_.throughput *= 1 / survival;
+    return true;
 }
 
 Path::Way Path::cross_grid(const Medium& medium, const MediumAt& here, float t, int vertex) {
@@ -105,11 +137,11 @@ void Path::note_medium() {
 }
 
 /// Adds what one light sample brings to one place on the way. Returns the odds of such a sample over a collision of the
-/// path, for whatever that meets: fewer than one sample where little can be scattered.
-float Path::light_way(const Phase& phase, const Segment& way) {
+/// path (drawn at a share of them), for whatever that meets: fewer than one sample where little can be scattered.
+float Path::light_way(const Phase& phase, const Segment& way, float drawn) {
     const float carried = std::min(1.f, walk_.throughput.average() * walk_.eta_squared);
     const float samples = (walk_.in_view ? kSamplesInView : kSamplesPerCollision) * carried;
-    const float chance = std::min(1.f, samples * way.collides()), odds = chance / way.collides();
+    const float chance = std::min(1.f, samples * way.collides()), odds = chance / (drawn * way.collides());
     const float u_chance = sampler_.next_1d();
     WayRandom u;
     u.select = sampler_.next_1d(), u.from = sampler_.next_1d(), u.where = sampler_.next_1d();
@@ -132,7 +164,7 @@ Path::LampOnWay Path::find_lamp(const Phase& phase, const Segment& way, float od
     const SurfaceHit from = in_medium(walk_.ray, walk_.ray.t_min + way.collision(u.from));
     const auto choice = lights.choose(u.select, from.position);
     if (!choice) return lamp;
-    const auto [t, density] = aim(way, lights.place_of(choice->light, u.place, walk_.ray.time), u.where);
+    const auto [t, density] = aim(way, lights.place_of(choice->light, u.place, walk_.ray.time), phase, u.where);
     lamp.t = walk_.ray.t_min + t;
     const SurfaceHit at = in_medium(walk_.ray, lamp.t);
     auto light = lights.sample_one(choice->light, u.place, at.position, at.time, wavelengths_);
@@ -157,11 +189,11 @@ float Path::share_of_light(float light_pdf, float phase_pdf) const {
 }
 
 /// A distance at which the lamp lights the way, and its density.
-Path::Place Path::aim(const Segment& way, const std::optional<Vec3f>& lamp, float u) const {
+Path::Place Path::aim(const Segment& way, const std::optional<Vec3f>& lamp, const Phase& phase, float u) const {
     using Distances = PathSettings::Distances;
     std::optional<Equiangular> seen;
     const SurfaceHit start = in_medium(walk_.ray, walk_.ray.t_min);
-    if (lamp) seen.emplace(start.position, walk_.ray.direction, way.length(), *lamp);
+    if (lamp) seen.emplace(start.position, walk_.ray.direction, way.length(), *lamp, phase.angles());
     float share = settings_.distances == Distances::both ? kEquiangularShare
                                                          : float(settings_.distances == Distances::equiangular);
     if (!seen || !seen->usable()) share = 0;
