@@ -148,8 +148,8 @@ class LightSet {
                                           const Wavelengths& wavelengths) const;
     /// The point of a light that sample_one() finds with the same u, or its middle; nothing at infinity.
     std::optional<Vec3f> place_of(std::int32_t light, Vec2f u, float time) const;
-    /// What all lights may bring to a point, lux: the estimate by which one is chosen, which knows of nothing in
-    /// between.
+    /// Illuminance that all lights may bring to a point, lux: the estimate by which one is chosen, which knows of
+    /// nothing in between.
     float illuminance(Vec3f position) const {
         return infinite_illuminance_ + (tree_.empty() ? 0 : tree_.importance(position));
     }

@@ -34,7 +34,8 @@ class Segment {
     float free_collision(float u) const;
     /// Distance to a collision before the end, by wavelengths that count as if each collided there for sure.
     float collision(float u) const;
-    /// Densities of free_path() and collision() at a distance, per m: the mean over the wavelengths by which the path may have been drawn.
+    /// Densities of free_path() and collision() at a distance, per m: the mean over the wavelengths by which the path
+    /// may have been drawn.
     float free_path_density(float t) const { return (lanes_ * densities(t)).average(); }
     float collision_density(float t) const { return (colliding_ * densities(t)).average(); }
 
