@@ -48,7 +48,7 @@ def test_parameters_have_defaults_and_values_of_the_caller(tmp_path: Path) -> No
 def test_a_parameter_without_a_value_is_an_error_and_a_dollar_can_be_escaped(
     tmp_path: Path,
 ) -> None:
-    with pytest.raises(dg.InputError, match=r"line 2: <sampler .*\$spp, got none"):
+    with pytest.raises(dg.InputError, match=r"line 2, column \d+: <sampler .*\$spp, got none"):
         loaded(tmp_path, '<sampler type="$spp"/>')
     scene = loaded(tmp_path, r'<shape type="sphere" id="\$5"/>')
     assert set(scene.nodes) == {"$5"}
@@ -95,7 +95,7 @@ def test_files_outside_of_the_folder_are_refused_unless_allowed(tmp_path: Path) 
         ('<include filename="../common/ball.xml"/>',),
         (f'<include filename="{tmp_path}/common/ball.xml"/>',),
     ):
-        with pytest.raises(dg.InputError, match=r"line 2: .*leaves the scene's folder"):
+        with pytest.raises(dg.InputError, match=r"line 2, column \d+: .*leaves the scene's folder"):
             loaded(inner, *parts)
         assert "ball" in loaded(inner, *parts, allow_dirs=(tmp_path / "common",)).nodes
 
@@ -106,9 +106,12 @@ def test_references_and_aliases(tmp_path: Path) -> None:
     scene = loaded(tmp_path, BALL.format('<ref id="n"/>'), material, alias)
     assert scene.materials[0].kind == dg.Diffuse((0.1, 0.2, 0.3))
     for parts, wrong in {
-        (BALL.format('<ref id="n"/>'), material): "line 2: <ref id='n'>: wanted the id",
-        (material, material): "line 3: .*no other object has, got 'm' again",
-        (alias, material): "line 2: <alias id='m'>: wanted the id",
+        (
+            BALL.format('<ref id="n"/>'),
+            material,
+        ): r"line 2, column \d+: <ref id='n'>: wanted the id",
+        (material, material): r"line 3, column \d+: .*no other object has, got 'm' again",
+        (alias, material): r"line 2, column \d+: <alias id='m'>: wanted the id",
         ('<bsdf type="twosided" id="a"><ref id="a"/></bsdf>',): "inside itself",
     }.items():
         with pytest.raises(dg.InputError, match=wrong):
@@ -182,7 +185,10 @@ def test_old_names(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("part", "wrong"),
     [
-        ('<float name="x" value="1e"/>', "line 2: <float name='x'>: wanted a number, got '1e'"),
+        (
+            '<float name="x" value="1e"/>',
+            r"line 2, column \d+: <float name='x'>: wanted a number, got '1e'",
+        ),
         ('<float name="x" value="1_000"/>', "wanted a number"),
         ('<float name="x" value="nan"/>', "wanted a number"),
         ('<float name="x" value="1 2"/>', "wanted 1 numbers, got 2"),
@@ -210,7 +216,7 @@ def test_old_names(tmp_path: Path) -> None:
 def test_wrong_values_are_one_error_with_their_line(part: str, wrong: str, tmp_path: Path) -> None:
     with pytest.raises(dg.InputError, match=wrong) as caught:
         loaded(tmp_path, part)
-    assert str(caught.value).startswith(f"{tmp_path / 'scene.xml'}: line 2: ")
+    assert str(caught.value).startswith(f"{tmp_path / 'scene.xml'}: line 2, column ")
     assert len(str(caught.value).splitlines()) == 1
 
 
@@ -275,7 +281,7 @@ def test_many_parameters_take_little_time(tmp_path: Path) -> None:
 
 def test_parameters_have_the_longest_name_that_is_known(tmp_path: Path) -> None:
     values = {"a": "1", "ab": "2"}
-    entry = Entry("scene.xml", 1, "<float>")
+    entry = Entry("scene.xml", 1, 1, "<float>")
     filled = Parameters(values)
     assert filled.fill(r"$a $abc $ab\$a \$", entry) == "1 2c 2$a $"
     with pytest.raises(dg.errors.InputError, match=r"of the parameter \$x, got none"):
@@ -305,10 +311,19 @@ def test_digits_are_those_of_ascii(tmp_path: Path) -> None:
 
 def test_a_lens_that_is_too_large_has_a_place(tmp_path: Path) -> None:
     lens = '<sensor type="thinlens"><float name="aperture_radius" value="1e29"/></sensor>'
-    with pytest.raises(dg.errors.InputError, match="line 2: <sensor"):
+    with pytest.raises(dg.errors.InputError, match=r"line 2, column \d+: <sensor"):
         dg.load(written(tmp_path, lens))
 
 
 def sphere(radius: str) -> str:
     """A sphere."""
     return f'<shape type="sphere"><float name="radius" value="{radius}"/></shape>'
+
+
+def test_errors_have_the_column_of_their_element(tmp_path: Path) -> None:
+    (tmp_path / "scene.xml").write_text(
+        '<scene version="3.0.0">\n'
+        '  <shape type="sphere"><float name="radius" value="-1"/></shape>\n</scene>'
+    )
+    with pytest.raises(dg.InputError, match=r"line 2, column 24: <float name='radius'>: wanted"):
+        dg.load(tmp_path / "scene.xml")

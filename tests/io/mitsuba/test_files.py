@@ -44,6 +44,6 @@ def test_a_wrong_file_is_named_after_the_element_that_asks_for_it(
         loaded(tmp_path, text.format(file))
     message = str(caught.value)
     assert "\n" not in message
-    found = re.search(rf"^[^:]*scene\.xml: line 2: <{element} .*?>: ", message)
+    found = re.search(rf"^[^:]*scene\.xml: line 2, column \d+: <{element} .*?>: ", message)
     assert found, message
     assert file in message[found.end() :]

@@ -176,7 +176,7 @@ def test_a_panorama_stays_sharp_toward_its_poles() -> None:
 
 
 def test_what_is_around_a_scene_is_one(tmp_path: Path) -> None:
-    with pytest.raises(dg.InputError, match=r"line 3: .*one emitter around the scene"):
+    with pytest.raises(dg.InputError, match=r"line 3, column \d+: .*one emitter around the scene"):
         loaded(tmp_path, _emitter("constant"), '<emitter type="constant"/>')
 
 
@@ -192,5 +192,5 @@ def test_what_is_around_a_scene_is_one(tmp_path: Path) -> None:
     ],
 )
 def test_wrong_lights(part: str, wrong: str, tmp_path: Path) -> None:
-    with pytest.raises(dg.InputError, match=rf"line 2: .*{wrong}"):
+    with pytest.raises(dg.InputError, match=rf"line 2, column \d+: .*{wrong}"):
         loaded(tmp_path, part)

@@ -368,3 +368,22 @@ def test_a_camera_in_a_medium_stands_in_fog(tmp_path: Path) -> None:
     sensor = '<sensor type="perspective"><ref id="fog" name="medium"/></sensor>'
     scene = loaded(tmp_path, '<medium type="homogeneous" id="fog"/>', sensor)
     assert scene.fog is not None
+
+
+@pytest.mark.parametrize(
+    ("plugin", "name", "field"),
+    [
+        ("diffuse", "reflectance", "reflectance"),
+        ("roughplastic", "specular_reflectance", "specular_tint"),
+        ("dielectric", "specular_transmittance", "tint"),
+        ("conductor", "specular_reflectance", "reflectance"),
+    ],
+)
+def test_shares_of_light_above_1_count_as_1(
+    tmp_path: Path, plugin: str, name: str, field: str
+) -> None:
+    body = '<shape type="cube"><bsdf type="{}"><{} name="{}" value="{}"/></bsdf></shape>'
+    for tag, value, wanted in (("rgb", "1.5 0.2 3", (1, 0.2, 1)), ("spectrum", "50", (1, 1, 1))):
+        scene = loaded(tmp_path, body.format(plugin, tag, name, value))
+        assert getattr(scene.materials[-1].kind, field) == pytest.approx(wanted, abs=1e-6)
+        assert any("a share of light above 1 counts as 1" in note for note in scene.warnings)

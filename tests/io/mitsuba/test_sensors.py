@@ -134,7 +134,7 @@ def test_clipping_and_shutter(tmp_path: Path) -> None:
     ],
 )
 def test_wrong_cameras(inner: str, plugin: str, wrong: str, tmp_path: Path) -> None:
-    with pytest.raises(dg.InputError, match=rf"line 2: .*{wrong}"):
+    with pytest.raises(dg.InputError, match=rf"line 2, column \d+: .*{wrong}"):
         loaded(tmp_path, _sensor(inner, plugin))
 
 

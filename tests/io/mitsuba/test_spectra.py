@@ -127,5 +127,5 @@ def test_names_of_indices_and_of_metals(tmp_path: Path) -> None:
     ],
 )
 def test_wrong_spectra(element: str, wrong: str, tmp_path: Path) -> None:
-    with pytest.raises(dg.InputError, match=rf"line 2: .*{wrong}"):
+    with pytest.raises(dg.InputError, match=rf"line 2, column \d+: .*{wrong}"):
         loaded(tmp_path, SHAPE.format(element))

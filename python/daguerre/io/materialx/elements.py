@@ -1,4 +1,4 @@
-"""Elements of an XML text with their lines, for documents that keep values in attributes.
+"""Elements of an XML text with their places, for documents that keep values in attributes.
 
 Document types are refused, and with them entities, through which a small file can grow without
 bounds or read other files.
@@ -22,11 +22,12 @@ MAX_BYTES = 64 << 20
 
 @dataclass(eq=False)
 class Element:
-    """An element, its attributes and its children; ``line`` is for messages."""
+    """An element, its attributes and its children; ``line`` and ``column`` are for messages."""
 
     tag: str
     attributes: dict[str, str]
     line: int
+    column: int
     parent: Element | None = None
     children: list[Element] = field(default_factory=list)
 
@@ -74,7 +75,7 @@ class _Reader:
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         parent = self.open[-1] if self.open else None
-        element = Element(tag, attributes, self.parser.CurrentLineNumber, parent)
+        element = Element(tag, attributes, *self._place(), parent)
         self.count += 1
         if len(self.open) >= MAX_DEPTH:
             self._fail(f"wanted at most {MAX_DEPTH} elements inside each other, got more")
@@ -92,5 +93,9 @@ class _Reader:
     def _refuse_type(self, *about: object) -> None:
         self._fail("wanted no document type and no entities, got <!DOCTYPE>")
 
+    def _place(self) -> tuple[int, int]:
+        return self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1
+
     def _fail(self, what: str) -> None:
-        raise InputError(f"{self.file}: XML: line {self.parser.CurrentLineNumber}: {what}")
+        line, column = self._place()
+        raise InputError(f"{self.file}: XML: line {line}, column {column}: {what}")

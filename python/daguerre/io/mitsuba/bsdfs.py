@@ -103,11 +103,11 @@ class Surfaces:
         return Look(self._glass(node, {"thin": True}), two_sided=True)
 
     def _glass(self, node: Node, fields: dict[str, Any]) -> Dielectric:
-        color = self.textures.color
+        share = self.textures.share
         return Dielectric(
             ior=relative_index(node, "bk7"),
-            tint=color(node, "specular_transmittance", 1.0),
-            reflection_tint=color(node, "specular_reflectance", 1.0),
+            tint=share(node, "specular_transmittance", 1.0),
+            reflection_tint=share(node, "specular_reflectance", 1.0),
             **fields,
         )
 
@@ -126,7 +126,7 @@ class Surfaces:
         kind = Coated(
             self._base(node, loss),
             ior=ior,
-            specular_tint=self.textures.color(node, "specular_reflectance", 1.0),
+            specular_tint=self.textures.share(node, "specular_reflectance", 1.0),
             nonlinear=nonlinear,
             **fields,
         )

@@ -58,7 +58,7 @@ class Document:
         ledger: All elements.
 
     Raises:
-        InputError: A file is no scene of Mitsuba; the message names file, line and element.
+        InputError: A file is no scene of Mitsuba; the message names file, line, column and element.
         UsageError: It has no parameter of a name in ``define``.
     """
 
@@ -69,7 +69,9 @@ class Document:
         self._ids: dict[str, Node] = {}
         self._budget = Budget(MAX_ELEMENTS, "elements in all files")
         self._files: dict[int, Files] = {}
-        self.root = _Reader(self, files, str(file), 0, 0).root(file, Entry(str(file), 1, "<scene>"))
+        self.root = _Reader(self, files, str(file), 0, 0).root(
+            file, Entry(str(file), 1, 1, "<scene>")
+        )
         if self.root.kind != "scene":
             self.root.fail("wanted <scene> at the top")
         self._resolve()
@@ -82,7 +84,7 @@ class Document:
     def entry(self, file: str, element: Element) -> Entry:
         """Adds an element to the accounts."""
         self._budget.spend(1, Item(None, file))
-        return self.ledger.add(file, element.line, label_of(element))
+        return self.ledger.add(file, (element.line, element.column), label_of(element))
 
     def add(self, node: Node, files: Files) -> None:
         """Adds an object under its id."""

@@ -19,6 +19,7 @@ class Entry:
     Attributes:
         file: Path of the file, for messages.
         line: Line on which it begins.
+        column: Column in which it begins.
         label: The element for messages, such as ``<float name="fov">``.
         used: Whether it had an effect on the scene.
         noted: Whether a note names it, or something around it.
@@ -26,12 +27,13 @@ class Entry:
 
     file: str
     line: int
+    column: int
     label: str
     used: bool = False
     noted: bool = False
 
     def __str__(self) -> str:
-        return f"{self.file}: line {self.line}: {self.label}"
+        return f"{self.file}: line {self.line}, column {self.column}: {self.label}"
 
     def fail(self, message: str) -> NoReturn:
         """Raises ``InputError`` at this element."""
@@ -39,7 +41,7 @@ class Entry:
 
     def about(self, file: str) -> Entry:
         """The same element in messages about a file that it asks for."""
-        return Entry(self.file, self.line, f"{self.label}: {file[:200]}")
+        return Entry(self.file, self.line, self.column, f"{self.label}: {file[:200]}")
 
 
 @dataclass
@@ -48,9 +50,9 @@ class Ledger:
 
     entries: list[Entry] = field(default_factory=list)
 
-    def add(self, file: str, line: int, label: str) -> Entry:
-        """Adds an element."""
-        entry = Entry(file, line, label)
+    def add(self, file: str, place: tuple[int, int], label: str) -> Entry:
+        """Adds an element that begins on a line, in a column."""
+        entry = Entry(file, *place, label)
         self.entries.append(entry)
         return entry
 

@@ -88,6 +88,8 @@ class Textures:
         found = node.find(name)
         if found is None or not self._is_texture(found):
             color = self._color(node, found, default)
+            if most == 1.0:
+                color = self._at_most_1(node, color)
             return color if change is None else _changed(color, change), None
         value = self._texture(found)
         if value is None:
@@ -136,6 +138,17 @@ class Textures:
             what = f"the mean of the texture in {name!r} is used"
             self._notes.add(f"{node.kind} {node.plugin!r}: {what}")
         return _means(broadcast(value, 3))
+
+    def share(self, node: Node, name: str, default: Color | float) -> Color | Spectrum:
+        """Share of light, as ``color``: of more than 1 it is 1, with a note."""
+        return self._at_most_1(node, self.color(node, name, default))
+
+    def _at_most_1(self, node: Node, color: Color | Spectrum) -> Color | Spectrum:
+        values = np.asarray(color.values if isinstance(color, Spectrum) else color)
+        if values.max() <= 1:
+            return color
+        self._notes.add(f"{node.kind} {node.plugin!r}: a share of light above 1 counts as 1")
+        return _changed(color, lambda value: np.minimum(value, 1.0))
 
     def painted(self, node: Node, name: str) -> Painted | None:
         """Colours of the mesh in a property; None: it is something else."""
