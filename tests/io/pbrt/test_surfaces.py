@@ -119,7 +119,7 @@ def test_a_plymesh_of_polygons_has_its_coordinates(tmp_path: Path) -> None:
     assert mesh.uv.tolist() == [[0, 1], [1, 1], [1, 0], [0, 0]]  # (0, 0) is the top left
     assert scene.instances[0].name == "quad"
     lost = read(tmp_path, 'Shape "plymesh" "string filename" "no.ply"')
-    assert "a mesh whose file is missing is left out (1 use)" in lost.warnings
+    assert "a mesh whose file is missing is left out (1 use: 'no.ply')" in lost.warnings
 
 
 def test_curves_of_all_bases_are_their_own_points(tmp_path: Path) -> None:

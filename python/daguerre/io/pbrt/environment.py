@@ -92,7 +92,7 @@ class Skies:
         path = self._files.find(name, made.place, "filename")
         if path is None:
             sentence = "an infinite light whose picture is missing is left out"
-            self._ledger.note(made.place, sentence)
+            self._ledger.note(made.place, sentence, name)
             return None
         self._left -= 1
         if self._left < 0:

@@ -38,12 +38,12 @@ class Ledger:
         if self._waiting.pop(key, None) is not None:
             self._used.add(key)
 
-    def note(self, place: Place, sentence: str) -> None:
-        """Notes that a directive is not used."""
+    def note(self, place: Place, sentence: str, name: str = "") -> None:
+        """Notes that a directive is not used, by the name of its file, if any."""
         key = _key(place)
         if self._waiting.pop(key, None) is not None:
             self._noted.add(key)
-        self.notes.add(sentence)
+        self.notes.add(sentence, name=name)
 
     def tell_unread(self, parameters: Parameters, place: Place, kind: str) -> None:
         """Notes the parameters of a directive that nothing asked for."""

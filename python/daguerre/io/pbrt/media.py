@@ -97,7 +97,8 @@ class Media:
             return None
         medium = _KINDS[kind](self, made)
         if medium is None:
-            self._ledger.note(made.place, "a medium whose file is missing is left out")
+            sentence = "a medium whose file is missing is left out"
+            self._ledger.note(made.place, sentence, made.parameters.text("filename"))
             return None
         self._ledger.use(made.place)
         self._ledger.tell_unread(made.parameters, made.place, kind)

@@ -83,7 +83,7 @@ class Meshes:
     def _shape(self, made: Made, outer: list[Moving] | None, name: str) -> None:
         surface = surface_of(made, self._files, self._ledger.notes)
         if isinstance(surface, str):
-            self._ledger.note(made.place, surface)
+            self._ledger.note(made.place, surface, made.parameters.text("filename"))
             return
         look, mask = self._looks.of(made), self._looks.mask(made)
         spots = self._spots(made, outer, name, surface.name or made.kind)

@@ -132,11 +132,10 @@ class Spectra:
         path = self._files.find(name, parameter.place, parameter.name)
         if path is None:
             is_file = "/" in name or "." in name
-            self._notes.add(
-                "a spectrum whose file is missing is left out"
-                if is_file
-                else f"the spectrum {name[:40]!r} is not known"
+            what = (
+                "whose file is missing is left out" if is_file else "of no known name is left out"
             )
+            self._notes.add(f"a spectrum {what}", name=name)
             return None
         if path not in self._read:
             with asked_by(f"{parameter.place}: {parameter.name}"):

@@ -144,7 +144,7 @@ class Images(Textures):
                 self._pictures[path] = None
                 self._unknown.add(path)
         if self._pictures[path] is None:
-            self._notes.add(_UNKNOWN if path in self._unknown else _MISSING)
+            self._notes.add(_UNKNOWN if path in self._unknown else _MISSING, name=path)
         return self._pictures[path]
 
     def _found(self, place: str, path: str) -> Picture | None:

@@ -152,7 +152,8 @@ class Lighting:
         place = f"{lamp.prim.GetPath()}.{name}"
         path = self._opened.assets.resolve(place, asset, attribute)
         if path is None:
-            self._notes.add("a picture of a light is missing: the light has one colour")
+            missing = "a picture of a light is missing: the light has one colour"
+            self._notes.add(missing, name=asset.path)
         return path
 
     def _distant(self, visit: Visit, spots: Spots, lamp: Lamp) -> None:

@@ -58,7 +58,8 @@ def _photometric(lamp: Lamp, assets: Assets, notes: Notes) -> LightProfile | Non
         return None
     path = assets.resolve(f"{lamp.prim.GetPath()}.{_FILE}", asset, attribute)
     if path is None:
-        notes.add("a photometric file of a light is missing: the light is even")
+        missing = "a photometric file of a light is missing: the light is even"
+        notes.add(missing, name=asset.path)
         return None
     found = LightProfile.from_ies(path).stretched(_number(lamp, "ies:angleScale", 0.0))
     return found.normalized() if lamp.flag("inputs:shaping:ies:normalize") else found
