@@ -61,9 +61,9 @@ inline float weigh_node(const LightNode& node, Vec3f position, float* weights) {
         return (weights[0] + weights[1]) + (weights[2] + weights[3]);
     }
     for (int i = 0; i < kWide; ++i)
-        weights[i] = estimate<aside>({{n[0][i], n[1][i], n[2][i]}, n[3][i], {n[4][i], n[5][i], n[6][i]}, n[7][i], n[8][i],
-                               n[9][i], n[10][i]},
-                              position);
+        weights[i] = estimate<aside>({{n[0][i], n[1][i], n[2][i]}, n[3][i], {n[4][i], n[5][i], n[6][i]}, n[7][i],
+                                      n[8][i], n[9][i], n[10][i]},
+                                     position);
     return (weights[0] + weights[1]) + (weights[2] + weights[3]);
 }
 
