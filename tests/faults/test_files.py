@@ -16,6 +16,7 @@ import pytest
 import daguerre as dg
 from daguerre.errors import InputError, MismatchError
 from daguerre.files import atomic
+from daguerre.files.json_file import read_json_file
 from daguerre.rendering import Job, Output, Picture, RenderSettings, View, identity, loop
 from daguerre.rendering.checkpoint import Checkpoint
 
@@ -304,3 +305,10 @@ def test_a_checkpoint_of_another_build_is_refused_by_name(
     kept.write_bytes(b"no picture")
     with pytest.raises(InputError, match=r"kept\.exr"):
         dg.render(scene, camera, checkpoint=kept, **settings)
+
+
+def test_an_endless_file_name_is_a_short_error(tmp_path: Path) -> None:
+    endless = tmp_path / ("[" * 6000 + ".json")
+    with pytest.raises(dg.InputError, match="cannot read: File name too long") as caught:
+        read_json_file(endless, "sensor", "any", (), lambda root: root)
+    assert len(str(caught.value)) < 1200

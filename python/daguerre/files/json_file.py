@@ -13,6 +13,8 @@ from .json_text import parse
 
 Made = TypeVar("Made")
 MAX_BYTES = 16_000_000
+#: Maximum number of characters of a path in a message.
+_LONGEST = 1000
 
 
 def read_json_file(
@@ -36,7 +38,9 @@ def read_json_file(
             raise InputError(f"{path}: {what} file: wanted a file of at most {MAX_BYTES} bytes")
         data = path.read_bytes()
     except OSError as error:
-        raise InputError(f"{path}: cannot read: {error.strerror or error}") from None
+        name = str(path)  # that a file gives may be long
+        shown = name if len(name) <= _LONGEST else f"{name[:_LONGEST]}..."
+        raise InputError(f"{shown}: cannot read: {error.strerror or error}") from None
     root = parse(data, str(path))
     named = root.need("schema")
     if named.value != schema:
