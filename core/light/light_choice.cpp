@@ -14,13 +14,13 @@ std::optional<LightSet::Choice> LightSet::choose(float u, Vec3f position) const 
     if (empty()) return std::nullopt;
     LightTree::Weights weights;
     weights.sum = 0;
-    if (!tree_.empty()) weights = tree_.weigh_aside(position);
+    if (!tree_.empty()) weights = tree_.weigh<true>(position);
     const float p_infinite = infinite_share(weights.sum);
     if (u < p_infinite) {
         const DiscreteSample found = infinite_.sample(std::min(u / p_infinite, kAlmostOne));
         return Choice{infinite_lights_[found.index], p_infinite * found.pmf};
     }
-    const auto found = tree_.sample_aside(weights, position, std::min((u - p_infinite) / (1 - p_infinite), kAlmostOne));
+    const auto found = tree_.sample<true>(weights, position, std::min((u - p_infinite) / (1 - p_infinite), kAlmostOne));
     if (!found) return std::nullopt;
     return Choice{std::int32_t(triangles_[found->light].light), (1 - p_infinite) * found->probability};
 }

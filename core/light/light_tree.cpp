@@ -99,19 +99,16 @@ LightTree::LightTree(std::span<const LightBounds> lights) {
                 place_[~next] = std::int32_t(node) * kWide + i;
 }
 
+template <bool aside>
 LightTree::Weights LightTree::weigh(Vec3f position) const {
     Weights w;
-    w.sum = weigh_node(nodes_[0], position, w.of.data());
-    if (has_second()) w.sum += weigh_node(nodes_[1], position, w.of.data() + kWide);
+    w.sum = weigh_node<aside>(nodes_[0], position, w.of.data());
+    if (has_second()) w.sum += weigh_node<aside>(nodes_[1], position, w.of.data() + kWide);
     return w;
 }
 
-LightTree::Weights LightTree::weigh_aside(Vec3f position) const {
-    Weights w;
-    w.sum = weigh_node<true>(nodes_[0], position, w.of.data());
-    if (has_second()) w.sum += weigh_node<true>(nodes_[1], position, w.of.data() + kWide);
-    return w;
-}
+template LightTree::Weights LightTree::weigh<false>(Vec3f) const;
+template LightTree::Weights LightTree::weigh<true>(Vec3f) const;
 
 /// `weights` are of some light.
 LightTree::Descent LightTree::start(const Weights& top, float u) const {
@@ -135,23 +132,18 @@ void LightTree::descend(Descent& d, Vec3f position) const {
     d.next = node.next[chosen];
 }
 
+template <bool aside>
 std::optional<LightTree::Choice> LightTree::sample(const Weights& top, Vec3f position, float u) const {
     if (lone()) return Choice{0, 1};
     if (!(top.sum > 0)) return std::nullopt;
     Descent d = start(top, u);
-    while (d.next >= 0) descend<false>(d, position);
+    while (d.next >= 0) descend<aside>(d, position);
     if (!(d.probability > 0)) return std::nullopt;
     return Choice{~d.next, d.probability};
 }
 
-std::optional<LightTree::Choice> LightTree::sample_aside(const Weights& top, Vec3f position, float u) const {
-    if (lone()) return Choice{0, 1};
-    if (!(top.sum > 0)) return std::nullopt;
-    Descent d = start(top, u);
-    while (d.next >= 0) descend<true>(d, position);
-    if (!(d.probability > 0)) return std::nullopt;
-    return Choice{~d.next, d.probability};
-}
+template std::optional<LightTree::Choice> LightTree::sample<false>(const Weights&, Vec3f, float) const;
+template std::optional<LightTree::Choice> LightTree::sample<true>(const Weights&, Vec3f, float) const;
 
 void LightTree::sample(const Weights& top, Vec3f position, std::span<const float> u,
                        std::span<Choice> found) const {

@@ -46,11 +46,13 @@ class LightTree {
     /// One light alone: it is chosen without a look, wherever it shines.
     bool lone() const { return place_.size() == 1; }
     /// Illuminance that the lights and groups of the first two nodes bring to a point: one group alone knows too
-    /// little where lights surround the point. The sum is an estimate of the illuminance (lux) by all together.
+    /// little where lights surround the point. The sum is an estimate of the illuminance (lux) by all together. With
+    /// `aside`, for whoever samples the light from elsewhere, lights turned away from the point count, too.
     struct Weights {
         std::array<float, 2 * LightNode::kWide> of;
         float sum;
     };
+    template <bool aside = false>
     Weights weigh(Vec3f position) const;
     float importance(Vec3f position) const { return weigh(position).sum; }
     static constexpr std::size_t kMostAtOnce = 4;
@@ -58,14 +60,11 @@ class LightTree {
         int light;
         float probability;
     };
-    /// Empty where no light shines. A light that can reach the position has probability > 0.
+    /// Empty where no light shines. A light that can reach the position has probability > 0; with `aside`, every one.
     std::optional<Choice> sample(Vec3f position, float u) const { return sample(weigh(position), position, u); }
     /// The same with weigh(position) at hand, which a lone light has no use for.
+    template <bool aside = false>
     std::optional<Choice> sample(const Weights& weights, Vec3f position, float u) const;
-    /// The same for whoever samples the light from elsewhere: every light has probability > 0, also one that is turned
-    /// away from this position.
-    Weights weigh_aside(Vec3f position) const;
-    std::optional<Choice> sample_aside(const Weights& weights, Vec3f position, float u) const;
     /// Each `u` by itself as sample() would have it, probability 0 where that is empty; side by side, as the processor
     /// waits for each.
     void sample(const Weights& weights, Vec3f position, std::span<const float> u, std::span<Choice> found) const;

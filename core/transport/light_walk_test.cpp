@@ -7,6 +7,7 @@
 
 #include "math/statistics.h"
 #include "scene/test_scenes.h"
+#include "transport/test_furnace.h"
 
 namespace dg {
 namespace {
@@ -17,14 +18,7 @@ const Vec3f kPoint{-0.3f, -0.2f, 0.5f};
 /// A closed cube of half side 1 with a lamp in it.
 SceneDescription describe_room(Light lamp, Material wall) {
     SceneDescription d;
-    Mesh cube;
-    cube.name = "cube";
-    std::vector<Vec3f> corners;
-    for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f});
-    cube.positions = corners;
-    cube.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
-                      {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
-    d.meshes.push_back(cube);
+    d.meshes.push_back(closed_cube());
     d.materials.push_back(std::move(wall));
     d.instances.push_back({"cube", 0, 0, {}});
     d.lights.push_back(std::move(lamp));

@@ -78,6 +78,19 @@ PathSettings deep(int depth) {
     return settings;
 }
 
+/// A look into a cube by multiple importance sampling, by light samples and by paths alone, which must agree.
+std::vector<SampleMoments> by_every_strategy(const Scene& scene, PathSettings settings) {
+    std::vector<SampleMoments> found;
+    using Strategy = PathSettings::Strategy;
+    for (const auto strategy : {Strategy::mis, Strategy::light, Strategy::bsdf}) {
+        settings.strategy = strategy;
+        found.push_back(look(scene, test_ray({0, 0, 4}, {0, 0, -1}), settings, 1 << 17));
+    }
+    CHECK(welch_p_value(found[0], found[1]) > 1e-3);
+    CHECK(welch_p_value(found[0], found[2]) > 1e-3);
+    return found;
+}
+
 /// The light that a lamp of 1 cd brings by light scattered once: the integral along the ray.
 double scattered_once(Vec3d lamp, double albedo, double extinction, const Phase& phase, double end) {
     constexpr int kSteps = 200000;
@@ -245,15 +258,7 @@ TEST_CASE("lamps of some size in fog are found the same by their light, by the p
         for (int i = 0; many && i < 5; ++i)
             d.lights.push_back(SphereLight{{{0.1f * float(i), -1, 0.3f * float(i)}, 0.05f}, {40, 40, 9}});
         const auto scene = Scene::build(std::move(d));
-        std::vector<SampleMoments> found;
-        using Strategy = PathSettings::Strategy;
-        for (const auto strategy : {Strategy::mis, Strategy::light, Strategy::bsdf}) {
-            PathSettings settings = deep(6);
-            settings.strategy = strategy;
-            found.push_back(look(*scene, test_ray({0, 0, 4}, {0, 0, -1}), settings, 1 << 17));
-        }
-        CHECK(welch_p_value(found[0], found[1]) > 1e-3);
-        CHECK(welch_p_value(found[0], found[2]) > 1e-3);
+        const std::vector<SampleMoments> found = by_every_strategy(*scene, deep(6));
         CHECK(found[0].variance < found[2].variance);
     }
 }
@@ -277,15 +282,7 @@ TEST_CASE("a lamp in thin smoke is found the same by every strategy, though path
     fill(d, cube_mesh(), medium(grey(0.02f), grey(0.3f), {{0.95f, 1}}));
     d.lights.push_back(SphereLight{{{0.5f, 0, -0.4f}, 0.45f}, {10, 10, 10}});
     const auto scene = Scene::build(std::move(d));
-    std::vector<SampleMoments> found;
-    using Strategy = PathSettings::Strategy;
-    for (const auto strategy : {Strategy::mis, Strategy::light, Strategy::bsdf}) {
-        PathSettings settings = deep(2);
-        settings.strategy = strategy;
-        found.push_back(look(*scene, test_ray({0, 0, 4}, {0, 0, -1}), settings, 1 << 17));
-    }
-    CHECK(welch_p_value(found[0], found[1]) > 1e-3);
-    CHECK(welch_p_value(found[0], found[2]) > 1e-3);
+    const std::vector<SampleMoments> found = by_every_strategy(*scene, deep(2));
     CAPTURE(found[0].mean);
     CAPTURE(found[2].mean);
     CHECK(finds(found[0], found[2].mean, 1));

@@ -5,9 +5,8 @@
 
 namespace dg {
 
-/// A closed cube of half side 1 around the origin, made of the last of some materials.
-inline std::shared_ptr<const Scene> cube_of(std::vector<Material> materials) {
-    SceneDescription d;
+/// A cube of half side 1 around the origin; its front faces point in.
+inline Mesh closed_cube() {
     Mesh cube;
     cube.name = "cube";
     std::vector<Vec3f> corners;
@@ -15,7 +14,13 @@ inline std::shared_ptr<const Scene> cube_of(std::vector<Material> materials) {
     cube.positions = corners;
     cube.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
                       {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
-    d.meshes.push_back(cube);
+    return cube;
+}
+
+/// A closed cube of half side 1 around the origin, made of the last of some materials.
+inline std::shared_ptr<const Scene> cube_of(std::vector<Material> materials) {
+    SceneDescription d;
+    d.meshes.push_back(closed_cube());
     d.instances.push_back({"cube", 0, std::uint32_t(materials.size() - 1), {}});
     d.materials = std::move(materials);
     return Scene::build(std::move(d));
