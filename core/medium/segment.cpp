@@ -36,11 +36,6 @@ int Segment::choose(Spectrum shares, float& u) const {
     return chosen;
 }
 
-float Segment::free_path(float u) const {
-    const int k = choose(lanes_, u);
-    return rate_[k] > 0 ? -std::log1p(-u) / rate_[k] : std::numeric_limits<float>::infinity();
-}
-
 float Segment::before_end(int k, float u) const {
     return std::min(-std::log1p(-u * met_[k]) / rate_[k], length_);
 }

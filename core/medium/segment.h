@@ -28,15 +28,11 @@ class Segment {
     /// Chance that the path collides before the end.
     float collides() const { return (lanes_ * met_).average(); }
 
-    /// Distance to a collision, m; that of none is infinite. `u` in [0, 1).
-    float free_path(float u) const;
-    /// The same among those that collide before the end; collides() > 0.
+    /// Distance to a collision, m, of a path that collides before the end; collides() > 0. `u` in [0, 1).
     float free_collision(float u) const;
     /// Distance to a collision before the end, by wavelengths that count as if each collided there for sure.
     float collision(float u) const;
-    /// Densities of free_path() and collision() at a distance, per m: the mean over the wavelengths by which the path
-    /// may have been drawn.
-    float free_path_density(float t) const { return (lanes_ * densities(t)).average(); }
+    /// Density of collision() at a distance, per m: the mean over the wavelengths by which it may have been drawn.
     float collision_density(float t) const { return (colliding_ * densities(t)).average(); }
 
     /// Share of light that reaches a distance.

@@ -22,6 +22,16 @@ constexpr float kEndless = std::numeric_limits<float>::infinity();
 /// Lanes as a path has them that has come some way through the medium.
 Spectrum lanes_after(const MediumAt& m, float way) { return Segment(m, way, 1.f, false).passed().lanes; }
 
+/// Distance to a collision; infinite where the path passes.
+float free_path(const Segment& way, float u) {
+    return u < way.collides() ? way.free_collision(u / way.collides()) : kEndless;
+}
+
+/// Its density: the mean over the wavelengths by which the path may have been drawn.
+float free_path_density(const MediumAt& m, Spectrum lanes, float t) {
+    return (lanes * m.extinction * transmittance(m.extinction, t)).average();
+}
+
 /// Chi-square of distances against the integral of a density; those beyond `end` are one cell.
 template <typename Draw, typename Density>
 double p_value(float end, Draw draw, Density density, int stream) {
@@ -49,8 +59,8 @@ TEST_CASE("free paths are drawn by their density, by all wavelengths together") 
     for (const MediumAt& m : {kGrey, kColorful})
         for (const Spectrum lanes : {Spectrum(1.f), lanes_after(m, 1)}) {
             const Segment segment(m, 3, lanes, false);
-            const auto draw = [&](float u) { return segment.free_path(u); };
-            const auto density = [&](float t) { return segment.free_path_density(t); };
+            const auto draw = [&](float u) { return free_path(segment, u); };
+            const auto density = [&](float t) { return free_path_density(m, lanes, t); };
             CHECK(p_value(3, draw, density, ++stream) > 1e-3);
             CHECK(p_value(3, draw, [&](float t) { return density(t) * 1.08f; }, stream) < 1e-3);
             const auto within = [&](float u) { return segment.collision(u); };
@@ -67,7 +77,7 @@ TEST_CASE("what passes and what is scattered have the right mean at each wavelen
         constexpr int kCount = 400000;
         double passed[4]{}, scattered[4]{};
         for (int n = 0; n < kCount; ++n) {
-            const float t = segment.free_path(float((n + hash_uniform(5, n)) / kCount));
+            const float t = free_path(segment, float((n + hash_uniform(5, n)) / kCount));
             const auto onward = t < segment.length() ? segment.scattered(t) : segment.passed();
             double* const sum = t < segment.length() ? scattered : passed;
             for (int k = 0; k < 4; ++k) sum[k] += double(onward.weight[k]) / kCount;
@@ -89,7 +99,7 @@ TEST_CASE("no wavelength of a path ever carries more than 4, however colourful t
     for (int n = 0; n < 2000; ++n) {
         if (n % 8 == 0) lanes = carried = 1.f;
         const Segment segment(m, 1, lanes, false);
-        const float t = segment.free_path(float(hash_uniform(9, n)));
+        const float t = free_path(segment, float(hash_uniform(9, n)));
         const auto onward = t < 1 ? segment.scattered(t) : segment.passed();
         carried *= onward.weight, lanes = onward.lanes;
         CHECK(carried.max() < 4.001f);
@@ -108,7 +118,7 @@ TEST_CASE("emission is (1 - exp(-s d)) j / s") {
 
 TEST_CASE("an endless way lets nothing pass but what meets nothing") {
     const Segment grey(kGrey, kEndless, 1.f, false);
-    CHECK(grey.free_path(0.999999f) < 1000);
+    CHECK(free_path(grey, 0.999999f) < 1000);
     CHECK(grey.left(kEndless).is_black());
     const Segment colorful(kColorful, kEndless, 1.f, false);
     CHECK(colorful.left(kEndless)[3] == 1);

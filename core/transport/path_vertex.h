@@ -1,6 +1,6 @@
 // path_vertex.h -- a vertex of a path that can be followed either way.
 //
-// What counts is the BSDF as a path from the camera has it: f(wo, wi) with wo toward the camera and wi toward
+// The BSDF counts as a path from the camera has it: f(wo, wi) with wo toward the camera and wi toward
 // the light, shaded as it looks from wo, and radiance is f |ns . wi| for a shading normal ns. A path from the
 // light carries flux past the same vertex, and finds the same light if it is scattered by
 //     f |ns . wi| |ng . wo| / |ng . wi|       with the geometric normal ng,
