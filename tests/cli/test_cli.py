@@ -120,6 +120,11 @@ WRONG = {
     "no output": (["render", "s.glb"], 2, "--output"),
     "no scene": (["render", "-o", "a.exr"], 2, "SCENE"),
     "format": (["render", "s.glb", "-o", "a.gif"], 2, "ending in .exr, .png"),
+    "channels in a png": (
+        ["render", "s.glb", "-o", "a.png", "--aov", "depth"],
+        2,
+        "--aov: wanted an .exr with -o",
+    ),
     "no suffix": (
         ["render", "s.glb", "-o", "a"],
         2,

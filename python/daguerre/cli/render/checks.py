@@ -40,6 +40,8 @@ def check_files(flags: JobFlags, rows: SettingsFlags, maps: MapFlags) -> list[st
             "-o: wanted a picture for --aov, --samples, --noise, --denoise or --preview, got only "
             "maps"
         )
+    if groups and ".exr" not in formats:
+        raise UsageError("--aov: wanted an .exr with -o, which alone holds channels, got none")
     if flags.samples and ".exr" not in formats:
         raise UsageError("--samples: wanted an .exr with -o for the sums of the pass, got none")
     if flags.noisy and not flags.denoise:
