@@ -36,7 +36,7 @@ Opening Projection::opening(const Numbers& now) const {
 }
 
 std::optional<Vec3d> Projection::chief_direction(const Numbers& now, Vec2d film) const {
-    const auto d = model.unproject(model_point(now, film));
+    const auto d = model.unproject(model.continued(model_point(now, film)));
     return d ? std::optional(turned(*d)) : std::nullopt;
 }
 

@@ -448,6 +448,16 @@ std::optional<Vec3d> ProjectionModel::unproject(Vec2d p) const {
     return Vec3d{p.x * across, p.y * across, std::cos(*angle)};
 }
 
+Vec2d ProjectionModel::continued(Vec2d p) const {
+    if (kind_ != Kind::equirectangular || (std::abs(p.x) <= kPiD && std::abs(p.y) <= kPiD / 2)) return p;
+    p.y = std::remainder(p.y, 2 * kPiD);
+    if (std::abs(p.y) > kPiD / 2) {   // over a pole, and down behind it
+        p.y = std::copysign(kPiD, p.y) - p.y;
+        p.x += kPiD;
+    }
+    return {std::remainder(p.x, 2 * kPiD), p.y};
+}
+
 double ProjectionModel::solid_angle(Vec2d p) const {
     const double h = 1e-5;
     const auto a = unproject({p.x - h, p.y}), b = unproject({p.x + h, p.y}), c = unproject({p.x, p.y - h}),

@@ -42,6 +42,9 @@ struct ProjectionModel {
     std::optional<Vec2d> project(Vec3d direction) const;
     /// The direction (unit) that a point sees; nothing where the model has none.
     std::optional<Vec3d> unproject(Vec2d point) const;
+    /// The point in place of one beyond the edges: a panorama goes on at its other side, where the filters of its last
+    /// pixels reach. Of other models the point itself.
+    Vec2d continued(Vec2d point) const;
     /// Solid angle per area of the picture; 0 where nothing is seen.
     double solid_angle(Vec2d point) const;
 

@@ -89,6 +89,17 @@ TEST_CASE("the inverse of opencv takes points of the picture to ideal ones by it
     CHECK_FALSE(folds.project({1.01 * ideal, 0, 1}).has_value());
 }
 
+TEST_CASE("a panorama goes on beyond its edges, at its other side and over its poles") {
+    const ProjectionModel panorama(Kind::equirectangular);
+    for (const Vec2d p : {Vec2d{3.2, 0.3}, {-3.3, -1.2}, {0.4, 1.7}, {-2.5, -1.6}, {3.15, 1.58}, {0.5, 0.5}, {7, 4}}) {
+        const auto seen = panorama.unproject(panorama.continued(p));
+        REQUIRE(seen.has_value());
+        const Vec3d formula{std::cos(p.y) * std::sin(p.x), std::sin(p.y), std::cos(p.y) * std::cos(p.x)};
+        CHECK(length(*seen - formula) < 1e-12);
+    }
+    CHECK_FALSE(ProjectionModel(Kind::equisolid).unproject(ProjectionModel(Kind::equisolid).continued({3, 3})));
+}
+
 TEST_CASE("closed forms of fisheyes and panoramas") {
     const double t = 1.1;
     const auto radius = [&](Kind kind) { return ProjectionModel(kind).project(direction(t, 0))->x; };

@@ -170,6 +170,17 @@ def test_a_fisheye_sees_behind_itself() -> None:
     assert green + 0.5 == pytest.approx(wanted, abs=1.5)
 
 
+def test_a_panorama_is_as_bright_at_its_edges() -> None:
+    scene = dg.Scene()
+    scene.set_environment(np.ones((2, 4, 3)))
+    projection = Projection.of_field("equirectangular", (64, 32), 360)
+    camera = dg.Camera(projection=projection, f_stop=None)
+    luminance = dg.render(scene, camera, resolution=(64, 32), spp=64).rgb[..., 1]
+    edges = (luminance[:, 0], luminance[:, -1], luminance[0], luminance[-1])
+    means = [edge.mean() for edge in edges]
+    assert np.allclose(means, 1, atol=0.01)  # 0.88 without what lies beyond
+
+
 def test_rays_beyond_the_field_are_refused_and_counted() -> None:
     model = Projection("orthographic", (100, 100), (40.0, 40.0))
     session = dg.Session(dg.Scene(), dg.Camera(projection=model), resolution=(100, 100))
