@@ -288,6 +288,7 @@ def test_few_rays_find_the_ghosts_of_a_fisheye(angle: float) -> None:
         (["--flare", "95"], 2, "below 90 degrees"),
         (["--ghost", "4,1"], 2, "--ghost: needs --flare"),
         (["--flare", "10", "--ghost", "3,3", "--drawing", "x.svg"], 3, "two different surfaces"),
+        (["--flare", "10", "--ghost", "1,99"], 3, "two different surfaces"),
         (["--flare", "10", "--sensor-reflectance", "2"], 2, "sensor_reflectance"),
     ],
 )

@@ -93,9 +93,9 @@ class FlareFlags(TableFlags):
         given = self.given()
         angle, which = given.pop("angle"), given.pop("ghost", None)
         ghosts = Ghosts(bench, angle, film=files.film, stack=stack_of(Camera(**given)))
+        shown = ghosts.find(which) if which else None
         if files.drawing is not None:
-            shown = ghosts.find(which) if which else _brightest(ghosts)
-            _write_drawing(ghosts, shown, files.drawing)
+            _write_drawing(ghosts, shown or _brightest(ghosts), files.drawing)
         if files.plot is not None:
             from daguerre.files.atomic import write_bytes
             from daguerre.plots.ghost_plot import plot_ghosts
