@@ -103,11 +103,15 @@ def _picture(folder: Path) -> None:
         ),
     ],
 )
-def test_pictures_are_projected_as_by_mitsuba(plugin: str, inner: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("turn", ["", '<rotate z="1" angle="50"/>', '<scale x="-1"/>'])
+def test_pictures_are_projected_as_by_mitsuba(
+    plugin: str, inner: str, turn: str, tmp_path: Path
+) -> None:
     _picture(tmp_path)
     slot = "irradiance" if plugin == "projector" else "texture"
     texture = f'<texture type="bitmap" name="{slot}"><string name="filename" value="slide.png"/>'
-    lamp = _emitter(plugin, inner + texture + "</texture>" + LOOK)
+    look = LOOK.replace("<lookat", turn + "<lookat")
+    lamp = _emitter(plugin, inner + texture + "</texture>" + look)
     path = written(tmp_path, DIRECT, camera(size=(48, 48)), FLOOR, lamp)
     same_blocks(ours(path, 256), theirs(path, 64), 0.05)
 
@@ -143,6 +147,8 @@ def _sky(folder: Path, width: int = 128) -> None:
         '<rotate x="1" angle="90"/>',
         # along (1, 2, 3); Mitsuba takes an axis of another length for no rotation
         '<rotate value="0.2672612419 0.5345224838 0.8017837257" angle="50"/>',
+        '<scale x="-1"/><rotate y="1" angle="70"/>',
+        '<scale x="-1"/><rotate x="1" angle="90"/>',
     ],
 )
 def test_skies_stand_as_those_of_mitsuba(turn: str, tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import daguerre as dg
 from daguerre.io.mitsuba.reader import read_all
@@ -165,7 +166,7 @@ def test_settings_are_told(tmp_path: Path) -> None:
     assert (found.resolution, found.crop, found.spp) == ((60, 40), (10, 0, 30, 40), 9)
     assert (found.filter, found.max_depth) == ("gaussian:1.6", 4)
     assert scene.warnings == [
-        "the file's film and sampler are set by: --resolution 60x40 --crop 10,30,0,40 --spp 9 "
+        "the file's film and sampler are set by: --res 60x40 --crop 10,30,0,40 --spp 9 "
         "--filter gaussian:1.6 --max-depth 4"
     ]
     assert list(scene.cameras) == ["eye", "other"]
@@ -198,6 +199,47 @@ def test_cameras_see_what_those_of_mitsuba_see(inner: str, tmp_path: Path) -> No
         MARKS,
     )
     same_blocks(ours(path, 64), theirs(path, 64), 0.05)
+
+
+MIRROR = '<transform name="to_world"><scale x="-1"/>'
+
+
+def test_a_mirrored_camera_sees_the_mirror_image_as_in_mitsuba(tmp_path: Path) -> None:
+    seen = camera("4 3 3", "0.2 0.3 0", "0 1 0", fov=35, size=(80, 64))
+    path = written(
+        tmp_path,
+        '<integrator type="path"><integer name="max_depth" value="2"/></integrator>',
+        seen.replace('<transform name="to_world">', MIRROR, 1),
+        MARKS,
+        '<shape type="rectangle"><transform name="to_world"><scale value="2"/>'
+        '<translate z="-1"/></transform></shape>',
+        '<emitter type="directional"><vector name="direction" x="2" y="-1" z="-1"/></emitter>',
+    )
+    assert read_all(path)[0].warnings == [
+        "the file's film and sampler are set by: --res 80x64 --spp 16 --filter box:0.5 "
+        "--max-depth 1"
+    ]
+    same_blocks(ours(path, 64), theirs(path, 64), 0.05)
+
+
+def test_a_mirrored_camera_sees_normal_maps_and_slides_mirrored(tmp_path: Path) -> None:
+    y, x = np.mgrid[0:16, 0:16] / 16
+    slopes = np.stack([0.4 * np.sin(9 * x), 0.3 * np.sin(7 * y + x), 0.8 + 0 * x], axis=2)
+    Image.fromarray((127.5 + 127.5 * slopes).astype(np.uint8)).save(tmp_path / "map.png")
+    texture = '<texture type="bitmap" name="{}"><string name="filename" value="map.png"/>{}</texture>'
+    raw = texture.format("normalmap", '<boolean name="raw" value="true"/>')
+    parts = (
+        '<shape type="rectangle"><bsdf type="normalmap">' + raw + '<bsdf type="diffuse"/></bsdf>'
+        "</shape>",
+        '<emitter type="projector"><float name="fov" value="60"/>'
+        + texture.format("irradiance", "")
+        + '<transform name="to_world"><lookat origin="1 0.5 2" target="0.1 0 0" up="0 1 0"/>'
+        "</transform></emitter>",
+    )
+    seen = camera("0 0 4", size=(64, 64))
+    plain = ours(written(tmp_path, seen, *parts), 64)
+    seen = seen.replace('<transform name="to_world">', MIRROR, 1)
+    same_blocks(ours(written(tmp_path, seen, *parts), 64), plain[:, ::-1], 0.04)
 
 
 def test_a_thin_lens_blurs_as_mitsubas(tmp_path: Path) -> None:

@@ -71,6 +71,12 @@ def test_solids_are_those_of_mitsuba(plugin: str, variant: str, tmp_path: Path) 
     _agrees(path, dg.load(path))
 
 
+@pytest.mark.parametrize("inner", ["", '<boolean name="flip_normals" value="true"/>'])
+def test_a_mirrored_sphere_points_inward_as_in_mitsuba(inner: str, tmp_path: Path) -> None:
+    path = written(tmp_path, _shape("sphere", inner, scale="-1.5, 1.5, 1.5"))
+    _agrees(path, dg.load(path))
+
+
 _OBJ = """
 v -1 -1 0
 v 1 -1 0

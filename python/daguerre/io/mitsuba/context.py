@@ -22,14 +22,22 @@ class Context:
         scene: Receives what is read.
         unit_m: Length of a unit of the file, m.
         notes: Receives notes.
+        mirrored: Whether the scene is the mirror image of the file's: its camera is mirrored,
+            which no lens does.
     """
 
     document: Document
     scene: Scene
     unit_m: float
     notes: Notes
+    mirrored: bool = False
 
     @property
     def world(self) -> NDArray[np.float64]:
         """Scene from the file's world, shape (4, 4)."""
-        return np.diag([self.unit_m, self.unit_m, self.unit_m, 1.0])
+        return self.mirror @ np.diag([self.unit_m, self.unit_m, self.unit_m, 1.0])
+
+    @property
+    def mirror(self) -> NDArray[np.float64]:
+        """Mirror image of the file's world, or nothing, shape (4, 4)."""
+        return np.diag([-1.0 if self.mirrored else 1.0, 1.0, 1.0, 1.0])

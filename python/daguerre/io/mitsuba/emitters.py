@@ -24,7 +24,7 @@ from .projections import Shine, lamps, looked_up
 from .sensors import field_of_view
 from .spectra import PLUGINS, emitted_rgb
 from .textures import Textures
-from .transforms import TURN, frame, rigid
+from .transforms import TURN, frame, mirrors, orthogonal
 
 Array = NDArray[np.float64]
 Matrix = Array
@@ -81,7 +81,7 @@ class Emitters:
         picture = self._picture(node, "texture")
         if picture is None:
             light = PointLight(intensity, name=node.id, profile=_cone(beam, cutoff))
-            self._scene.add_light(light, self._pose(node))
+            self._scene.add_light(light, self._pose(node)[0])
             return
         self._project(node, _spotlight(picture, intensity, beam, cutoff), math.radians(cutoff))
 
@@ -109,8 +109,9 @@ class Emitters:
 
     def _project(self, node: Node, shine: Shine, widest: float) -> None:
         """Adds lamps that project a picture."""
-        pose = self._pose(node)
-        for intensity, profile in lamps(shine, widest):
+        pose, mirrored = self._pose(node)
+        seen = _mirror_image(shine) if mirrored else shine
+        for intensity, profile in lamps(seen, widest):
             light = PointLight(intensity, name=node.id, profile=profile)
             self._scene.add_light(light, pose)
         self._notes.add("a projected picture has edges as soft as a step of 1 / 640 of its angle")
@@ -122,15 +123,24 @@ class Emitters:
             if not 0 < length < math.inf:
                 node.fail("wanted a direction, got one of length 0")
             pose = np.eye(4)
-            pose[:3, :3] = frame(-direction / length)
+            pose[:3, :3] = frame(-self._axes() @ direction / length)
         else:
-            pose = self._pose(node)
+            pose, _ = self._pose(node)
             pose[:3, 3] = 0
         light = DirectionalLight(self._intensity(node, "irradiance"), name=node.id)
         self._scene.add_light(light, pose)
 
-    def _pose(self, node: Node) -> Matrix:
-        return rigid(self._world @ node.transform(), node, self._notes) @ TURN
+    def _pose(self, node: Node) -> tuple[Matrix, bool]:
+        """Scene from a lamp, rigid, and whether it mirrored the lamp's picture before."""
+        made = orthogonal(self._world @ node.transform(), node)
+        mirrored = mirrors(made)
+        if mirrored:
+            made[:3, 0] *= -1
+        return made @ TURN, mirrored
+
+    def _axes(self) -> Matrix:
+        """Directions of the scene from those of the file, shape (3, 3)."""
+        return self._world[:3, :3] / self._metres
 
     # The sky --------------------------------------------------------------------------------------
 
@@ -143,7 +153,7 @@ class Emitters:
         file = self._document.files_of(node).find(node.text("filename"), node.entry)
         node.skip("mis_compensation", "gamma", "cache")
         scale = node.number("scale", 1.0, 0.0)
-        turn = rigid(node.transform(), node, self._notes)[:3, :3]
+        turn = orthogonal(self._world @ node.transform(), node)[:3, :3]
         with asked_by(node.entry):
             picture = read_environment(file)
         pixels, rotation = panorama(picture, turn)
@@ -152,6 +162,11 @@ class Emitters:
     def _check_only(self, node: Node) -> None:
         if self._scene.environment is not None:
             node.fail("wanted one emitter around the scene, got another")
+
+
+def _mirror_image(shine: Shine) -> Shine:
+    """The same with left and right exchanged."""
+    return lambda x, y, z: shine(-x, y, z)
 
 
 def _cone(beam: float, cutoff: float) -> LightProfile:

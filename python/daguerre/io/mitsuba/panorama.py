@@ -24,11 +24,13 @@ def panorama(pixels: Picture, turn: NDArray[np.float64]) -> tuple[Picture, float
 
     Args:
         pixels: Shape (H, W, 3).
-        turn: World from the emitter, a rotation, shape (3, 3).
+        turn: World from the emitter, orthogonal, shape (3, 3).
 
     Returns:
         A panorama with -z in its middle, and its rotation about +y, degrees.
     """
+    if np.linalg.det(turn) < 0:  # the mirror image in x, turned
+        pixels, turn = pixels[:, ::-1], turn * (-1, 1, 1)
     count = len(pixels)
     finer = max(count, min(4 * count, _FINE))
     if turn[1, 1] < 1 - 1e-9:

@@ -19,7 +19,7 @@ from .materials import Glow, Materials, Sides
 from .media import Media
 from .mesh_files import FILES, MeshFiles
 from .node import Node, leave_out
-from .shapes import solid_of
+from .shapes import inward, solid_of
 from .spectra import emitted_rgb
 from .textures import Textures
 
@@ -98,7 +98,7 @@ class Placing:
         name = name or self._named(node, placed)
         chart = Chart()
         if look.reliefs:
-            chart = chart_of(self._scene.meshes[mesh], placed)
+            chart = chart_of(self._scene.meshes[mesh], self._context.mirror @ placed)
         material = self._material(node, chart, placed)
         self._scene.add_instance(mesh, material, placed, name=name)
 
@@ -117,7 +117,7 @@ class Placing:
         if solid is None:
             leave_out(node, self._notes, f"a shape {node.plugin[:40]!r} is left out")
             return None
-        key = (node.plugin, node.flag("flip_normals", False))
+        key = (node.plugin, inward(node))
         if key not in self._solids:
             mesh = solid.mesh
             arrays = mesh.positions, mesh.triangles, mesh.normals, mesh.uv

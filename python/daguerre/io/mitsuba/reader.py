@@ -33,6 +33,7 @@ from .placing import Placing
 from .sensors import PERSPECTIVE, read_camera
 from .settings import Settings, depth_of, settings_of
 from .textures import Textures
+from .transforms import mirrors
 
 
 def read(
@@ -82,12 +83,19 @@ def read_all(
     file, notes = Path(path), Notes()
     document = Document(file, Files(file, allow_dirs), defined(define))
     scene = Scene(path=file, time=float(time))
-    context = Context(document, scene, float(unit_m), notes)
     # Huge finite numbers may overflow in between; results are checked.
     with np.errstate(all="ignore"):
+        context = Context(document, scene, float(unit_m), notes, _mirrored(document.root))
         settings = _Reader(context).read()
     scene.note(*notes.sentences())
     return scene, settings, document.ledger
+
+
+def _mirrored(root: Node) -> bool:
+    """Whether the first camera that can be used is mirrored."""
+    nodes = (node for _, node in root.objects("sensor") if node.plugin in PERSPECTIVE)
+    first = next(nodes, None)
+    return first is not None and mirrors(first.transform())
 
 
 class _Reader:

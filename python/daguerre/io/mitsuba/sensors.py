@@ -35,7 +35,7 @@ def read_camera(node: Node, world: NDArray[np.float64], settings: Settings, note
 
     Args:
         node: The sensor.
-        world: Scene from world, which scales to metres, shape (4, 4).
+        world: Scene from world, which scales to metres and may mirror, shape (4, 4).
         settings: Settings with the shape of its film.
         notes: Receives notes.
 
@@ -51,7 +51,7 @@ def read_camera(node: Node, world: NDArray[np.float64], settings: Settings, note
         "focal_length": size[0] / 2 / half,
         "lens": "pinhole" if node.plugin == "perspective" else "thin",
     }
-    metres = float(world[0, 0])
+    metres = float(world[1, 1])
     values |= _shift(node, size) | _clip(node, metres) | _shutter(node)
     if node.plugin == "thinlens":
         values |= _lens(node, metres)

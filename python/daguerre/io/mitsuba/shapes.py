@@ -16,7 +16,7 @@ from daguerre.scene import shapes
 from daguerre.scene.shapes import SQUARE, ShapeMesh
 
 from .node import Node
-from .transforms import frame
+from .transforms import frame, mirrors
 
 Array = NDArray[np.float64]
 
@@ -39,7 +39,13 @@ def solid_of(node: Node) -> Solid | None:
     if make is None:
         return None
     made = make(node)
-    return replace(made, mesh=made.mesh.flipped()) if node.flag("flip_normals", False) else made
+    return replace(made, mesh=made.mesh.flipped()) if inward(node) else made
+
+
+def inward(node: Node) -> bool:
+    """Whether the normals of a shape point inward: those of a mirrored sphere do in Mitsuba."""
+    flipped = node.flag("flip_normals", False)
+    return flipped != (node.plugin == "sphere" and mirrors(node.transform()))
 
 
 def _mesh(found: ShapeMesh | None) -> ShapeMesh:

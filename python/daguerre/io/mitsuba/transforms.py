@@ -170,7 +170,25 @@ def product(steps: Sequence[tuple[str, Attributes]], entries: Sequence[Entry]) -
 
 
 def rigid(matrix: Matrix, node: Node, notes: Notes) -> Matrix:
-    """Rotation and translation of a transform, without its scale.
+    """Rotation and translation of a transform, without its scale or, with a note, its mirror.
+
+    Raises:
+        InputError: It flattens, or shears.
+    """
+    made = orthogonal(matrix, node)
+    if mirrors(made):
+        made[:3, 0] *= -1
+        notes.add(f"a {node.kind} that is mirrored is drawn as it was before")
+    return made
+
+
+def mirrors(matrix: Matrix) -> bool:
+    """Whether a transform turns left into right."""
+    return bool(np.linalg.det(matrix[:3, :3]) < 0)
+
+
+def orthogonal(matrix: Matrix, node: Node) -> Matrix:
+    """Rotation, mirror and translation of a transform, without its scale.
 
     Raises:
         InputError: It flattens, or shears.
@@ -182,9 +200,6 @@ def rigid(matrix: Matrix, node: Node, notes: Notes) -> Matrix:
     turned = axes_ / lengths
     if np.abs(turned.T @ turned - np.eye(3)).max() > 1e-3:
         node.fail("wanted a transform that turns and moves, got one that shears")
-    if np.linalg.det(turned) < 0:
-        turned[:, 0] *= -1
-        notes.add(f"a {node.kind} that is mirrored is drawn as it was before")
     u, _, v = np.linalg.svd(turned)  # exactly orthogonal
     made = np.eye(4)
     made[:3, :3], made[:3, 3] = u @ v, place
