@@ -15,6 +15,8 @@ from .ears import Effort, clipped, plane_of
 IntArray = NDArray[np.int64]
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+#: Where numbers are in an array.
+Places = slice | IntArray
 #: Polygons at a time, so that their points stay in the cache of the processor.
 _CHUNK = 1 << 14
 
@@ -40,9 +42,9 @@ def triangulate(
     Raises:
         InputError: Concave polygons with too many corners would take minutes.
     """
-    each = np.asarray(sizes, np.int64)
+    each, flat = np.asarray(sizes, np.int64), np.asarray(vertices)
     triangles = np.empty((int(each.sum()) - 2 * len(each), 3), np.int64)
-    for rows, corners in _divisions(each, np.asarray(vertices), points):
+    for rows, corners in _divisions(each, np.arange(len(flat)), flat, points):
         triangles[rows] = corners
     return triangles, np.repeat(np.arange(len(each)), each - 2)
 
@@ -57,50 +59,77 @@ def vertices_of_triangles(
     """
     each, flat = np.asarray(sizes, np.int64), np.asarray(vertices)
     triangles = np.empty((int(each.sum()) - 2 * len(each), 3), np.uint32)
-    for rows, corners in _divisions(each, flat, points):
-        triangles[rows] = flat[corners]
+    names = flat.astype(np.uint32, copy=False)
+    for rows, corners in _divisions(each, names, flat, points):
+        triangles[rows] = corners
     return triangles
 
 
 def _divisions(
-    sizes: IntArray, vertices: NDArray[Any], points: ArrayLike | None
-) -> Iterator[tuple[IntArray, IntArray]]:
-    """Rows of triangles, shape (B, n - 2), and their corners, shape (B, n - 2, 3)."""
+    sizes: IntArray, names: NDArray[Any], vertices: NDArray[Any], points: ArrayLike | None
+) -> Iterator[tuple[Places, NDArray[Any]]]:
+    """Rows of triangles, and the names of their corners, shape (T, 3).
+
+    Args:
+        sizes: Corners of each polygon, shape (F,).
+        names: Name of each corner, shape (C,), whole numbers.
+        vertices: Vertex of each corner, shape (C,).
+        points: Positions of vertices, shape (N, 3), or None.
+    """
     places, effort = None if points is None else np.asarray(points), Effort()
     corner, row = 0, 0
     for begin in range(0, len(sizes), _CHUNK):
         some = sizes[begin : begin + _CHUNK]
-        starts = corner + np.cumsum(some) - some
-        first = row + np.cumsum(some - 2) - (some - 2)
-        for size in np.flatnonzero(np.bincount(some)).tolist():
-            own = slice(None) if size == some[0] and (some == size).all() else some == size
-            corners = starts[own, None] + np.arange(size)
+        for size, corners, rows in _of_one_size(some):
+            own = names[corner:][corners].reshape(-1, size)
             near = None
             if places is not None and size > 3:
-                near = places.take(vertices[corners], axis=0).astype(np.float64, copy=False)
-            yield first[own, None] + np.arange(size - 2), _divided(corners, near, effort)
+                near = places.take(vertices[corner:][corners].reshape(-1, size), axis=0)
+            yield _moved(rows, row), _divided(own, near, effort).reshape(-1, 3)
         corner += int(some.sum())
         row += int(some.sum()) - 2 * len(some)
 
 
-def _divided(corners: IntArray, near: FloatArray | None, effort: Effort) -> IntArray:
+def _of_one_size(sizes: IntArray) -> Iterator[tuple[int, Places, Places]]:
+    """Sizes of polygons, corners of those that have it, and rows of their triangles."""
+    if (sizes == sizes[0]).all():
+        size = int(sizes[0])
+        yield size, slice(0, len(sizes) * size), slice(0, len(sizes) * (size - 2))
+        return
+    starts = np.cumsum(sizes) - sizes
+    first = starts - 2 * np.arange(len(sizes))
+    for size in np.flatnonzero(np.bincount(sizes)).tolist():
+        own = sizes == size
+        corners = starts[own, None] + np.arange(size)
+        yield size, corners.reshape(-1), (first[own, None] + np.arange(size - 2)).reshape(-1)
+
+
+def _moved(places: Places, by: int) -> Places:
+    if isinstance(places, slice):
+        return slice(places.start + by, places.stop + by)
+    return places + by
+
+
+def _divided(corners: NDArray[Any], near: NDArray[Any] | None, effort: Effort) -> NDArray[Any]:
     """Triangles of polygons of one size, shape (B, n - 2, 3).
 
     Args:
-        corners: Their corners, shape (B, n).
+        corners: Names of their corners, shape (B, n).
         near: Positions of these, shape (B, n, 3), or None.
         effort: Limit of the time that concave polygons may take.
     """
     size = corners.shape[1]
-    fan = np.empty((len(corners), size - 2, 3), np.int64)
+    if size == 3:
+        return corners[:, None]
+    fan = np.empty((len(corners), size - 2, 3), corners.dtype)
     fan[:, :, 0], fan[:, :, 1], fan[:, :, 2] = corners[:, :1], corners[:, 1:-1], corners[:, 2:]
-    if size == 3 or near is None:
+    if near is None:
         return fan
     if size == 4:
         take = np.flatnonzero(_takes_other(near))
         fan[take] = corners[take][:, [[1, 2, 3], [1, 3, 0]]]
         return fan
-    flat = plane_of(near)
+    flat = plane_of(near.astype(np.float64, copy=False))
     bad = np.flatnonzero(~_fans_fit(flat))
     if len(bad):
         order = clipped(flat[bad], effort)
@@ -110,9 +139,9 @@ def _divided(corners: IntArray, near: FloatArray | None, effort: Effort) -> IntA
     return fan
 
 
-def _takes_other(near: FloatArray) -> BoolArray:
+def _takes_other(near: NDArray[Any]) -> BoolArray:
     """Whether quadrangles (B, 4, 3) are divided from corner 1 to 3, shape (B,)."""
-    a, b, c, d = np.ascontiguousarray(near.transpose(1, 2, 0))  # each (3, B), which sums fast
+    a, b, c, d = np.ascontiguousarray(near.transpose(1, 2, 0), np.float64)  # (3, B) sum fast
     one, other = c - a, d - b
     fits, fits_other = _same_side(b - a, one, d - a), _same_side(c - b, other, a - b)
     shorter = _dot(other, other) < _dot(one, one)

@@ -93,6 +93,8 @@ def check_corners(corners: NDArray[Any], vertices: int, where: str) -> NDArray[n
     """
     with np.errstate(invalid="ignore"):
         if len(corners) == 0 or (corners.min() >= 0 and corners.max() < vertices):
+            if corners.dtype == np.int32:  # the same bits
+                return corners.view(np.uint32)
             found = corners.astype(np.uint32, copy=False)
             if corners.dtype.kind != "f" or (found == corners).all():
                 return found
