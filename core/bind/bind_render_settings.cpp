@@ -54,7 +54,8 @@ void bind_filter(nb::module_& m) {
                  const FilterKind k = filter_kind(kind);
                  new (f) Filter(k, radius > 0 ? radius : default_radius(k));
              },
-             "kind"_a, "radius"_a = 0.f, "kind: box, gaussian, blackman_harris, mitchell; radius in px, 0: its default.");
+             "kind"_a, "radius"_a = 0.f,
+             "kind: box, gaussian, blackman_harris, mitchell, tent; radius in px, 0: its default.");
 }
 
 void def_frame(Settings& c) {

@@ -9,8 +9,8 @@
 namespace dg {
 namespace {
 
-constexpr std::array<const char*, 4> kNames{"box", "gaussian", "blackman_harris",
-                                            "mitchell"};
+constexpr std::array<const char*, 5> kNames{"box", "gaussian", "blackman_harris",
+                                            "mitchell", "tent"};
 
 /// exp(-x^2 / 2 s^2) with s = radius / 3, lowered to end at 0.
 double gaussian(double x) {
@@ -51,6 +51,8 @@ double shape(FilterKind kind, double x) {
             return blackman_harris(x);
         case FilterKind::mitchell:
             return mitchell(x);
+        case FilterKind::tent:   // Bartlett's window
+            return 1 - std::abs(x);
     }
     return 0;
 }
@@ -66,12 +68,13 @@ double step_mean(FilterKind kind, int i, int steps) {
 FilterKind filter_kind(const std::string& name) {
     for (std::size_t i = 0; i < kNames.size(); ++i)
         if (name == kNames[i]) return FilterKind(i);
-    throw input_error("filter", "kind", "box, gaussian, blackman_harris or mitchell",
+    throw input_error("filter", "kind", "box, gaussian, blackman_harris, mitchell or tent",
                       name);
 }
 
 float default_radius(FilterKind kind) {
     if (kind == FilterKind::box) return 0.5f;
+    if (kind == FilterKind::tent) return 1;   // pixels' tents add up to 1 everywhere
     return kind == FilterKind::mitchell ? 2.f : 1.5f;
 }
 

@@ -9,11 +9,11 @@
 
 namespace dg {
 
-enum class FilterKind { box, gaussian, blackman_harris, mitchell };
+enum class FilterKind { box, gaussian, blackman_harris, mitchell, tent };
 
-/// "box", "gaussian", "blackman_harris" or "mitchell"; anything else throws Error.
+/// "box", "gaussian", "blackman_harris", "mitchell" or "tent"; anything else throws Error.
 FilterKind filter_kind(const std::string& name);
-/// Radius in px where nobody asks for another: 0.5, 1.5, 1.5, 2.
+/// Radius in px where nobody asks for another: 0.5, 1.5, 1.5, 2, 1.
 float default_radius(FilterKind kind);
 
 struct FilterSample {

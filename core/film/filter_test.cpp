@@ -15,7 +15,8 @@ using namespace dg;
 namespace {
 
 constexpr FilterKind kKinds[] = {FilterKind::box, FilterKind::gaussian,
-                                 FilterKind::blackman_harris, FilterKind::mitchell};
+                                 FilterKind::blackman_harris, FilterKind::mitchell,
+                                 FilterKind::tent};
 constexpr int kCells = 16, kSub = 32, kSamples = 300000;
 
 struct Tally {
@@ -115,9 +116,46 @@ TEST_CASE("shapes: printed values, symmetry, support") {
     }
 }
 
+TEST_CASE("a tent: its height, its slope and its moments, in closed form") {
+    for (const float r : {1.f, 2.f, 3.7f}) {
+        const Filter tent(FilterKind::tent, r);
+        CHECK(tent.integral() == doctest::Approx(double(r) * r).epsilon(1e-6));
+        CHECK(tent.absolute_integral() == doctest::Approx(1).epsilon(1e-12));
+        CHECK(tent.variance() == doctest::Approx(r * r / 6).epsilon(1e-4));
+        double worst = 0, mean = 0, square = 0;
+        for (int i = 0; i <= 1000; ++i) {
+            const float x = (0.002f * float(i) - 1) * 0.9999f * r;
+            worst = std::max(worst, std::abs(double(tent.axis(x)) * r - (1 - std::abs(x) / r)));
+        }
+        CHECK(worst < 1.0 / 256 + 1e-6);   // half a step of the table
+        for (int i = 0; i < kSamples; ++i) {
+            const FilterSample s = tent.sample({float(hash_uniform(3, i)) * 0.9999999f,
+                                                float(hash_uniform(4, i)) * 0.9999999f});
+            CHECK(s.weight == 1);
+            mean += double(s.offset.x) / kSamples;
+            square += double(s.offset.y) * s.offset.y / kSamples;
+        }
+        // Moments of a tent: r^2 / 6 and r^4 / 15, so the error of its square is r^2 sqrt(7/180).
+        CHECK(std::abs(mean) < 4 * r * std::sqrt(1.0 / 6 / kSamples));
+        CHECK(std::abs(square - r * r / 6) < 4 * r * r * std::sqrt(7.0 / 180 / kSamples));
+    }
+}
+
+TEST_CASE("tents of one pixel add up to 1 wherever a sample lies") {
+    const Filter tent(FilterKind::tent);
+    for (int i = 0; i < 1000; ++i) {
+        const float x = float(hash_uniform(5, i)), y = float(hash_uniform(6, i));
+        double total = 0;
+        for (const float dx : {0.f, 1.f})
+            for (const float dy : {0.f, 1.f}) total += tent.evaluate({x - dx, y - dy});
+        CHECK(total == doctest::Approx(1).epsilon(1e-5));
+    }
+}
+
 TEST_CASE("names and radii are checked") {
     CHECK(filter_kind("mitchell") == FilterKind::mitchell);
     CHECK(filter_kind("box") == FilterKind::box);
+    CHECK(filter_kind("tent") == FilterKind::tent);
     CHECK_THROWS_WITH_AS(filter_kind("lanczos"), doctest::Contains("blackman_harris"),
                          Error);
     CHECK_THROWS_AS(Filter(FilterKind::box, 0), Error);

@@ -71,7 +71,7 @@ double largest_deviation(const Filter& filter, const std::vector<std::uint32_t>&
 TEST_CASE("each wavelength brings every pixel what the filter has there") {
     const std::vector<std::uint32_t> even(48, 8);
     for (const FilterKind kind : {FilterKind::box, FilterKind::gaussian, FilterKind::blackman_harris,
-                                  FilterKind::mitchell}) {
+                                  FilterKind::mitchell, FilterKind::tent}) {
         const Filter filter(kind);
         CHECK(largest_deviation(filter, even, {}) < 5);   // of 192
     }

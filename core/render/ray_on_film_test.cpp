@@ -45,7 +45,8 @@ TEST_CASE("splats bring each pixel the integral of its filter, whatever the filt
     std::vector<std::uint32_t> counts(48);
     for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = std::uint32_t(i % 5);
     for (const auto& [kind, radius] :
-         {std::pair{FilterKind::box, 0.5f}, {FilterKind::mitchell, 2.f}, {FilterKind::gaussian, 4.f}}) {
+         {std::pair{FilterKind::box, 0.5f}, {FilterKind::mitchell, 2.f}, {FilterKind::gaussian, 4.f},
+          {FilterKind::tent, 1.f}}) {
         const Filter filter(kind, radius);
         for (const bool even : {true, false}) {
             const FilmDensity density(filter, kRegion, even ? std::span<const std::uint32_t>{} : counts);

@@ -55,7 +55,7 @@ def test_other_materials_never_gain_energy(name: str) -> None:
     assert 0.5 < middle < 1.01
 
 
-@pytest.mark.parametrize("filter_name", ["box", "gaussian", "blackman_harris", "mitchell"])
+@pytest.mark.parametrize("filter_name", ["box", "gaussian", "blackman_harris", "mitchell", "tent"])
 @pytest.mark.parametrize("lens", ["pinhole", "thin"])
 def test_a_white_world_is_one_for_ideal_cameras(lens: str, filter_name: str) -> None:
     camera = dg.Camera(lens=lens, f_stop=None if lens == "pinhole" else 1.4, focus_distance=2)
@@ -224,7 +224,7 @@ def test_dispersive_glass_agrees_through_the_exact_lens_with_the_hero_alone(
 
 def test_threads_do_not_change_a_bit() -> None:
     scene = scenes.lamp_room()
-    for filter_name in ("box", "gaussian", "blackman_harris", "mitchell"):
+    for filter_name in ("box", "gaussian", "blackman_harris", "mitchell", "tent"):
         for lens in ("thin", "double-gauss-50mm-f2"):
             camera = dg.Camera(lens=lens, focus_distance=4)
             frames = [

@@ -10,7 +10,7 @@ from daguerre.checks import MAX_RESOLUTION, short, whole
 from daguerre.errors import UsageError, suggest
 
 Box = tuple[int, int, int, int]
-FILTERS = ("box", "gaussian", "blackman_harris", "mitchell")
+FILTERS = ("box", "gaussian", "blackman_harris", "mitchell", "tent")
 LEAST_RADIUS, MOST_RADIUS = 0.25, 16.0  # px
 
 

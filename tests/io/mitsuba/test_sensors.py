@@ -11,6 +11,7 @@ from PIL import Image
 
 import daguerre as dg
 from daguerre.io.mitsuba.reader import read_all
+from daguerre.rendering.pixels import check_filter
 
 from .peer import ours, same_blocks, theirs
 from .scene_files import camera, loaded, written
@@ -164,12 +165,31 @@ def test_settings_are_told(tmp_path: Path) -> None:
     scene, settings, _ = read_all(path)
     found = settings["eye"]
     assert (found.resolution, found.crop, found.spp) == ((60, 40), (10, 0, 30, 40), 9)
-    assert (found.filter, found.max_depth) == ("gaussian:1.6", 4)
+    assert (found.filter, found.max_depth) == ("gaussian:1.2", 4)
     assert scene.warnings == [
         "the file's film and sampler are set by: --res 60x40 --crop 10,30,0,40 --spp 9 "
-        "--filter gaussian:1.6 --max-depth 4"
+        "--filter gaussian:1.2 --max-depth 4"
     ]
     assert list(scene.cameras) == ["eye", "other"]
+
+
+@pytest.mark.parametrize(
+    ("rfilter", "wanted"),
+    [
+        ('<rfilter type="tent"/>', "tent:1"),
+        ('<rfilter type="tent"><float name="radius" value="1.5"/></rfilter>', "tent:1.5"),
+        ('<rfilter type="box"/>', "box:0.5"),
+        # Ours ends at 3 standard deviations.
+        ('<rfilter type="gaussian"/>', "gaussian:1.5"),
+        ("", "gaussian"),
+    ],
+)
+def test_filters_are_those_of_the_file(tmp_path: Path, rfilter: str, wanted: str) -> None:
+    film = f'<sensor type="perspective" id="eye"><film type="hdrfilm">{rfilter}</film></sensor>'
+    _, settings, ledger = read_all(written(tmp_path, film))
+    assert settings["eye"].filter == wanted
+    assert check_filter(wanted) == wanted
+    assert ledger.counts()[2] == 0
 
 
 #: Shining balls and a floor that tell left from right and up from down.

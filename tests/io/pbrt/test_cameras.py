@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.errors import InputError
 from daguerre.exposure.lux_seconds import luminance_exposure
 from daguerre.lenses import Lens
+from daguerre.rendering.pixels import check_filter
 
 from .text import SQUARE, read
 
@@ -206,3 +208,35 @@ def test_a_spherical_camera_shows_every_direction_where_pbrt_does(tmp_path: Path
 def test_orthographic_cameras_are_refused_by_name(tmp_path: Path) -> None:
     with pytest.raises(dg.InputError, match=r"Camera: kind: wanted perspective.*'orthographic'"):
         read(tmp_path, SQUARE, 'Camera "orthographic"')
+
+
+@pytest.mark.parametrize(
+    ("filter_", "flag"),
+    [
+        ('"triangle"', "tent:2"),
+        ('"triangle" "float xradius" 1.5 "float yradius" 1.5', "tent:1.5"),
+        ('"box"', "box:0.5"),
+        ('"gaussian"', "gaussian:1.5"),
+        ('"gaussian" "float sigma" 1 "float xradius" 3 "float yradius" 3', "gaussian:3"),
+        ('"mitchell"', "mitchell:2"),
+        ('"triangle" "float xradius" 1', ""),
+        ('"gaussian" "float sigma" 1', ""),
+        ('"mitchell" "float B" 0', ""),
+        ('"sinc"', ""),
+    ],
+)
+def test_a_note_tells_the_flag_of_the_pixel_filter(tmp_path: Path, filter_: str, flag: str) -> None:
+    scene = read(tmp_path, 'Shape "sphere"', f"PixelFilter {filter_}")
+    told = "pbrt's pixel filter is left out: --filter chooses one"
+    if flag:
+        told = f"the file's pixel filter is set by: --filter {flag}"
+        assert check_filter(flag) == flag
+    assert f"{told} (1 use)" in scene.warnings
+
+
+def test_a_gaussian_of_old_files_has_its_alpha(tmp_path: Path) -> None:
+    options = 'PixelFilter "gaussian" "float alpha" 2 "float xradius" 1.5 "float yradius" 1.5'
+    scene = read(tmp_path, 'Shape "sphere" WorldEnd', options)
+    assert "the file's pixel filter is set by: --filter gaussian:1.5 (1 use)" in scene.warnings
+    with pytest.raises(InputError, match="xradius: wanted"):
+        read(tmp_path, 'Shape "sphere"', 'PixelFilter "triangle" "float xradius" -1')

@@ -22,7 +22,7 @@ _FILTERS = {
     "gaussian": "gaussian",
     "mitchell": "mitchell",
     "catmullrom": "mitchell",
-    "tent": "mitchell:1",
+    "tent": "tent",
     "lanczos": "mitchell",
 }
 #: Properties that have no effect on a converged picture.
@@ -106,12 +106,13 @@ def _film(
 
 
 def _filter(node: Node) -> str:
-    """Filter with its radius, px; Mitsuba's Gaussian ends at 4 standard deviations."""
+    """Filter with its radius, px; our Gaussian ends at 3 standard deviations, Mitsuba's at 4."""
     found = _FILTERS[node.plugin]
     if node.plugin == "gaussian":
-        return f"gaussian:{4 * node.number('stddev', 0.5, above=0):g}"
-    if node.plugin == "box":
-        return f"box:{node.number('radius', 0.5, above=0):g}"
+        return f"gaussian:{3 * node.number('stddev', 0.5, above=0):g}"
+    if node.plugin in ("box", "tent"):
+        usual = 0.5 if node.plugin == "box" else 1.0
+        return f"{found}:{node.number('radius', usual, above=0):g}"
     node.skip("B", "C", "b", "c", "lobes")
     return found
 

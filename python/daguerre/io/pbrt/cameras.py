@@ -27,6 +27,7 @@ from .description import Description
 from .files import Files
 from .film import PBRT_F_STOP, FilmSize, film_of
 from .ledger import Ledger
+from .pixel_filter import tell_filter
 from .realistic import lens_of
 from .state import Made
 from .transforms import unit_of
@@ -86,6 +87,7 @@ def read_camera(described: Description, files: Files, axes: Array, ledger: Ledge
         InputError: A parameter is wrong, or its kind is not supported.
     """
     film = film_of(described.film, described.version, ledger)
+    tell_filter(described.pixel_filter, described.version, ledger)
     made = described.camera
     if made is None:
         return None

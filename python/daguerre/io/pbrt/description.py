@@ -55,6 +55,7 @@ class Description:
         version: Version of pbrt, 3 or 4.
         camera: Camera, with the state at its directive.
         film: Film.
+        pixel_filter: Pixel filter.
         lights: Lights, besides those of shapes.
         shapes: Shapes outside of objects.
         objects: Shapes of objects, by name.
@@ -65,6 +66,7 @@ class Description:
     version: int = 4
     camera: Made | None = None
     film: Made | None = None
+    pixel_filter: Made | None = None
     lights: list[Made] = field(default_factory=list)
     shapes: list[Made] = field(default_factory=list)
     objects: dict[str, list[Made]] = field(default_factory=dict)

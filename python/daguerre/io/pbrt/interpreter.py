@@ -47,7 +47,6 @@ _COMPUTING = {
     "VolumeIntegrator": "pbrt's integrator is left out: Daguerre follows paths",
     "Renderer": "pbrt's renderer is left out: Daguerre follows paths",
     "Sampler": "pbrt's sampler is left out: --spp and --noise choose samples",
-    "PixelFilter": "pbrt's pixel filter is left out: --filter chooses one",
     "Option": "an Option of pbrt is left out",
 }
 
@@ -268,6 +267,10 @@ class Interpreter:
     def _on_Film(self, directive: Directive) -> None:
         self._again(self.made.film)
         self.made.film = self._made(directive)
+
+    def _on_PixelFilter(self, directive: Directive) -> None:
+        self._again(self.made.pixel_filter)
+        self.made.pixel_filter = self._made(directive)
 
     def _again(self, before: Made | None) -> None:
         if before is not None:
