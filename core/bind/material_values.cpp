@@ -83,6 +83,7 @@ CoatedMaterial to_coated(const Fields& f) {
     m.thickness = f.number("thickness");
     m.absorption = f.color("absorption");
     m.nonlinear = f.flag("nonlinear");
+    m.energy_compensation = f.flag("energy_compensation");
     return m;
 }
 

@@ -52,6 +52,10 @@ CoatedBsdf::CoatedBsdf(Vec3f ns, Vec3f ng, const ClearCoat& coat, const CoatedBa
     const float f0 = normal_reflectance(coat.ior);
     if (!coat.facets.smooth) rough_.emplace(coat.ior, coat.facets);
     passed_mean_ = 1 - (rough_ ? rough_->mean().reflected(f0) : mean_fresnel(coat.ior));
+    if (rough_ && !coat.compensated) {
+        passed_mean_ -= rough_->mean().missing_thin;
+        lost_inside_ = rough_->mean().missing_dense;
+    }
     if (base.metal) {
         base_.facets = blurred(base.facets, coat.facets, coat.ior);
         if (!base.facets.smooth && coat.ior > 1) catch_below();
@@ -69,23 +73,26 @@ void CoatedBsdf::catch_below() {
     const float passed = mean_passed(alpha, base_.facets.distribution);   // G
     const Spectrum r = base_.reflectance.at(2 / 3.f), k = to_and_fro();
     const float k0 = 1 - passed_mean_ / (coat_.ior * coat_.ior);
-    even_ = r * r * (passed * (1 - k0)) * k / ((Spectrum(1.f) - r * passed * k) * (k0 * caught_->mean()));
+    even_ = r * r * (passed * (1 - k0)) * k /
+            ((Spectrum(1.f) - r * passed * k) * ((k0 - lost_inside_) * caught_->mean()));
 }
 
 /// K; of a coat that absorbs, with what it takes.
 Spectrum CoatedBsdf::to_and_fro() const {
     const float n = coat_.ior;
-    const float k = 1 - passed_mean_ / (n * n);
+    const float k = 1 - passed_mean_ / (n * n) - lost_inside_;
     if (!absorbs_ || k <= 0) return k;
     return returned(n, coat_.depth) * (k / returned(n, 0.f)[0]);
 }
 
 CoatedBsdf::Bent CoatedBsdf::bent(Vec3f w, float cos_w) const {
     Bent b{.outside = cos_w, .inside = bent_cosine(cos_w, coat_.ior)};
-    b.reflected = rough_ ? rough_->toward(w, cos_w).reflected(normal_reflectance(coat_.ior))
-                         : fresnel_dielectric(cos_w, coat_.ior);
-    b.passed = 1 - b.reflected;
-    if (caught_) b.caught = (1 - b.reflected) * caught_->of_passed(cos_w);
+    const GlassLobes lobes = rough_ ? rough_->toward(w, cos_w) : GlassLobes{};
+    b.reflected = rough_ ? lobes.reflected(normal_reflectance(coat_.ior)) : fresnel_dielectric(cos_w, coat_.ior);
+    b.entering = 1 - b.reflected;
+    if (!coat_.compensated) b.entering = std::max(0.f, b.entering - lobes.missing_thin);
+    b.passed = b.entering;
+    if (caught_) b.caught = b.entering * caught_->of_passed(cos_w);
     if (absorbs_) b.passed *= exp(coat_.depth * (-1 / b.inside));
     return b;
 }

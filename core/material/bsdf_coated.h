@@ -15,7 +15,9 @@
 //   adds to the metal's roughness: alpha'^2 = alpha^2 + (1 - 1 / n)^2 alpha_coat^2 / 2 for small slopes.
 // - A coat that absorbs: exp(-depth / cos') on each way at the bent cosine; light that the inside reflects passes it
 //   twice more.
-// E of a rough coat is glass_albedo.h's, so that light which the facets block goes in.
+// E of a rough coat is glass_albedo.h's, so that light which the facets block goes in. Without compensation it is
+// lost: T = 1 - E - m and K = 1 - m' - T_mean / n^2, with the shares m and mean m' that the facets block outside and
+// inside.
 #pragma once
 #include <optional>
 
@@ -31,6 +33,7 @@ struct ClearCoat {
     Spectrum tint{1.f};    // of what the coat reflects
     Spectrum depth{0.f};   // optical depth: absorption times thickness
     bool linear = false;   // no colour by light that goes back and forth
+    bool compensated = true;   // of light that its facets block
 };
 
 /// The surface below: diffuse, or a metal whose index is relative to the coat's.
@@ -64,8 +67,9 @@ class CoatedBsdf {
     struct Bent {
         float outside = 0, inside = 0;   // cosines
         float reflected = 0;             // E
+        float entering = 0;              // T
         float caught = 0;                // a, what the coat takes aside
-        Spectrum passed{0.f};            // T and the way down
+        Spectrum passed{0.f};            // and the way down
     };
     Bent bent(Vec3f w, float cos_w) const;
     Vec3f into(Vec3f n, Vec3f w, const Bent& b) const { return (w - n * b.outside) * (1 / coat_.ior) + n * b.inside; }
@@ -87,7 +91,8 @@ class CoatedBsdf {
     std::optional<CaughtBelow> caught_;     // of a rough metal
     Spectrum even_{0.f};                    // C / A
     Spectrum diffuse_;                      // p / (n^2 (1 - p K)), its pi aside
-    float passed_mean_ = 1;                 // 1 - M
+    float passed_mean_ = 1;                 // T_mean: 1 - M
+    float lost_inside_ = 0;                 // m'
     bool absorbs_;
 };
 

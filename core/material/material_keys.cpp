@@ -56,8 +56,8 @@ auto fields(Is<DielectricMaterial> auto& m) {
     return std::tie(a, b, c, d, e, f, g, h);
 }
 auto fields(Is<CoatedMaterial> auto& m) {
-    auto& [a, b, c, d, e, f, g, h, i] = m;
-    return std::tie(a, b, c, d, e, f, g, h, i);
+    auto& [a, b, c, d, e, f, g, h, i, j] = m;
+    return std::tie(a, b, c, d, e, f, g, h, i, j);
 }
 auto fields(Is<MixMaterial> auto& m) {
     auto& [first, second, amount, texture, parts] = m;

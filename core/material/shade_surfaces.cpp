@@ -121,6 +121,7 @@ Bsdf shade_kind(const CoatedMaterial& m, const Textures& textures, const Surface
     ClearCoat coat{m.ior, read_facets(m.alpha, false, textures, hit), share(m.specular_tint, wavelengths)};
     if (m.thickness > 0) coat.depth = m.absorption.at(wavelengths) * m.thickness;
     coat.linear = !m.nonlinear;
+    coat.compensated = m.energy_compensation;
     CoatedBase base;
     base.metal = m.metal;
     if (m.metal) {

@@ -68,6 +68,7 @@ struct CoatedMaterial {
     float thickness = 0;           // m
     SpectralColor absorption = {}; // 1/m
     bool nonlinear = true;         // colours saturate by light between coat and base
+    bool energy_compensation = true;
 };
 
 /// A part of a mixture where the scene has it; changes over time if `change` is set.

@@ -170,6 +170,7 @@ CoatedMaterial any_coated(FuzzInput& in) {
     m.thickness = in.number();
     m.absorption = any_color(in);
     m.nonlinear = in.flag();
+    m.energy_compensation = in.flag();
     return m;
 }
 

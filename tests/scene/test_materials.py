@@ -19,6 +19,7 @@ KINDS: tuple[Any, ...] = (
     dg.Dielectric(GREEN, 0.1, reflection_tint=GREEN, thin=True, energy_compensation=True),
     dg.Coated(dg.Conductor.of_metal("Cu"), absorption=GREEN, thickness=1e-4),
     dg.Coated(dg.Diffuse((0.5, 0.2, 0.1)), alpha=0.2, nonlinear=False),
+    dg.Coated(alpha=0.3, energy_compensation=False),
     dg.Mix(0, 1, 0.25, SLOT),
     dg.Dielectric(alpha=0.3, distribution="beckmann"),
     dg.Boundary(),

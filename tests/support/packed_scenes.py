@@ -59,6 +59,7 @@ def _surfaces(made: dg.Scene, slot: TextureSlot) -> None:
         dg.Dielectric(green, 0.1, reflection_tint=green, thin=True, energy_compensation=True),
         dg.Coated(gold, absorption=green, thickness=1e-4),
         dg.Coated(dg.Diffuse((0.5, 0.2, 0.1)), alpha=0.2, nonlinear=False),
+        dg.Coated(alpha=0.3, energy_compensation=False),
         dg.Conductor(alpha=0.2, distribution="beckmann"),
     ):
         made.add_material(dg.Material(kind, opacity=0.5, opacity_texture=slot, normal_texture=slot))

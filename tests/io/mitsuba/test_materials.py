@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,6 @@ import pytest
 from PIL import Image
 
 import daguerre as dg
-from daguerre.io.mitsuba.rough_plastic import Loss, reflectance
 
 from .scene_files import loaded
 
@@ -35,7 +33,6 @@ def _picture(folder: Path, pixels: Any = None) -> str:
 def test_defaults(tmp_path: Path) -> None:
     glass = 1.5046 / 1.000277
     plastic = 1.49 / 1.000277
-    below = tuple(Loss(plastic, 0.1, "beckmann", nonlinear=False).base(np.full(3, 0.5)).tolist())
     facets: Any = {"distribution": "beckmann"}
     for plugin, wanted in {
         "diffuse": dg.Diffuse((0.5, 0.5, 0.5)),
@@ -45,7 +42,9 @@ def test_defaults(tmp_path: Path) -> None:
         "conductor": dg.Conductor((1, 1, 1), 0.0),
         "roughconductor": dg.Conductor((1, 1, 1), 0.1, **facets),
         "plastic": dg.Coated(dg.Diffuse(), plastic, nonlinear=False),
-        "roughplastic": dg.Coated(dg.Diffuse(below), plastic, 0.1, nonlinear=False, **facets),
+        "roughplastic": dg.Coated(
+            dg.Diffuse(), plastic, 0.1, nonlinear=False, energy_compensation=False, **facets
+        ),
         "null": dg.Boundary(),
     }.items():
         assert _kind(tmp_path, plugin) == wanted, plugin
@@ -71,66 +70,6 @@ def test_facets_have_the_distribution_of_the_file(tmp_path: Path) -> None:
         for name, wanted in (("ggx", "ggx"), ("beckmann", "beckmann"), ("phong", "beckmann")):
             inner = f'<string name="distribution" value="{name}"/>'
             assert _kind(tmp_path, plugin, inner).distribution == wanted, (plugin, name)
-
-
-@pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
-def test_light_that_rough_coats_lose_is_that_of_their_facets(distribution: Any) -> None:
-    """Against the integral of F D G / (4 cos cos) over both directions, drawn at random."""
-    alpha, eta, random = 0.5, 1 / 1.5, np.random.default_rng(3)
-    u, v, turn = random.random((3, 400_000))
-    one, other = np.sqrt(u), np.sqrt(v)  # both by their cosines
-    turn *= 2 * np.pi
-    across = np.sqrt(1 - one**2), np.sqrt(1 - other**2)
-    x, y, z = across[0] + across[1] * np.cos(turn), across[1] * np.sin(turn), one + other
-    length = np.sqrt(x**2 + y**2 + z**2)
-    up, seen = z / length, (across[0] * x + one * z) / length
-    steep = (1 / up**2 - 1) / alpha**2
-    if distribution == "ggx":
-        facets = 1 / (np.pi * alpha**2 * up**4 * (1 + steep) ** 2)
-    else:
-        facets = np.exp(-steep) / (np.pi * alpha**2 * up**4)
-
-    def passed(cosine: Any) -> Any:
-        slope = alpha * np.sqrt(1 - cosine**2) / cosine
-        if distribution == "ggx":
-            return 2 / (1 + np.sqrt(1 + slope**2))
-        erf = np.vectorize(math.erf)(1 / slope)
-        return 2 / (1 + erf + slope * np.exp(-1 / slope**2) / np.sqrt(np.pi))
-
-    square = 1 - (1 - seen**2) / eta**2
-    root = np.sqrt(np.maximum(square, 0))
-    s, p = (seen - eta * root) / (seen + eta * root), (eta * seen - root) / (eta * seen + root)
-    fresnel = np.where(square > 0, (s**2 + p**2) / 2, 1)
-    both = passed(one) * passed(other)
-    drawn = np.pi * fresnel * facets * both / (4 * one * other)
-    found = reflectance(eta, alpha, distribution, correlated=False)
-    assert found == pytest.approx(drawn.mean(), rel=0.015)
-    assert found < reflectance(eta, alpha, distribution, correlated=True)
-
-
-def test_bases_below_rough_coats_are_as_dark_as_in_mitsuba(tmp_path: Path) -> None:
-    def base(plugin: str, color: str, nonlinear: bool, more: str = "") -> Any:
-        flag = f'<boolean name="nonlinear" value="{str(nonlinear).lower()}"/>'
-        return np.asarray(_kind(tmp_path, plugin, color + flag + more).base.reflectance)
-
-    color = '<rgb name="diffuse_reflectance" value="0.2 0.4 0.8"/>'
-    shade, alpha = np.array([0.2, 0.4, 0.8]), '<float name="alpha" value="0.4"/>'
-    eta = 1.49 / 1.000277
-    theirs = reflectance(1 / eta, 0.4, "beckmann", correlated=False)
-    ours = 1 - (1 - reflectance(eta, 0.4, "beckmann", correlated=True)) / eta**2
-    linear = base("roughplastic", color, False, alpha)
-    assert linear / (1 - ours) == pytest.approx(shade / (1 - theirs))
-    deep = base("roughplastic", color, True, alpha)
-    assert deep / (1 - deep * ours) == pytest.approx(shade / (1 - shade * theirs))
-    assert base("plastic", color, True) == pytest.approx(shade)
-    picture = _picture(tmp_path, np.full((2, 2, 3), 255, np.uint8))
-    texture = f'<texture type="bitmap" name="diffuse_reflectance">{picture}</texture>'
-    body = f'<shape type="cube"><bsdf type="roughplastic">{texture}{alpha}</bsdf></shape>'
-    scene = loaded(tmp_path, body)
-    kind: Any = scene.materials[0].kind
-    texel = scene.textures[kind.base.reflectance_texture.texture].pixels[0, 0]
-    product = np.asarray(kind.base.reflectance) * texel
-    assert product == pytest.approx((1 - ours) / (1 - theirs), rel=1e-3)
 
 
 def test_measured_indices(tmp_path: Path) -> None:

@@ -161,6 +161,15 @@ def test_materials_come_back(kind: Any, suffix: str, tmp_path: Path) -> None:
     assert found.two_sided
 
 
+def test_a_rough_coat_that_loses_light_comes_back_from_mitsuba(tmp_path: Path) -> None:
+    base = dg.Diffuse((0.3, 0.5, 0.1))
+    for nonlinear in (True, False):
+        kind = dg.Coated(base, 1.4, 0.2, nonlinear=nonlinear, energy_compensation=False)
+        scene, found = back(kind, ".xml", tmp_path)
+        assert plain(found.kind) == pytest.approx(plain(kind), rel=1e-4, abs=1e-6)
+        assert not any("coat" in note for note in scene.warnings)
+
+
 def plain(kind: Any) -> list[float]:
     """Numbers of a kind without textures; spectra at three wavelengths, words by their letters."""
     numbers: list[float] = []

@@ -27,7 +27,6 @@ from .ior import relative_index
 from .look import Look
 from .node import Node
 from .principled import principled, principled_thin
-from .rough_plastic import Loss
 from .textures import Textures
 
 _WHITE = (1.0, 1.0, 1.0)
@@ -115,27 +114,17 @@ class Surfaces:
         return self._coated(node, {})
 
     def _rough_plastic(self, node: Node) -> Look:
-        return self._coated(node, self._roughness(node))
+        return self._coated(node, self._roughness(node) | {"energy_compensation": False})
 
     def _coated(self, node: Node, fields: dict[str, Any]) -> Look:
-        ior = relative_index(node, "polypropylene")
-        nonlinear = node.flag("nonlinear", False)
-        loss = None
-        if fields and "alpha_texture" not in fields and ior > 1:
-            loss = Loss(ior, fields["alpha"], fields["distribution"], nonlinear)
         kind = Coated(
-            self._base(node, loss),
-            ior=ior,
+            Diffuse(*self.textures.tint(node, "diffuse_reflectance", 0.5)),
+            ior=relative_index(node, "polypropylene"),
             specular_tint=self.textures.share(node, "specular_reflectance", 1.0),
-            nonlinear=nonlinear,
+            nonlinear=node.flag("nonlinear", False),
             **fields,
         )
         return Look(kind)
-
-    def _base(self, node: Node, loss: Loss | None) -> Diffuse:
-        """Diffuse surface below a coat."""
-        change = None if loss is None else loss.base
-        return Diffuse(*self.textures.tint(node, "diffuse_reflectance", 0.5, change=change))
 
     def _null(self, node: Node) -> Look:
         return Look(Boundary(), two_sided=True)

@@ -74,7 +74,6 @@ class Textures:
         name: str,
         default: Color | float,
         most: float = 1.0,
-        change: Callable[[Any], Any] | None = None,
     ) -> tuple[Color | Spectrum, TextureSlot | None]:
         """Colour or spectrum of a property, and a texture of factors on it.
 
@@ -83,20 +82,17 @@ class Textures:
             name: Its name.
             default: Colour where it has none.
             most: Most that a texture of factors holds.
-            change: Function of arrays that each colour goes through.
         """
         found = node.find(name)
         if found is None or not self._is_texture(found):
             color = self._color(node, found, default)
             if most == 1.0:
                 color = self._at_most_1(node, color)
-            return color if change is None else _changed(color, change), None
+            return color, None
         value = self._texture(found)
         if value is None:
             return _triple(default), None
         value = broadcast(value, 3)
-        if change is not None:
-            value = tuple(self.baker.combined(change, channel) for channel in value)
         packed = self.packer.packed(value, most=most)
         r, g, b = packed.factors
         return (r, g, b), packed.slot

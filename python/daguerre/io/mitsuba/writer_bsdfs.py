@@ -116,6 +116,8 @@ class Bsdfs:
         alpha = surface.rough.u
         if isinstance(alpha, Picture):
             self._add_textured_plastic(parent, surface, alpha, name)
+        elif not (surface.rough.smooth or surface.compensated):
+            self._add_lossy_plastic(parent, surface, name)
         elif not surface.rough.smooth:
             self._add_rough_plastic(parent, surface, name)
         else:
@@ -134,6 +136,12 @@ class Bsdfs:
         passed = scaled(surface.color, 1 - head_on(surface.ior))
         self.values.color(bsdf, "base_color", passed)
         add_value(bsdf, "float", "eta", max(surface.ior, 1 + _LEAST_STEP))
+
+    def _add_lossy_plastic(self, parent: Element, surface: Plastic, name: str) -> None:
+        bsdf = self._plastic(parent, "roughplastic", surface, name)
+        self.values.color(bsdf, "diffuse_reflectance", surface.color)
+        self._add_factor(bsdf, "specular_reflectance", surface.tint)
+        self._add_round(bsdf, surface)
 
     def _add_rough_plastic(self, parent: Element, surface: Plastic, name: str) -> None:
         """Adds the base below the coat, and beside it the rough coat on nothing.
@@ -173,9 +181,13 @@ class Bsdfs:
         coat = self._plastic(parent, "roughplastic", surface, name)
         add_rgb(coat, "diffuse_reflectance", BLACK)
         add_value(coat, "spectrum", "specular_reflectance", _grey(surface.tint) / share)
+        self._add_round(coat, surface)
+
+    def _add_round(self, parent: Element, surface: Plastic) -> None:
+        """Adds the roughness of a coat, which is round in Mitsuba."""
         if surface.rough.v is not None:
             self._notes.add("anisotropy of a coat is left out: its roughness is round")
-        self._add_roughness(coat, replace(surface.rough, v=None))
+        self._add_roughness(parent, replace(surface.rough, v=None))
 
     def _plastic(self, parent: Element, kind: str, surface: Plastic, name: str) -> Element:
         bsdf = add(parent, "bsdf", type=kind, id=name)

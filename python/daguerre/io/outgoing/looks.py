@@ -133,7 +133,8 @@ class Looks:
         if isinstance(base, Metal):
             return Varnish(base, kind.ior, rough, tint)
         assert isinstance(base, Lambert)
-        return Plastic(base.color, kind.ior, rough, tint, kind.nonlinear)
+        kept = kind.energy_compensation
+        return Plastic(base.color, kind.ior, rough, tint, kind.nonlinear, kept)
 
     def _with_emission(self, look: Look, material: Material) -> Look:
         """Adds the emission of a material to that of its kind."""

@@ -93,6 +93,7 @@ class Plastic:
         tint: Factor on what it reflects.
         saturates: Whether light between base and coat takes on the colour each time; otherwise
             ``color`` is the one that is seen, without what the coat reflects.
+        compensated: Whether light that facets of the coat block goes in; otherwise it is lost.
     """
 
     color: Colored = (0.5, 0.5, 0.5)
@@ -100,6 +101,7 @@ class Plastic:
     rough: Rough = POLISHED
     tint: Colored = WHITE
     saturates: bool = False
+    compensated: bool = True
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,8 @@ class Coated(BriefRecord):
             the default of Mitsuba's plastic.
         distribution: Distribution of the normals of the coat's facets: "ggx", or "beckmann",
             whose lobes lack the long tails.
+        energy_compensation: Whether light that the facets of a rough coat block goes in, and comes
+            back inside; without it, that light is lost, as in Mitsuba's rough plastic.
     """
 
     base: Diffuse | Conductor = field(default_factory=Diffuse)
@@ -47,3 +49,4 @@ class Coated(BriefRecord):
     absorption: Color | Spectrum = (0.0, 0.0, 0.0)
     nonlinear: bool = True
     distribution: Distribution = "ggx"
+    energy_compensation: bool = True
