@@ -80,7 +80,8 @@ std::size_t choose(const float* weights, float sum, float& u) {
         chosen += beyond;
         before = beyond ? below : before;
     }
-    while (!(weights[chosen] > 0)) --chosen;   // rounding may run past the last one that shines
+    // Rounding may run past the last one that shines; very near to a very bright one floats overflow.
+    while (chosen > 0 && !(weights[chosen] > 0)) --chosen;
     u = std::clamp((target - before) / weights[chosen], 0.f, kAlmostOne);
     return chosen;
 }

@@ -20,6 +20,8 @@ constexpr float kFlatSpread = 1e-3f;
 // Beyond this depth lights are halved by number, so that no arrangement of them makes the tree deeper than
 // kLightTreeDepth, with at most 2^31 lights.
 constexpr int kDeepest = kLightTreeDepth - 33;
+// Intensities above this count as this, so that no sum of them overflows.
+constexpr float kMostIntensity = 1e28f;
 // Larger groups are built side by side.
 constexpr std::size_t kOwnTask = 4096;
 
@@ -142,7 +144,11 @@ LightBounds grow(const Group& all, int depth, LightBranch& branch, std::int32_t 
 
 LightBranch build_light_tree(std::span<const LightBounds> lights) {
     std::vector<LightItem> items(lights.size()), room(lights.size());
-    for (std::size_t i = 0; i < lights.size(); ++i) items[i] = LightItem(lights[i], std::int32_t(i));
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        LightBounds b = lights[i];
+        b.intensity = std::min(b.intensity, kMostIntensity);
+        items[i] = LightItem(b, std::int32_t(i));
+    }
     const Groups groups(Group(items, room), 2 * kWide, false);
     const auto first = groups.all().first(std::min<std::size_t>(groups.count, kWide));
     const auto second = groups.all().subspan(first.size());

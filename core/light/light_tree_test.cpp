@@ -178,6 +178,19 @@ TEST_CASE("lights so far apart that floats overflow make a tree, without undefin
     for (int i = 0; i < 40; ++i) CHECK_FALSE(tree.probability({0, 0, 0}, i) < 0);
 }
 
+TEST_CASE("lights so bright that their sum overflows are chosen, and none beyond them") {
+    auto lights = random_lights(40);
+    for (LightBounds& b : lights) b.intensity = 3e38f;
+    const LightTree tree(lights);
+    for (int k = 0; k < 200; ++k) {
+        const auto choice = tree.sample(random_vector(4, k) * 20, float(hash_uniform(5, k)));
+        if (!choice) continue;
+        CHECK(choice->light >= 0);
+        CHECK(choice->light < 40);
+        CHECK(choice->probability <= 1);
+    }
+}
+
 TEST_CASE("signs on a wall: dark behind their planes, none forgotten before them") {
     // Facing one way, in two rows; the sphere around a group reaches far behind the wall.
     std::vector<LightBounds> signs(200);

@@ -162,3 +162,17 @@ def test_hidden_instances_are_not_written(tmp_path: Path) -> None:
     root = ElementTree.fromstring((tmp_path / "a.xml").read_text())
     meshes = {item.get("value") for item in root.iter("string") if item.get("name") == "filename"}
     assert len([name for name in meshes if name and name.endswith(".ply")]) == 2
+
+
+@pytest.mark.parametrize("suffix", ["pbrt", "xml"])
+def test_the_scene_itself_is_not_written_over(chart: Path, tmp_path: Path, suffix: str) -> None:
+    path, link = tmp_path / f"scene.{suffix}", tmp_path / f"link.{suffix}"
+    dg.export_scene(dg.load(chart), path)
+    before = path.read_bytes()
+    link.symlink_to(path)
+    scene = dg.load(path)
+    for target in (path, link, tmp_path / "." / path.name):
+        with pytest.raises(dg.errors.UsageError, match="wanted another file than the scene's own"):
+            dg.export_scene(scene, target)
+    assert path.read_bytes() == before
+    dg.export_scene(scene, tmp_path / f"other.{suffix}")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 from daguerre.camera.camera import Camera
 from daguerre.doors import guarded
+from daguerre.errors import UsageError
 from daguerre.files import formats
 from daguerre.files.atomic import check_writable
 from daguerre.files.notes import Notes
@@ -43,12 +45,14 @@ def export_scene(
         Remarks on all that is approximated or left out, one sentence each, with counts.
 
     Raises:
-        UsageError: The suffix is another, or a parameter of the camera is wrong.
+        UsageError: The suffix is another, the file is the scene's own, or a parameter of the camera
+            is wrong.
         InputError: The scene cannot be drawn, or has no camera.
         OutputError: A file cannot be written.
     """
     formats.check_written(path, formats.written("exchange"))
     check_writable(path)
+    _check_other(scene, Path(path))
     settings = RenderSettings().with_(resolution=resolution, spp=spp)
     prepared = prepare(scene, camera, settings)
     notes = Notes()
@@ -61,3 +65,14 @@ def export_scene(
     outgoing = Outgoing(scene, view, prepared.size, settings.sampling.most, depth, notes)
     formats.write("exchange", path, outgoing)
     return [*prepared.notes, *notes.sentences()]
+
+
+def _check_other(scene: Scene, path: Path) -> None:
+    """Refuses to write over the file that the scene was read from.
+
+    Raises:
+        UsageError: It is that file.
+    """
+    with suppress(OSError):  # one of them is not there
+        if scene.path is not None and path.samefile(scene.path):
+            raise UsageError(f"{path}: wanted another file than the scene's own, got that one")

@@ -327,3 +327,30 @@ def test_errors_have_the_column_of_their_element(tmp_path: Path) -> None:
     )
     with pytest.raises(dg.InputError, match=r"line 2, column 24: <float name='radius'>: wanted"):
         dg.load(tmp_path / "scene.xml")
+
+
+def test_the_file_itself_is_named_if_it_cannot_be_read(tmp_path: Path) -> None:
+    with pytest.raises(dg.InputError, match=r"none.xml: cannot be read: No such file"):
+        dg.load(tmp_path / "none.xml")
+    (tmp_path / "folder.xml").mkdir()
+    with pytest.raises(dg.InputError, match=r"folder.xml: wanted an ordinary file, got something"):
+        dg.load(tmp_path / "folder.xml")
+
+
+def test_an_index_out_of_range_has_a_place(tmp_path: Path) -> None:
+    glass = '<bsdf type="dielectric"><float name="int_ior" value="1e-9"/></bsdf>'
+    with pytest.raises(dg.InputError, match=r"line 2, column \d+: <bsdf .*int_ior: wanted 0.1 to"):
+        dg.load(written(tmp_path, f'<shape type="sphere">{glass}</shape>'))
+
+
+def test_shapes_that_are_scaled_to_nothing_are_left_out(tmp_path: Path) -> None:
+    flat = '<transform name="to_world"><scale x="0"/></transform>'
+    scene = dg.load(written(tmp_path, f'<shape type="cube">{flat}</shape>', sphere("1e-30")))
+    assert not scene.instances
+    assert "a shape that is scaled to nothing is left out (2 uses)" in scene.warnings
+
+
+def test_further_folders_are_folders(tmp_path: Path) -> None:
+    path = written(tmp_path, sphere("1"))
+    with pytest.raises(dg.errors.UsageError, match="allow_dirs: wanted folders, got"):
+        dg.load(path, allow_dirs=[tmp_path / "none"])

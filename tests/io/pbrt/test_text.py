@@ -200,6 +200,8 @@ def test_a_mark_of_byte_order_is_no_text(tmp_path: Path) -> None:
         ("", "Scale 1e30 1e30 1e30\n" * 20 + SQUARE, "line 6, column 1: Scale: wanted a matrix"),
         ("", 'LightSource "point" "rgb I" [-1 0 0]', "line 3, column 21: LightSource: I: wanted"),
         ("", 'AreaLightSource "diffuse" "rgb L" [0 -1 0]\n' + SQUARE, "AreaLightSource: L: wanted"),
+        ("", 'Shape "disk" "float height" 1e38', "line 3, column 1: Shape: disk: height: wanted"),
+        ("", 'Shape "cylinder" "float zmax" 1e38', "line 3, column 1: Shape: cylinder: high: wan"),
         ('Camera "perspective" "float lensradius" 1e30', SQUARE, "line 1, column 1: Camera: "),
         ('Camera "perspective" "float shutterclose" 1e30', SQUARE, "line 1, column 1: Camera: "),
     ],

@@ -13,6 +13,7 @@ import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from daguerre.errors import InputError, asked_by
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, short
 from daguerre.io.materialx.elements import MAX_BYTES, MAX_ELEMENTS, Element, parse
@@ -69,9 +70,7 @@ class Document:
         self._ids: dict[str, Node] = {}
         self._budget = Budget(MAX_ELEMENTS, "elements in all files")
         self._files: dict[int, Files] = {}
-        self.root = _Reader(self, files, str(file), 0, 0).root(
-            file, Entry(str(file), 1, 1, "<scene>")
-        )
+        self.root = _Reader(self, files, str(file), 0, 0).root(_bytes(file))
         if self.root.kind != "scene":
             self.root.fail("wanted <scene> at the top")
         self._resolve()
@@ -157,9 +156,9 @@ class _Reader:
         self._includes, self._depth = includes, depth
         self._version: Version = (3, 0, 0)
 
-    def root(self, path: Path, include: Entry) -> Node:
-        """Reads the object at the top of the file; ``include`` is the element that names it."""
-        root = parse(_bytes(path, include), self._name)
+    def root(self, data: bytes) -> Node:
+        """Reads the object at the top of the file."""
+        root = parse(data, self._name)
         entry = self._document.entry(self._name, root)
         if root.tag not in OBJECTS:
             entry.fail("wanted an object of Mitsuba, such as <scene>")
@@ -232,7 +231,9 @@ class _Reader:
         path = self._files.find(element.get("filename"), entry)
         inside = self._files.within(path.parent)
         reader = _Reader(self._document, inside, str(path), self._includes + 1, self._depth)
-        found = reader.root(path, entry)
+        with asked_by(entry):
+            data = _bytes(path)
+        found = reader.root(data)
         entry.used = True
         if found.kind == "scene":
             node.properties.extend(found.properties)
@@ -277,15 +278,15 @@ _DIRECTIVES: dict[str, Callable[[_Reader, Node, Element, Entry], None]] = {
 }
 
 
-def _bytes(path: Path, entry: Entry) -> bytes:
+def _bytes(path: Path) -> bytes:
     try:
-        if not path.is_file():
-            entry.fail(f"wanted an ordinary file, got {str(path)[:200]!r}")
+        if path.exists() and not path.is_file():  # a pipe or a device would never end
+            raise InputError(f"{path}: wanted an ordinary file, got something else")
         if (size := path.stat().st_size) > MAX_BYTES:
-            entry.fail(f"wanted at most {MAX_BYTES} bytes, got {size}")
+            raise InputError(f"{path}: wanted at most {MAX_BYTES} bytes, got {size}")
         return path.read_bytes()
     except OSError as error:
-        entry.fail(f"{path.name}: cannot be read: {error.strerror}")
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
 
 
 def _version(root: Element, entry: Entry) -> Version:

@@ -43,9 +43,12 @@ def relative_index(node: Node, inside: str) -> float:
         inside: Name of the default inside; outside it is air.
 
     Raises:
-        InputError: A name is unknown, or a number not above 0.
+        InputError: A name is unknown, or a number out of its range.
     """
-    return _index(node, "int_ior", inside) / _index(node, "ext_ior", "air")
+    found = _index(node, "int_ior", inside) / _index(node, "ext_ior", "air")
+    if not 0.1 <= found <= 10:
+        node.fail(f"int_ior: wanted 0.1 to 10 times ext_ior, got {found:g}")
+    return found
 
 
 def _index(node: Node, name: str, default: str) -> float:

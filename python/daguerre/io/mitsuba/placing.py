@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from daguerre.files.json_item import clean
 from daguerre.scene.media import Medium
+from daguerre.scene.transforms import ranks
 
 from .charts import chart_of
 from .context import Context
@@ -95,6 +96,9 @@ class Placing:
             return
         mesh, inner = made
         placed = pose @ local @ inner
+        if ranks(placed[None, :3, :3])[0] < 3:
+            self._notes.add("a shape that is scaled to nothing is left out")
+            return
         name = name or self._named(node, placed)
         chart = Chart()
         if look.reliefs:

@@ -204,7 +204,9 @@ def _sphere(made: Made, files: Files, notes: Notes) -> Surface | str | None:
     if radius == 0:
         return None
     ends = low / radius, high / radius  # spheres of all sizes are one mesh
-    found = _of_solid(_part_of_sphere(*ends, sweep, error), area, ("sphere", *ends, sweep, error))
+    with asked_by(made.place):
+        solid = _part_of_sphere(*ends, sweep, error)
+    found = _of_solid(solid, area, ("sphere", *ends, sweep, error))
     return None if found is None else replace(found, size=radius)
 
 
@@ -222,7 +224,8 @@ def _disk(made: Made, files: Files, notes: Notes) -> Surface | str | None:
     sweep = _sweep(made)
     area = np.radians(sweep) * 0.5 * (radius**2 - inner**2)
     key = ("disk", radius, inner, height, sweep)
-    return _of_solid(solids.disk(radius, inner, height, sweep), area, key)
+    with asked_by(made.place):
+        return _of_solid(solids.disk(radius, inner, height, sweep), area, key)
 
 
 def _cylinder(made: Made, files: Files, notes: Notes) -> Surface | str | None:
@@ -232,7 +235,8 @@ def _cylinder(made: Made, files: Files, notes: Notes) -> Surface | str | None:
     sweep = _sweep(made)
     area = abs(high - low) * radius * np.radians(sweep)
     key = ("cylinder", radius, low, high, sweep)
-    return _of_solid(solids.cylinder(radius, low, high, sweep), area, key)
+    with asked_by(made.place):
+        return _of_solid(solids.cylinder(radius, low, high, sweep), area, key)
 
 
 def _sweep(made: Made) -> float:
