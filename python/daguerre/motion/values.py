@@ -251,6 +251,8 @@ def spin(
 
 #: Maximum depth of nested lists to search, as a list may contain itself.
 _DEEPEST = 8
+#: Types of most parts of a scene, which are constant and contain nothing.
+_PLAIN = frozenset({type(None), bool, int, float, str})
 
 
 def at(value: Any, time: float, depth: int = 0) -> Any:
@@ -261,6 +263,8 @@ def at(value: Any, time: float, depth: int = 0) -> Any:
         time: Scene time, s.
         depth: Depth of nesting so far; values deeper than ``_DEEPEST`` are not evaluated.
     """
+    if type(value) in _PLAIN:
+        return value
     if is_dynamic(value):
         return value.at(time)
     if depth > _DEEPEST:
@@ -289,6 +293,8 @@ def is_dynamic(value: Any) -> bool:
 
 
 def _dynamics(value: Any, depth: int = 0) -> Iterable[Dynamic]:
+    if type(value) in _PLAIN:
+        return
     if is_dynamic(value):
         yield value
     elif depth > _DEEPEST:

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
 
 from daguerre.errors import InputError
 from daguerre.files.json_item import Item, clean
@@ -20,6 +24,11 @@ class Source:
 
     name: str
     data: bytes
+
+    @cached_property
+    def line_ends(self) -> NDArray[np.int64]:
+        """Offsets of the ends of lines, shape (L,), found once: many messages may ask for them."""
+        return np.flatnonzero(np.frombuffer(self.data, np.uint8) == ord("\n"))
 
     def __repr__(self) -> str:
         return f"<Source {self.name}: {len(self.data)} bytes>"
@@ -44,9 +53,9 @@ class Place:
         return Place(self.source, offset, self.directive)
 
     def __str__(self) -> str:
-        before = self.source.data
-        line = before.count(b"\n", 0, self.offset) + 1
-        column = self.offset - before.rfind(b"\n", 0, self.offset)
+        ends = self.source.line_ends
+        line = int(np.searchsorted(ends, self.offset)) + 1
+        column = self.offset - (int(ends[line - 2]) if line > 1 else -1)
         directive = f": {clean(self.directive)[:40]}" if self.directive else ""
         return f"{self.source.name}: line {line}, column {column}{directive}"
 
