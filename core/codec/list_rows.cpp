@@ -32,7 +32,7 @@ std::int64_t whole(std::uint64_t value) {
         std::min(value, std::uint64_t(std::numeric_limits<std::int64_t>::max())));
 }
 std::int64_t whole(double value) {
-    if (!(value >= 0 && value == std::floor(value))) return -1;
+    if (!(value >= 0 && std::isfinite(value) && value == std::floor(value))) return -1;
     return std::int64_t(std::min(value, 0x1p62));
 }
 

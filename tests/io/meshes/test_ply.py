@@ -11,7 +11,7 @@ import pytest
 import daguerre as dg
 from daguerre.color.srgb import to_linear
 from daguerre.files.notes import Notes
-from daguerre.io.meshes import file_bytes, ply
+from daguerre.io.meshes import file_bytes, ply, text_numbers
 from daguerre.io.meshes.file_mesh import FileMesh
 from tests.support import mesh_files as write
 
@@ -117,6 +117,54 @@ def test_short_and_long_runs_of_sizes_give_the_same_faces(tmp_path: Path, order:
     np.testing.assert_array_equal(other.corners, mesh.corners)
 
 
+@pytest.mark.parametrize("order", ["", "<", ">"])
+def test_numbers_beside_lists_and_several_lists(tmp_path: Path, order: str) -> None:
+    """Values before, between and behind lists of many sizes are found in each row."""
+    head = [*_VERTEX, "element face 3", "property uchar red", "property list int short other",
+            "property uchar green", "property list uchar ushort vertex_indices",
+            "property uchar blue"]  # fmt: skip
+    rows: list[tuple[int, list[int], int, list[int], int]] = [
+        (255, [-1], 0, [0, 1, 2, 3], 51), (0, [], 255, [0, 1, 4], 0),
+        (51, [5, 6], 0, [1, 2, 4], 255),
+    ]  # fmt: skip
+    body = POINTS.astype(order + "f4").tobytes()
+    for red, other, green, corners, blue in rows:
+        body += bytes([red]) + np.array([len(other)], order + "i4").tobytes()
+        body += np.array(other, order + "i2").tobytes() + bytes([green, len(corners)])
+        body += np.array(corners, order + "u2").tobytes() + bytes([blue])
+    if not order:
+        lines = [" ".join(map(str, point)) for point in POINTS.tolist()]
+        for red, other, green, corners, blue in rows:
+            numbers = red, len(other), *other, green, len(corners), *corners, blue
+            lines.append(" ".join(map(str, numbers)))
+        body = "\n".join(lines).encode()
+    mesh = read(tmp_path, _lie(*head, body=body, order=order))
+    assert faces_of(mesh) == [(0, 1, 2, 3), (0, 1, 4), (1, 2, 4)]
+    assert mesh.face_colors is not None
+    wanted = to_linear(np.array([[255, 0, 51], [0, 255, 0], [51, 0, 255]]) / 255)
+    np.testing.assert_allclose(mesh.face_colors, wanted, rtol=1e-5)
+
+
+@pytest.mark.parametrize("piece", [1, 7, 1 << 22])
+def test_words_that_only_python_takes_for_numbers(
+    monkeypatch: pytest.MonkeyPatch, piece: int
+) -> None:
+    """The core leaves them; numbers before and behind them, and lines, stay."""
+    monkeypatch.setattr(text_numbers, "_PIECE", piece)
+    found = text_numbers.numbers(b"1 +2\n-inf 1e-400 .5\n\n1e400 7.25 infinity\n8")
+    assert found.tolist() == [1, 2, -np.inf, 0, 0.5, np.inf, 7.25, np.inf, 8]
+    assert text_numbers.numbers(b" 12 +34\n-5 ", int).tolist() == [12, 34, -5]
+    for text, kind, line, word in (
+        (b"1 2\ninf 4\n5 0x10 1_0", float, 2, "'0x10'"), (b"1\n2\n\n3 4_5", float, 3, "'4_5'"),
+        (b"1\n2.0", int, 1, "'2.0'"), (b"1\n\n99999999999999999999", int, 2, "'9999"),
+        (b"nan(1)", float, 0, "'nan(1)'"),
+    ):  # fmt: skip
+        with pytest.raises(text_numbers.NotANumberError) as caught:
+            text_numbers.numbers(text, kind)
+        assert caught.value.line == line
+        assert caught.value.word.startswith(word)
+
+
 def test_gzipped_files(tmp_path: Path) -> None:
     """By their bytes, whatever the name is; several members, and padding behind them."""
     data = write.ply(COLUMNS, FACES)
@@ -214,6 +262,8 @@ def _lie(*lines: str, body: bytes = _BODY, order: str = "<") -> bytes:
          "as the length of a list, got 2.5"),
         (_lie(*_VERTEX, *_FACE, order="", body=b"0 " * 15 + b"nan 0 1 2"),
          "as the length of a list, got nan"),
+        (_lie(*_VERTEX, *_FACE, order="", body=b"0 " * 15 + b"inf 0 1 2"),
+         "as the length of a list, got inf"),
         (_lie(*_VERTEX, *_FACE, order="", body=b"0 " * 15 + b"3 0 1 2.5"),
          "corner 2: wanted a vertex .* got 2.5"),
         (_lie(*_VERTEX, *_FACE, order="", body=b"0 " * 15 + b"3 0 1 nan"),
