@@ -348,9 +348,3 @@ def test_shapes_that_are_scaled_to_nothing_are_left_out(tmp_path: Path) -> None:
     scene = dg.load(written(tmp_path, f'<shape type="cube">{flat}</shape>', sphere("1e-30")))
     assert not scene.instances
     assert "a shape that is scaled to nothing is left out (2 uses)" in scene.warnings
-
-
-def test_further_folders_are_folders(tmp_path: Path) -> None:
-    path = written(tmp_path, sphere("1"))
-    with pytest.raises(dg.errors.UsageError, match="allow_dirs: wanted folders, got"):
-        dg.load(path, allow_dirs=[tmp_path / "none"])

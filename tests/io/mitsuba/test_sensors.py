@@ -246,7 +246,9 @@ def test_a_mirrored_camera_sees_normal_maps_and_slides_mirrored(tmp_path: Path) 
     y, x = np.mgrid[0:16, 0:16] / 16
     slopes = np.stack([0.4 * np.sin(9 * x), 0.3 * np.sin(7 * y + x), 0.8 + 0 * x], axis=2)
     Image.fromarray((127.5 + 127.5 * slopes).astype(np.uint8)).save(tmp_path / "map.png")
-    texture = '<texture type="bitmap" name="{}"><string name="filename" value="map.png"/>{}</texture>'
+    texture = (
+        '<texture type="bitmap" name="{}"><string name="filename" value="map.png"/>{}</texture>'
+    )
     raw = texture.format("normalmap", '<boolean name="raw" value="true"/>')
     parts = (
         '<shape type="rectangle"><bsdf type="normalmap">' + raw + '<bsdf type="diffuse"/></bsdf>'
