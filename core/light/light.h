@@ -102,6 +102,7 @@ struct LightSample {
 };
 
 struct TriangleSampler;
+struct LightWay;
 struct EmitterSample;
 
 /// How one light with a place is chosen: by the tree; by power alone or evenly, to
@@ -134,20 +135,24 @@ class LightSet {
     /// Several samples of the same law, spread over the lights: some of `found` are without light (pdf 0).
     void sample_several(float u_select, Vec2f u, Vec3f position, float time, const Wavelengths& wavelengths,
                         std::span<LightSample> found) const;
-    /// One light, for whoever samples it from elsewhere: its index, or kEnvironment, and the chance of that. It differs
-    /// from the law of sample() in that lights turned away from the position have a chance. Empty when no light shines.
+    /// One light for a way through a medium, on all places of which it may be sampled: its index, or kEnvironment, and
+    /// the chance of that. Empty when no light shines there.
     struct Choice {
         std::int32_t light;
         float probability;
     };
-    std::optional<Choice> choose(float u, Vec3f position) const;
+    std::optional<Choice> choose(float u, const LightWay& way) const;
     /// The chance by the law of sample().
     float choice_probability(std::int32_t light, Vec3f position) const;
     /// A sample of one light, as sample() has it; its pdf is without the choice.
     std::optional<LightSample> sample_one(std::int32_t light, Vec2f u, Vec3f position, float time,
                                           const Wavelengths& wavelengths) const;
     /// The point of a light that sample_one() finds with the same u, or its middle; nothing at infinity.
-    std::optional<Vec3f> place_of(std::int32_t light, Vec2f u, float time) const;
+    struct Place {
+        Vec3f position;
+        Vec3f normal;   // of any length: it shines before its plane alone; zero: on all sides
+    };
+    std::optional<Place> place_of(std::int32_t light, Vec2f u, float time) const;
     /// Illuminance that all lights may bring to a point, lux: the estimate by which one is chosen, which knows of
     /// nothing in between.
     float illuminance(Vec3f position) const {

@@ -1,26 +1,30 @@
 // light_choice.cpp -- the choice of a light by itself, for whoever samples it from elsewhere than it was chosen for.
 #include "light/emitter.h"
 #include "light/light.h"
+#include "light/light_way.h"
 #include "light/triangle_sampler.h"
 
 namespace dg {
 namespace {
 
 constexpr float kAlmostOne = 0x1.fffffep-1f;
+constexpr float kLeastExtinction = 1e-6f;   // 1/m
 
 }  // namespace
 
-std::optional<LightSet::Choice> LightSet::choose(float u, Vec3f position) const {
+std::optional<LightSet::Choice> LightSet::choose(float u, const LightWay& way) const {
     if (empty()) return std::nullopt;
     LightTree::Weights weights;
     weights.sum = 0;
-    if (!tree_.empty()) weights = tree_.weigh<true>(position);
-    const float p_infinite = infinite_share(weights.sum);
+    if (!tree_.empty()) weights = tree_.weigh(way);
+    // Light from infinity falls on all of the way, and is scattered by the mean over all angles.
+    const float lit = std::min(way.length, 1 / std::max(way.extinction, kLeastExtinction));
+    const float p_infinite = infinite_share(weights.sum * kPi / lit);
     if (u < p_infinite) {
         const DiscreteSample found = infinite_.sample(std::min(u / p_infinite, kAlmostOne));
         return Choice{infinite_lights_[found.index], p_infinite * found.pmf};
     }
-    const auto found = tree_.sample<true>(weights, position, std::min((u - p_infinite) / (1 - p_infinite), kAlmostOne));
+    const auto found = tree_.sample(weights, way, std::min((u - p_infinite) / (1 - p_infinite), kAlmostOne));
     if (!found) return std::nullopt;
     return Choice{std::int32_t(triangles_[found->light].light), (1 - p_infinite) * found->probability};
 }
@@ -37,18 +41,24 @@ std::optional<LightSample> LightSet::sample_one(std::int32_t light, Vec2f u, Vec
     return found;
 }
 
-std::optional<Vec3f> LightSet::place_of(std::int32_t light, Vec2f u, float time) const {
-    if (light == kEnvironment) return std::nullopt;
+std::optional<LightSet::Place> LightSet::place_of(std::int32_t light, Vec2f u, float time) const {
+    if (light == kEnvironment || tree_index_[light] == kNone) return std::nullopt;
     if (std::holds_alternative<TriangleLight>(lights_[light])) {
+        const auto on = [&](const TriangleSampler& t) {
+            const Vec2f b = warp_triangle(u);
+            return Place{t.a + t.to_b * b.x + t.to_c * b.y, t.two_sided ? Vec3f{} : t.normal()};
+        };
+        const TriangleSampler& still = triangles_[tree_index_[light]];
+        if (!still.moves) return on(still);
         const auto now = triangle_at(light, time);
         if (!now) return std::nullopt;
-        const Vec2f b = warp_triangle(u);
-        return now->a + (now->b - now->a) * b.x + (now->c - now->a) * b.y;
+        return on(TriangleSampler(*now));
     }
     const Light now = light_at(light, time);
-    if (const auto* point = std::get_if<PointLight>(&now)) return point->position;
-    if (const auto* spot = std::get_if<SpotLight>(&now)) return spot->position;
-    if (const auto* sphere = std::get_if<SphereLight>(&now)) return to_float(to_double(sphere->shape.center));
+    if (const auto* point = std::get_if<PointLight>(&now)) return Place{point->position, {}};
+    if (const auto* spot = std::get_if<SpotLight>(&now)) return Place{spot->position, {}};
+    if (const auto* sphere = std::get_if<SphereLight>(&now))
+        return Place{to_float(to_double(sphere->shape.center)), {}};
     return std::nullopt;
 }
 

@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "light/light_tree_build.h"
+#include "light/light_way.h"
 
 namespace dg {
 namespace {
 
 constexpr int kWide = LightNode::kWide;
 constexpr float kAlmostOne = 0x1.fffffep-1f;
-constexpr float kAside = 0.6f;  // least noise at the table at night, of 0.1 to 1
 
 float larger(float a, float b) {  // by value, so that loops over it become SIMD
     return a > b ? a : b;
@@ -19,8 +19,6 @@ float larger(float a, float b) {  // by value, so that loops over it become SIMD
 
 /// Upper bound of the cosine at the emitter over the box, times intensity, over squared distance; inside the sphere
 /// around the box the distance is not known better than its radius. Without branches, for four at once.
-/// With `aside`, no less than kAside of what it would bring if it shone there.
-template <bool aside>
 inline float estimate(const LightEmission& e, Vec3f position) {
     // Cosines and sines are all times the distance, so that the roots wait for nothing but d2, and not for each other.
     const Vec3f to = position - e.center;
@@ -44,12 +42,10 @@ inline float estimate(const LightEmission& e, Vec3f position) {
     const bool anywhere = (e.cos_spread <= -1) | (d2 <= radius2);
     const float some = anywhere ? strength : facing;
     const bool behind = (e.reach >= 0) & (along + e.reach < 0);
-    const float seen = behind ? 0.f : some;
-    return aside ? larger(seen, kAside * strength) : seen;
+    return behind ? 0.f : some;
 }
 
 /// Weights of a node's children; their sum.
-template <bool aside = false>
 inline float weigh_node(const LightNode& node, Vec3f position, float* weights) {
     const auto& n = node.facts;
     const bool around = larger(larger(n[8][0], n[8][1]), larger(n[8][2], n[8][3])) <= -1;
@@ -61,9 +57,9 @@ inline float weigh_node(const LightNode& node, Vec3f position, float* weights) {
         return (weights[0] + weights[1]) + (weights[2] + weights[3]);
     }
     for (int i = 0; i < kWide; ++i)
-        weights[i] = estimate<aside>({{n[0][i], n[1][i], n[2][i]}, n[3][i], {n[4][i], n[5][i], n[6][i]}, n[7][i],
-                                      n[8][i], n[9][i], n[10][i]},
-                                     position);
+        weights[i] = estimate({{n[0][i], n[1][i], n[2][i]}, n[3][i], {n[4][i], n[5][i], n[6][i]}, n[7][i], n[8][i],
+                               n[9][i], n[10][i]},
+                              position);
     return (weights[0] + weights[1]) + (weights[2] + weights[3]);
 }
 
@@ -100,16 +96,16 @@ LightTree::LightTree(std::span<const LightBounds> lights) {
                 place_[~next] = std::int32_t(node) * kWide + i;
 }
 
-template <bool aside>
-LightTree::Weights LightTree::weigh(Vec3f position) const {
+template <typename Where>
+LightTree::Weights LightTree::weigh(const Where& where) const {
     Weights w;
-    w.sum = weigh_node<aside>(nodes_[0], position, w.of.data());
-    if (has_second()) w.sum += weigh_node<aside>(nodes_[1], position, w.of.data() + kWide);
+    w.sum = weigh_node(nodes_[0], where, w.of.data());
+    if (has_second()) w.sum += weigh_node(nodes_[1], where, w.of.data() + kWide);
     return w;
 }
 
-template LightTree::Weights LightTree::weigh<false>(Vec3f) const;
-template LightTree::Weights LightTree::weigh<true>(Vec3f) const;
+template LightTree::Weights LightTree::weigh(const Vec3f&) const;
+template LightTree::Weights LightTree::weigh(const LightWay&) const;
 
 /// `weights` are of some light.
 LightTree::Descent LightTree::start(const Weights& top, float u) const {
@@ -119,11 +115,11 @@ LightTree::Descent LightTree::start(const Weights& top, float u) const {
 }
 
 /// A node down. Where nothing shines it ends, with probability 0.
-template <bool aside>
-void LightTree::descend(Descent& d, Vec3f position) const {
+template <typename Where>
+void LightTree::descend(Descent& d, const Where& where) const {
     const LightNode& node = nodes_[d.next];
     float weights[kWide];
-    const float sum = weigh_node<aside>(node, position, weights);
+    const float sum = weigh_node(node, where, weights);
     if (!(sum > 0)) {
         d.next = -1, d.probability = 0;
         return;
@@ -133,18 +129,18 @@ void LightTree::descend(Descent& d, Vec3f position) const {
     d.next = node.next[chosen];
 }
 
-template <bool aside>
-std::optional<LightTree::Choice> LightTree::sample(const Weights& top, Vec3f position, float u) const {
+template <typename Where>
+std::optional<LightTree::Choice> LightTree::sample(const Weights& top, const Where& where, float u) const {
     if (lone()) return Choice{0, 1};
     if (!(top.sum > 0)) return std::nullopt;
     Descent d = start(top, u);
-    while (d.next >= 0) descend<aside>(d, position);
+    while (d.next >= 0) descend(d, where);
     if (!(d.probability > 0)) return std::nullopt;
     return Choice{~d.next, d.probability};
 }
 
-template std::optional<LightTree::Choice> LightTree::sample<false>(const Weights&, Vec3f, float) const;
-template std::optional<LightTree::Choice> LightTree::sample<true>(const Weights&, Vec3f, float) const;
+template std::optional<LightTree::Choice> LightTree::sample(const Weights&, const Vec3f&, float) const;
+template std::optional<LightTree::Choice> LightTree::sample(const Weights&, const LightWay&, float) const;
 
 void LightTree::sample(const Weights& top, Vec3f position, std::span<const float> u,
                        std::span<Choice> found) const {
@@ -157,7 +153,7 @@ void LightTree::sample(const Weights& top, Vec3f position, std::span<const float
     for (bool on = true; on;) {
         on = false;
         for (std::size_t i = 0; i < found.size(); ++i)
-            if (all[i].next >= 0) descend<false>(all[i], position), on = true;
+            if (all[i].next >= 0) descend(all[i], position), on = true;
     }
     for (std::size_t i = 0; i < found.size(); ++i) found[i] = {~all[i].next, all[i].probability};
 }

@@ -46,25 +46,25 @@ class LightTree {
     /// One light alone: it is chosen without a look, wherever it shines.
     bool lone() const { return place_.size() == 1; }
     /// Illuminance that the lights and groups of the first two nodes bring to a point: one group alone knows too
-    /// little where lights surround the point. The sum is an estimate of the illuminance (lux) by all together. With
-    /// `aside`, for whoever samples the light from elsewhere, lights turned away from the point count, too.
+    /// little where lights surround the point. The sum is an estimate of the illuminance (lux) by all together. `where`
+    /// is a point, or a way through a medium (LightWay, light_way.h) for what it scatters once.
     struct Weights {
         std::array<float, 2 * LightNode::kWide> of;
         float sum;
     };
-    template <bool aside = false>
-    Weights weigh(Vec3f position) const;
+    template <typename Where>
+    Weights weigh(const Where& where) const;
     float importance(Vec3f position) const { return weigh(position).sum; }
     static constexpr std::size_t kMostAtOnce = 4;
     struct Choice {
         int light;
         float probability;
     };
-    /// Empty where no light shines. A light that can reach the position has probability > 0; with `aside`, every one.
+    /// Empty where no light shines. A light that can reach the position, or any place of the way, has probability > 0.
     std::optional<Choice> sample(Vec3f position, float u) const { return sample(weigh(position), position, u); }
-    /// The same with weigh(position) at hand, which a lone light has no use for.
-    template <bool aside = false>
-    std::optional<Choice> sample(const Weights& weights, Vec3f position, float u) const;
+    /// The same with weigh() at hand, which a lone light has no use for.
+    template <typename Where>
+    std::optional<Choice> sample(const Weights& weights, const Where& where, float u) const;
     /// Each `u` by itself as sample() would have it, probability 0 where that is empty; side by side, as the processor
     /// waits for each.
     void sample(const Weights& weights, Vec3f position, std::span<const float> u, std::span<Choice> found) const;
@@ -78,8 +78,8 @@ class LightTree {
         float probability, u;
     };
     Descent start(const Weights& weights, float u) const;
-    template <bool aside>
-    void descend(Descent& d, Vec3f position) const;
+    template <typename Where>
+    void descend(Descent& d, const Where& where) const;
     bool has_second() const { return nodes_.size() > 1 && parent_[1] < 0; }
 
     std::vector<LightNode> nodes_;       // those of a subtree follow each other

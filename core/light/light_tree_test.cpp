@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "light/direction_test.h"
+#include "light/light_way.h"
 
 using namespace dg;
 
@@ -108,6 +109,74 @@ TEST_CASE("many lights: a choice weighed by its probability sums them all up, an
     const SampleMoments found = moments(estimates);
     CHECK(welch_p_value(found, {1, 0, 2}) > 1e-3);
     CHECK(welch_p_value(found, {1.01, 0, 2}) < 1e-3);
+}
+
+TEST_CASE("lamps are chosen for a way by the light that it scatters once, facets by that of the part before them") {
+    constexpr int kLamps = 7, kSteps = 4000;
+    constexpr float kG = 0.6f, kLength = 6;
+    const auto phase = [](float turn) { return std::pow((1 - kG) * (1 - kG) + 2 * kG * turn, -1.5f); };
+    const PhaseAngles angles(phase);
+    const Vec3f origin{1, 2, 3}, d = normalize(Vec3f{1, -1, 0.5f});
+    const LightWay way{origin, d, kLength, 0, angles};
+    for (int layout = 0; layout < 12; ++layout) {
+        std::vector<LightBounds> lights(kLamps);
+        std::vector<double> brought(kLamps, 0);
+        for (int i = 0; i < kLamps; ++i) {
+            LightBounds& lamp = lights[i];
+            lamp.min = lamp.max = origin + d * 3 + random_vector(20 + layout, i) * 6;
+            lamp.axis = normalize(random_vector(40 + layout, i));
+            lamp.intensity = float(0.5 + hash_uniform(3, i));
+            const bool facet = i % 2 == 0;
+            if (facet) lamp.spread = 0;
+            for (int k = 0; k < kSteps; ++k) {
+                const Vec3f to = lamp.min - origin - d * (kLength * (float(k) + 0.5f) / kSteps);
+                if (facet && dot(lamp.axis, to) >= 0) continue;
+                const float turn = 1 - dot(to, d) / length(to);
+                brought[i] += double(lamp.intensity * phase(turn) / length_squared(to)) / kSteps;
+            }
+        }
+        const double sum = std::accumulate(brought.begin(), brought.end(), 0.);
+        const LightTree tree(lights);
+        const LightTree::Weights weights = tree.weigh(way);
+        for (int i = 0; i < 1000; ++i) {
+            const auto choice = tree.sample(weights, way, float(hash_uniform(9, i)));
+            REQUIRE(choice);
+            const double expected = brought[choice->light] / sum;
+            CHECK(std::abs(double(choice->probability) - expected) < 0.02 + 0.1 * expected);
+        }
+    }
+}
+
+TEST_CASE("facets that light any part of a way are chosen for it, and none that is turned away") {
+    constexpr int kFacets = 300, kDraws = 400000;
+    std::vector<LightBounds> lights = random_lights(kFacets);
+    for (LightBounds& b : lights) {
+        const Vec3f middle = (b.min + b.max) * 0.5f;
+        b.min = b.max = middle;
+        b.spread = 0, b.two_sided = false;
+    }
+    const LightTree tree(lights);
+    const PhaseAngles even;
+    for (const float length : {2.f, 15.f, std::numeric_limits<float>::infinity()}) {
+        const LightWay way{{-6, 1, 2}, normalize(Vec3f{1, -0.3f, -0.2f}), length, 0.1f, even};
+        const LightTree::Weights weights = tree.weigh(way);
+        std::vector<double> counted(kFacets, 0);
+        for (int i = 0; i < kDraws; ++i)
+            if (const auto choice = tree.sample(weights, way, float(hash_uniform(11, i))))
+                counted[choice->light] += 1 / (double(choice->probability) * kDraws);
+        double shine = 0, chosen = 0;
+        for (int i = 0; i < kFacets; ++i) {
+            const auto before = [&](float t) {
+                return dot(lights[i].axis, way.origin + way.direction * t - lights[i].min);
+            };
+            if (std::max(before(0), before(std::min(length, 1e6f))) > 0)
+                ++shine, chosen += counted[i];
+            else
+                CHECK(counted[i] == 0);
+        }
+        CAPTURE(length);
+        CHECK(chosen == doctest::Approx(shine).epsilon(0.03));
+    }
 }
 
 TEST_CASE("several at once are those that come one by one, to the bit") {

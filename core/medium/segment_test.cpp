@@ -151,7 +151,7 @@ TEST_CASE("equiangular distances are drawn by their density") {
     for (const Vec3f lamp : {Vec3f{2, 1.2f, 3}, Vec3f{0, 3, 3}, Vec3f{6, 0, 5}})
         for (const auto& [phase, length] : {std::pair{Phase(), 4.f}, {Phase(), kEndless}, {Phase(lobes), 4.f},
                                             {Phase(lobes), kEndless}}) {
-            const Equiangular e(origin, d, length, lamp, phase.angles());
+            const Equiangular e(origin, d, {0, length}, lamp, phase.angles());
             const auto draw = [&](float u) { return e.sample(u); };
             const auto density = [&](float t) { return e.pdf(t); };
             REQUIRE(e.usable());
@@ -162,12 +162,35 @@ TEST_CASE("equiangular distances are drawn by their density") {
         }
 }
 
+TEST_CASE("a part of a way before a plane is as long as the plane leaves it, and distances stay there") {
+    const RayPart way{0, kEndless};
+    CHECK(way.before_plane(-2, 0.5f).begin == 4);
+    CHECK(way.before_plane(-2, 0.5f).end == kEndless);
+    CHECK(way.before_plane(2, -0.5f).end == 4);
+    CHECK(way.before_plane(2, -0.5f).begin == 0);
+    CHECK(way.before_plane(2, 0.5f).begin == 0);
+    CHECK(way.before_plane(-2, -0.5f).empty());
+    CHECK(way.before_plane(-2, 0).empty());
+    CHECK_FALSE(way.before_plane(2, 0).empty());
+    const std::vector<PhaseLobe> lobes{{0.7f, 3}, {-0.4f, 1}};
+    const Phase phase(lobes);
+    int stream = 70;
+    for (const RayPart part : {RayPart{0.7f, 2.5f}, {1.5f, 4}, {2, kEndless}}) {
+        const Equiangular e({1, 2, 3}, normalize(Vec3f{1, -1, 0.5f}), part, {2, 1.2f, 3}, phase.angles());
+        const auto density = [&](float t) { return e.pdf(t); };
+        CHECK(p_value(4, [&](float u) { return e.sample(u); }, density, ++stream) > 1e-3);
+        CHECK(density(part.begin * 0.99f) == 0);
+        CHECK(density(part.begin * 1.01f) > 0);
+        CHECK(density(part.end * 1.01f) == 0);
+    }
+}
+
 TEST_CASE("with the phase function's angles, what a lamp brings falls evenly on its distances") {
     const Vec3f origin{0, 0, 0}, d{0, 0, -1}, lamp{0.3f, 0.4f, -2};
     for (const float g : {0.f, 0.4f, 0.7f, -0.6f}) {
         const std::vector<PhaseLobe> lobe{{g, 1}};
         const Phase phase(lobe);
-        const Equiangular e(origin, d, 6, lamp, phase.angles());
+        const Equiangular e(origin, d, {0, 6}, lamp, phase.angles());
         float least = kEndless, most = 0;
         for (int i = 0; i < 500; ++i) {
             const float t = e.sample((float(i) + 0.5f) / 500);

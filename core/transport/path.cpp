@@ -222,7 +222,7 @@ class Path {
         float t, weight;
     };
     struct WayRandom {
-        float select, from, where;   // which lamp, as seen from where; where it is sampled from
+        float select, where;         // which lamp; where it is sampled from
         Vec2f place;                 // on the lamp
     };
     Way cross_medium(float t, int vertex);
@@ -235,7 +235,7 @@ class Path {
     float light_way(const Phase& phase, const Segment& way, float drawn);
     float share_of_light(float light_pdf, float phase_pdf) const;
     LampOnWay find_lamp(const Phase& phase, const Segment& way, float odds, const WayRandom& u) const;
-    Place aim(const Segment& way, const std::optional<Vec3f>& lamp, const Phase& phase, float u) const;
+    Place aim(const Segment& way, const std::optional<LightSet::Place>& lamp, const Phase& phase, float u) const;
 
     Spectrum environment_emission() const;
     Spectrum surface_emission(const Material& material, const SurfaceHit& hit) const;

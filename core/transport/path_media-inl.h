@@ -10,7 +10,7 @@
 // Sources: Kulla and Fajardo 2012 (equiangular.h); Wilkie et al. 2014 (segment.h); Pharr, Jakob and Humphreys 2023,
 // Physically Based Rendering, chapter 14.
 #pragma once
-#include "medium/equiangular.h"
+#include "light/light_way.h"
 #include "medium/segment.h"
 #include "medium/tracking.h"
 #include "transport/phase_bsdf.h"
@@ -22,7 +22,7 @@ namespace {
 /// of them, or the best of several for each, were measured to cost more time than noise (bench/fog.py).
 constexpr float kSamplesInView = 8, kSamplesPerCollision = 0.5f;
 constexpr float kAlmostOne = 0x1.fffffep-1f;
-constexpr float kEquiangularShare = 0.8f;
+constexpr float kEquiangularShare = 0.9f;
 /// How much a path that is scattered brings, over one that passes with as much light: lamps that its way scatters once
 /// are sampled already.
 constexpr float kScatteredWorth = 0.3f;
@@ -144,7 +144,7 @@ float Path::light_way(const Phase& phase, const Segment& way, float drawn) {
     const float chance = std::min(1.f, samples * way.collides()), odds = chance / (drawn * way.collides());
     const float u_chance = sampler_.next_1d();
     WayRandom u;
-    u.select = sampler_.next_1d(), u.from = sampler_.next_1d(), u.where = sampler_.next_1d();
+    u.select = sampler_.next_1d(), u.where = sampler_.next_1d();
     u.place = sampler_.next_2d();
     if (u_chance >= chance) return odds;
     const LampOnWay lamp = find_lamp(phase, way, odds, u);
@@ -156,13 +156,14 @@ float Path::light_way(const Phase& phase, const Segment& way, float drawn) {
     return odds;
 }
 
-/// A sample of a lamp and of a place on the way. The lamp is chosen as seen from some collision, and sampled from the
-/// place; weight 0: it brings nothing.
+/// A sample of a lamp and of a place on the way. The lamp is chosen by what it brings to the whole way, and sampled
+/// from the place; weight 0: it brings nothing.
 Path::LampOnWay Path::find_lamp(const Phase& phase, const Segment& way, float odds, const WayRandom& u) const {
     const LightSet& lights = scene_.lights();
     LampOnWay lamp{};
-    const SurfaceHit from = in_medium(walk_.ray, walk_.ray.t_min + way.collision(u.from));
-    const auto choice = lights.choose(u.select, from.position);
+    const LightWay seen_by{in_medium(walk_.ray, walk_.ray.t_min).position, walk_.ray.direction, way.length(),
+                           way.medium().extinction.min(), phase.angles()};
+    const auto choice = lights.choose(u.select, seen_by);
     if (!choice) return lamp;
     const auto [t, density] = aim(way, lights.place_of(choice->light, u.place, walk_.ray.time), phase, u.where);
     lamp.t = walk_.ray.t_min + t;
@@ -189,11 +190,17 @@ float Path::share_of_light(float light_pdf, float phase_pdf) const {
 }
 
 /// A distance at which the lamp lights the way, and its density.
-Path::Place Path::aim(const Segment& way, const std::optional<Vec3f>& lamp, const Phase& phase, float u) const {
+Path::Place Path::aim(const Segment& way, const std::optional<LightSet::Place>& lamp, const Phase& phase,
+                      float u) const {
     using Distances = PathSettings::Distances;
     std::optional<Equiangular> seen;
-    const SurfaceHit start = in_medium(walk_.ray, walk_.ray.t_min);
-    if (lamp) seen.emplace(start.position, walk_.ray.direction, way.length(), *lamp, phase.angles());
+    if (lamp) {
+        const Vec3f start = in_medium(walk_.ray, walk_.ray.t_min).position, direction = walk_.ray.direction;
+        RayPart lit{0, way.length()};
+        if (length_squared(lamp->normal) > 0)
+            lit = lit.before_plane(dot(lamp->normal, start - lamp->position), dot(lamp->normal, direction));
+        if (!lit.empty()) seen.emplace(start, direction, lit, lamp->position, phase.angles());
+    }
     float share = settings_.distances == Distances::both ? kEquiangularShare
                                                          : float(settings_.distances == Distances::equiangular);
     if (!seen || !seen->usable()) share = 0;

@@ -1,0 +1,58 @@
+// light_way.h -- how lamps are chosen for a whole way through a medium, from anywhere on which they may be sampled: by
+// what each, or a group of them, brings to the way by one scattering.
+//
+// With s from the foot of the lamp's perpendicular of length h, a lamp of one candela brings the integral of
+// p / (h^2 + s^2), p the phase function, over h: p over even angles as the lamp sees the way (medium/phase_angles.h).
+// Facets of one normal shine on that part of the way alone which lies before their planes. How much less they send
+// aside was measured to matter little beside that, as was what the medium leaves (bench/fog.py).
+#pragma once
+#include <cmath>
+#include <limits>
+
+#include "light/light_tree.h"
+#include "medium/equiangular.h"
+
+namespace dg {
+
+struct LightWay {
+    Vec3f origin, direction;      // unit
+    float length;                 // m, may be infinite
+    float extinction;             // 1/m, the least of all wavelengths
+    const PhaseAngles& angles;
+};
+
+/// Weights of a node's children; their sum. In two loops: the first one without branches, for four at once.
+inline float weigh_node(const LightNode& node, const LightWay& way, float* weights) {
+    constexpr int kWide = LightNode::kWide;
+    constexpr float kLongest = 1e9f;                   // m; squares stay finite
+    constexpr float kLeastAngle = 1e-14f;              // squared, to the line: closer, it is lost in rounding
+    constexpr float kLeastShare = 1e-6f;               // so that no lamp is forgotten
+    const auto larger = [](float a, float b) { return a > b ? a : b; };
+    const auto smaller = [](float a, float b) { return a < b ? a : b; };
+    const float length = smaller(way.length, kLongest);
+    const auto& n = node.facts;
+    float first[kWide], last[kWide];
+    for (int i = 0; i < kWide; ++i) {
+        const Vec3f to = Vec3f{n[0][i], n[1][i], n[2][i]} - way.origin, axis{n[4][i], n[5][i], n[6][i]};
+        const float d2 = length_squared(to), foot = dot(to, way.direction);
+        const float height2 = larger(larger(d2 - foot * foot, n[3][i] * n[3][i]), kLeastAngle * d2 + 1e-20f);
+        const float height = std::sqrt(height2);
+        const float reach = n[10][i], before = reach - dot(axis, to), slope = dot(axis, way.direction);
+        const bool flat = (reach >= 0) & (reach < std::numeric_limits<float>::infinity());
+        const float met = -before / slope;
+        const float begin = flat & (slope > 0) ? larger(met, 0.f) : 0.f;
+        const float end = flat & (slope < 0) ? smaller(met, length) : length;
+        const bool dark = (begin >= end) | (flat & (slope == 0) & (before < 0));
+        const float from = begin - foot, up_to = end - foot;
+        first[i] = from / (height + std::sqrt(height2 + from * from));
+        last[i] = up_to / (height + std::sqrt(height2 + up_to * up_to));
+        const float left = 1 / (1 + 0.25f * way.extinction * std::sqrt(d2));   // its fourth power: exp's, but never 0
+        weights[i] = dark ? 0.f : n[7][i] / height * (left * left) * (left * left);
+    }
+    for (int i = 0; i < kWide; ++i)
+        if (weights[i] > 0)
+            weights[i] *= larger(float(way.angles.before(last[i]) - way.angles.before(first[i])), kLeastShare);
+    return (weights[0] + weights[1]) + (weights[2] + weights[3]);
+}
+
+}  // namespace dg
