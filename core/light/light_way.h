@@ -39,15 +39,16 @@ inline float weigh_node(const LightNode& node, const LightWay& way, float* weigh
         const float height = std::sqrt(height2);
         const float reach = n[10][i], before = reach - dot(axis, to), slope = dot(axis, way.direction);
         const bool flat = (reach >= 0) & (reach < std::numeric_limits<float>::infinity());
-        const float met = -before / slope;
-        const float begin = flat & (slope > 0) ? larger(met, 0.f) : 0.f;
-        const float end = flat & (slope < 0) ? smaller(met, length) : length;
+        const float met = -before / slope, not_before = larger(met, 0.f), up_to_there = smaller(met, length);
+        const bool rises = flat & (slope > 0), falls = flat & (slope < 0);
+        const float begin = rises ? not_before : 0.f, end = falls ? up_to_there : length;
         const bool dark = (begin >= end) | (flat & (slope == 0) & (before < 0));
         const float from = begin - foot, up_to = end - foot;
         first[i] = from / (height + std::sqrt(height2 + from * from));
         last[i] = up_to / (height + std::sqrt(height2 + up_to * up_to));
         const float left = 1 / (1 + 0.25f * way.extinction * std::sqrt(d2));   // its fourth power: exp's, but never 0
-        weights[i] = dark ? 0.f : n[7][i] / height * (left * left) * (left * left);
+        const float strength = n[7][i] / height * (left * left) * (left * left);
+        weights[i] = dark ? 0.f : strength;
     }
     for (int i = 0; i < kWide; ++i)
         if (weights[i] > 0)
