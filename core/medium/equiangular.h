@@ -17,7 +17,7 @@ struct RayPart {
     float begin, end;
 
     bool empty() const { return !(begin < end); }
-    /// What of it lies before a plane, of which the origin lies `height` m before, and a metre on `slope` more.
+    /// Part of it before a plane: the origin lies `height` m before it, and each metre on the ray `slope` m more.
     RayPart before_plane(float height, float slope) const {
         if (slope == 0) return {begin, height > 0 ? end : begin};
         const float met = -height / slope;
