@@ -4,7 +4,7 @@
 // With s from the foot of the lamp's perpendicular of length h, a lamp of one candela brings the integral of
 // p / (h^2 + s^2), p the phase function, over h: p over even angles as the lamp sees the way (medium/phase_angles.h).
 // Facets of one normal shine on that part of the way alone which lies before their planes. How much less they send
-// aside was measured to matter little beside that, as was what the medium leaves (bench/fog.py).
+// aside was measured to matter little beside that (bench/fog.py).
 #pragma once
 #include <cmath>
 #include <limits>
@@ -14,6 +14,7 @@
 
 namespace dg {
 
+/// A ray's way through an even medium.
 struct LightWay {
     Vec3f origin, direction;      // unit
     float length;                 // m, may be infinite
