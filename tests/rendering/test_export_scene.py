@@ -7,6 +7,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import daguerre as dg
@@ -176,3 +177,13 @@ def test_the_scene_itself_is_not_written_over(chart: Path, tmp_path: Path, suffi
             dg.export_scene(scene, target)
     assert path.read_bytes() == before
     dg.export_scene(scene, tmp_path / f"other.{suffix}")
+
+
+def test_the_shift_of_a_pinhole_comes_back(chart: Path, tmp_path: Path) -> None:
+    scene = dg.load(chart)
+    camera = dg.Camera(lens="pinhole", sensor_size=(36, 24), shift=(4.0, -2.5))
+    for suffix in ("xml", "pbrt"):
+        dg.export_scene(scene, tmp_path / f"s.{suffix}", camera, resolution=(60, 40))
+        found = dg.load(tmp_path / f"s.{suffix}").camera()
+        share = np.divide(found.shift, found.sensor_size)
+        assert share == pytest.approx((4 / 36, -2.5 / 24), rel=1e-3)

@@ -73,8 +73,8 @@ def _field(view: View, wider: float) -> float:
 
 
 def _add_shift(sensor: Element, view: View) -> None:
-    """Adds the shift as shares of width and height by which the axis lies off the middle."""
-    for name, shift, side, sign in zip("xy", view.shift_mm, view.film_mm, (-1, 1), strict=True):
+    """Adds the shift as shares of width and height: to the right and down."""
+    for name, shift, side, sign in zip("xy", view.shift_mm, view.film_mm, (1, -1), strict=True):
         if shift:
             add_value(sensor, "float", f"principal_point_offset_{name}", sign * shift / side)
 
