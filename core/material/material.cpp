@@ -40,6 +40,13 @@ Vec3f visible_normal(Vec3f ns, Vec3f ng, Vec3f wo) {
     return best;
 }
 
+Vec3f facing_normal(Vec3f ns, Vec3f ng, Vec3f wo) {
+    const float side = std::copysign(1.f, dot(ng, wo));
+    if (side * dot(ns, wo) > 0) return ns;
+    const Vec3f turned = ng * (2 * dot(ns, ng)) - ns;
+    return side * dot(turned, wo) > 0 ? turned : ng;
+}
+
 namespace {
 
 /// Share of the second part of a mixture among what is there: rays that pass one part may be stopped by the other.
@@ -127,7 +134,8 @@ Bsdf shade(const Material& material, const Textures& textures, SurfaceHit& hit,
         hit.ns = mapped_normal(material.normal_texture, material.normal_scale, textures, hit);
     const bool own_normal = std::holds_alternative<GltfMaterial>(material.kind) ||
                             std::holds_alternative<MixMaterial>(material.kind);
-    if (!own_normal) hit.ns = visible_normal(hit.ns, hit.ng, hit.wo);
+    const bool matte = material.normal_texture.used() && std::holds_alternative<DiffuseMaterial>(material.kind);
+    if (!own_normal) hit.ns = (matte ? facing_normal : visible_normal)(hit.ns, hit.ng, hit.wo);
     return std::visit(
         [&](const auto& m) { return shade_kind(m, textures, hit, wavelengths); },
         material.kind);

@@ -40,6 +40,11 @@ Vec3f mapped_normal(const TextureSlot& slot, float scale, const Textures& textur
 /// from the viewer.
 Vec3f visible_normal(Vec3f ns, Vec3f ng, Vec3f wo);
 
+/// ns of a normal map on a matte surface, which has no mirror image and keeps steep normals. One that faces away from
+/// wo belongs to a slope that is hidden; what is seen in its place is the slope across, turned half about ng, as pbrt
+/// and Mitsuba have it.
+Vec3f facing_normal(Vec3f ns, Vec3f ng, Vec3f wo);
+
 // The extensions of gltf_layers.h at a hit; hit.ns is the normal of the mesh for
 // read_coat, that of the base for read_anisotropy.
 Coat read_coat(const ClearcoatLayer& layer, const Textures& textures,

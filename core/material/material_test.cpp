@@ -1,6 +1,7 @@
 // material_test.cpp -- materials at a hit: factors, textures, vertex colours, normals,
 // opacity, emission.
 #include "material/material.h"
+#include "material/material_read.h"
 
 #include <doctest/doctest.h>
 
@@ -288,6 +289,42 @@ TEST_CASE("no normal turns a surface black: wo and its mirror image stay above")
     const Vec3f ns = h.ns = normalize(Vec3f{0.1f, 0.1f, 1});
     shade({"m", DiffuseMaterial{}, {}, false}, {}, h, w);
     CHECK(h.ns == ns);
+}
+
+TEST_CASE("a matte surface with a steep normal shows (1 + cos) / 2 of an even sky, from wherever it is seen") {
+    const Wavelengths w = wavelengths();
+    const auto byte = [](float v) { return static_cast<std::uint8_t>(std::lround(127.5f * (1 + v))); };
+    for (const float degrees : {0.f, 30.f, 60.f, 80.f}) {
+        const float angle = degrees * kPi / 180, up = std::cos(angle);
+        const auto texel = {byte(std::sin(angle)), byte(0), byte(up)};
+        const std::vector<Texture> textures{pair(texel, texel)};
+        Material m{"m", DiffuseMaterial{}, {}, false};
+        m.normal_texture = slot(0);
+        for (const Vec3f wo : {Vec3f{0, 0, 1}, Vec3f{0.8f, 0, 0.6f}, Vec3f{-0.8f, 0, 0.6f}}) {
+            SurfaceHit h = hit_from(wo);
+            h.tangent = {1, 0, 0};
+            const Bsdf b = shade(m, textures, h, w);
+            CHECK(dot(h.ns, wo) > 0);
+            CHECK(h.ns.z == doctest::Approx(up).epsilon(0.02));
+            check::Random random{7};
+            double sum = 0;
+            constexpr int kCount = 40000;
+            for (int i = 0; i < kCount; ++i)
+                if (const auto s = sample(b, wo, 0.5f, random.next_2d())) sum += s->weight[0];
+            CHECK(sum / kCount == doctest::Approx(0.5 * (1 + up) / 2).epsilon(0.015));
+        }
+    }
+}
+
+TEST_CASE("no normal map turns a matte surface black") {
+    check::Random random{5};
+    for (int i = 0; i < 20000; ++i) {
+        const Vec3f wo = random.direction(), ng = random.direction(), ns = random.direction();
+        if (std::abs(dot(ng, wo)) < 1e-3f) continue;
+        const Vec3f n = facing_normal(ns, ng, wo);
+        CHECK(dot(n, wo) * dot(ng, wo) > 0);
+        CHECK(length(n) == doctest::Approx(1));
+    }
 }
 
 TEST_CASE("opacity: opaque, mask and blend") {
