@@ -209,3 +209,19 @@ def test_colours_of_meshes_are_reflectances(tmp_path: Path) -> None:
         assert np.allclose(by_face.colors[three, :3], color)
     other = loaded(tmp_path, body.format("face_weight"))
     assert "the attribute 'face_weight' of a mesh is left out (1 use)" in other.warnings
+
+
+@pytest.mark.parametrize("quad", ["f 1//1 2//1 3//1 4//1", "f 1//1 2//1 3//1\nf 1//1 3//1 4//1"])
+@pytest.mark.parametrize("flat", [False, True])
+def test_normals_of_a_file_say_what_the_front_is(quad: str, flat: bool, tmp_path: Path) -> None:
+    """A lamp whose corners run against its normals shines along these, as in Mitsuba."""
+    lines = "v -1 -1 0\nv -1 1 0\nv 1 1 0\nv 1 -1 0\nvn 0 0 1\n"
+    (tmp_path / "a.obj").write_text(lines + quad + "\n")
+    inner = '<string name="filename" value="a.obj"/>' + (
+        '<boolean name="face_normals" value="true"/>' if flat else ""
+    )
+    lamp = '<emitter type="area"><rgb name="radiance" value="1 1 1"/></emitter>'
+    scene = loaded(tmp_path, f'<shape type="obj">{inner}{lamp}</shape>')
+    scene.add_camera("a", dg.Camera(transform=dg.look_at((0, 0, 5), (0, 0, 0)), lens="pinhole"))
+    frame = dg.render(scene, "a", resolution=(16, 16), spp=256)
+    assert frame.rgb[6:10, 6:10].mean() == pytest.approx(0.0 if flat else 1.0, rel=0.02)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from daguerre.errors import asked_by
 from daguerre.io.meshes import obj, ply, serialized
@@ -16,7 +17,7 @@ from daguerre.io.meshes.file_mesh import FileMesh
 
 from .context import Context
 from .node import Node
-from .vertex_normals import vertex_normals
+from .vertex_normals import lie_against, vertex_normals
 
 FILES = ("obj", "ply", "serialized")
 #: Attributes that become colours of the mesh.
@@ -95,6 +96,8 @@ class MeshFiles:
         elif mesh.normals is None and wanted.plugin != "serialized":
             made = vertex_normals(mesh.positions, mesh.corners, mesh.sizes)
             mesh = replace(mesh, normals=made)
+        elif mesh.normals is not None:
+            mesh = along_normals(mesh, mesh.normals)
         if wanted.upside_down and mesh.uv is not None:
             mesh = replace(mesh, uv=(mesh.uv * (1, -1) + (0, 1)).astype(np.float32))
         if wanted.inside_out:
@@ -113,6 +116,15 @@ def colored_by_faces(mesh: FileMesh) -> FileMesh:
     if colors is None:
         return replace(mesh, sizes=sizes, colors=None)
     return replace(mesh, sizes=sizes, colors=np.repeat(colors, sizes, axis=0), face_colors=None)
+
+
+def along_normals(mesh: FileMesh, normals: NDArray[np.float32]) -> FileMesh:
+    """The mesh whose faces look where its normals do, which say in Mitsuba what its front is."""
+    if not lie_against(mesh.positions, mesh.corners, mesh.sizes, normals):
+        return mesh
+    turned = inside_out(mesh)
+    assert turned.normals is not None
+    return replace(turned, normals=-turned.normals)
 
 
 def inside_out(mesh: FileMesh) -> FileMesh:

@@ -42,6 +42,28 @@ def vertex_normals(
     return np.ascontiguousarray(made, np.float32)
 
 
+def lie_against(
+    positions: NDArray[np.float32],
+    corners: NDArray[np.uint32],
+    sizes: NDArray[np.uint32] | None,
+    normals: NDArray[np.float32],
+) -> bool:
+    """Whether faces look the other way than normals do, by their areas.
+
+    Args:
+        positions: Shape (N, 3).
+        corners: Vertices of the faces' corners, shape (C,).
+        sizes: Corners of each face, shape (F,); None: triangles.
+        normals: Normals of vertices or of corners, shape (N, 3) or (C, 3).
+    """
+    index = corners.astype(np.int64).reshape(-1)
+    points = positions.astype(np.float64)[index]
+    before, after = _neighbours(len(index), sizes)
+    across = np.cross(points[after] - points, points[before] - points)
+    own = len(normals) == len(index) != len(positions)
+    return float((across * (normals if own else normals[index])).sum()) < 0
+
+
 def _neighbours(count: int, sizes: NDArray[np.uint32] | None) -> tuple[Integers, Integers]:
     """Corners before and after each corner of its face."""
     own = np.arange(count)
