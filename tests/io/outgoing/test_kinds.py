@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 import daguerre as dg
 import daguerre.io.mitsuba.writer as mitsuba_writer
 import daguerre.io.pbrt.writer as pbrt_writer
+from daguerre.io.mitsuba.rough_plastic import Loss
 from daguerre.io.outgoing.record import Outgoing, View
 from daguerre.scene.media import DensityGrid, Medium
 from daguerre.scene.spectrum import Spectrum
@@ -132,28 +134,45 @@ def test_mitsuba_has_each_of_them(tmp_path: Path) -> None:
         assert words in notes
 
 
-def test_a_rough_coat_that_saturates_shows_mitsuba_its_darker_colour(tmp_path: Path) -> None:
-    """Its base of 0.6 sends 0.6 (1 - F) / (1 - 0.6 F) of what comes through; F is 0.596."""
-    scene = dg.Scene()
-    kinds = [
-        dg.Coated(dg.Diffuse((0.6, 0.6, 0.6)), alpha=0.2, nonlinear=on) for on in (True, False)
-    ]
-    for kind in kinds:
+def test_rough_coats_go_to_mitsuba_with_bases_that_make_up_for_its_loss(tmp_path: Path) -> None:
+    """One base is so bright that Mitsuba's own is above 1, which our reader counts as 1."""
+    scene, made = dg.Scene(), []
+    for nonlinear in (True, False):
+        for alpha, shade, name in ((0.1, 0.6, "ggx"), (0.2, 0.9, "ggx"), (0.2, 0.3, "beckmann")):
+            base, facets = dg.Diffuse((shade, 0.3, 0.0)), {"distribution": name}
+            made.append(dg.Coated(base, alpha=alpha, nonlinear=nonlinear, **facets))
+    for kind in made:
         scene.add_instance(outgoing_scenes.card(scene), kind)
-    file = tmp_path / "a.xml"
-    mitsuba_writer.write(file, outgoing(scene))
-    root = ElementTree.fromstring(file.read_text())
-    colors = [
-        [float(one.get("value", "").split(",")[0]) for one in bsdf.iter("rgb")]
-        for bsdf in root.findall("bsdf")
-    ]
-    inside = 0.596
-    ratio = (1 - inside) / (1 - 0.6 * inside)
-    for saturated, plain in zip(*colors, strict=True):
-        assert saturated == pytest.approx(plain * ratio, rel=2e-3)
-    assert len(colors[0]) == 3  # a plastic, a diffuse, and the coat's black
-    assert all(one.get("value") == "false" for one in root.iter("boolean")
-               if one.get("name") == "nonlinear")  # fmt: skip
+    scene.add_camera("a", outgoing_scenes.camera())
+    dg.export_scene(scene, tmp_path / "a.xml")
+    again = dg.load(tmp_path / "a.xml")
+    for kind, one in zip(made, (again.materials[each.material].kind for each in again.instances),
+                         strict=True):  # fmt: skip
+        assert isinstance(one, dg.Coated)
+        loss = Loss(kind.ior, kind.alpha, kind.distribution, kind.nonlinear)
+        wanted = np.minimum(loss.shade(np.asarray(kind.base.reflectance)), 1)
+        assert one.base.reflectance == pytest.approx(wanted, abs=1e-6)
+        assert one == replace(kind, base=one.base, energy_compensation=False)
+
+
+def test_rougher_coats_are_blended_with_a_diffuse_surface(tmp_path: Path) -> None:
+    """All of the coat and all of the base, in the parts of the blend together."""
+    scene = dg.Scene()
+    kind = dg.Coated(dg.Diffuse((0.6, 0.6, 0.6)), alpha=0.5, nonlinear=True)
+    scene.add_instance(outgoing_scenes.card(scene), kind)
+    scene.add_camera("a", outgoing_scenes.camera())
+    notes = dg.export_scene(scene, tmp_path / "a.xml")
+    assert any("blend of Mitsuba's roughplastic and diffuse" in note for note in notes)
+    root = ElementTree.fromstring((tmp_path / "a.xml").read_text())
+    values = {one.get("name"): one.get("value", "") for one in root.iter() if one.get("name")}
+    weight = float(values["weight"])
+    gloss = root.find(".//spectrum[@name='specular_reflectance']/rgb")
+    assert gloss is not None
+    assert float(gloss.get("value", "").split(",")[0]) * (1 - weight) == pytest.approx(1)
+    loss = Loss(1.5, 0.5, "ggx", nonlinear=True)
+    below, beside = (float(values[n].split(",")[0]) for n in ("diffuse_reflectance", "reflectance"))
+    assert below == pytest.approx(float(loss.shade(np.asarray(0.6))))
+    assert beside == pytest.approx(float(loss.bare(np.asarray(0.6))))
 
 
 def test_a_grid_is_noted(tmp_path: Path) -> None:

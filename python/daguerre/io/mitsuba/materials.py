@@ -154,6 +154,10 @@ class Materials:
     def _normal_map(self, node: Node) -> Look:
         look, texture = self._inner(node), self._texture(node)
         value = None if texture is None else fit(texture, 3)
+        if node.flag("use_shadowing_function", False):
+            self._notes.add(
+                "a normal map's shadowing function is left out: its terminator is sharp"
+            )
         return self._with(look, Relief(normals=value))
 
     def _bump_map(self, node: Node) -> Look:

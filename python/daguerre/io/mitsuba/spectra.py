@@ -98,6 +98,7 @@ class Spectra:
     def _node(self, node: Node) -> Color | Spectrum:
         node.use()
         if node.plugin in ("rgb", "srgb", "srgb_d65"):
+            node.skip("unbounded")
             return self._color(node)
         if node.plugin in ("uniform", "acromatic", "rawconstant"):
             node.skip("wavelength_min", "wavelength_max", "lambda_min", "lambda_max")

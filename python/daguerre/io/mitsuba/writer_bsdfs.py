@@ -11,9 +11,18 @@ from dataclasses import replace
 import numpy as np
 
 from daguerre.files.notes import Notes
-from daguerre.io.outgoing.coats import head_on, seen_above, sheet_ior, smooth_share
+from daguerre.io.outgoing.coats import head_on, sheet_ior
 from daguerre.io.outgoing.folder import OutgoingFolder
-from daguerre.io.outgoing.pictures import BLACK, WHITE, Colored, Number, Picture, each, scaled
+from daguerre.io.outgoing.pictures import (
+    BLACK,
+    WHITE,
+    Colored,
+    Number,
+    Picture,
+    changed,
+    each,
+    scaled,
+)
 from daguerre.io.outgoing.surfaces import (
     Blend,
     Glass,
@@ -28,12 +37,13 @@ from daguerre.io.outgoing.surfaces import (
 )
 from daguerre.scene.spectrum import Spectrum
 
-from .writer_xml import Element, Values, add, add_rgb, add_value
+from .rough_plastic import Loss
+from .writer_xml import Element, Values, add, add_value
 
 #: Least difference of an index of refraction from 1 that Mitsuba takes.
 _LEAST_STEP = 1e-4
-#: Share of a rough coat beside its base, in which it is that much brighter.
-_COAT_SHARE = 0.02
+#: Roughness above which a part of a coated base is diffuse, and that part over the roughness.
+_EVEN_FROM, _EVEN_PART, _MOST_EVEN = 0.25, 1.5, 0.95
 _D_NM = 587.56
 
 
@@ -114,16 +124,18 @@ class Bsdfs:
 
     def _add_plastic(self, parent: Element, surface: Plastic, name: str) -> None:
         alpha = surface.rough.u
-        if isinstance(alpha, Picture):
+        if _is_black(surface.color) and _is_black(surface.tint):
+            self._add(parent, Lambert(BLACK), name)
+        elif isinstance(alpha, Picture):
             self._add_textured_plastic(parent, surface, alpha, name)
-        elif not (surface.rough.smooth or surface.compensated):
-            self._add_lossy_plastic(parent, surface, name)
-        elif not surface.rough.smooth:
+        elif surface.compensated and not surface.rough.smooth:
             self._add_rough_plastic(parent, surface, name)
         else:
-            bsdf = self._plastic(parent, "plastic", surface, name)
+            smooth = surface.rough.smooth
+            bsdf = self._plastic(parent, "plastic" if smooth else "roughplastic", surface, name)
             self.values.color(bsdf, "diffuse_reflectance", surface.color)
             self._add_factor(bsdf, "specular_reflectance", surface.tint)
+            self._add_round(bsdf, surface)
 
     def _add_textured_plastic(
         self, parent: Element, surface: Plastic, alpha: Picture, name: str
@@ -137,51 +149,30 @@ class Bsdfs:
         self.values.color(bsdf, "base_color", passed)
         add_value(bsdf, "float", "eta", max(surface.ior, 1 + _LEAST_STEP))
 
-    def _add_lossy_plastic(self, parent: Element, surface: Plastic, name: str) -> None:
-        bsdf = self._plastic(parent, "roughplastic", surface, name)
-        self.values.color(bsdf, "diffuse_reflectance", surface.color)
-        self._add_factor(bsdf, "specular_reflectance", surface.tint)
-        self._add_round(bsdf, surface)
-
     def _add_rough_plastic(self, parent: Element, surface: Plastic, name: str) -> None:
-        """Adds the base below the coat, and beside it the rough coat on nothing.
+        """Adds a coat on a base that is as much brighter as Mitsuba loses there (``Loss``).
 
-        Mitsuba's ``roughplastic`` loses the light that facets send down: half of it at roughness
-        0.7. It blends, and does not add, so both parts are as much brighter as their shares are
-        small.
+        Mitsuba's base depends more on the angle than ours, the rougher the more. So a part of it is
+        a diffuse surface, whose share the coat's reflection makes up for.
         """
-        self._notes.add(
-            "rough coat on a diffuse base is a blend of Mitsuba's plastic, diffuse and a coat"
-        )
-        if _is_black(surface.color):
-            self._add_coat(parent, surface, 1.0, name)
-            return
-        if surface.saturates:  # neither a factor on the colour nor ``diffuse`` would know of it
-            seen = seen_above(surface.color, surface.ior)
-            surface = replace(surface, color=seen, saturates=False)
-        bsdf = add(parent, "bsdf", type="blendbsdf", id=name)
-        add_value(bsdf, "float", "weight", _COAT_SHARE)
-        self._add_base(bsdf, surface)
-        self._add_coat(bsdf, surface, _COAT_SHARE, "")
-
-    def _add_base(self, parent: Element, surface: Plastic) -> None:
-        """Adds the base: the rougher its coat, the less its light depends on the angle."""
-        assert not isinstance(surface.rough.u, Picture)
-        bsdf = add(parent, "bsdf", type="blendbsdf")
-        add_value(bsdf, "float", "weight", 1 - smooth_share(surface.rough.u))
-        color = scaled(surface.color, 1 / (1 - _COAT_SHARE))
-        base = self._plastic(bsdf, "plastic", surface, "")
-        self.values.color(base, "diffuse_reflectance", color)
-        add_value(base, "spectrum", "specular_reflectance", 0.0)
-        passed = 1 - head_on(surface.ior, surface.rough.u)
-        self.values.color(add(bsdf, "bsdf", type="diffuse"), "reflectance", scaled(color, passed))
-
-    def _add_coat(self, parent: Element, surface: Plastic, share: float, name: str) -> None:
-        """Adds a rough coat on nothing, which counts as if its share were 1."""
-        coat = self._plastic(parent, "roughplastic", surface, name)
-        add_rgb(coat, "diffuse_reflectance", BLACK)
-        add_value(coat, "spectrum", "specular_reflectance", _grey(surface.tint) / share)
-        self._add_round(coat, surface)
+        rough, share = surface.rough, 0.0
+        assert not isinstance(rough.u, Picture)
+        loss = Loss(max(surface.ior, 1.0), rough.u, rough.distribution, surface.saturates)
+        if rough.u > _EVEN_FROM and not _is_black(surface.color):
+            self._notes.add(
+                "rough coat on a diffuse base is a blend of Mitsuba's roughplastic and diffuse"
+            )
+            share = min(_EVEN_PART * rough.u, _MOST_EVEN)
+            parent = add(parent, "bsdf", type="blendbsdf", id=name)
+            add_value(parent, "float", "weight", share)
+            name = ""
+        bsdf = self._plastic(parent, "roughplastic", surface, name)
+        self.values.factor(bsdf, "diffuse_reflectance", changed(surface.color, loss.shade))
+        tint = changed(surface.tint, lambda light: light / (1 - share))
+        self._add_factor(bsdf, "specular_reflectance", tint)
+        self._add_round(bsdf, surface)
+        if share > 0:
+            self._add(parent, Lambert(changed(surface.color, loss.bare)))
 
     def _add_round(self, parent: Element, surface: Plastic) -> None:
         """Adds the roughness of a coat, which is round in Mitsuba."""
@@ -233,7 +224,7 @@ class Bsdfs:
 
     def _add_factor(self, bsdf: Element, name: str, color: Colored) -> None:
         if color != WHITE:
-            self.values.color(bsdf, name, color)
+            self.values.factor(bsdf, name, color)
 
     def _add_roughness(self, bsdf: Element, rough: Rough) -> None:
         if rough.smooth:
@@ -248,13 +239,6 @@ class Bsdfs:
     def _add_ior(self, bsdf: Element, ior: float) -> None:
         add_value(bsdf, "float", "int_ior", ior if abs(ior - 1) > _LEAST_STEP else 1 + _LEAST_STEP)
         add_value(bsdf, "float", "ext_ior", 1.0)
-
-
-def _grey(tint: Colored) -> float:
-    """Mean of a factor, where Mitsuba takes no colour above 1."""
-    if isinstance(tint, Picture):
-        return float(tint.linear.mean())
-    return float(np.mean(tint.values if isinstance(tint, Spectrum) else tint))
 
 
 def _is_black(color: Colored) -> bool:

@@ -72,6 +72,15 @@ class Values:
         else:
             add_rgb(parent, name, value)
 
+    def factor(self, parent: Element, name: str, value: Colored) -> None:
+        """Adds a factor on light; above 1 Mitsuba refuses an ``rgb`` of a surface."""
+        if isinstance(value, Picture | Spectrum) or max(value) <= 1:
+            self.color(parent, name, value)
+            return
+        bright = add(parent, "spectrum", type="srgb", name=name)
+        add_rgb(bright, "color", value)
+        add_value(bright, "boolean", "unbounded", True)
+
     def number(self, parent: Element, name: str, value: Number) -> None:
         """Adds a number, or a bitmap of one."""
         if isinstance(value, Picture):

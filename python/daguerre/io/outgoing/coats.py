@@ -42,23 +42,9 @@ def base_below(color: Colored, ior: float) -> Colored:
     return changed(color, lambda shade: shade / (1 - inside + shade * inside))
 
 
-def seen_above(color: Colored, ior: float) -> Colored:
-    """Colour that a base shows through a coat, with all light between both; see ``base_below``."""
-    inside = mean_inside(ior)
-    return changed(color, lambda shade: shade * (1 - inside) / (1 - shade * inside))
-
-
-def smooth_share(alpha: float) -> float:
-    """Share of a smooth coat in a blend with a constant that reflects like a rough coat.
-
-    Fitted to directional albedos of GGX with an index of 1.5, weighted by the cosine, within 0.05.
-    """
-    return math.exp(-6 * alpha)
-
-
-def head_on(ior: float, alpha: float = 0.0) -> float:
-    """Reflectance at normal incidence; facets of a rough surface hide some of it (fitted)."""
-    return ((ior - 1) / (ior + 1)) ** 2 * (1 - 0.65 * alpha)
+def head_on(ior: float) -> float:
+    """Reflectance of an interface at normal incidence."""
+    return ((ior - 1) / (ior + 1)) ** 2
 
 
 def sheet_ior(ior: float) -> float:
