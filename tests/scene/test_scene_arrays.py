@@ -50,6 +50,11 @@ BAD: list[tuple[str, Callable[[dg.Scene], Any], str]] = [
     ("cone", lambda s: s.add_light(dg.SpotLight(inner_angle=60)), "inner_angle < outer_angle"),
     ("angle", lambda s: s.add_light(dg.DirectionalLight(angle=400)), "angle: wanted a number"),
     ("camera", lambda s: s.add_camera("a", "b"), "wanted a Camera, got 'b'"),
+    (
+        "film size",
+        lambda s: s.add_camera("a", dg.Camera(), film_size=(0, 5)),
+        "film_size: wanted 1 .. 65536, got 0",
+    ),
     ("sky", lambda s: s.set_environment(color=(1, 2)), "color: wanted three numbers"),
     ("night", lambda s: s.set_environment(-np.ones((2, 4, 3))), "at least 0"),
 ]

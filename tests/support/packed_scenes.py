@@ -33,6 +33,7 @@ def everything() -> dg.Scene:
             eye, lens="thin", f_stop=1.4, focus_distance=4.0, shutter_time=0.02, shutter_curve=curve
         ),
         alias="eye",
+        film_size=(64, 48),
     )
     made.add_camera(
         "Wide", dg.Camera(projection=dg.Projection.of_field("equidistant", (40, 30), 120))

@@ -35,7 +35,12 @@ def export_scene(
         option("-o", "--output", metavar="FILE.pbrt|xml", help="Scene file to write."),
     ] = None,
     res: Annotated[
-        Text, option("--res", metavar="WxH", help="Size of the picture, px [1280x720].")
+        Text,
+        option(
+            "--res",
+            metavar="WxH",
+            help="Size of the picture, px [that of the scene file, else 960x540].",
+        ),
     ] = None,
     spp: Annotated[int | None, option("--spp", metavar="N", help="Samples per pixel [64].")] = None,
 ) -> int:
@@ -60,7 +65,7 @@ def export_scene(
     calibration_flags.check(changes)
     scene = file_flags.read(scene_path)
     camera = views[0].view(flags).camera(scene)
-    size = flags.size(views[0], res)
+    size = flags.size(views[0], res, scene)
     notes = daguerre.export_scene(scene, output, camera, resolution=size, spp=spp)
     for text in scene.warnings:
         console.note(f"{scene_path}: {text}")

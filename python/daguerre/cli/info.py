@@ -40,8 +40,8 @@ def info(
         option(
             "--res",
             metavar="WxH",
-            help="Picture size, px, for field of view and pixel pitch [that of the calibration, "
-            "else 960x540].",
+            help="Picture size, px, for field of view and pixel pitch [that of the calibration "
+            "or the scene file, else 960x540].",
         ),
     ] = None,
     json: Annotated[bool, option("--json", help="Print one JSON object.")] = False,
@@ -63,7 +63,7 @@ def info(
     if camera_flags.camera is None and len(views) == 1:
         views = [replace(views[0], name=name, camera=name) for name in scene.cameras]
     cameras: dict[str, Camera] = {view.name: view.view(flags).camera(scene) for view in views}
-    sizes = {view.name: flags.size(view, res) for view in views}
+    sizes = {view.name: flags.size(view, res, scene) for view in views}
     content = facts_of.scene_facts(scene)
     core_scene = None
     if any(facts_of.needs_autofocus(camera) for camera in cameras.values()):

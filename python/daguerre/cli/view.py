@@ -87,8 +87,6 @@ def view(
     dials = Dials.of({name: text for name, text in given.items() if name in DIALS})
     cameras = Cameras(camera_flags.camera, calibration_flags, {}, camera_flags.placement)
     (seen,) = cameras.views(None)
-    settings = checks.settings_of(job_flags, settings_flags, [], cameras.size(seen, job_flags.res))
-    photograph = photograph_of({}, None, None, None, settings.sampling.seed)
 
     def load() -> tuple[Scene, Camera]:
         scene = scene_flags.load(scene_path)
@@ -96,7 +94,11 @@ def view(
             console.warn(f"{scene_path}: {warning}")
         return scene, seen.view(cameras).camera(scene)
 
-    stage = Stage(*load(), settings, photograph, job_flags.tone, load)
+    scene, camera = load()
+    size = cameras.size(seen, job_flags.res, scene)
+    settings = checks.settings_of(job_flags, settings_flags, [], size)
+    photograph = photograph_of({}, None, None, None, settings.sampling.seed)
+    stage = Stage(scene, camera, settings, photograph, job_flags.tone, load)
     stage.try_out(dials)
     words = without(console.argv, [*DIALS])
     if job_flags.output is None:

@@ -16,7 +16,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from daguerre.camera.camera import Camera
-from daguerre.checks import MAX_NUMBERS, as_readonly, matrix, short, to_numbers
+from daguerre.checks import (
+    MAX_NUMBERS,
+    MAX_RESOLUTION,
+    as_readonly,
+    matrix,
+    short,
+    to_numbers,
+    whole,
+)
 from daguerre.checks import color as check_color
 from daguerre.checks import number as check_number
 from daguerre.doors import guarded
@@ -85,6 +93,8 @@ class Scene(Value):
     plate: Plate | None = None
     #: medium that fills the world outside of all closed meshes
     fog: Medium | None = None
+    #: width and height of the picture, px, that the file asks of a camera
+    film_sizes: dict[str, tuple[int, int]] = field(default_factory=dict)
 
     __hash__ = None  # type: ignore[assignment]  # it changes
 
@@ -486,14 +496,29 @@ class Scene(Value):
         self.lights.append((shown, world))
         return len(self.lights) - 1
 
-    def add_camera(self, name: str, camera: Camera, *, alias: str = "") -> None:
+    def add_camera(
+        self,
+        name: str,
+        camera: Camera,
+        *,
+        alias: str = "",
+        film_size: tuple[int, int] | None = None,
+    ) -> None:
         """Adds a camera under a name; the first one becomes the default.
 
-        ``alias`` is a second name for ``camera``, unless another camera has it.
+        Args:
+            name: Name.
+            camera: The camera.
+            alias: Second name for it, unless another camera has it.
+            film_size: Width and height, px, of the picture that the file asks of it: the default of
+                ``daguerre render``.
         """
         for value, kind in ((name, str), (camera, Camera)):
             if not isinstance(value, kind):
                 raise UsageError(f"add_camera: wanted a {kind.__name__}, got {short(value)}")
+        if film_size is not None:
+            width, height = (whole(side, "film_size", 1, MAX_RESOLUTION) for side in film_size)
+            self.film_sizes[name] = width, height
         self.cameras[name] = camera
         if self.default_camera is None:
             self.default_camera = name
@@ -558,6 +583,17 @@ class Scene(Value):
         Raises:
             InputError: There is no such camera; the message suggests the nearest names.
         """
+        return self.cameras[self._camera_name(name)]
+
+    def film_size(self, name: str | None = None) -> tuple[int, int] | None:
+        """Width and height, px, of the picture that the file asks of a camera; None: it does not.
+
+        Raises:
+            InputError: There is no such camera.
+        """
+        return self.film_sizes.get(self._camera_name(name))
+
+    def _camera_name(self, name: str | None) -> str:
         if name is None:
             if self.default_camera is None:
                 raise InputError(f"{self.path or 'scene'}: {self._lacking()}")
@@ -569,7 +605,7 @@ class Scene(Value):
                 f"{self.path or 'scene'}: no camera named {name!r}"
                 f"{suggest(name, self.cameras, few=True)}"
             )
-        return self.cameras[name]
+        return name
 
     def _lacking(self) -> str:
         """Tells what a scene without a camera needs."""

@@ -36,8 +36,8 @@ class JobFlags(ClusterFlags):
         option(
             "--res",
             metavar="WxH|50%",
-            help="Picture size, px, or percentage of the default [that of the calibration or "
-            f"--like-plate, else {_WIDTH}x{_HEIGHT}].",
+            help="Picture size, px, or percentage of the default [that of the calibration, "
+            f"--like-plate or the scene file, else {_WIDTH}x{_HEIGHT}].",
             panel=PICTURE,
         ),
     ] = None

@@ -47,8 +47,21 @@ class Plan:
         return self.maps.renamed(lambda path: path_of(path, name, frame, several=several))
 
 
-def plan_of(flags: JobFlags, rows: SettingsFlags, maps: MapFlags, cameras: Cameras) -> Plan:
+def plan_of(
+    flags: JobFlags,
+    rows: SettingsFlags,
+    maps: MapFlags,
+    cameras: Cameras,
+    scene: Scene | None = None,
+) -> Plan:
     """Makes the plan from the flags of a render.
+
+    Args:
+        flags: Flags of the job.
+        rows: Flags of the settings.
+        maps: Flags of the maps.
+        cameras: Flags of the cameras.
+        scene: The scene, whose file may name the size of a picture; None: it is not read yet.
 
     Raises:
         UsageError: A value is wrong, or excludes another; the message names the flag.
@@ -56,9 +69,13 @@ def plan_of(flags: JobFlags, rows: SettingsFlags, maps: MapFlags, cameras: Camer
     views = cameras.views(flags.stereo)
     groups = checks.check_files(flags, rows, maps)
     samples = checks.check_samples(flags, rows, groups)
-    settings = [checks.settings_of(flags, rows, groups, cameras.size(v, flags.res)) for v in views]
+    sizes = [cameras.size(view, flags.res, scene) for view in views]
+    settings = [checks.settings_of(flags, rows, groups, size) for size in sizes]
     checks.check_overscan(flags, settings[0])
     checks.check_truth(groups, rows, maps)
+    if scene is not None or flags.res:  # else its size is not known
+        for one in settings:
+            checks.check_crop(one.film)
     numbers = frame_numbers("--frames", flags.frames) if flags.frames is not None else None
     maps.check()
     files = [*flags.paths, *(flags.noisy or ()), *maps.files]
@@ -93,7 +110,6 @@ def _output(
 
 def _output_of(output: Output, view: View, settings: RenderSettings) -> Output:
     """Makes the output of one camera, whose picture may have another size."""
-    checks.check_crop(settings.film)
     if DISPARITY in output.aovs and not view.shift:
         raise UsageError("--aov disparity: wanted --stereo, got no pair")
     return replace(output, baseline=2 * abs(view.shift))

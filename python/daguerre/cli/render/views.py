@@ -118,9 +118,17 @@ class Cameras:
                 fps = rates.setdefault(name, one.view.camera(scene).fps)
                 found.check(one.frame, scene.time + (one.frame or 0) / fps, fps)
 
-    def size(self, view: View, res: str | None) -> tuple[int, int]:
-        """Size of a camera's picture, px."""
-        usual = DEFAULT["resolution"] if self.plate is None else self.plate.resolution
+    def size(self, view: View, res: str | None, scene: Scene | None = None) -> tuple[int, int]:
+        """Size of a camera's picture, px; None: the scene, whose file may name it, is not read yet.
+
+        Raises:
+            InputError: The scene has no such camera.
+        """
+        usual: tuple[int, int] = DEFAULT["resolution"]
+        if self.plate is not None:
+            usual = self.plate.resolution
+        elif scene is not None and scene.film_sizes:
+            usual = scene.film_size(view.camera) or usual
         return self.flags.resolution(view.calibration, res, usual)
 
 

@@ -142,7 +142,7 @@ class _Reader:
         context = self._context
         node.use()
         camera = read_camera(node, context.world, settings, self._notes)
-        self._scene.add_camera(name, camera)
+        self._scene.add_camera(name, camera, film_size=settings.resolution)
         far = node.number("far_clip", 1e4, above=0) * context.unit_m
         if node.has("far_clip") and farthest(self._scene, camera.transform[:3, 3]) > far:
             self._notes.add("what lies beyond the far_clip of a sensor is drawn, too")

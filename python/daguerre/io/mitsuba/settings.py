@@ -56,7 +56,7 @@ class Settings:
 
     def flags(self) -> str:
         """Flags of the command line."""
-        flags = [f"--res {self.resolution[0]}x{self.resolution[1]}"]
+        flags = []
         if self.crop is not None:
             x0, y0, x1, y1 = self.crop
             flags.append(f"--crop {x0},{x1},{y0},{y1}")

@@ -25,7 +25,7 @@ from daguerre.scene.transforms import without_scale
 
 from .description import Description
 from .files import Files
-from .film import PBRT_F_STOP, FilmSize, film_of
+from .film import PBRT_F_STOP, FilmSize
 from .ledger import Ledger
 from .pixel_filter import tell_filter
 from .realistic import lens_of
@@ -80,13 +80,14 @@ def mirror_of(made: Made | None) -> Array:
     return np.eye(4) if np.linalg.det(seen[:3, :3]) > 0 else _TURN.copy()
 
 
-def read_camera(described: Description, files: Files, axes: Array, ledger: Ledger) -> Camera | None:
+def read_camera(
+    described: Description, film: FilmSize, files: Files, axes: Array, ledger: Ledger
+) -> Camera | None:
     """Reads the camera of a scene; None: it has none, or, with a note, one that cannot be used.
 
     Raises:
         InputError: A parameter is wrong, or its kind is not supported.
     """
-    film = film_of(described.film, described.version, ledger)
     tell_filter(described.pixel_filter, described.version, ledger)
     made = described.camera
     if made is None:

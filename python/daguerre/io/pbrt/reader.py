@@ -29,6 +29,7 @@ from .description import Description
 from .emission import Emissions
 from .environment import Skies, set_skies
 from .files import Files
+from .film import film_of
 from .indices import Indices
 from .interpreter import Interpreter
 from .ledger import Ledger
@@ -123,9 +124,10 @@ class _Builder:
 
     def build(self) -> None:
         described, scene = self._described, self._scene
-        camera = read_camera(described, self._files, self._axes, self._ledger)
+        film = film_of(described.film, described.version, self._ledger)
+        camera = read_camera(described, film, self._files, self._axes, self._ledger)
         if camera is not None:
-            scene.add_camera("camera", camera)
+            scene.add_camera("camera", camera, film_size=film.resolution)
         self._fog()
         self._meshes.add(described.shapes, None)
         self._objects()

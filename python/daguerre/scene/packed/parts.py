@@ -43,6 +43,7 @@ def parts_of(scene: Scene) -> dict[str, Any]:
         "cameras": [[name, packable(camera)] for name, camera in scene.cameras.items()],
         "default camera": scene.default_camera,
         "camera aliases": [list(pair) for pair in scene.camera_aliases.items()],
+        "film sizes": [[name, list(size)] for name, size in scene.film_sizes.items()],
         "environment": scene.environment,
         "environment motion": _known(motion.environment, "environment"),
         "fog": scene.fog,

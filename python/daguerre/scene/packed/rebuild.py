@@ -243,10 +243,12 @@ class Rebuild:
 
     def _cameras(self) -> None:
         scene, chosen = self.scene, self._parts["default camera"]
+        sizes = {text(name, "film sizes"): size for name, size in self._parts.get("film sizes", ())}
         for name, camera in self._parts["cameras"]:
             if isinstance(camera, Camera):
                 matrix(camera.transform, f"camera {short(name)}")
-            scene.add_camera(text(name, "cameras"), camera)
+            size = sizes.get(text(name, "cameras"))
+            scene.add_camera(name, camera, film_size=size)
         if chosen is not None:
             if chosen not in scene.cameras:
                 raise InputError(f"default camera: wanted a camera, got {short(chosen)}")
