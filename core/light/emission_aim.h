@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geometry/mesh.h"
+#include "math/below_one.h"
 #include "math/warp.h"
 
 namespace dg {
@@ -52,7 +53,7 @@ class EmissionAim {
     const Sphere& choose(float& u) const {
         const float scaled = u * float(balls_.size());
         const std::size_t i = std::min(std::size_t(scaled), balls_.size() - 1);
-        u = std::clamp(scaled - float(i), 0.f, 0x1.fffffep-1f);
+        u = std::clamp(scaled - float(i), 0.f, kBelowOne);
         return balls_[i];
     }
     /// 1 - cos of the cone that the ball fills; 2 from inside.

@@ -3,6 +3,7 @@
 #include "light/emitter.h"
 #include "light/emitter_check.h"
 #include "light/triangle_sampler.h"
+#include "math/below_one.h"
 
 namespace dg {
 namespace {
@@ -40,7 +41,7 @@ struct ConeEmission {
     float aimed() const { return aim.empty() ? 0 : kAimed; }
     Vec3f sample(Vec2f u) const {
         if (u.x < aimed()) return aim.direction(from, {u.x / aimed(), u.y});
-        u.x = std::min((u.x - aimed()) / (1 - aimed()), 0x1.fffffep-1f);
+        u.x = std::min((u.x - aimed()) / (1 - aimed()), kBelowOne);
         return normalize(Frame::from_normal(axis).to_world(warp_cone(u, spread)));
     }
     float pdf(Vec3f w) const {
@@ -59,9 +60,9 @@ struct SurfaceEmission {
     float aimed() const { return aim.empty() ? 0 : kAimed; }
     Vec3f sample(Vec2f u) const {
         if (u.x < aimed()) return aim.direction(from, {u.x / aimed(), u.y});
-        u.x = std::min((u.x - aimed()) / (1 - aimed()), 0x1.fffffep-1f);
+        u.x = std::min((u.x - aimed()) / (1 - aimed()), kBelowOne);
         const bool behind = two_sided && u.y < 0.5f;
-        if (two_sided) u.y = std::min(behind ? 2 * u.y : 2 * u.y - 1, 0x1.fffffep-1f);
+        if (two_sided) u.y = std::min(behind ? 2 * u.y : 2 * u.y - 1, kBelowOne);
         const Frame frame = Frame::from_normal(behind ? -normal : normal);
         return normalize(frame.to_world(warp_cosine_hemisphere(u)));
     }
@@ -108,7 +109,7 @@ struct DiscEmission {
         if (u.x < aimed()) {
             p = reach.aim.disc_point(w, {u.x / aimed(), u.y});
         } else {
-            u.x = std::min((u.x - aimed()) / (1 - aimed()), 0x1.fffffep-1f);
+            u.x = std::min((u.x - aimed()) / (1 - aimed()), kBelowOne);
             const Vec2f d = warp_disk(u) * reach.lit.radius;
             p = reach.lit.center + Frame::from_normal(w).to_world({d.x, d.y, 0});
         }

@@ -5,6 +5,7 @@
 #include "light/emitter_check.h"
 #include "light/light_keys.h"
 #include "light/triangle_sampler.h"
+#include "math/below_one.h"
 
 namespace dg {
 namespace {
@@ -15,7 +16,6 @@ constexpr float kLeastShare = 0.1f;
 // Nor any one light from infinity less than this share of their group.
 constexpr double kLeastInfiniteShare = 0.05;
 
-constexpr float kAlmostOne = 0x1.fffffep-1f;
 
 /// The next of some points that are spread over the unit square, wherever the first one is. Source: Roberts 2018,
 /// The Unreasonable Effectiveness of Quasirandom Sequences (R2).
@@ -295,11 +295,11 @@ std::optional<LightSample> LightSet::sample(float u_select, Vec2f u, Vec3f posit
     if (!tree_.empty() && asked) weights = tree_.weigh(position);
     const float p_infinite = infinite_share(weights.sum);
     if (u_select < p_infinite) {
-        const float rest = std::min(u_select / p_infinite, kAlmostOne);
+        const float rest = std::min(u_select / p_infinite, kBelowOne);
         return sample_infinite(rest, p_infinite, u, time, wavelengths);
     }
     const float rest = (u_select - p_infinite) / (1 - p_infinite);
-    const auto choice = tree_.sample(weights, position, std::min(rest, kAlmostOne));
+    const auto choice = tree_.sample(weights, position, std::min(rest, kBelowOne));
     std::optional<LightSample> found(std::in_place);
     if (!choice || !sample_local(*choice, 1 - p_infinite, u, position, time, wavelengths, *found)) found.reset();
     return found;
@@ -315,18 +315,18 @@ void LightSet::sample_several(float u_select, Vec2f u, Vec3f position, float tim
     std::array<LightTree::Choice, kMostSamples> choices;
     std::size_t far = 0;   // the first ones come from infinity
     for (std::size_t i = 0; i < found.size(); ++i) {
-        select[i] = std::min((u_select + float(i)) * share, kAlmostOne);
+        select[i] = std::min((u_select + float(i)) * share, kBelowOne);
         if (select[i] < p_infinite)
             ++far;
         else
-            select[i] = std::min((select[i] - p_infinite) / (1 - p_infinite), kAlmostOne);
+            select[i] = std::min((select[i] - p_infinite) / (1 - p_infinite), kBelowOne);
     }
     const std::span<LightTree::Choice> near(choices.data() + far, found.size() - far);
     if (!near.empty()) tree_.sample(weights, position, std::span(select).subspan(far, near.size()), near);
     for (std::size_t i = 0; i < found.size(); ++i) {
         found[i].pdf = 0;
         if (i < far) {
-            const float rest = std::min(select[i] / p_infinite, kAlmostOne);
+            const float rest = std::min(select[i] / p_infinite, kBelowOne);
             if (const auto one = sample_infinite(rest, p_infinite, u, time, wavelengths)) found[i] = *one;
         } else if (choices[i].probability > 0) {
             sample_local(choices[i], 1 - p_infinite, u, position, time, wavelengths, found[i]);

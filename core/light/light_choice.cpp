@@ -3,11 +3,11 @@
 #include "light/light.h"
 #include "light/light_way.h"
 #include "light/triangle_sampler.h"
+#include "math/below_one.h"
 
 namespace dg {
 namespace {
 
-constexpr float kAlmostOne = 0x1.fffffep-1f;
 constexpr float kLeastExtinction = 1e-6f;   // 1/m
 
 }  // namespace
@@ -21,10 +21,10 @@ std::optional<LightSet::Choice> LightSet::choose(float u, const LightWay& way) c
     const float lit = std::min(way.length, 1 / std::max(way.extinction, kLeastExtinction));
     const float p_infinite = infinite_share(weights.sum * kPi / lit);
     if (u < p_infinite) {
-        const DiscreteSample found = infinite_.sample(std::min(u / p_infinite, kAlmostOne));
+        const DiscreteSample found = infinite_.sample(std::min(u / p_infinite, kBelowOne));
         return Choice{infinite_lights_[found.index], p_infinite * found.pmf};
     }
-    const auto found = tree_.sample(weights, way, std::min((u - p_infinite) / (1 - p_infinite), kAlmostOne));
+    const auto found = tree_.sample(weights, way, std::min((u - p_infinite) / (1 - p_infinite), kBelowOne));
     if (!found) return std::nullopt;
     return Choice{std::int32_t(triangles_[found->light].light), (1 - p_infinite) * found->probability};
 }

@@ -6,12 +6,12 @@
 
 #include "light/light_tree_build.h"
 #include "light/light_way.h"
+#include "math/below_one.h"
 
 namespace dg {
 namespace {
 
 constexpr int kWide = LightNode::kWide;
-constexpr float kAlmostOne = 0x1.fffffep-1f;
 
 float larger(float a, float b) {  // by value, so that loops over it become SIMD
     return a > b ? a : b;
@@ -78,7 +78,7 @@ std::size_t choose(const float* weights, float sum, float& u) {
     }
     // Rounding may run past the last one that shines; very near to a very bright one floats overflow.
     while (chosen > 0 && !(weights[chosen] > 0)) --chosen;
-    u = std::clamp((target - before) / weights[chosen], 0.f, kAlmostOne);
+    u = std::clamp((target - before) / weights[chosen], 0.f, kBelowOne);
     return chosen;
 }
 

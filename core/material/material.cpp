@@ -5,6 +5,7 @@
 #include "material/material_keys.h"
 #include "material/material_read.h"
 #include "material/shade_surfaces.h"
+#include "math/below_one.h"
 
 namespace dg {
 
@@ -65,7 +66,6 @@ float share_of_second(const MixMaterial& m, const Textures& textures, const Surf
 /// Does what(part) with the part that the hit has chosen. What is left of the choice chooses within that.
 template <typename What>
 auto in_part(const MixMaterial& m, const Textures& textures, SurfaceHit& hit, What what) {
-    constexpr float kBelowOne = 0x1.fffffep-1f;
     const float share = share_of_second(m, textures, hit), choice = hit.choice;
     const bool second = choice < share;
     hit.choice = std::min(kBelowOne, second ? choice / share : (choice - share) / (1 - share));

@@ -5,12 +5,12 @@
 #include <limits>
 #include <string>
 
+#include "math/below_one.h"
 #include "math/error.h"
 
 namespace dg {
 namespace {
 
-constexpr float kBelowOne = 0x1.fffffep-1f;
 constexpr int kColumnsPerGuide = 4;
 
 /// Running sums of the weights divided by the last one, so that the end is exactly 1;

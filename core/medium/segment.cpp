@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/below_one.h"
+
 namespace dg {
 namespace {
 
-constexpr float kAlmostOne = 0x1.fffffep-1f;
 constexpr float kLeastDensity = 1e-30f;   // below, its inverse overflows
 
 }  // namespace
@@ -32,7 +33,7 @@ int Segment::choose(Spectrum shares, float& u) const {
         if (left < shares[k]) break;
         left -= shares[k];
     }
-    if (shares[chosen] > 0) u = std::clamp(left / shares[chosen], 0.f, kAlmostOne);
+    if (shares[chosen] > 0) u = std::clamp(left / shares[chosen], 0.f, kBelowOne);
     return chosen;
 }
 

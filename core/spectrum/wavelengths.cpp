@@ -10,6 +10,7 @@
 #include <array>
 #include <cstring>
 
+#include "math/below_one.h"
 #include "spectrum/tables.inc"
 
 namespace dg {
@@ -149,7 +150,7 @@ Vec3f times(const Mat3& m, Vec3f v) {
 }  // namespace
 
 Wavelengths Wavelengths::sample(float u) {
-    const float scaled = std::clamp(u, 0.f, 0x1.fffffep-1f) * kCells;
+    const float scaled = std::clamp(u, 0.f, kBelowOne) * kCells;
     const int first = int(scaled);
     const float t = scaled - float(first);
     Wavelengths w;
@@ -164,7 +165,7 @@ Wavelengths Wavelengths::sample(float u) {
 Wavelengths Wavelengths::at(Spectrum u, Spectrum density) {
     Wavelengths w;
     for (int k = 0; k < kWavelengths; ++k) {
-        const float scaled = std::clamp(u[k], 0.f, 0x1.fffffep-1f) * kCells;
+        const float scaled = std::clamp(u[k], 0.f, kBelowOne) * kCells;
         const int cell = int(scaled);
         const float width = kQuantile[cell + 1] - kQuantile[cell];
         look_up(w, k, kQuantile[cell] + width * (scaled - float(cell)), width * kCells / density[k]);

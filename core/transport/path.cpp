@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "math/below_one.h"
 #include "medium/segment.h"
 #include "transport/light_pick.h"
 #include "transport/path_mis.h"
@@ -58,8 +59,7 @@ constexpr int kBranchDraws = 1 << 15;   // dimensions of the sampler from way to
 /// has one alone, as where light is reflected totally or the glass is black, or more than these two.
 template <typename BsdfKind>
 std::optional<std::array<BsdfSample, 2>> both_ways(const BsdfKind& bsdf, Vec3f wo) {
-    constexpr float kLast = 0x1.fffffep-1f;
-    auto one = bsdf.sample(wo, 0, {}), other = bsdf.sample(wo, kLast, {});
+    auto one = bsdf.sample(wo, 0, {}), other = bsdf.sample(wo, kBelowOne, {});
     if (!one || !other || one->transmitted == other->transmitted) return std::nullopt;
     if (std::abs(one->pdf + other->pdf - 1) > 1e-5f) return std::nullopt;
     if (one->weight.is_black() || other->weight.is_black()) return std::nullopt;

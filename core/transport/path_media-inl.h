@@ -11,6 +11,7 @@
 // Physically Based Rendering, chapter 14.
 #pragma once
 #include "light/light_way.h"
+#include "math/below_one.h"
 #include "medium/segment.h"
 #include "medium/tracking.h"
 #include "transport/phase_bsdf.h"
@@ -21,7 +22,6 @@ namespace {
 /// Light samples for each scattering of a path that carries all of its light: where the lens looks, and elsewhere. More
 /// of them, or the best of several for each, were measured to cost more time than noise (bench/fog.py).
 constexpr float kSamplesInView = 8, kSamplesPerCollision = 0.5f;
-constexpr float kAlmostOne = 0x1.fffffep-1f;
 constexpr float kEquiangularShare = 0.9f;
 /// How much a path that is scattered brings, over one that passes with as much light: lamps that its way scatters once
 /// are sampled already.
@@ -63,7 +63,7 @@ Path::Way Path::cross_even(const Medium& medium, const MediumAt& here, float t, 
     const float drawn = scattering_drawn(way), odds = light_way(medium.phase, way, drawn);
     const float u = sampler_.next_1d(), scatters = drawn * way.collides();
     const bool met = u < scatters;
-    const float free_path = met ? way.free_collision(std::min(u / scatters, kAlmostOne)) : 0;
+    const float free_path = met ? way.free_collision(std::min(u / scatters, kBelowOne)) : 0;
     if (!take(met ? way.scattered(free_path, drawn) : way.passed(drawn))) return Way::ended;
     if (!met) return Way::passed;
     const Vec3f from = walk_.ray.origin;
