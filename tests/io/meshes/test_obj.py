@@ -148,6 +148,7 @@ def test_files_without_faces_or_vertices(tmp_path: Path) -> None:
         (_SQUARE + "f 1 2 99999999999999999999\n", "line 5: f: wanted a whole number, got '9999"),
         (_SQUARE + "f 1 2 a/b\n", "line 5: f: wanted a whole number, got 'a'"),
         (b"v 1 2 \xff\n", "line 1: v: wanted a number, got"),
+        (b"v 1 2 3\n\x7fELF\0\0\n", "line 2: wanted text, got a byte of 0"),
     ],
 )  # fmt: skip
 def test_errors_name_their_line(tmp_path: Path, text: str | bytes, told: str) -> None:

@@ -177,6 +177,7 @@ def test_settings_are_told(tmp_path: Path) -> None:
     ("rfilter", "wanted"),
     [
         ('<rfilter type="tent"/>', "tent:1"),
+        ('<rfilter type="lanczos"/>', "mitchell"),
         ('<rfilter type="tent"><float name="radius" value="1.5"/></rfilter>', "tent:1.5"),
         ('<rfilter type="box"/>', "box:0.5"),
         # Ours ends at 3 standard deviations.
@@ -186,8 +187,10 @@ def test_settings_are_told(tmp_path: Path) -> None:
 )
 def test_filters_are_those_of_the_file(tmp_path: Path, rfilter: str, wanted: str) -> None:
     film = f'<sensor type="perspective" id="eye"><film type="hdrfilm">{rfilter}</film></sensor>'
-    _, settings, ledger = read_all(written(tmp_path, film))
+    scene, settings, ledger = read_all(written(tmp_path, film))
     assert settings["eye"].filter == wanted
+    nearest = "a filter 'lanczos' counts as 'mitchell' (1 use)"
+    assert (nearest in scene.warnings) == ("lanczos" in rfilter)
     assert check_filter(wanted) == wanted
     assert ledger.counts()[2] == 0
 

@@ -17,7 +17,7 @@ from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.scene.polygons import weld
 
-from .file_bytes import read_bytes
+from .file_bytes import Bytes, read_bytes
 from .file_mesh import FileMesh, Floats, check_finite
 from .obj_faces import Faces, read_faces
 from .obj_lines import Lines, words_of
@@ -42,7 +42,9 @@ def read(path: str | os.PathLike[str], notes: Notes) -> FileMesh:
         InputError: It is not such a file; the message names file and line.
     """
     file = Path(path)
-    lines = Lines(read_bytes(file, _MOST))
+    data = read_bytes(file, _MOST)
+    _check_text(data, str(file))
+    lines = Lines(data)
     points, uv, normals = (_table(lines, word, str(file)) for word in ("v", "vt", "vn"))
     faces = read_faces(lines, [len(points), len(uv), len(normals)], str(file))
     _note_others(lines, notes)
@@ -51,6 +53,13 @@ def read(path: str | os.PathLike[str], notes: Notes) -> FileMesh:
     kept_uv = _kept(uv, faces.uv, "texture coordinates", notes)
     kept_normals = _kept(normals, faces.normals, "normals", notes)
     return _mesh(faces, points, kept_uv, kept_normals)
+
+
+def _check_text(data: Bytes, where: str) -> None:
+    if data.all():
+        return
+    line = 1 + np.count_nonzero(data[: int(np.argmin(data))] == ord("\n"))
+    raise InputError(f"{where}: line {line}: wanted text, got a byte of 0")
 
 
 def _table(lines: Lines, word: str, where: str) -> Floats:

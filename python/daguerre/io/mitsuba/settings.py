@@ -102,10 +102,10 @@ def _film(
     if chosen.plugin not in _FILTERS:
         leave_out(chosen, notes, f"a filter {chosen.plugin!r} is left out")
         return (width, height), crop, "gaussian"
-    return (width, height), crop, _filter(chosen)
+    return (width, height), crop, _filter(chosen, notes)
 
 
-def _filter(node: Node) -> str:
+def _filter(node: Node, notes: Notes) -> str:
     """Filter with its radius, px; our Gaussian ends at 3 standard deviations, Mitsuba's at 4."""
     found = _FILTERS[node.plugin]
     if node.plugin == "gaussian":
@@ -114,6 +114,8 @@ def _filter(node: Node) -> str:
         usual = 0.5 if node.plugin == "box" else 1.0
         return f"{found}:{node.number('radius', usual, above=0):g}"
     node.skip("B", "C", "b", "c", "lobes")
+    if node.plugin != found:
+        notes.add(f"a filter {node.plugin!r} counts as {found!r}")
     return found
 
 
