@@ -125,6 +125,11 @@ WRONG = {
         2,
         "--aov: wanted an .exr with -o",
     ),
+    "allowed folder": (
+        ["render", "s.glb", "-o", "a.exr", "--allow-dir", "no"],
+        2,
+        "--allow-dir: wanted a folder, got 'no'",
+    ),
     "no suffix": (
         ["render", "s.glb", "-o", "a"],
         2,

@@ -425,13 +425,6 @@ def test_options_that_the_format_lacks_are_refused(
         dg.load(path, time=float("nan"))
 
 
-def test_an_allowed_folder_must_be_there(row: Format, samples: Samples, tmp_path: Path) -> None:
-    path = samples.card(tmp_path)
-    if "allow_dirs" in (row.takes or ()):
-        with pytest.raises(dg.UsageError, match=r"--allow-dir: wanted a folder, got '.*none'"):
-            dg.load(path, allow_dirs=[tmp_path / "none"])
-
-
 def test_the_same_file_is_the_same_scene_and_travels(samples: Samples, tmp_path: Path) -> None:
     for write in filter(None, (samples.card, samples.moving)):
         path = write(tmp_path)

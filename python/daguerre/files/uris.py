@@ -14,20 +14,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from urllib.parse import unquote, unquote_to_bytes, urlsplit
 
-from daguerre.errors import UsageError
-
 from .json_item import Item, short
-
-
-def _folder(path: str | os.PathLike[str]) -> Path:
-    """Returns an allowed folder, its links resolved."""
-    try:
-        found = Path(path).is_dir()
-    except OSError:  # a name too long for any folder
-        found = False
-    if not found:
-        raise UsageError(f"allow_dirs, --allow-dir: wanted a folder, got {short(str(path), 200)}")
-    return Path(os.path.realpath(path))
 
 
 class Folder:
@@ -36,16 +23,13 @@ class Folder:
     Args:
         scene: Path of the scene file.
         allow_dirs: Further folders whose files may be read.
-
-    Raises:
-        UsageError: One of ``allow_dirs`` is no folder.
     """
 
     def __init__(self, scene: Path, allow_dirs: Iterable[str | os.PathLike[str]] = ()) -> None:
         if isinstance(allow_dirs, (str, os.PathLike)):
             allow_dirs = (allow_dirs,)
         self.base = Path(os.path.realpath(scene.parent))
-        self.allowed = [self.base, *(_folder(d) for d in allow_dirs)]
+        self.allowed = [self.base, *(Path(os.path.realpath(d)) for d in allow_dirs)]
 
     def resolve(self, uri: Item) -> Path:
         """Returns the existing ordinary file of a URI.

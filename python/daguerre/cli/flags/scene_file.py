@@ -3,6 +3,7 @@
 Annotations must be real objects here (see ``groups.py``), so no ``annotations`` future.
 """
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -120,13 +121,23 @@ class SceneFileFlags:
         return daguerre.load(path, time=self.start(path), **options)
 
     @property
+    def _allowed(self) -> tuple[Path, ...]:
+        """Folders of ``--allow-dir``."""
+        from daguerre.errors import UsageError
+
+        for path in self.allow_dir or ():
+            if not os.path.isdir(path):  # noqa: PTH112 - names may be too long
+                raise UsageError(f"--allow-dir: wanted a folder, got {str(path)[:200]!r}")
+        return tuple(self.allow_dir or ())
+
+    @property
     def _options(self) -> dict[str, Any]:
         """Options of the reader of the scene."""
         units = self.camera_units
         chosen = self.variant or []
         options: dict[str, Any] = {
             "variant": chosen[0] if len(chosen) == 1 else tuple(chosen) or None,
-            "allow_dirs": tuple(self.allow_dir or ()),
+            "allow_dirs": self._allowed,
         }
         if self.strict:
             options["strict"] = True
