@@ -376,6 +376,14 @@ def test_bad_files_of_categories(text: str, message: str, tmp_path: Path) -> Non
     assert str(tmp_path / "c.json") in str(caught.value)
 
 
+def test_names_of_thousands_of_letters_are_cut_in_errors(tmp_path: Path) -> None:
+    name = "x" * 9999
+    text = f'{{"a": {{"name": "{name}", "id": 1}}, "b": {{"name": "y{name}", "id": 1}}}}'
+    with pytest.raises(DaguerreError, match="wanted an id for each category, got 1 for") as caught:
+        read(tmp_path / "c.json", text)
+    assert len(str(caught.value)) < 400
+
+
 def test_what_is_no_file_of_categories_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="categories: wanted Categories or a file, got 3"):
         dg.annotate(family(), PINHOLE, categories=3)

@@ -221,6 +221,13 @@ def test_a_recipe_says_the_same_as_words(tmp_path, toys):
     assert [(p.effect, p.values) for p in read] == [(p.effect, p.values) for p in words]
 
 
+def test_a_recipe_of_many_megabytes_is_refused_before_it_is_parsed(tmp_path):
+    file = tmp_path / "recipe.json"
+    file.write_text("[" + "[]," * 400_000 + "[]]")
+    with pytest.raises(InputError, match="wanted at most 1000000 bytes, got more"):
+        recipe.from_file(file)
+
+
 def test_units_of_parameters():
     distance = Parameter("focus", "", "m")
     assert distance.read("250cm", "", UsageError) == 2.5

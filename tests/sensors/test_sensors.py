@@ -87,6 +87,10 @@ def test_patterns_have_the_shares_of_their_makers() -> None:
     [
         ({"pattern": "xtranz"}, "pattern: wanted one of .*did you mean 'xtrans'"),
         ({"pattern": "mono"}, "pattern: mono: wanted a sensor with channels Y, got R, G, B"),
+        (
+            {"pattern": "xtrans", "channels": ("R", "G", "B" * 999)},
+            f"channels B, G, R, got R, G, {'B' * 40}$",
+        ),
         ({"full_well": 0}, "full_well: wanted a number of at least 1"),
         ({"full_well": float("nan")}, "full_well: wanted a number"),
         ({"quantum_efficiency": -np.ones((3, 401))}, "quantum_efficiency: R: wanted 0 to 1"),

@@ -20,7 +20,7 @@ from pathlib import Path
 
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
-from daguerre.files.json_item import Item
+from daguerre.files.json_item import Item, short
 from daguerre.files.json_text import parse
 from daguerre.scene.scene import Scene
 
@@ -159,7 +159,9 @@ def _rules(root: Item) -> list[Rule]:
             continue
         before = known.setdefault(category.name, category)
         if category.id and before.id and category.id != before.id:
-            member.fail(f"wanted one id for {category.name!r}, got {before.id} and {category.id}")
+            member.fail(
+                f"wanted one id for {short(category.name)}, got {before.id} and {category.id}"
+            )
         if category.id and not before.id:
             known[category.name] = category
     numbered = _numbered(root, known)
@@ -191,7 +193,7 @@ def _numbered(root: Item, known: dict[str, Category]) -> dict[str, Category]:
         if category.id and taken.setdefault(category.id, category.name) != category.name:
             root.fail(
                 f"wanted an id for each category, got {category.id} for "
-                f"{taken[category.id]!r} and {category.name!r}"
+                f"{short(taken[category.id])} and {short(category.name)}"
             )
     free = (i for i in range(1, 2**31) if i not in taken)
     return {

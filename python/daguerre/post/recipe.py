@@ -14,6 +14,8 @@ from daguerre.files.json_item import short
 from .effect import Effect, Values
 from .effects.catalogue import EFFECTS
 
+_MOST_BYTES = 1_000_000
+
 
 @dataclass(frozen=True)
 class Planned:
@@ -65,6 +67,8 @@ def from_file(path: Path) -> list[Planned]:
     from daguerre.files.json_text import parse
 
     try:
+        if path.stat().st_size > _MOST_BYTES:
+            raise InputError(f"{path}: wanted at most {_MOST_BYTES} bytes, got more")
         data = path.read_bytes()
     except OSError as error:
         raise InputError(f"{path}: cannot read: {error.strerror or error}") from error

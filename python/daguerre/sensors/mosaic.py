@@ -58,7 +58,7 @@ class Mosaic(Value):
         if set(letters) != set(channels):
             raise UsageError(
                 f"{where}: pattern: {name}: wanted a sensor with channels {', '.join(letters)}, "
-                f"got {', '.join(channels)}"
+                f"got {', '.join(one[:40] for one in channels)}"
             )
         cells = [[channels.index(letter) for letter in row] for row in rows]
         return cls(name, np.array(cells, np.uint8))
