@@ -76,7 +76,6 @@ def render(
     for warning in scene.warnings:
         console.warn(f"{scene_path}: {warning}")
     plan = plan_of(job_flags, settings_flags, map_flags, cameras, scene)
-    labels = coco_of(job_flags.coco, job_flags.categories, plan)
     cameras.check_frames(plan.pictures, job_flags.stereo, scene)
     if scene_flags.plate_moves:
         plan = replace(plan, stage=lambda n, now: scene_flags.throw_plate(now, taken, n))

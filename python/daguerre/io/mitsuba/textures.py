@@ -5,10 +5,8 @@ Texture coordinates (0, 0) are the top left of a bitmap in Mitsuba, as here.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -144,7 +142,7 @@ class Textures:
         if values.max() <= 1:
             return color
         self._notes.add(f"{node.kind} {node.plugin!r}: a share of light above 1 counts as 1")
-        return _changed(color, lambda value: np.minimum(value, 1.0))
+        return _capped(color)
 
     def painted(self, node: Node, name: str) -> Painted | None:
         """Colours of the mesh in a property; None: it is something else."""
@@ -277,10 +275,11 @@ def _shifted(six: Six) -> Six:
     return a, b, c + 0.5, d, e, f
 
 
-def _changed(color: Color | Spectrum, change: Callable[[Any], Any]) -> Color | Spectrum:
+def _capped(color: Color | Spectrum) -> Color | Spectrum:
+    """A share of light, at most 1."""
     if isinstance(color, Spectrum):
-        return Spectrum(color.wavelengths_nm, tuple(change(np.array(color.values)).tolist()))
-    r, g, b = (float(c) for c in change(np.array(color)))
+        return Spectrum(color.wavelengths_nm, tuple(np.minimum(color.values, 1.0).tolist()))
+    r, g, b = np.minimum(color, 1.0).tolist()
     return r, g, b
 
 

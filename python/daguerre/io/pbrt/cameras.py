@@ -27,7 +27,6 @@ from .description import Description
 from .files import Files
 from .film import PBRT_F_STOP, FilmSize
 from .ledger import Ledger
-from .pixel_filter import tell_filter
 from .realistic import lens_of
 from .state import Made
 from .transforms import unit_of
@@ -88,7 +87,6 @@ def read_camera(
     Raises:
         InputError: A parameter is wrong, or its kind is not supported.
     """
-    tell_filter(described.pixel_filter, described.version, ledger)
     made = described.camera
     if made is None:
         return None

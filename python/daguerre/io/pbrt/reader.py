@@ -38,6 +38,7 @@ from .looks import Looks
 from .materials import Tools
 from .media import Media
 from .meshes import Meshes
+from .pixel_filter import tell_filter
 from .placing import Placing
 from .spectra import Spectra
 from .state import Made
@@ -125,6 +126,7 @@ class _Builder:
     def build(self) -> None:
         described, scene = self._described, self._scene
         film = film_of(described.film, described.version, self._ledger)
+        tell_filter(described.pixel_filter, described.version, self._ledger)
         camera = read_camera(described, film, self._files, self._axes, self._ledger)
         if camera is not None:
             scene.add_camera("camera", camera, film_size=film.resolution)
