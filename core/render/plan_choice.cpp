@@ -22,7 +22,7 @@ struct Candidate {
 
 class Judge {
   public:
-    Judge(const Curves& straight, const Curves& bounced, double rest, const PlanCosts& costs)
+    Judge(const NoiseCurves& straight, const NoiseCurves& bounced, double rest, const PlanCosts& costs)
         : straight_(straight), bounced_(bounced), rest_(rest), costs_(costs) {}
 
     /// How much less cost x error `a` has than `b`, in logarithms. `bounces`: beside what the camera's few
@@ -70,8 +70,8 @@ class Judge {
                bounced_cost(c) <= kMostBounced * costs_.camera;
     }
 
-    const Curves& straight_;
-    const Curves& bounced_;
+    const NoiseCurves& straight_;
+    const NoiseCurves& bounced_;
     double rest_;   // variance of what the camera finds beside the straight
     const PlanCosts& costs_;
 };
@@ -82,7 +82,7 @@ LightPlan choose_plan(const PilotPicture& picture, const PilotArrivals& straight
                       const PilotArrivals& bounced, const PlanCosts& costs) {
     const std::vector<Vec3f> weights = weights_of(picture, straight);
     const std::vector<PilotArrival> usual = seen(bounced, weights);
-    const Curves of_straight = curves_of(straight, weights, picture.pixels),
+    const NoiseCurves of_straight = curves_of(straight, weights, picture.pixels),
                  of_bounced = curves_of({usual, bounced.paths}, weights, picture.pixels);
     const Judge judge(of_straight, of_bounced, rest_of(picture, weights), costs);
     Candidate plan = judge.best(false);

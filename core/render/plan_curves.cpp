@@ -53,8 +53,8 @@ class CurveMaker {
     CurveMaker(const PilotArrivals& arrivals, std::span<const Vec3f> weights, double pixels)
         : arrivals_(arrivals), weights_(weights), pixels_(pixels), sums_(weights.size()) {}
 
-    Curves make() {
-        Curves curves{};
+    NoiseCurves make() {
+        NoiseCurves curves{};
         if (arrivals_.all.empty()) return curves;
         for (int k = 0; k < kCandidates; ++k) add(curves, k);
         return curves;
@@ -67,7 +67,7 @@ class CurveMaker {
     }
 
     /// S(m) and C(m)^2, the latter of products of different groups, which are independent.
-    void add(Curves& curves, int k) {
+    void add(NoiseCurves& curves, int k) {
         const double m = paths_of(k);
         std::ranges::fill(sums_, std::array<Vec3f, kGroups>{});
         std::array<double, kGroups> moments{}, squares{}, products{};
@@ -155,7 +155,7 @@ std::vector<PilotArrival> seen(const PilotArrivals& arrivals, std::span<const Ve
     return all;
 }
 
-Curves curves_of(const PilotArrivals& arrivals, std::span<const Vec3f> weights, double pixels) {
+NoiseCurves curves_of(const PilotArrivals& arrivals, std::span<const Vec3f> weights, double pixels) {
     return CurveMaker(arrivals, weights, pixels).make();
 }
 

@@ -17,7 +17,7 @@ double paths_of(int candidate);
 /// Sum over pixels and channels of V(m) / (mean^2 + 0.01), for every candidate.
 using Curve = std::array<double, kCandidates>;
 /// Without each group of paths, and with all.
-using Curves = std::array<Curve, kGroups + 1>;
+using NoiseCurves = std::array<Curve, kGroups + 1>;
 
 /// The mean of each block with what arrives straight from emitters, as 1 / (mean^2 + 0.01). Where few samples
 /// tell it, of those around it too: else what is rare and bright would be judged by itself, and never seem
@@ -32,6 +32,6 @@ double rest_of(const PilotPicture& picture, std::span<const Vec3f> weights);
 std::vector<PilotArrival> seen(const PilotArrivals& arrivals, std::span<const Vec3f> weights);
 
 /// `pixels`: of a block.
-Curves curves_of(const PilotArrivals& arrivals, std::span<const Vec3f> weights, double pixels);
+NoiseCurves curves_of(const PilotArrivals& arrivals, std::span<const Vec3f> weights, double pixels);
 
 }  // namespace dg
