@@ -148,3 +148,26 @@ def test_a_wrong_export_is_refused(
     assert main(["lens", LENS, *flags]) == 2
     assert says in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("flags", "name"),
+    [
+        (["--plot"], "sheet.png"),
+        (["--drawing"], "section.svg"),
+        (["--psf", "0,inf", "--plot"], "psf.png"),
+        (["--flare", "15", "--plot"], "ghosts.png"),
+        (["--flare", "15", "--drawing"], "ghost.svg"),
+        (["--degree", "3", "--export"], "lens.json"),
+    ],
+)
+def test_each_file_is_told(
+    flags: list[str], name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if name.endswith(".png"):
+        pytest.importorskip("matplotlib", reason="pictures are drawn by matplotlib")
+    file = tmp_path / name
+    assert main(["lens", LENS, *flags, str(file)]) == 0
+    told = [line for line in capsys.readouterr().err.splitlines() if "wrote" in line]
+    assert [line.partition(" (")[0] for line in told] == [f"daguerre: wrote {file}"]
+    assert file.stat().st_size > 0

@@ -134,9 +134,12 @@ def test_one_sensor_on_the_command_line(capsys: pytest.CaptureFixture[str]) -> N
 
 
 @pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
-def test_the_page_of_a_sensor(tmp_path: Path, suffix: str) -> None:
+def test_the_page_of_a_sensor(
+    tmp_path: Path, suffix: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / f"sensor.{suffix}"
     assert main(["sensor", "sony-imx571-mono", "--plot", str(path)]) == 0
+    assert f"wrote {path}" in capsys.readouterr().err
     heads = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
     first = path.read_bytes()
     assert first.startswith(heads[suffix])

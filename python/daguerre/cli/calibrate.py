@@ -15,7 +15,7 @@ from daguerre.parameters.table import Table
 from daguerre.units import TYPED_D_LINE_NM
 
 from . import console
-from .drawings import check_drawing
+from .drawings import check_drawing, write_drawing
 from .flags.from_table import TableFlags, made_of
 from .flags.groups import option, with_flags
 from .flags.map import MapFlags
@@ -139,7 +139,6 @@ def _write(
     made: ProjectionFit, output: Path | None, file_format: str, residuals: Path | None
 ) -> None:
     from daguerre.calibration import Calibration, write
-    from daguerre.files.atomic import write_bytes
 
     if output is not None:
         write(output, Calibration(made.projection, pixel_pitch=made.pixel_pitch_um), file_format)
@@ -147,8 +146,7 @@ def _write(
     if residuals is not None:
         from daguerre.plots.residual_plot import plot_residuals
 
-        write_bytes(residuals, plot_residuals(made, residuals.suffix.lower()[1:]))
-        console.note(f"wrote {residuals}")
+        write_drawing(residuals, plot_residuals(made, residuals.suffix.lower()[1:]))
 
 
 def _write_maps(map_flags: MapFlags, made: ProjectionFit) -> None:

@@ -1,4 +1,4 @@
-"""Early checks of drawings: suffixes, and whether the files can be written."""
+"""Files of drawings: early checks of suffixes and of whether they can be written, and writing."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from daguerre.errors import UsageError
+
+from . import console
 
 FORMATS = (".svg", ".png", ".pdf")
 
@@ -33,3 +35,11 @@ def check_drawing(
         )
     check_available(suffix, needed=plotted)
     check_writable(path)
+
+
+def write_drawing(path: Path, data: bytes) -> None:
+    """Writes the bytes of a drawing atomically, and says so."""
+    from daguerre.files.atomic import write_bytes
+
+    write_bytes(path, data)
+    console.note(f"wrote {path}")

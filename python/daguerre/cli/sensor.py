@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import console
-from .drawings import check_drawing
+from .drawings import check_drawing, write_drawing
 from .flags.groups import option
 
 if TYPE_CHECKING:
@@ -39,10 +39,9 @@ def sensor(
     check_drawing("--plot", plot)
     item = load(name)
     if plot is not None:
-        from daguerre.files.atomic import write_bytes
         from daguerre.plots.sensor import page
 
-        write_bytes(plot, page(item, plot.suffix.lower()[1:]))
+        write_drawing(plot, page(item, plot.suffix.lower()[1:]))
     if json:
         from json import dumps
 

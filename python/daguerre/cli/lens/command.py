@@ -12,6 +12,7 @@ import typer
 from daguerre.camera.parameters.bench import F_STOP, FOCUS, ZOOM, focus_by
 from daguerre.cli import console
 from daguerre.cli.console import note
+from daguerre.cli.drawings import write_drawing
 from daguerre.cli.flags.from_table import made_of
 from daguerre.cli.flags.groups import option, with_flags
 from daguerre.cli.flags.setting import BENCH, BenchFlags
@@ -117,10 +118,9 @@ def lens(
 
 
 def _write_drawing(bench: Bench, path: Path) -> None:
-    from daguerre.files.atomic import write_bytes
     from daguerre.plots.lens_file import picture
 
-    write_bytes(path, picture(bench, path.suffix.lower()))
+    write_drawing(path, picture(bench, path.suffix.lower()))
 
 
 def _write_figures(
@@ -131,10 +131,9 @@ def _write_figures(
 
     made = figures(bench)
     if plot is not None:
-        from daguerre.files.atomic import write_bytes
         from daguerre.plots.sheet import page
 
-        write_bytes(plot, page(made, plot.suffix.lower()[1:]))
+        write_drawing(plot, page(made, plot.suffix.lower()[1:]))
     if json:
         from json import dumps
 

@@ -88,18 +88,18 @@ class FileFlags(TableFlags):
         check_writable(self.export)
 
     def write(self, item: Lens, path: Path, setting: dict[str, Any]) -> None:
-        """Fits the lens and writes the file; prints the error of the fit on stderr."""
+        """Fits the lens and writes the file; notes the error of the fit."""
         from daguerre.polynomial.segments import fewest, weak_region
 
         fitted = fewest(lambda segments: self._fitted(item, setting, segments))
         fitted.save(path)
         error = fitted.error
-        console.say(
-            f"{path}: degree {fitted.degree}, direction {error.direction_rad[0]:.2g} rad RMS, "
-            f"{error.direction_rad[1]:.2g} at most; {error.film_um[0]:.2g} um RMS on the film"
+        console.note(
+            f"wrote {path} (degree {fitted.degree}, direction {error.direction_rad[0]:.2g} rad "
+            f"RMS, {error.direction_rad[1]:.2g} at most; {error.film_um[0]:.2g} um RMS on the film)"
         )
         if weak := weak_region(fitted):
-            console.say(f"{path}: note: {weak}: a higher --degree fits better")
+            console.note(f"{path}: {weak}: a higher --degree fits better")
 
     def _fitted(self, item: Lens, setting: dict[str, Any], segments: int) -> LensFit:
         from daguerre.polynomial import fit

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from daguerre.camera.parameters import CAMERA
 from daguerre.cli import console
+from daguerre.cli.drawings import write_drawing
 from daguerre.cli.flags.from_table import TableFlags, made_of
 from daguerre.cli.flags.setting import BENCH
 from daguerre.errors import UsageError
@@ -97,10 +98,9 @@ class FlareFlags(TableFlags):
         if files.drawing is not None:
             _write_drawing(ghosts, shown or _brightest(ghosts), files.drawing)
         if files.plot is not None:
-            from daguerre.files.atomic import write_bytes
             from daguerre.plots.ghost_plot import plot_ghosts
 
-            write_bytes(files.plot, plot_ghosts(ghosts, files.plot.suffix.lower()[1:]))
+            write_drawing(files.plot, plot_ghosts(ghosts, files.plot.suffix.lower()[1:]))
         if not json:
             _print(ghosts)
             return 0
@@ -125,11 +125,10 @@ def _brightest(ghosts: Ghosts) -> Ghost:
 
 
 def _write_drawing(ghosts: Ghosts, ghost: Ghost, path: Path) -> None:
-    from daguerre.files.atomic import write_bytes
     from daguerre.plots.ghost_section import ghost_section
     from daguerre.plots.lens_file import drawn
 
-    write_bytes(path, drawn(ghost_section(ghosts, ghost), path.suffix.lower()))
+    write_drawing(path, drawn(ghost_section(ghosts, ghost), path.suffix.lower()))
 
 
 def _print(ghosts: Ghosts) -> None:

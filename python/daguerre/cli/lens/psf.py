@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daguerre.cli import console
+from daguerre.cli.drawings import write_drawing
 from daguerre.cli.flags.from_table import TableFlags, made_of
 from daguerre.cli.flags.setting import BENCH
 from daguerre.errors import InputError, UsageError
@@ -78,10 +79,9 @@ class PsfFlags(TableFlags):
         light = _light(bench, field, is_angle, distance_m)
         made = series(light, STEPS if given.get("through_focus") else 1)
         if plot is not None:
-            from daguerre.files.atomic import write_bytes
             from daguerre.plots.through_focus import pictures
 
-            write_bytes(plot, pictures(light, made, plot.suffix.lower()[1:]))
+            write_drawing(plot, pictures(light, made, plot.suffix.lower()[1:]))
         rows = [step.facts for step in made]
         where = {
             "name": bench.lens.name,
