@@ -6,7 +6,7 @@ truth and pass files read this table.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 
@@ -93,9 +93,17 @@ def names_of(*sources: Source) -> tuple[str, ...]:
 
 #: Rows by each of their names and aliases.
 BY_NAME = {name: row for row in TABLE for name in (row.name, *row.aliases)}
+
 #: Names in files: a film's channels, those of ground truth at one moment, and those of means.
 FILM_CHANNELS = channels_of(Source.FILM, Source.GUIDES)
 TRUTH_CHANNELS = channels_of(Source.TRUTH)
 MEANS_CHANNELS = channels_of(Source.TRUTH, Source.MEANS)
 #: Groups that only ground truth has: asking for one turns ground truth on.
 EXACT_ONLY = tuple(row.name for row in made_by(*EXACT) if Source.FILM not in row.sources)
+
+
+def channels_named(name: str, there: Iterable[str]) -> list[str]:
+    """Channels of a frame by the name of their group, in the order of its row, or by their own."""
+    row, known = BY_NAME.get(name), list(there)
+    listed = [] if row is None else [channel for channel in row.channels if channel in known]
+    return listed or [part for part in known if name in (part, part.partition(".")[0])]

@@ -15,8 +15,10 @@ from daguerre.color.display import _into_gamut, _shoulder, _srgb
 from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.files import formats
+from daguerre.files.array_value import ArrayValue
 from daguerre.files.value import Value
 
+from .aovs import channels_named
 from .cryptomatte import Cryptomatte
 
 if TYPE_CHECKING:
@@ -32,8 +34,10 @@ _STRIPE = 64  # rows
 
 @guarded(init=True)
 @dataclass(eq=False)
-class Frame(Value):
+class Frame(Value, ArrayValue, array="rgb"):
     """A rendered picture, or the state of one that is being rendered.
+
+    NumPy takes a frame for its ``rgb``: ``np.asarray(frame)``, ``np.mean(frame)``.
 
     Attributes:
         rgb: Scene-linear Rec.709, shape (H, W, 3), relative exposure H / H0: a white world of
@@ -55,8 +59,13 @@ class Frame(Value):
         halves: Pictures of the samples of even and of odd index, each in two parts that add up:
             by camera paths, and by light paths; shape (H, W, 2, 2, 3), if requested.
         samples: Samples per pixel, shape (H, W).
-        aovs: Channels by name: ``depth.Z`` and ``P.X`` in m, ``N.X``, ``albedo.R``, ``object_id``;
-            with ground truth also ``distance.Z``, ``material_id``, ``motion.U`` (px).
+        aovs: Channels beside the picture by name, each of shape (H, W); ``layer`` joins those of
+            one name. With ``aovs=True`` means over the samples: ``depth.Z`` (m along the camera's
+            -z), ``P.X`` to ``P.Z`` (m, world), ``N.X`` to ``N.Z`` (shading normal, world),
+            ``albedo.R`` to ``albedo.B``, ``object_id``. With ``gt_time`` these are exact, and there
+            are ``distance.Z`` (m from the entrance pupil) and ``material_id``; with ``motion=True``
+            ``motion.U``, ``motion.V``, ``motion_back.U`` and ``motion_back.V`` (px, +x right,
+            +y down).
         metadata: Facts of camera and render; see ``daguerre.io.exr.write``.
         channels: Channels of the camera's sensor, shape (H, W, C), if it has one: D65 of luminance
             1 is 1 in each; ``metadata["sensor_channels"]`` has their names.
@@ -117,10 +126,30 @@ class Frame(Value):
         return self._flow("motion_back")
 
     def _flow(self, name: str) -> NDArray[np.float32] | None:
-        names = [f"{name}.{axis}" for axis in "UV"]
-        if not all(n in self.aovs for n in names):
-            return None
-        return np.stack([self.aovs[n] for n in names], axis=2)
+        return self.layer(name) if {f"{name}.U", f"{name}.V"} <= self.aovs.keys() else None
+
+    def layer(self, name: str) -> NDArray[Any]:
+        """Returns the channels of ``aovs`` with one name as one array.
+
+        Args:
+            name: ``depth``, ``P`` (or ``position``), ``N`` (or ``normal``), ``albedo``,
+                ``object_id``, ``motion`` and so on (``docs/ground-truth.md``).
+
+        Returns:
+            Shape (H, W) of a single channel, else (H, W, C), in the order X, Y, Z; R, G, B; U, V.
+
+        Raises:
+            UsageError: The frame has no such layer; the message lists its layers.
+        """
+        found = channels_named(name, self.aovs)
+        if not found:
+            names = sorted({channel.partition(".")[0] for channel in self.aovs})
+            there = ", ".join(names) or "no layers (render with aovs=True)"
+            raise UsageError(
+                f"frame: layer: wanted one of {there}, got {short(name)}{suggest(name, names)}"
+            )
+        planes = [self.aovs[channel] for channel in found]
+        return planes[0] if len(planes) == 1 else np.stack(planes, axis=2)
 
     def without_overscan(self) -> Frame:
         """Crops the frame to the picture itself, which is the part that a sensor records.

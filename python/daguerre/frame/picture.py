@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from daguerre.color import spaces
 from daguerre.doors import guarded
 from daguerre.files import formats
+from daguerre.files.array_value import ArrayValue
 
 if TYPE_CHECKING:
     import os
@@ -18,8 +19,10 @@ if TYPE_CHECKING:
 
 @guarded
 @dataclass(eq=False)
-class Picture:
+class Picture(ArrayValue, array="pixels"):
     """A developed picture, encoded for display.
+
+    NumPy takes it for its ``pixels``.
 
     Attributes:
         pixels: Red, green and blue, encoded with the transfer curve of the colour space, 0 to 1,

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files import formats
+from daguerre.files.array_value import ArrayValue
 from daguerre.sensors.sensor import Sensor
 
 if TYPE_CHECKING:
@@ -21,8 +22,10 @@ if TYPE_CHECKING:
 
 @guarded(init=True)
 @dataclass(eq=False)
-class Raw:
+class Raw(ArrayValue, array="mosaic"):
     """A raw picture: digital numbers behind a colour filter mosaic.
+
+    NumPy takes it for its ``mosaic``.
 
     Attributes:
         mosaic: Digital numbers of the photosites, uint16, shape (H, W).

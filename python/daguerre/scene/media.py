@@ -18,6 +18,7 @@ from daguerre.checks import as_readonly, color, given_matrix, number, short, to_
 from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files import formats
+from daguerre.files.array_value import ArrayValue
 from daguerre.files.value import FixedArrays, Value
 
 from .spectrum import Spectrum
@@ -34,7 +35,7 @@ MAX_COSINE = 0.999
 
 
 @dataclass(frozen=True, eq=False)
-class DensityGrid(FixedArrays):
+class DensityGrid(FixedArrays, ArrayValue, array="values"):
     """Densities on a grid that fills a box: factors on all coefficients of a medium.
 
     Densities hold at the centres of cells and are linear between them, up to the faces of the box;

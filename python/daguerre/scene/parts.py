@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.camera.camera import Camera
+from daguerre.files.array_value import ArrayValue
 from daguerre.files.value import FixedArrays, Value
 
 from .motion import Vertices
@@ -69,7 +70,7 @@ def vertices_of(mesh: Mesh) -> Vertices:
 
 
 @dataclass(frozen=True, eq=False)
-class Texture(FixedArrays):
+class Texture(FixedArrays, ArrayValue, array="pixels"):
     """Image texture: pixels (H, W, C), uint8 or float32, row 0 on top.
 
     ``srgb``: the colour channels are sRGB-encoded. ``filter`` is for magnification ("linear" or
@@ -108,7 +109,7 @@ class Instance(Value):
 
 
 @dataclass(frozen=True, eq=False)
-class Plate(FixedArrays):
+class Plate(FixedArrays, ArrayValue, array="pixels"):
     """A photograph of the set, shape (H, W, 3), in the units of a frame, and its camera.
 
     ``camera``: None means the camera that renders.

@@ -15,6 +15,7 @@ from daguerre.color.spectra import rgb_from_xyz
 from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.exposure.lux_seconds import luminance_exposure
+from daguerre.files.array_value import ArrayValue
 from daguerre.frame.seen_by import seen_of
 from daguerre.post.effects.grain import sharpness
 from daguerre.sensors.fit import channels_from_xyz
@@ -36,8 +37,10 @@ _STRIPE = 128  # rows
 
 @guarded
 @dataclass(eq=False)
-class Negative:
+class Negative(ArrayValue, array="density"):
     """Developed film: a negative, or a slide from reversal stock.
+
+    NumPy takes it for its ``density``.
 
     Attributes:
         density: Density of each layer, shape (H, W, C).
