@@ -16,12 +16,11 @@ from typing import Any
 import numpy as np
 import OpenEXR
 import pytest
-import typer
 
 import daguerre
 from daguerre import _core
-from daguerre.cli import console, main, program
-from daguerre.cli.help import EXAMPLES, FIRST
+from daguerre.cli import console, main
+from daguerre.cli.help import EXAMPLES
 from daguerre.rendering.schedule import pass_size
 from tests.support import fake_denoiser, fake_session
 
@@ -269,46 +268,9 @@ def test_bad_samples_are_named(
         assert file.header()["daguerre:bad_samples"] == 1
 
 
-def test_help_names_every_flag_and_unit(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["render", "--help-all"]) == 0
-    text = capsys.readouterr().out
-    flags = [option for one in _render().params for option in one.opts if option[:2] == "--"]
-    assert len(flags) > 100
-    for flag in flags:
-        assert text.count(f"{flag} ") + text.count(f"{flag},") + text.count(f"{flag}\n"), flag
-    assert "mm" in text
-    assert "degrees" in text.lower()
-    for title in ("Common options", "Lens", "Focus", "Shutter", "Ground truth", "Files", "Other"):
-        assert text.count(f"\n{title}:\n") == 1, title
-
-
-def test_help_is_short(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["render", "--help"]) == 0
-    text = capsys.readouterr().out
-    for word in FIRST["render"]:
-        assert f"{word} " in text, word
-    assert len(FIRST["render"]) == 12
-    assert "--blades" not in text
-    assert "`daguerre render --help-all` lists all" in text
-    assert len(text.splitlines()) < 60
-
-
-@pytest.mark.parametrize("words", [["-h"], ["lenses", "-h"]])
-def test_names_of_the_help_flag_have_an_order(
-    words: list[str], capsys: pytest.CaptureFixture[str]
-) -> None:
-    main(words)
-    assert "  -h, --help, --help-all  Show" in capsys.readouterr().out
-
-
 def test_the_example_of_a_help_runs(capsys: pytest.CaptureFixture[str]) -> None:
     words = EXAMPLES["render"].replace("scene.glb", "s.glb").split()
     assert main([*words[1:], "--dry-run"]) == 0
-
-
-def _render() -> Any:
-    command = typer.main.get_command(program("render"))
-    return getattr(command, "commands", {}).get("render", command)
 
 
 def test_no_command_shows_help(capsys: pytest.CaptureFixture[str]) -> None:

@@ -30,37 +30,52 @@ INTERRUPTED = 75
 
 
 class Command(NamedTuple):
-    """A command: the module that holds it, and what `daguerre --help` says of it."""
+    """A command: the module that holds it, and its line in `daguerre --help`."""
 
     module: str
     line: str
 
 
-#: In the order of the help. Modules are loaded when their command is called.
-COMMANDS = {
-    "render": Command(".render.command", "Render a scene to pictures or a sequence."),
-    "view": Command(".view", "Show the picture in a browser, with rings to turn."),
-    "merge": Command(".merge", "Add passes of one picture into one file."),
-    "post": Command(".post", "Add effects of a lens to any picture, or remove them."),
-    "develop": Command(".develop", "Develop photographs from a frame or a raw file."),
-    "info": Command(".info", "Describe a scene and its cameras."),
-    "lenses": Command(".lenses", "List the lenses of the library."),
-    "lens": Command(".lens.command", "Show, measure, convert or fit a lens."),
-    "sensors": Command(".sensors", "List the sensors of the library."),
-    "sensor": Command(".sensor", "Show a sensor."),
-    "stocks": Command(".stocks", "List the film stocks of the library."),
-    "chart": Command(".chart", "Write a test chart as a scene."),
-    "calibrate": Command(".calibrate", "Fit a projection to a lens."),
-    "export-camera": Command(".export_camera", "Write cameras as a USD stage."),
-    "export-scene": Command(".export_scene", "Write a scene for pbrt-v4 or Mitsuba 3."),
-    "match-plate": Command(".match_plate", "Find the camera settings of a photograph."),
-    "light-probe": Command(".light_probe", "Build an environment from photographs of a probe."),
-    "composite": Command(".composite", "Put rendered objects into a photograph."),
-    "scheduler": Command(".cluster", "Start the scheduler of a cluster."),
-    "worker": Command(".cluster", "Start a worker of a cluster."),
-    "demo": Command(".demo", "Render a first picture, without any file of your own."),
-    "version": Command(".version", "Print the version and the libraries in use."),
+#: By headings, in the order of `daguerre --help`; a module is loaded when its command is called.
+GROUPS = {
+    "Make pictures": {
+        "demo": Command(".demo", "Render a first picture, without any file of your own."),
+        "render": Command(".render.command", "Render a scene to pictures or a sequence."),
+        "merge": Command(".merge", "Add passes of one picture into one file."),
+        "post": Command(".post", "Add effects of a lens to any picture, or remove them."),
+        "develop": Command(".develop", "Develop photographs from a frame or a raw file."),
+        "composite": Command(".composite", "Put rendered objects into a photograph."),
+    },
+    "Look at a scene": {
+        "view": Command(".view", "Show the picture in a browser, with rings to turn."),
+        "info": Command(".info", "Describe a scene and its cameras."),
+    },
+    "Measure": {
+        "chart": Command(".chart", "Write a test chart as a scene."),
+        "calibrate": Command(".calibrate", "Fit a projection to a lens."),
+        "match-plate": Command(".match_plate", "Find the camera settings of a photograph."),
+        "light-probe": Command(".light_probe", "Build an environment from photographs of a probe."),
+    },
+    "Lenses, sensors and film": {
+        "lenses": Command(".lenses", "List the lenses of the library."),
+        "lens": Command(".lens.command", "Show, measure, convert or fit a lens."),
+        "sensors": Command(".sensors", "List the sensors of the library."),
+        "sensor": Command(".sensor", "Show a sensor."),
+        "stocks": Command(".stocks", "List the film stocks of the library."),
+    },
+    "Files for other programs": {
+        "export-camera": Command(".export_camera", "Write cameras as a USD stage."),
+        "export-scene": Command(".export_scene", "Write a scene for pbrt-v4 or Mitsuba 3."),
+    },
+    "Clusters": {
+        "scheduler": Command(".cluster", "Start the scheduler of a cluster."),
+        "worker": Command(".cluster", "Start a worker of a cluster."),
+    },
+    "This program": {
+        "version": Command(".version", "Print the version and the libraries in use."),
+    },
 }
+COMMANDS = {name: command for group in GROUPS.values() for name, command in group.items()}
 
 
 def program(*names: str) -> typer.Typer:
@@ -75,8 +90,10 @@ def program(*names: str) -> typer.Typer:
 def _outline() -> typer.Typer:
     """The program for its help and for wrong commands: names and lines, with nothing loaded."""
     app = _empty()
-    for name, command in COMMANDS.items():
-        app.command(name=name, short_help=command.line)(lambda: None)
+    for heading, group in GROUPS.items():
+        for name, command in group.items():
+            add = app.command(name=name, short_help=command.line, rich_help_panel=heading)
+            add(lambda: None)
     return app
 
 

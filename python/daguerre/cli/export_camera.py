@@ -6,8 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from daguerre import units as q
 from daguerre.errors import UsageError
 
@@ -15,7 +13,7 @@ from . import console
 from .flags.calibration import CalibrationFlags
 from .flags.camera import CameraFlags
 from .flags.groups import option, with_flags
-from .flags.scene_file import SceneFileFlags
+from .flags.scene_file import SceneFileFlags, ScenePath
 from .flags.shutter import ShutterFlags
 from .render.views import Cameras
 
@@ -27,9 +25,7 @@ from .render.views import Cameras
     file_flags=SceneFileFlags,
 )
 def export_camera(
-    scene_path: Annotated[
-        Path, typer.Argument(metavar="SCENE", help="Scene file, .glb, .gltf or .usd.")
-    ],
+    scene_path: ScenePath,
     camera_flags: CameraFlags,
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,

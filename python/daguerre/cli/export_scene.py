@@ -5,15 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from daguerre.errors import UsageError
 
 from . import console
 from .flags.calibration import CalibrationFlags
 from .flags.camera import CameraFlags
 from .flags.groups import Text, option, with_flags
-from .flags.scene_file import SceneFileFlags
+from .flags.scene_file import SceneFileFlags, ScenePath
 from .flags.shutter import ShutterFlags
 from .render.views import Cameras
 
@@ -25,7 +23,7 @@ from .render.views import Cameras
     file_flags=SceneFileFlags,
 )
 def export_scene(
-    scene_path: Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file.")],
+    scene_path: ScenePath,
     camera_flags: CameraFlags,
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,

@@ -13,18 +13,25 @@ import typer.core
 from . import console
 
 ALL = "--help-all"
-#: Flags that a page shows first; --help-all shows the others.
+_CAMERA = ("--camera", "--lens", "--f-stop", "--focus", "--shutter", "--sensor")
+#: Flags that the page of a command shows first, if all of them would make it long; --help-all
+#: shows the others, too.
 FIRST = {
-    "render": (
-        "--output", "--res", "--camera", "--lens", "--f-stop", "--focus", "--shutter", "--sensor",
-        "--env", "--noise", "--denoise", "--frames",
-    ),
+    "render": ("--output", "--res", *_CAMERA, "--env", "--noise", "--denoise", "--frames"),
+    "view": ("--output", "--res", *_CAMERA, "--env", "--spp", "--denoise", "--host", "--port"),
+    "info": ("--json", "--res", *_CAMERA, "--focal-length", "--zoom", "--time"),
+    "lens": ("--plot", "--drawing", "--export", "--psf", "--through-focus", "--flare", "--json",
+             "--zoom", "--focus", "--f-stop", "--wavelength"),
+    "export-camera": ("--output", "--times", *_CAMERA, "--focal-length", "--calibration"),
+    "export-scene": ("--output", "--res", "--spp", *_CAMERA, "--focal-length"),
+    "light-probe": ("--output", "--ball", "--ev", "--response", "--scale", "--wb", "--sun",
+                    "--illuminance", "--grey", "--rotate", "--res", "--sun-out", "--json"),
 }  # fmt: skip
 EXAMPLES = {
     "render": "daguerre render scene.glb --lens double-gauss-50mm-f2 --f-stop 2 --focus 1.5 "
     "--noise 0.05 -o out.exr -o out.png",
 }
-#: Flags without a group.
+#: Heading of flags and commands without a group.
 OTHER = "Other"
 
 Rows = list[tuple[str, str]]
@@ -39,7 +46,16 @@ class InOrder:
 
 
 class HelpGroup(InOrder, typer.core.TyperGroup):
-    """The program, with the names of its help flag in order."""
+    """The program, whose help has its commands in groups."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Writes the commands."""
+        groups: dict[str, Rows] = {}
+        for name, command in self.commands.items():
+            rows = groups.setdefault(_panel(command), [])
+            rows.append((name.ljust(max(map(len, self.commands))), command.short_help or ""))
+        for title, rows in groups.items():
+            _write(formatter, title, rows)
 
 
 class HelpCommand(InOrder, typer.core.TyperCommand):
@@ -65,7 +81,7 @@ class HelpCommand(InOrder, typer.core.TyperCommand):
         groups: dict[str, list[Any]] = {}
         for flag in flags:
             if flag not in common:
-                groups.setdefault(getattr(flag, "rich_help_panel", None) or OTHER, []).append(flag)
+                groups.setdefault(_panel(flag), []).append(flag)
         other = groups.pop(OTHER, [])
         for title, members in groups.items():
             _write(formatter, title, _rows(ctx, members))
@@ -73,6 +89,11 @@ class HelpCommand(InOrder, typer.core.TyperCommand):
 
     def _of_kind(self, kind: str, ctx: Any) -> list[Any]:
         return [one for one in self.get_params(ctx) if one.param_type_name == kind]
+
+
+def _panel(one: Any) -> str:
+    """Heading above a flag or a command."""
+    return getattr(one, "rich_help_panel", None) or OTHER
 
 
 def _rows(ctx: Any, parameters: Iterable[Any]) -> Rows:

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
 
 from . import console
 from .flags.calibration import CalibrationFlags
 from .flags.camera import CameraFlags
 from .flags.groups import option, with_flags
 from .flags.scene import SceneFlags
+from .flags.scene_file import ScenePath
 from .flags.shutter import ShutterFlags
 from .render.views import Cameras
 
@@ -28,9 +26,7 @@ if TYPE_CHECKING:
     scene_flags=SceneFlags,
 )
 def info(
-    scene_path: Annotated[
-        Path, typer.Argument(metavar="SCENE", help="Scene file, .glb, .gltf or .usd.")
-    ],
+    scene_path: ScenePath,
     camera_flags: CameraFlags,
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,

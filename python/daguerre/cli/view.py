@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from daguerre import memory, units
 from daguerre.files import extras
@@ -18,6 +15,7 @@ from .flags.from_table import TableFlags
 from .flags.groups import with_flags
 from .flags.job import JobFlags
 from .flags.scene import SceneFlags
+from .flags.scene_file import ScenePath
 from .flags.server import ServerFlags
 from .flags.settings import SettingsFlags
 from .flags.shutter import ShutterFlags
@@ -50,9 +48,7 @@ _OWN = {
     server_flags=ServerFlags,
 )
 def view(
-    scene_path: Annotated[
-        Path, typer.Argument(metavar="SCENE", help="Scene file, .glb, .gltf or .usd.")
-    ],
+    scene_path: ScenePath,
     camera_flags: CameraFlags,
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,

@@ -123,6 +123,12 @@ def written(kind: Kind) -> tuple[str, ...]:
     return tuple(suffix for row in formats(kind) if row.writes for suffix in row.suffixes)
 
 
+def readable(kind: Kind) -> str:
+    """Formats of a kind that can be read, with their suffixes, in words."""
+    rows = [row for row in formats(kind) if row.reads]
+    return _either([f"{row.name} ({', '.join(row.suffixes)})" for row in rows])
+
+
 def read(kind: Kind, path: str | os.PathLike[str], **options: Any) -> Any:
     """Reads a file in the format of its suffix.
 

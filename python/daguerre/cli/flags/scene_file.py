@@ -8,11 +8,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
+import typer
+
 from daguerre import units as q
+from daguerre.files import formats
 
 from .groups import Text, option
 
 _FILE = "Scene file"
+
+ScenePath = Annotated[
+    Path, typer.Argument(metavar="SCENE", help=f"Scene file: {formats.readable('scene')}.")
+]
 
 
 @dataclass(frozen=True)
@@ -102,7 +109,6 @@ class SceneFileFlags:
     def start(self, path: Path) -> float:
         """Scene time of frame 0, s."""
         from daguerre.errors import UsageError
-        from daguerre.files import formats
 
         if self.time_code is None:
             return 0.0 if self.time is None else q.time_s("--time", self.time)
@@ -113,7 +119,6 @@ class SceneFileFlags:
     def read(self, path: Path, *, animated: bool = False) -> Any:
         """Reads the scene; ``animated``: other moments of its animation will be drawn, too."""
         import daguerre
-        from daguerre.files import formats
 
         options = self._options
         if animated and formats.takes("scene", path, "animated"):

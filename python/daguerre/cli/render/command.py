@@ -4,10 +4,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from daguerre import memory, units
 from daguerre.cli import console
@@ -17,6 +13,7 @@ from daguerre.cli.flags.groups import with_flags
 from daguerre.cli.flags.job import JobFlags
 from daguerre.cli.flags.map import MapFlags
 from daguerre.cli.flags.scene import SceneFlags
+from daguerre.cli.flags.scene_file import ScenePath
 from daguerre.cli.flags.settings import SettingsFlags
 from daguerre.cli.flags.shutter import ShutterFlags
 
@@ -37,9 +34,7 @@ from .views import Cameras
     job_flags=JobFlags,
 )
 def render(
-    scene_path: Annotated[
-        Path, typer.Argument(metavar="SCENE", help="Scene file, .glb, .gltf or .usd.")
-    ],
+    scene_path: ScenePath,
     camera_flags: CameraFlags,
     calibration_flags: CalibrationFlags,
     shutter_flags: ShutterFlags,
