@@ -18,11 +18,11 @@ import time
 from pathlib import Path
 from typing import Any
 
-import daguerre._core as _core
 import numpy as np
 from peers import relative_mse
 
 import daguerre as dg
+import daguerre._core as _core
 from daguerre.rendering.session import Session
 from daguerre.setup import built_scene
 from daguerre.setup.scene import _add_all

@@ -34,7 +34,7 @@ endif()
 if(DG_MISSING)
     message(FATAL_ERROR "Missing libraries, and the Debian/Ubuntu packages that bring them:"
         "${DG_MISSING}\n"
-        "Install them with apt, or run script/setup, which does. The wheel (pip install daguerre) needs none of them; "
+        "Install them with apt, or run script/setup, which does. The wheel needs none of them; "
         "it wants x86-64 Linux with glibc 2.34 or newer, and Python 3.11 or newer.")
 endif()
 

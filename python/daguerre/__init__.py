@@ -11,15 +11,21 @@ from .errors import DaguerreError, InputError, MismatchError, OutputError, Usage
 
 if TYPE_CHECKING:
     from . import (
+        analysis,
         calibration,
         charts,
         development,
         distortion,
+        errors,
+        export,
         exposure,
+        files,
+        labels,
         lenses,
         polynomial,
         post,
         rendering,
+        scene,
         sensors,
         stocks,
     )
@@ -112,6 +118,7 @@ __all__ = [
     "TextureSlot",
     "UsageError",
     "__version__",
+    "analysis",
     "annotate",
     "calibrate",
     "calibrate_all",
@@ -120,11 +127,15 @@ __all__ = [
     "composite",
     "development",
     "distortion",
+    "errors",
+    "export",
     "export_camera",
     "export_scene",
     "exposure",
+    "files",
     "iter_render",
     "keys",
+    "labels",
     "lenses",
     "light_probe",
     "load",
@@ -140,6 +151,7 @@ __all__ = [
     "render",
     "render_rig",
     "rendering",
+    "scene",
     "sensors",
     "spin",
     "stereo_pair",
@@ -212,21 +224,24 @@ _LAZY = {
 _MODULES = {
     name: name
     for name in (
-        "calibration", "charts", "development", "distortion", "exposure", "lenses",
-        "polynomial", "post", "rendering", "sensors", "stocks",
+        "analysis", "calibration", "charts", "development", "distortion", "errors", "export",
+        "exposure", "files", "labels", "lenses", "polynomial", "post", "rendering", "scene",
+        "sensors", "stocks",
     )
 } | {"metering": "exposure.metering"}  # fmt: skip
 
 
-def __getattr__(name: str) -> Any:
-    if name in _MODULES:
-        return import_module("." + _MODULES[name], __name__)
-    if name in _LAZY:
-        value = getattr(import_module("." + _LAZY[name], __name__), name)
-        globals()[name] = value
-        return value
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+if not TYPE_CHECKING:  # checkers know the names above, and report all others
+
+    def __getattr__(name: str) -> Any:
+        if name in _MODULES:
+            return import_module("." + _MODULES[name], __name__)
+        if name in _LAZY:
+            value = getattr(import_module("." + _LAZY[name], __name__), name)
+            globals()[name] = value
+            return value
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return __all__

@@ -6,11 +6,11 @@ import math
 import re
 from typing import Any
 
-import daguerre._core as _core
 import numpy as np
 import pytest
 
 import daguerre as dg
+import daguerre._core as _core
 from daguerre import lenses
 from daguerre.cli.info import camera_rows
 from daguerre.setup.camera import set_up

@@ -6,11 +6,11 @@ import json
 from itertools import pairwise
 from typing import Any
 
-import daguerre._core as _core
 import numpy as np
 import pytest
 
 import daguerre as dg
+import daguerre._core as _core
 from daguerre import analysis, charts
 from daguerre.cli import main
 from daguerre.errors import InputError, UsageError

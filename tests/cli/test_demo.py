@@ -25,7 +25,7 @@ def test_a_picture_and_its_command(
     monkeypatch.chdir(tmp_path)
     assert main(["demo", "--res", "30x20", "--spp", "1"]) == 0
     said = capsys.readouterr().out.splitlines()
-    assert ('pip install "daguerre[denoise]"' in said[0]) is not denoised
+    assert (extras.hint("mitsuba_oidn") in said[0]) is not denoised
     names = {"night_table.glb", "demo.png", "demo.exr"}
     assert {path.name for path in (tmp_path / "out").iterdir()} == names
     before = dg.load_frame(tmp_path / "out" / "demo.exr").rgb

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import json
+import re
+import sys
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -43,19 +47,46 @@ def test_every_extra_is_in_the_project_file() -> None:
     assert offered["all"] == [f"daguerre[{','.join(sorted(brought))}]"]
 
 
+def installed(monkeypatch: pytest.MonkeyPatch, record: dict[str, object] | None) -> None:
+    """Makes pip's record of the installation."""
+    text = None if record is None else json.dumps(record)
+    found = SimpleNamespace(read_text=lambda name: text if name == "direct_url.json" else None)
+    monkeypatch.setattr("importlib.metadata.distribution", lambda name: found)
+
+
+def test_hint_of_an_editable_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    clone = tmp_path / "my clone"
+    clone.mkdir()
+    installed(monkeypatch, {"dir_info": {"editable": True}, "url": clone.as_uri()})
+    monkeypatch.setattr(sys, "prefix", str(clone / ".venv"))
+    assert extras.hint("matplotlib") == f"cd '{clone}' && .venv/bin/pip install -e '.[plot]'"
+    monkeypatch.chdir(clone)
+    assert extras.hint("matplotlib") == ".venv/bin/pip install -e '.[plot]'"
+    monkeypatch.setattr(sys, "prefix", "/opt/env")
+    assert extras.hint("pxr") == "/opt/env/bin/pip install -e '.[usd]'"
+
+
 @pytest.mark.parametrize(
-    ("package", "words", "extra"),
+    "record",
+    [None, {"archive_info": {}, "url": "file:///a.whl"}, {"dir_info": {}, "url": "file:///a"}],
+)
+def test_hint_of_a_wheel(record: dict[str, object] | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    installed(monkeypatch, record)
+    assert extras.hint("matplotlib") == 'pip install "daguerre[plot]"'
+
+
+@pytest.mark.parametrize(
+    ("package", "words"),
     [
-        ("tifffile", ["-o", "a.tif"], "raw"),
-        ("tifffile", ["--sensor", "sony-a7r-ii", "-o", "a.dng"], "raw"),
-        ("rawpy", ["--sensor", "sony-a7r-ii", "--iso", "100", "-o", "a.jpg"], "raw"),
-        ("mitsuba_oidn", ["--denoise", "-o", "a.png"], "denoise"),
+        ("tifffile", ["-o", "a.tif"]),
+        ("tifffile", ["--sensor", "sony-a7r-ii", "-o", "a.dng"]),
+        ("rawpy", ["--sensor", "sony-a7r-ii", "--iso", "100", "-o", "a.jpg"]),
+        ("mitsuba_oidn", ["--denoise", "-o", "a.png"]),
     ],
 )
 def test_a_render_that_could_not_be_written_is_refused_first(
     package: str,
     words: list[str],
-    extra: str,
     tmp_path: Path,
     without: Callable[[str], None],
     capsys: pytest.CaptureFixture[str],
@@ -66,7 +97,7 @@ def test_a_render_that_could_not_be_written_is_refused_first(
     without(package)
     assert main(["render", str(scene), *RENDER, "--quiet", *words]) == 2
     said = capsys.readouterr().err
-    assert f'pip install "daguerre[{extra}]"' in said, said
+    assert extras.hint(package) in said, said
     assert said.count("\n") == 1, said
     assert [path.name for path in tmp_path.iterdir()] == ["scene.glb"]
 
@@ -86,7 +117,7 @@ def test_functions(
     (tmp_path / "a.yaml").write_text("a: 1\n")
     (tmp_path / "a.dng").write_bytes(b"II*\0")
     without(package)
-    with pytest.raises(dg.UsageError, match=r'pip install "daguerre\['):
+    with pytest.raises(dg.UsageError, match=re.escape(extras.hint(package))):
         use(tmp_path)
 
 

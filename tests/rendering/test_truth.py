@@ -6,12 +6,12 @@ import math
 from pathlib import Path
 from typing import Any
 
-import daguerre._core as _core
 import numpy as np
 import OpenEXR
 import pytest
 
 import daguerre as dg
+import daguerre._core as _core
 from daguerre import lenses
 from daguerre.camera.rolling_shutter import RollingShutter
 from daguerre.cli import main

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from importlib.util import find_spec
+from pathlib import Path
 
 from daguerre.errors import UsageError
 
@@ -39,8 +41,33 @@ def missing_for(extension: str) -> str:
 
 
 def hint(module: str) -> str:
-    """Command that installs a package."""
-    return f'pip install "daguerre[{EXTRAS[module][1]}]"'
+    """Command that installs a package: into the clone of an editable install, or beside a wheel."""
+    from shlex import quote
+
+    extra = EXTRAS[module][1]
+    clone = _clone()
+    if clone is None:
+        return f'pip install "daguerre[{extra}]"'
+    pip = Path(sys.prefix) / "bin" / "pip"
+    if pip.is_relative_to(clone):
+        pip = pip.relative_to(clone)
+    command = f"{quote(str(pip))} install -e '.[{extra}]'"
+    return command if clone == Path.cwd() else f"cd {quote(str(clone))} && {command}"
+
+
+def _clone() -> Path | None:
+    """Folder of an editable install, by the record that pip keeps (PEP 610); None for a wheel."""
+    import json
+    from importlib.metadata import PackageNotFoundError, distribution
+    from urllib.parse import unquote, urlsplit
+
+    try:
+        record = json.loads(distribution("daguerre").read_text("direct_url.json") or "{}")
+        if record["dir_info"]["editable"]:
+            return Path(unquote(urlsplit(record["url"]).path))
+    except (PackageNotFoundError, ValueError, KeyError):
+        pass
+    return None
 
 
 def need(module: str, use: str) -> None:

@@ -39,7 +39,7 @@ class Format:
         writes: Writer, called as ``writes(path, value, **options)``; None: it cannot be written.
         takes: Options of reader and writer, besides ``time`` (s) of scenes; None: they check their
             options themselves.
-        needs: Package that it needs, and how to install it.
+        needs: Package that it needs, and how to install it; empty for a package of an extra.
         time_of: Converts a time code of a scene to s, called as ``time_of(path, code)``; None: the
             format has no time codes.
     """
@@ -65,7 +65,7 @@ _FORMATS = [
            takes=("variant", "allow_dirs", "scene_index", "animated")),
     Format("OpenUSD", "scene", (".usd", ".usda", ".usdc", ".usdz"), "daguerre.io.usd.reader:read",
            takes=("variant", "allow_dirs", "purpose", "camera_units"),
-           needs=("pxr", extras.hint("pxr")),
+           needs=("pxr", ""),
            time_of="daguerre.io.usd.stage:time_of_code"),
     Format("pbrt", "scene", (".pbrt",), "daguerre.io.pbrt.reader:read",
            takes=("unit_m", "allow_dirs")),
@@ -84,7 +84,7 @@ _FORMATS = [
            f"{_DEVELOPED}:as_picture", None),
     Format("OpenUSD", "camera", (".usda", ".usdc", ".usd"), None,
            "daguerre.io.usd.camera_writer:write_cameras", ("times",),
-           ("pxr", extras.hint("pxr"))),
+           ("pxr", "")),
     Format("pbrt-v4", "exchange", (".pbrt",), None, "daguerre.io.pbrt.writer:write"),
     Format("Mitsuba 3", "exchange", (".xml",), None, "daguerre.io.mitsuba.writer:write"),
     Format("an image", "environment", (ANY,), "daguerre.io.images:read_environment"),
@@ -209,7 +209,8 @@ def _ready(
     """Returns a function of a format, after checks of its options and the package it needs."""
     _check_options(row, path, options)
     if row.needs is not None and find_spec(row.needs[0]) is None:
-        raise UsageError(f"{path}: {row.name} needs {row.needs[0]}: {row.needs[1]}")
+        module, how = row.needs
+        raise UsageError(f"{path}: {row.name} needs {module}: {how or extras.hint(module)}")
     if callable(function):
         return function
     module, _, name = function.partition(":")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+import re
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ import daguerre as dg
 from daguerre.camera import shutter
 from daguerre.cli import main
 from daguerre.errors import UsageError
-from daguerre.files import formats
+from daguerre.files import extras, formats
 
 pytest.importorskip("pxr")
 
@@ -369,7 +370,7 @@ def test_without_usd_one_error_says_how_to_install_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(formats, "find_spec", lambda name: None)
-    with pytest.raises(dg.UsageError, match=r'pip install "daguerre\[usd\]"'):
+    with pytest.raises(dg.UsageError, match=re.escape(extras.hint("pxr"))):
         dg.export_camera(dg.Camera(), tmp_path / "a.usda")
 
 
