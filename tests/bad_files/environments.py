@@ -132,13 +132,13 @@ CASES = [
         for key, (name, data, error) in BAD.items()
     ),
     *(
-        Case(f"env-{key}", beside_scene("e.hdr", put), "wanted an image file", command=COMMAND)
+        Case(f"env-{key}", beside_scene("e.hdr", put), "not a regular file", command=COMMAND)
         for key, put in ENDLESS.items()
     ),
     Case(
         "env-missing",
         beside_scene("none.hdr", lambda _: None),
-        "wanted an image file, got no such file",
+        "no such file",
         command=COMMAND,
     ),
     *(Case(f"env-{key}", _make(name, data), command=COMMAND) for key, (name, data) in ODD.items()),

@@ -78,7 +78,7 @@ BYTES: dict[str, tuple[bytes, str]] = {
     "a page": (b"<!DOCTYPE html>\n<html><body>404</body></html>\n", r"\[lens-format\]"),
     "noise": (bytes(range(256)) * 20, r"\[lens-format\]"),
     "broken utf-16": (b"\xff\xfeS\x00U\x00R", "wanted UTF-16, got a broken character"),
-    "20 MB": (b" " * 20_000_000, "lens file: wanted at most 16000000 bytes"),
+    "20 MB": (b" " * 20_000_000, "wanted at most 16000000 bytes, got 20000000"),
     "many lines": (b"! x\n" * 450_000, r"\[lens-format\]"),
     "a long line": (b"# " + b"x" * 150_000, r"\[lens-format\]"),
 }

@@ -12,6 +12,7 @@ import OpenImageIO as oiio
 import pytest
 
 from daguerre.cli import main
+from daguerre.files.reading import shown
 from tests.bad_files import CASES, Case
 
 #: CPU time of one file in this process; the files measured as processes have 10 s on the clock.
@@ -31,7 +32,7 @@ def check_lines(case: Case, bad: Path, code: int, text: str) -> None:
         assert not case.warning or any(re.search(case.warning, line) for line in warnings), text
         return
     assert code == case.code, text
-    last, start = lines[-1], f"daguerre: error: {bad}: "
+    last, start = lines[-1], f"daguerre: error: {shown(bad)}: "
     assert last.startswith(start), text
     assert re.search(case.error, last[len(start) :]), text
     assert all(line.startswith("daguerre: ") for line in lines), text

@@ -135,7 +135,7 @@ WRONG = {
         2,
         "ending in .exr, .png, .jpg, .jpeg, .tif, .tiff",
     ),
-    "no folder": (["render", "s.glb", "-o", "no/a.exr"], 5, "there is no folder"),
+    "no folder": (["render", "s.glb", "-o", "no/a.exr"], 5, "no such folder"),
     "camera": (["render", "s.glb", "-o", "a.exr", "-c", "Camra"], 3, "did you mean 'Camera'"),
     "focus": (["render", "s.glb", "-o", "a.exr", "--focus", "2 parsec"], 2, "--focus"),
     "two focuses": (

@@ -70,7 +70,7 @@ def test_flags_say_what_the_photograph_does_not(tmp_path, capsys):
     [
         (["none.dng"], 3, "no such file"),
         (["plate.dng", "-o", "x.txt"], 2, "ending in .json"),
-        (["plate.dng", "-o", "no/x.json"], 5, "no folder"),
+        (["plate.dng", "-o", "no/x.json"], 5, "no such folder"),
         (["plate.dng", "--lens", "canon-ef-85"], 3, "did you mean"),
         (["plate.dng", "--flat", "none.dng"], 3, "none.dng: wanted a photograph"),
         (["plate.dng", "--f-stop", "1.2"], 3, "wanted f/1.8 or narrower"),
@@ -160,7 +160,7 @@ def test_developed_plates_give_their_grain(tmp_path):
 @pytest.mark.parametrize(
     ("words", "wanted"),
     [
-        (["--like-plate", "none.json", "-o", "o.exr"], "none.json: cannot read"),
+        (["--like-plate", "none.json", "-o", "o.exr"], "none.json: no such file"),
         (
             ["--like-plate", "plate.camera.json", "-o", "o.jpg", "--exposure", "auto"],
             "the plate sets the ISO",

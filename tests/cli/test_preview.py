@@ -228,7 +228,7 @@ def test_a_preview_that_cannot_be_written_stops_no_render(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("flags", "words"),
     [
-        (("-o", "nowhere/a.png"), b"there is no folder"),
+        (("-o", "nowhere/a.png"), b"no such folder"),
         (("-o", "a.png", "-o", "a.preview.png"), b"this name is reserved for --preview"),
         (("--export-raymap", "a.exr"), b"wanted a picture for --aov"),
     ],

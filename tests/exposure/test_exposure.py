@@ -251,7 +251,7 @@ def test_files_that_are_no_frames(tmp_path: Path) -> None:
     (tmp_path / "text.exr").write_text("no picture")
     with pytest.raises(dg.InputError, match=r"text\.exr: format: wanted an OpenEXR file"):
         dg.load_frame(tmp_path / "text.exr")
-    with pytest.raises(dg.InputError, match=r"none\.exr: cannot read"):
+    with pytest.raises(dg.InputError, match=r"none\.exr: no such file"):
         dg.load_frame(tmp_path / "none.exr")
 
 

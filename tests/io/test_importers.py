@@ -287,7 +287,7 @@ MITSUBA = Samples(
             "line 2, column 22: <ref",
         ),
         "outside.xml": (_mitsuba('<include filename="../../x.xml"/>'), "leaves the scene's folder"),
-        "missing.xml": (_mitsuba('<include filename="x.xml"/>'), "missing file"),
+        "missing.xml": (_mitsuba('<include filename="x.xml"/>'), "no such file"),
         "circle.xml": (_mitsuba('<include filename="circle.xml"/>'), "files that include"),
     },
 )

@@ -170,7 +170,7 @@ def test_annotations_change_nothing_of_the_picture(folder: Path) -> None:
         (["--coco", "no/such/c.json"], 5, "c.json"),
         (["--categories", "k.json"], 2, "--categories: wanted --coco FILE.json too"),
         (["--coco", "k.json", "--categories", "k.json"], 2, "this name is taken"),
-        (["--coco", "c.json", "--categories", "none.json"], 3, "none.json: categories: wanted"),
+        (["--coco", "c.json", "--categories", "none.json"], 3, "none.json: no such file"),
         (["--coco", "c.json", "--categories", "k.json"], 2, "did you mean 'Tent'"),
     ],
 )

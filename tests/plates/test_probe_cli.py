@@ -73,7 +73,7 @@ def test_flags_reach_the_ball(tmp_path, capfd):
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
-        (["none.exr"], 3, "none.exr: wanted an image file, got no such file"),
+        (["none.exr"], 3, "none.exr: no such file"),
         (["none.jpg"], 3, "none.jpg: wanted a photograph, got no such file"),
         (["none.cr2"], 3, "none.cr2: wanted a photograph, got no such file"),
         (["square.exr"], 3, "panorama: wanted a width of twice the height, got 64x64 px"),
@@ -98,7 +98,7 @@ def test_flags_reach_the_ball(tmp_path, capfd):
         (["pano.exr", "--sun-out", "sun.gltf"], 2, "wanted a name ending in .glb"),
         (["pano.exr", "-o", "env.png"], 2, "wanted a name ending in .exr or .hdr"),
         (["pano.exr", "-o", "pano.exr"], 2, "wanted another file than the photographs"),
-        (["pano.exr", "-o", "no/env.exr"], 5, "cannot write: there is no folder"),
+        (["pano.exr", "-o", "no/env.exr"], 5, "cannot write: no such folder"),
         (["dark.exr", "--sun-out", "sun.glb"], 3, "wanted a sun in the light to write, got none"),
     ],
 )

@@ -152,7 +152,7 @@ def test_the_page_of_a_sensor(
     [
         (["sensor", "sony-a7"], 3, "did you mean 'sony-a7r-ii'"),
         (["sensor", "ideal", "--plot", "x.jpg"], 2, "--plot: wanted a name ending in .svg"),
-        (["sensor", "no.json"], 3, "no.json: cannot read"),
+        (["sensor", "no.json"], 3, "no.json: no such file"),
     ],
 )
 def test_what_the_command_line_refuses(

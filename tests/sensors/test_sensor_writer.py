@@ -17,5 +17,5 @@ def test_every_sensor_comes_back(tmp_path, name):
 
 
 def test_folders_that_are_not_there(tmp_path):
-    with pytest.raises(OutputError, match="no folder"):
+    with pytest.raises(OutputError, match="no such folder"):
         write(tmp_path / "none" / "x.json", load("ideal"))

@@ -19,6 +19,7 @@ from daguerre.camera.projection import Projection
 from daguerre.checks import short
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
+from daguerre.files.reading import not_utf8, reading, size_of
 
 from .calibration import FLIP, Calibration, FloatArray, projection
 
@@ -84,10 +85,9 @@ def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[
 
 def _lines(path: Path, every: int = 1) -> Iterator[tuple[str, list[str]]]:
     """Yields place and words of every ``every``-th line that is not a comment."""
+    size_of(path, MAX_BYTES)
     try:
-        if path.stat().st_size > MAX_BYTES:
-            raise InputError(f"{path}: wanted at most 1 GiB, got more")
-        with path.open(encoding="utf-8") as file:
+        with reading(path), path.open(encoding="utf-8") as file:
             count = 0
             for number, line in enumerate(file, 1):
                 # An empty line is a picture without points, or the end of the file.
@@ -96,10 +96,10 @@ def _lines(path: Path, every: int = 1) -> Iterator[tuple[str, list[str]]]:
                 if count % every == 0:
                     yield f"{path}: line {number}", line.split()
                 count += 1
-    except OSError as error:
-        raise InputError(f"{path}: wanted a COLMAP text file: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: wanted UTF-8 text, got other bytes (.bin is not read)") from None
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{path}: {not_utf8(error)} (COLMAP's .bin files are not supported: export as text)"
+        ) from None
 
 
 def _camera(where: str, words: list[str]) -> tuple[str, Projection]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from daguerre.checks import short
 from daguerre.errors import InputError, UsageError, suggest
-from daguerre.files import extras, json_text, xml_text
+from daguerre.files import extras, json_text, reading, xml_text
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source
 
@@ -57,16 +57,8 @@ def _yaml(data: bytes, path: Path) -> Item:
 
 def read_bytes(path: Path) -> bytes:
     """Reads a file of at most ``MAX_BYTES``, or ``MAX_JSON_BYTES`` for JSON."""
-    most = MAX_JSON_BYTES if path.suffix.lower() in (".json", ".jsonl") else MAX_BYTES
-    try:
-        with path.open("rb") as file:
-            data = file.read(most + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{path}: cannot read the calibration file: {reason}") from None
-    if len(data) > most:
-        raise InputError(f"{path}: wanted a calibration of at most {most >> 20} MiB, got more")
-    return data
+    is_json = path.suffix.lower() in (".json", ".jsonl")
+    return reading.read_bytes(path, MAX_JSON_BYTES if is_json else MAX_BYTES)
 
 
 def _plain(value: Any) -> Any:

@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 from daguerre.errors import InputError
+from daguerre.files.text_lines import text_of
 
 #: Points of a curve.
 MAX_POINTS = 4096
@@ -25,18 +26,9 @@ def read_curve(path: Path) -> list[tuple[float, float]]:
         InputError: The file cannot be read, or is not such a table; the message names the line.
     """
     try:
-        if path.exists() and not (path.is_file() or path.is_dir()):  # it might never end
-            raise InputError(f"{path}: wanted a file, got a device or a pipe")
-        if path.stat().st_size > _MAX_BYTES:
-            raise InputError(f"{path}: wanted a table of at most {_MAX_BYTES >> 20} MiB")
-        lines = path.read_text("utf-8-sig").splitlines()
-    except OSError as error:
-        reason = error.strerror or error
-        raise InputError(
-            f"--shutter-curve {path}: wanted box, trapezoid:E or a file: {reason}"
-        ) from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path}: wanted a table as text, got other bytes") from None
+        lines = text_of(path, "utf-8-sig", _MAX_BYTES).splitlines()
+    except InputError as error:
+        raise InputError(f"--shutter-curve: {error} (wanted box, trapezoid:E or a file)") from None
     points: list[tuple[float, float]] = []
     named = False
     for i, line in enumerate(lines, 1):

@@ -96,9 +96,9 @@ def _resolved(target: str | os.PathLike[str]) -> Path:
     with _os_errors(path):
         path = path.resolve()
         if not path.parent.is_dir():
-            raise OutputError(f"{target}: cannot write: there is no folder {path.parent}")
+            raise OutputError(f"{target}: cannot write: no such folder: {path.parent}")
         if path.is_dir():
-            raise OutputError(f"{target}: cannot write: it is a folder, wanted a file name")
+            raise OutputError(f"{target}: cannot write: wanted a file name, got a folder")
     return path
 
 

@@ -10,11 +10,10 @@ from daguerre.errors import DaguerreError, InputError, suggest
 
 from .json_item import Item, short
 from .json_text import parse
+from .reading import read_bytes
 
 Made = TypeVar("Made")
 MAX_BYTES = 16_000_000
-#: Maximum number of characters of a path in a message.
-_LONGEST = 1000
 
 
 def read_json_file(
@@ -33,15 +32,7 @@ def read_json_file(
         InputError: The file cannot be used; the message names file and JSON path.
     """
     path = Path(path)
-    try:
-        if path.stat().st_size > MAX_BYTES or not path.is_file():
-            raise InputError(f"{path}: {what} file: wanted a file of at most {MAX_BYTES} bytes")
-        data = path.read_bytes()
-    except OSError as error:
-        name = str(path)  # that a file gives may be long
-        shown = name if len(name) <= _LONGEST else f"{name[:_LONGEST]}..."
-        raise InputError(f"{shown}: cannot read: {error.strerror or error}") from None
-    root = parse(data, str(path))
+    root = parse(read_bytes(path, MAX_BYTES), str(path))
     named = root.need("schema")
     if named.value != schema:
         named.fail(f"wanted {schema!r}, got {short(named.value)}")

@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 from daguerre.errors import InputError
 
 from .json_item import Item
+from .reading import document
 
 
 def parse(data: bytes, file: str) -> Item:
@@ -21,7 +22,7 @@ def parse(data: bytes, file: str) -> Item:
     Raises:
         InputError: They are not JSON, are nested too deeply, or an object has a member twice.
     """
-    return Item(_value(_text(data, file), file), file)
+    return Item(_value(document(data, f"{file}: JSON"), file), file)
 
 
 class _NotJson(Exception):
@@ -30,15 +31,6 @@ class _NotJson(Exception):
 
 class _Twice:
     """Marker for an object with two members of one name."""
-
-
-def _text(data: bytes, file: str) -> str:
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(
-            f"{file}: JSON: wanted UTF-8, got byte 0x{data[error.start]:02x} at byte {error.start}"
-        ) from None
 
 
 def _value(text: str, file: str) -> Any:

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from daguerre.errors import InputError
+from .reading import decoded, read_bytes
 
 #: Maximum size of a file, which bounds the number of its statements.
 MAX_BYTES = 1 << 30
@@ -18,7 +18,7 @@ def statements(
     """Yields place (``file: line 7: word``), first word and other words of each non-empty line.
 
     Raises:
-        InputError: It is not an ordinary file, is too large, or cannot be read as UTF-8.
+        InputError: It is not a regular file, is too large, or cannot be read as UTF-8.
     """
     file = Path(path)
     for number, line in enumerate(text_of(file).splitlines(), 1):
@@ -30,15 +30,6 @@ def text_of(file: Path, encoding: str = "utf-8", most: int = MAX_BYTES) -> str:
     """Reads a text of at most ``most`` bytes.
 
     Raises:
-        InputError: It is not an ordinary file, is too large, or cannot be read.
+        InputError: It is not a regular file, is too large, or cannot be read.
     """
-    try:
-        if file.exists() and not file.is_file():  # a pipe or a device would never end
-            raise InputError(f"{file}: wanted an ordinary file, got something else")
-        if (size := file.stat().st_size) > most:
-            raise InputError(f"{file}: wanted at most {most} bytes, got {size}")
-        return file.read_text(encoding)
-    except OSError as error:
-        raise InputError(f"{file}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise InputError(f"{file}: wanted UTF-8, got another byte at {error.start}") from None
+    return decoded(read_bytes(file, most), str(file), encoding)

@@ -15,6 +15,7 @@ from pathlib import Path
 from urllib.parse import unquote, unquote_to_bytes, urlsplit
 
 from .json_item import Item, short
+from .reading import fault_of
 
 
 class Folder:
@@ -32,7 +33,7 @@ class Folder:
         self.allowed = [self.base, *(Path(os.path.realpath(d)) for d in allow_dirs)]
 
     def resolve(self, uri: Item) -> Path:
-        """Returns the existing ordinary file of a URI.
+        """Returns the existing regular file of a URI.
 
         Raises:
             InputError: The URI leaves the allowed folders, or no such file exists.
@@ -43,13 +44,9 @@ class Folder:
                 f"leaves the scene's folder: wanted a file under {str(self.base)!r} "
                 f"(--allow-dir widens), got {short(uri.text())}"
             )
-        # Only ordinary files: a pipe or a device would never end.
-        try:
-            found = path.is_file()
-        except OSError:  # a name too long for any file
-            found = False
-        if not found:
-            uri.fail(f"missing file: wanted {short(str(path), 200)}, got no such file")
+        # Only regular files: a pipe or a device would never end.
+        if fault := fault_of(path):
+            uri.fail(f"{short(str(path), 200)}: {fault}")
         return path
 
     def _path(self, uri: Item) -> Path:

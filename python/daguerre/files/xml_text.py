@@ -22,6 +22,9 @@ from .json_item import Item
 
 ROOT = "opencv_storage"
 MAX_DEPTH = 64
+#: Code of expat for a text that ends before its root element does, and our words for it.
+_ENDS = expat.errors.codes[expat.errors.XML_ERROR_NO_ELEMENTS]
+_CUT = "empty or truncated file"
 _WORDS = re.compile(r'"[^"]*"|\S+')
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\Z|[-+]?\.(?:inf|nan)\Z", re.I)
 
@@ -33,7 +36,7 @@ def xml_errors(file: str) -> Iterator[None]:
         yield
     except expat.ExpatError as error:
         place = f"line {error.lineno}, column {error.offset + 1}"
-        reason = expat.ErrorString(error.code)
+        reason = _CUT if error.code == _ENDS else expat.ErrorString(error.code)
         raise InputError(f"{file}: XML: {place}: {reason}") from None
     except InputError:
         raise

@@ -18,6 +18,7 @@ import yaml
 from daguerre.errors import InputError
 
 from .json_item import Item, short
+from .reading import document
 
 OPENCV_MATRIX = "tag:yaml.org,2002:opencv-matrix"
 _OPENCV_HEAD = re.compile(r"\A\ufeff?%YAML:1\.0[^\n]*")
@@ -29,12 +30,7 @@ def parse(data: bytes, file: str) -> Item:
     Raises:
         InputError: They are not YAML, or have features that calibrations do not need.
     """
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(
-            f"{file}: YAML: wanted UTF-8, got byte 0x{data[error.start]:02x} at byte {error.start}"
-        ) from None
+    text = document(data, f"{file}: YAML")
     text = _OPENCV_HEAD.sub("", text, count=1)
     text = re.sub(r"\n---\s*\Z", "\n", text)  # as `rostopic echo` ends each message
     try:

@@ -21,6 +21,7 @@ from daguerre.checks import DEFLATE_LIMIT
 from daguerre.color import srgb
 from daguerre.errors import InputError
 from daguerre.files.json_item import short
+from daguerre.files.reading import size_of
 
 from . import ktx2
 from .exr.reader import ExrReader, is_exr, light_names
@@ -96,8 +97,7 @@ def read_environment(path: str | Path) -> NDArray[np.float32]:
         InputError: The file cannot be read, has no colour, or has NaN, Inf or negative light.
     """
     file = Path(path)
-    if not file.is_file():
-        raise InputError(f"{file}: wanted an image file, got no such file")
+    size_of(file)
     if is_exr(file):
         return _checked_light(file, upright(*_linear(file)))
     pixels, spec, kind = _read(str(file), str(file), MAX_ENVIRONMENT_BYTES)

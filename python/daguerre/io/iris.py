@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError
+from daguerre.files.reading import size_of
 
 from .exr.reader import ExrReader, is_exr, light_names
 from .images import read_file
@@ -28,8 +29,7 @@ def read_grey(path: Path) -> NDArray[np.float32]:
 
 def _read(path: Path) -> NDArray[np.float32]:
     """Reads pixels, shape (H, W, C), integers scaled to 0 .. 1."""
-    if not path.is_file():
-        raise InputError(f"{path}: wanted an image file, got no such file")
+    size_of(path)
     if is_exr(path):
         return _of_exr(path)
     return np.asarray(read_file(path, floats=True)[0], np.float32)

@@ -19,9 +19,10 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from daguerre.doors import guarded
-from daguerre.errors import InputError, UsageError, suggest
+from daguerre.errors import UsageError, suggest
 from daguerre.files.json_item import Item, short
 from daguerre.files.json_text import parse
+from daguerre.files.reading import read_bytes
 from daguerre.scene.scene import Scene
 
 #: Endings that programs append to the names of copies.
@@ -76,15 +77,7 @@ class Categories:
             InputError: The file cannot be used; the message names file and JSON path.
         """
         path = Path(path)
-        try:
-            if not path.is_file():
-                raise InputError(f"{path}: categories: wanted a JSON file, got no such file")
-            if path.stat().st_size > _MAX_BYTES:
-                raise InputError(f"{path}: categories: wanted at most {_MAX_BYTES} bytes, got more")
-            data = path.read_bytes()
-        except OSError as error:
-            raise InputError(f"{path}: cannot read: {error.strerror or error}") from None
-        return cls(_rules(parse(data, str(path))), str(path))
+        return cls(_rules(parse(read_bytes(path, _MAX_BYTES), str(path))), str(path))
 
     def all(self, scene: Scene) -> list[Category]:
         """All categories by id, whether a picture shows them or not."""

@@ -6,9 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from daguerre.doors import guarded
-from daguerre.errors import InputError
 from daguerre.files.json_item import Item
 from daguerre.files.json_text import parse
+from daguerre.files.reading import read_bytes
 
 from . import formats
 from .checking import checked
@@ -52,11 +52,4 @@ def _bytes(path: Path) -> bytes:
         known = ", ".join((".json", *formats.SUFFIXES))
         got = path.suffix or "no suffix"
         raise LensError(f"{path}: lens file: wanted {known}, got {got}", "lens-format")
-    try:
-        if path.exists() and not path.is_file():  # reading a pipe or a device might never end
-            raise InputError(f"{path}: lens file: wanted a regular file, got another kind")
-        if path.stat().st_size > MAX_BYTES:
-            raise InputError(f"{path}: lens file: wanted at most {MAX_BYTES} bytes, got more")
-        return path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+    return read_bytes(path, MAX_BYTES)

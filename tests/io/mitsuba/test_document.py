@@ -330,10 +330,10 @@ def test_errors_have_the_column_of_their_element(tmp_path: Path) -> None:
 
 
 def test_the_file_itself_is_named_if_it_cannot_be_read(tmp_path: Path) -> None:
-    with pytest.raises(dg.InputError, match=r"none.xml: cannot be read: No such file"):
+    with pytest.raises(dg.InputError, match=r"none\.xml: no such file"):
         dg.load(tmp_path / "none.xml")
     (tmp_path / "folder.xml").mkdir()
-    with pytest.raises(dg.InputError, match=r"folder.xml: wanted an ordinary file, got something"):
+    with pytest.raises(dg.InputError, match=r"folder\.xml: wanted a file, got a folder"):
         dg.load(tmp_path / "folder.xml")
 
 

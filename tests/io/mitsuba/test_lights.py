@@ -120,7 +120,7 @@ def test_projectors_need_a_picture_or_a_colour_but_no_more(tmp_path: Path) -> No
     white = loaded(tmp_path, _emitter("projector", '<float name="fov" value="50"/>'))
     assert len(white.lights) == 1
     texture = '<texture type="bitmap" name="irradiance"><string name="filename" value="x"/>'
-    with pytest.raises(dg.InputError, match="missing file"):
+    with pytest.raises(dg.InputError, match="no such file"):
         loaded(tmp_path, _emitter("projector", texture + "</texture>"))
 
 

@@ -51,7 +51,7 @@ def test_public_scenes_are_read_or_refused_and_counted() -> None:
         assert ledger.waiting == 0
         read.append(path.stem)
     assert read
-    wanted = ("missing file", "wanted it after WorldBegin")
+    wanted = ("no such file", "wanted it after WorldBegin")
     assert not [text for text in told if not any(known in text for known in wanted)]
 
 

@@ -361,7 +361,7 @@ def test_bad_arguments(tmp_path: Path) -> None:
         dg.export_camera(dg.Camera(), tmp_path / "a.fbx")
     with pytest.raises(dg.UsageError, match="f_stop"):
         dg.export_camera(dg.Camera(f_stop=-1), tmp_path / "a.usda")
-    with pytest.raises(dg.OutputError, match="no folder"):
+    with pytest.raises(dg.OutputError, match="no such folder"):
         dg.export_camera(dg.Camera(), tmp_path / "none/a.usda")
     assert list(tmp_path.iterdir()) == []
 

@@ -5,14 +5,15 @@ Layout: "OpenEXR File Layout", https://openexr.com/en/latest/OpenEXRFileLayout.h
 
 from __future__ import annotations
 
-import os
 import struct
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from daguerre.checks import short
 from daguerre.errors import InputError
+from daguerre.files.reading import reading, size_of
 
 MAGIC = 20000630
 TILED, LONG_NAMES, DEEP, MULTIPART = 0x200, 0x400, 0x800, 0x1000
@@ -94,23 +95,18 @@ def read_headers(path: Path) -> ExrHeaders:
     Raises:
         InputError: It is not an OpenEXR file, is truncated, or a header is damaged or too long.
     """
-    # A pipe might never end. Path.exists fails for names that are too long.
-    if os.path.exists(path) and not (path.is_file() or path.is_dir()):  # noqa: PTH110
-        raise InputError(f"{path}: format: wanted an OpenEXR file, got something else")
-    try:
-        with path.open("rb") as stream:
-            size, data, wanted = path.stat().st_size, b"", FIRST_READ
-            while True:
-                data += stream.read(wanted - len(data))
-                try:
-                    parts, end = _headers(data, path)
-                    return ExrHeaders(parts, end, size)
-                except _CutError:
-                    if len(data) < wanted or wanted >= MAX_HEADER:
-                        raise InputError(_broken(path, "a header without an end")) from None
-                wanted *= 8
-    except OSError as error:
-        raise InputError(f"{path}: cannot read: {error.strerror or error}") from error
+    size = size_of(path)
+    with reading(path), path.open("rb") as stream:
+        data, wanted = b"", FIRST_READ
+        while True:
+            data += stream.read(wanted - len(data))
+            try:
+                parts, end = _headers(data, path)
+                return ExrHeaders(parts, end, size)
+            except _CutError:
+                if len(data) < wanted or wanted >= MAX_HEADER:
+                    raise InputError(_broken(path, "a header without an end")) from None
+            wanted *= 8
 
 
 def _broken(path: Path, got: str) -> str:
@@ -119,7 +115,8 @@ def _broken(path: Path, got: str) -> str:
 
 def _headers(data: bytes, path: Path) -> tuple[list[ExrHeader], int]:
     if len(data) < 8 or struct.unpack_from("<i", data)[0] != MAGIC:
-        raise InputError(f"{path}: format: wanted an OpenEXR file, got something else")
+        got = short(data[:8]) if data else "an empty file"
+        raise InputError(f"{path}: format: wanted an OpenEXR file, got {got}")
     flags = struct.unpack_from("<I", data, 4)[0]
     if flags & 0xFF != 2 or (flags & ~0xFF) & ~KNOWN_FLAGS:
         raise InputError(f"{path}: format: wanted OpenEXR 2, got version and flags {flags:#x}")

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError
+from daguerre.files.reading import reading
 from daguerre.memory import free_bytes, shown
 
 from .apart import plain_copy
@@ -50,10 +51,8 @@ class PartReader:
         self._folder: TemporaryDirectory[str] | None = None
         self._copy: PartReader | None = None
         self._kept: tuple[int, list[NDArray[np.uint8]]] = (-1, [])
-        try:
+        with reading(self.path):
             self._stream: BinaryIO = layout.path.open("rb")
-        except OSError as error:
-            raise InputError(f"{self.path}: cannot read: {error.strerror or error}") from error
         try:
             self._chunks = Chunks(self._stream, layout)
         except BaseException:

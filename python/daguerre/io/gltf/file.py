@@ -17,6 +17,7 @@ from daguerre.errors import InputError
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, short
 from daguerre.files.json_text import parse
+from daguerre.files.reading import reading, size_of, why
 from daguerre.files.uris import Folder, data_bytes, is_data
 from daguerre.scene.packed.chunk import CHUNK as PACKED_CHUNK
 
@@ -53,15 +54,7 @@ def open_document(path: Path, folder: Folder) -> Document:
     Raises:
         InputError: The file cannot be read, is truncated or is not glTF 2.0.
     """
-    try:
-        if path.exists() and not path.is_file():
-            raise InputError(f"{path}: wanted a glTF file, got something that is not a file")
-        data, trailing = _read(path)
-    except (OSError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(f"{path}: cannot be read: {reason}") from None
+    data, trailing = _read(path)
     packed = None
     if data[:4] == b"glTF":
         text, binary, packed = _split_chunks(path, data)
@@ -81,8 +74,8 @@ def open_document(path: Path, folder: Folder) -> Document:
 
 def _read(path: Path) -> tuple[bytes, int]:
     """Reads a file, a .glb up to the length in its header; also counts the bytes after it."""
-    with path.open("rb") as stream:
-        size = path.stat().st_size
+    size = size_of(path)
+    with reading(path), path.open("rb") as stream:
         start = stream.read(12)
         wanted = size
         if start[:4] == b"glTF" and len(start) == 12:
@@ -174,7 +167,7 @@ def _load_buffer(document: Document, item: Item, budget: Budget) -> memoryview:
                 size = file.stat().st_size
                 data = memoryview(stream.read(min(length, size)))
         except OSError as error:
-            uri.fail(f"cannot be read: {error.strerror}")
+            uri.fail(why(error))
     if len(data) < length:
         length_item.fail(f"{source} is too short: wanted {short(length)} bytes, got {len(data)}")
     return data[:length]

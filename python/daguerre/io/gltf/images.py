@@ -19,6 +19,7 @@ from daguerre.checks import freeze_in_place
 from daguerre.color import srgb as srgb_curve
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, clean
+from daguerre.files.reading import why
 from daguerre.files.uris import data_bytes, is_data
 from daguerre.io import images
 from daguerre.scene.scene import Scene
@@ -106,7 +107,7 @@ class Images:
             try:
                 return path.read_bytes()
             except OSError as error:
-                item.need("uri").fail(f"cannot be read: {error.strerror}")
+                item.need("uri").fail(why(error))
         uri = item.get("uri")
         if uri is not None:
             return data_bytes(uri)

@@ -15,6 +15,7 @@ from pathlib import Path
 from daguerre.errors import InputError
 from daguerre.files.json_item import short
 from daguerre.files.notes import Notes
+from daguerre.files.reading import read_bytes
 
 from .elements import Element, parse
 from .graph import MAX_NODES, Constant, Graph, Link, Node
@@ -282,8 +283,4 @@ def read(path: Path, notes: Notes) -> Document:
     Raises:
         InputError: The file cannot be read, or is no MaterialX document.
     """
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
-    return Document(data, str(path), notes)
+    return Document(read_bytes(path), str(path), notes)

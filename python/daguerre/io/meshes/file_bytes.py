@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from daguerre import memory
 from daguerre.errors import InputError
+from daguerre.files.reading import check_size, reading, size_of
 
 Bytes = NDArray[np.uint8]
 #: Maximum size of a file.
@@ -33,14 +34,9 @@ def read_bytes(file: Path, most: int = MAX_BYTES) -> Bytes:
     Raises:
         InputError: It cannot be read, is too large, or its gzip data are damaged or grow too much.
     """
-    try:
-        if file.exists() and not file.is_file():  # a pipe or a device would never end
-            raise InputError(f"{file}: wanted an ordinary file, got something else")
-        size = file.stat().st_size
-        check_room(size, str(file), most)
+    check_room(size_of(file), str(file), most)
+    with reading(file):
         data = np.fromfile(file, np.uint8)
-    except OSError as error:
-        raise InputError(f"{file}: cannot be read: {error.strerror}") from None
     if data[:2].tobytes() != _GZIP_MAGIC:
         return data
     return np.frombuffer(b"".join(_gunzipped(data, str(file), most)), np.uint8)
@@ -52,8 +48,7 @@ def check_room(size: int, where: str, most: int = MAX_BYTES) -> None:
     Raises:
         InputError: It is larger than ``most``, or than the memory that is left.
     """
-    if size > most:
-        raise InputError(f"{where}: wanted at most {most} bytes, got {size}")
+    check_size(size, where, most)
     if size <= ALWAYS:
         return
     left = memory.left_bytes()

@@ -13,9 +13,10 @@ import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from daguerre.errors import InputError, asked_by
+from daguerre.errors import asked_by
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, short
+from daguerre.files.reading import read_bytes
 from daguerre.io.materialx.elements import MAX_BYTES, MAX_ELEMENTS, Element, parse
 
 from .files import Files
@@ -70,7 +71,7 @@ class Document:
         self._ids: dict[str, Node] = {}
         self._budget = Budget(MAX_ELEMENTS, "elements in all files")
         self._files: dict[int, Files] = {}
-        self.root = _Reader(self, files, str(file), 0, 0).root(_bytes(file))
+        self.root = _Reader(self, files, str(file), 0, 0).root(read_bytes(file, MAX_BYTES))
         if self.root.kind != "scene":
             self.root.fail("wanted <scene> at the top")
         self._resolve()
@@ -232,7 +233,7 @@ class _Reader:
         inside = self._files.within(path.parent)
         reader = _Reader(self._document, inside, str(path), self._includes + 1, self._depth)
         with asked_by(entry):
-            data = _bytes(path)
+            data = read_bytes(path, MAX_BYTES)
         found = reader.root(data)
         entry.used = True
         if found.kind == "scene":
@@ -276,17 +277,6 @@ _DIRECTIVES: dict[str, Callable[[_Reader, Node, Element, Entry], None]] = {
     "alias": _Reader._alias,
     "ref": _Reader._ref,
 }
-
-
-def _bytes(path: Path) -> bytes:
-    try:
-        if path.exists() and not path.is_file():  # a pipe or a device would never end
-            raise InputError(f"{path}: wanted an ordinary file, got something else")
-        if (size := path.stat().st_size) > MAX_BYTES:
-            raise InputError(f"{path}: wanted at most {MAX_BYTES} bytes, got {size}")
-        return path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
 
 
 def _version(root: Element, entry: Entry) -> Version:

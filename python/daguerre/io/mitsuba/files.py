@@ -10,6 +10,8 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
+from daguerre.errors import asked_by
+from daguerre.files.reading import fault_of, read_bytes
 from daguerre.files.text_lines import MAX_BYTES
 from daguerre.files.uris import Folder
 
@@ -47,7 +49,7 @@ class Files:
                 self._folders.insert(0, found)
                 return
         self._check(self._real(self._folders[0], name, entry), name, entry)
-        entry.fail(f"missing folder: wanted {name[:200]!r}, got no such folder")
+        entry.fail(f"{name[:200]!r}: no such folder")
 
     def find(self, name: str, entry: Entry) -> Path:
         """File of a name.
@@ -60,18 +62,15 @@ class Files:
             if _is_file(found):
                 self._check(found, name, entry)
                 return found
-        self._check(self._real(self._folders[0], name, entry), name, entry)
-        entry.fail(f"missing file: wanted {name[:200]!r}, got no such file")
+        first = self._real(self._folders[0], name, entry)
+        self._check(first, name, entry)
+        entry.fail(f"{name[:200]!r}: {fault_of(first)}")
 
     def read(self, name: str, entry: Entry, most: int = MAX_BYTES) -> bytes:
         """Bytes of the file of a name, at most ``most``."""
         found = self.find(name, entry)
-        try:
-            if (size := found.stat().st_size) > most:
-                entry.fail(f"{found.name}: wanted at most {most} bytes, got {size}")
-            return found.read_bytes()
-        except OSError as error:
-            entry.fail(f"{found.name}: cannot be read: {error.strerror}")
+        with asked_by(entry):
+            return read_bytes(found, most)
 
     def _real(self, folder: Path, name: str, entry: Entry) -> Path:
         plain = name.replace("\\", "/")  # separators, which so cannot hide a way up

@@ -12,6 +12,7 @@ import math
 from typing import Any
 
 from daguerre.errors import InputError, asked_by
+from daguerre.files.reading import MISSING
 from daguerre.lenses import Lens
 from daguerre.lenses import read as read_lens
 from daguerre.lenses.focus import Focused
@@ -53,7 +54,7 @@ def lens_of(
         made.place.fail("lensfile: wanted a lens file, got none")
     path = files.find(name, made.place, "lensfile")
     if path is None:
-        made.place.fail(f"lensfile: missing file: wanted {name[:200]!r}, got no such file")
+        made.place.fail(f"lensfile: {name[:200]!r}: {MISSING}")
     with asked_by(made.place):
         lens = read_lens(path)
     f_stop = _f_stop(made, lens, parameters.number("aperturediameter", 1.0, 1e-6), ledger)

@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre import memory
-from daguerre.errors import InputError
+from daguerre.errors import InputError, asked_by
 from daguerre.files.json_item import short
+from daguerre.files.reading import read_bytes
 from daguerre.io import images
 from daguerre.io.exr.reader import ExrReader, is_exr, light_names
 
@@ -105,12 +106,8 @@ def _other(file: Path) -> NDArray[Any]:
 
 def bytes_of(file: Path, where: str) -> bytes:
     """Bytes of a file, if there are not too many."""
-    try:
-        if file.stat().st_size > images.MAX_BYTES:
-            raise InputError(f"{where}: wanted at most {memory.shown(images.MAX_BYTES)}, got more")
-        return file.read_bytes()
-    except OSError as error:
-        raise InputError(f"{where}: cannot be read: {error.strerror}") from None
+    with asked_by(where):
+        return read_bytes(file, images.MAX_BYTES)
 
 
 @contextmanager

@@ -24,6 +24,7 @@ from pxr import Ar, Usd, UsdGeom, UsdLux
 from daguerre.errors import InputError
 from daguerre.files import formats
 from daguerre.files.notes import Notes
+from daguerre.files.reading import MISSING
 from daguerre.files.value import Value
 from daguerre.io.panorama import resampled
 from daguerre.motion.values import at as value_at
@@ -133,7 +134,7 @@ def read_panorama(path: Path) -> Picture:
         return formats.read("environment", path)  # type: ignore[no-any-return]
     asset = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(name))
     if asset is None:
-        raise InputError(f"{name}: wanted an image file, got no such file")
+        raise InputError(f"{name}: {MISSING}")
     handle, copy = tempfile.mkstemp(suffix=Path(name.rstrip("]")).suffix[:16])
     try:
         with os.fdopen(handle, "wb") as file:

@@ -22,6 +22,7 @@ from pxr import Ar, Sdf, Tf, Usd, UsdGeom, UsdUtils
 from daguerre.checks import short
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files.notes import Notes
+from daguerre.files.reading import size_of
 from daguerre.files.uris import Folder
 
 from .anchored import SCHEME, anchored
@@ -198,8 +199,7 @@ def open_stage(
         UsageError: There is no such variant.
     """
     file = str(path)
-    if not path.is_file():
-        raise InputError(f"{file}: wanted a file, got none")
+    size_of(path)
     assets = Assets(path, allow_dirs)
     layer = _layers(path, assets)
     stage = Usd.Stage.Open(layer, Usd.Stage.LoadAll)
@@ -247,9 +247,10 @@ def _opened(name: str, real: str) -> Sdf.Layer | None:
         real: Its file, or a place inside of a package.
     """
     file = Path(real.partition("[")[0] if Ar.IsPackageRelativePath(real) else real)
-    if file.exists() and not file.is_file():  # a pipe or a device would never end
-        raise InputError(f"{file}: wanted an ordinary file, got another thing")
-    if not file.is_file() or Sdf.FileFormat.FindByExtension(name) is None:
+    if not file.exists():
+        return None
+    size_of(file)
+    if Sdf.FileFormat.FindByExtension(name) is None:
         return None
     check_crates(file, str(file))
     return _whole(Sdf.Layer.FindOrOpen(name)) if Ar.GetResolver().Resolve(name) else None

@@ -1,0 +1,1 @@
+/work/main/python/daguerre/_core.pyi
