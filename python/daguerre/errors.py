@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 
 from ._core import Error as CoreError
@@ -17,6 +17,7 @@ __all__ = [
     "UsageError",
     "asked_by",
     "core_errors",
+    "did_you_mean",
     "suggest",
 ]
 
@@ -81,7 +82,18 @@ def suggest(name: object, known: Iterable[str], *, few: bool = False) -> str:
     With ``few``, for messages that do not list the names, a short list is shown if none is near.
     """
     names = sorted(known)
-    near = [repr(n) for n in difflib.get_close_matches(str(name), names, n=3, cutoff=0.5)]
-    if near:
-        return f" (did you mean {' or '.join(filter(None, (', '.join(near[:-1]), near[-1])))}?)"
+    if near := difflib.get_close_matches(str(name), names, n=3, cutoff=0.5):
+        return did_you_mean(near)
     return f" (known: {', '.join(map(repr, names))})" if few and 0 < len(names) <= 8 else ""
+
+
+def did_you_mean(names: Sequence[str]) -> str:
+    """Makes " (did you mean 'a', 'b', 'c' or 4 others?)" from names, best first; "" from none."""
+    if not names:
+        return ""
+    words = [*map(repr, names[:3]), *([_others(len(names) - 3)] if len(names) > 3 else [])]
+    return f" (did you mean {' or '.join(filter(None, (', '.join(words[:-1]), words[-1])))}?)"
+
+
+def _others(count: int) -> str:
+    return "1 other" if count == 1 else f"{count} others"

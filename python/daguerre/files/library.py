@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from pathlib import Path
 
 from daguerre.checks import short
@@ -21,6 +21,7 @@ def find(
     folder: Path,
     names: Collection[str],
     suffixes: Collection[str] = (".json",),
+    near: Callable[[str], str] | None = None,
 ) -> Path:
     """Returns the file of a library name, or the given file itself.
 
@@ -30,6 +31,7 @@ def find(
         folder: Folder of the library.
         names: Names of the library.
         suffixes: Suffixes, in lower case, that mark a file even if none of that name exists.
+        near: Makes the suggestion of a message; default: the names with the nearest spelling.
 
     Raises:
         InputError: Unknown name; the message suggests the nearest.
@@ -39,7 +41,7 @@ def find(
         return folder / f"{text}.json"
     if os.path.isfile(path) or path.suffix.lower() in suffixes:  # noqa: PTH113 - no error
         return path
+    hint = near(text) if near else suggest(text, names, few=True)
     raise InputError(
-        f"{what} {short(text)}: no {what} of the library and no file has this name"
-        f"{suggest(text, names, few=True)}"
+        f"{what} {short(text)}: no {what} of the library and no file has this name{hint}"
     )

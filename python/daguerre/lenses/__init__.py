@@ -3,14 +3,17 @@
 from .configurations import Configuration
 from .errors import LensError
 from .focus import Focused
+from .index import Entry, names
 from .lens import FirstOrder, Lens, Nominal, Pupil
-from .library import load, names
+from .library import load
 from .reader import read
+from .search import find
 from .setting import LensSetting
 from .surface import LensSurface
 
 __all__ = [
     "Configuration",
+    "Entry",
     "FirstOrder",
     "Focused",
     "Lens",
@@ -19,6 +22,7 @@ __all__ = [
     "LensSurface",
     "Nominal",
     "Pupil",
+    "find",
     "load",
     "names",
     "read",

@@ -21,7 +21,8 @@ daguerre render scene.glb --lens double-gauss-50mm-f2 -o out.exr
 Each entry names the patent or book of its prescription. Numbers are computed from the lens's
 table at 587.56 nm, focused at infinity; the source's own values are in brackets. The back focus
 and f-number of a zoom are those of its shortest focal length. [Lens library](lens-library.md)
-has all lenses in one table.
+has all lenses in one table; `daguerre lenses zeiss wide`
+[finds lenses](lens-library.md#find-a-lens) by such words.
 
 `script/docs/make-lens-catalogue` builds this page with its drawings and photographs, and the data
 sheets of all lenses.
