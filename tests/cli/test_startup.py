@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from daguerre import cli
+from tests.faults.scene import write_scene
 
 LOADED = (
     "import sys; from daguerre.cli import main; main(sys.argv[1:]); "
@@ -35,6 +37,24 @@ def test_a_command_loads_no_room_that_it_does_not_enter(
         [sys.executable, "-c", LOADED, *command], capture_output=True, text=True, check=True
     )
     assert not rooms & set(done.stdout.splitlines()[-1].split())
+
+
+#: Packages that a small picture does without. Typer would load pydantic, with email and sockets.
+NEEDLESS = {"asyncio", "email", "http", "multiprocessing", "pydantic", "rich", "socket", "ssl"}
+
+
+def test_a_small_picture_needs_few_modules(tmp_path: Path) -> None:
+    scene = write_scene(tmp_path / "scene.glb")
+    picture = tmp_path / "a.png"
+    words = f"render {scene} --res 48x32 --spp 1 --focus 2 -q -o {picture}".split()
+    code = "import sys; from daguerre.cli import main; main(sys.argv[1:]); print(*sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", code, *words], capture_output=True, text=True, check=True
+    )
+    assert picture.is_file(), done.stderr
+    modules = set(done.stdout.split())
+    assert not modules & NEEDLESS
+    assert len(modules) < 640, len(modules)
 
 
 def test_the_help_shows_each_command_with_its_whole_line(

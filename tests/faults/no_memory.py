@@ -2,8 +2,8 @@
 
 Run as ``python -m tests.faults.no_memory LEAST MOST WORD...`` with ``failing_malloc.c`` preloaded:
 runs a command in children of its own, in each of which another allocation of at least LEAST bytes
-fails, MOST of them at the most, spread evenly. Prints how the command ended, as JSON. The command
-line is read before: Typer has it checked by a library that ends the process where memory does.
+fails, MOST of them at the most, spread evenly. Prints how the command ended, as JSON. Failures
+begin with the command itself, after its line is read.
 """
 
 from __future__ import annotations

@@ -7,7 +7,6 @@ mismatch, 5 output or disk, 70 internal, 75 interrupted and resumable.
 from __future__ import annotations
 
 import errno
-import itertools
 import os
 import re
 import sys
@@ -193,11 +192,9 @@ def _command(name: str) -> Any:
 def _usage(error: Any) -> str:
     """Typer's message, without the full stop and with a hint where to find help."""
     text = str(error.format_message()).strip().rstrip(".")
-    number = re.match(r"Invalid value for '(.*)': Input should be a valid (number|integer)", text)
-    if number:
-        names = number[1].split("' / '")
-        kind = "a number" if number[2] == "number" else "a whole number"
-        text = f"{names[-1]}: wanted {kind}, got {_given(names)}"
+    value = re.match(r"Invalid value for (?:.* / )?'(.*)': (wanted .*)", text)
+    if value:
+        text = f"{value[1]}: {value[2]}"
     unknown = re.match(r"No such command '(.*)'$", text)
     if unknown:  # older releases of Typer suggest nothing
         text += suggest(unknown[1], COMMANDS)
@@ -205,16 +202,6 @@ def _usage(error: Any) -> str:
     context = getattr(error, "ctx", None)
     where = context.command_path if context is not None else _named()
     return f"{text[:1].lower()}{text[1:]} (see `{where} --help`)"
-
-
-def _given(names: list[str]) -> str:
-    """The text that the command line gives to a flag of these names."""
-    for word, value in itertools.pairwise([*console.argv, ""]):
-        if word in names:
-            return repr(value)
-        if word.partition("=")[0] in names:
-            return repr(word.partition("=")[2])
-    return "something else"
 
 
 def _named() -> str:

@@ -11,6 +11,7 @@ from typing import Any
 import typer.core
 
 from . import console
+from .values import OwnValues
 
 ALL = "--help-all"
 _CAMERA = ("--camera", "--lens", "--f-stop", "--focus", "--shutter", "--sensor")
@@ -45,7 +46,7 @@ class InOrder:
         return list(ctx.help_option_names)
 
 
-class HelpGroup(InOrder, typer.core.TyperGroup):
+class HelpGroup(OwnValues, InOrder, typer.core.TyperGroup):
     """The program, whose help has its commands in groups."""
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
@@ -58,7 +59,7 @@ class HelpGroup(InOrder, typer.core.TyperGroup):
             _write(formatter, title, rows)
 
 
-class HelpCommand(InOrder, typer.core.TyperCommand):
+class HelpCommand(OwnValues, InOrder, typer.core.TyperCommand):
     """A command whose help has its flags in groups."""
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
