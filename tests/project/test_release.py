@@ -106,7 +106,12 @@ def test_a_release_sets_four_files_builds_and_commits(repository: Path) -> None:
     assert git(repository, "status", "--porcelain") == ""
     assert git(repository, "log", "-1", "--format=%s") == f"build: release {NEXT}\n"
     assert git(repository, "tag") == ""
-    for command in (f"git tag --annotate v{NEXT}", "git push", f"twine upload dist/{NEXT}/*"):
+    for command in (
+        f"git tag --annotate v{NEXT}",
+        f"git push origin HEAD v{NEXT}",
+        f"gh release download v{NEXT} --dir dist/{NEXT} --clobber",
+        f"twine upload dist/{NEXT}/*",
+    ):
         assert command in said
 
 
