@@ -9,6 +9,7 @@ import pytest
 import typer.main
 
 from daguerre import cli
+from daguerre.cli.commands import GROUPS
 from daguerre.cli.help import FIRST
 from daguerre.files import formats
 
@@ -72,7 +73,7 @@ def test_the_whole_page_has_groups_and_units(capsys: pytest.CaptureFixture[str])
 
 def test_commands_are_in_groups(capsys: pytest.CaptureFixture[str]) -> None:
     text = shown(capsys, "--help")
-    for heading, group in cli.GROUPS.items():
+    for heading, group in GROUPS.items():
         lines = text.partition(f"\n{heading}:\n")[2].partition("\n\n")[0].splitlines()
         assert [line.split()[0] for line in lines] == list(group)
     assert "\nCommands:" not in text

@@ -13,129 +13,25 @@ import sys
 import traceback
 from collections.abc import Sequence
 from functools import cache
-from importlib import import_module
-from typing import Any, NamedTuple
-
-import typer
+from typing import Any
 
 from daguerre.errors import DaguerreError, InputError, OutputError, suggest
 from daguerre.memory import left_bytes, shown
 
 from . import console
-from .help import ALL, HelpCommand, HelpGroup
+from .commands import COMMANDS
 
 INTERNAL = 70
 INTERRUPTED = 75
 
 
-class Command(NamedTuple):
-    """A command: the module that holds it, and its line in `daguerre --help`."""
-
-    module: str
-    line: str
-
-
-#: By headings, in the order of `daguerre --help`; a module is loaded when its command is called.
-GROUPS = {
-    "Make pictures": {
-        "demo": Command(".demo", "Render a first picture, without any file of your own."),
-        "render": Command(".render.command", "Render a scene to pictures or a sequence."),
-        "merge": Command(".merge", "Add passes of one picture into one file."),
-        "post": Command(".post", "Add effects of a lens to any picture, or remove them."),
-        "develop": Command(".develop", "Develop photographs from a frame or a raw file."),
-        "composite": Command(".composite", "Put rendered objects into a photograph."),
-    },
-    "Look at a scene": {
-        "view": Command(".view", "Show the picture in a browser, with rings to turn."),
-        "info": Command(".info", "Describe a scene and its cameras."),
-    },
-    "Measure": {
-        "chart": Command(".chart", "Write a test chart as a scene."),
-        "calibrate": Command(".calibrate", "Fit a projection to a lens."),
-        "match-plate": Command(".match_plate", "Find the camera settings of a photograph."),
-        "light-probe": Command(".light_probe", "Build an environment from photographs of a probe."),
-    },
-    "Lenses, sensors and film": {
-        "lenses": Command(".lenses", "List the lenses of the library."),
-        "lens": Command(".lens.command", "Show, measure, convert or fit a lens."),
-        "sensors": Command(".sensors", "List the sensors of the library."),
-        "sensor": Command(".sensor", "Show a sensor."),
-        "stocks": Command(".stocks", "List the film stocks of the library."),
-    },
-    "Files for other programs": {
-        "export-camera": Command(".export_camera", "Write cameras as a USD stage."),
-        "export-scene": Command(".export_scene", "Write a scene for pbrt-v4 or Mitsuba 3."),
-    },
-    "Clusters": {
-        "scheduler": Command(".cluster", "Start the scheduler of a cluster."),
-        "worker": Command(".cluster", "Start a worker of a cluster."),
-    },
-    "This program": {
-        "version": Command(".version", "Print the version and the libraries in use."),
-    },
-}
-COMMANDS = {name: command for group in GROUPS.values() for name, command in group.items()}
-
-
-def program(*names: str) -> typer.Typer:
-    """The program with some of its commands; default: all."""
-    app = _empty()
-    for name in names or COMMANDS:
-        command = app.command(name=name, cls=HelpCommand, short_help=COMMANDS[name].line)
-        command(_function(name))
-    return app
-
-
-def _outline() -> typer.Typer:
-    """The program for its help and for wrong commands: names and lines, with nothing loaded."""
-    app = _empty()
-    for heading, group in GROUPS.items():
-        for name, command in group.items():
-            add = app.command(name=name, short_help=command.line, rich_help_panel=heading)
-            add(lambda: None)
-    return app
-
-
-def _empty() -> typer.Typer:
-    app = typer.Typer(
-        name="daguerre",
-        cls=HelpGroup,
-        help="Renders what a real camera would have recorded.",
-        add_completion=False,
-        no_args_is_help=False,
-        pretty_exceptions_enable=False,
-        rich_markup_mode=None,  # its tables cut long flags off on a narrow terminal
-        context_settings={"help_option_names": ["-h", "--help", ALL]},
-    )
-    app.callback(invoke_without_command=True)(_top)
-    return app
-
-
-def _function(name: str) -> Any:
-    """The function of a command, whose name has underscores."""
-    return getattr(import_module(COMMANDS[name].module, __name__), name.replace("-", "_"))
-
-
 def __getattr__(name: str) -> Any:
-    """The whole program as ``app``, for who reads its help."""
-    if name == "app":
-        return program()
+    """The program, which loads Typer: ``program``, and as ``app`` with all commands."""
+    if name in ("app", "program"):
+        from .build import program
+
+        return program() if name == "app" else program
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-
-
-def _top(
-    context: typer.Context,
-    version: bool = typer.Option(False, "--version", help="Print the version."),
-) -> int | None:
-    if version:
-        from daguerre import __version__
-
-        console.show(f"daguerre {__version__}")
-        raise typer.Exit(0)
-    if context.invoked_subcommand is None:
-        console.show(context.get_help())
-        raise typer.Exit(2)
-    return None
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -154,13 +50,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # Whoever read our output has seen enough, as in `daguerre lenses | head -1`.
         console.nobody_reads(sys.stdout)
         return 0
-    except (KeyboardInterrupt, typer.Abort):
+    except KeyboardInterrupt:
         return _fail("interrupted", INTERRUPTED)
     except MemoryError:
         return _out_of_memory()
     except UnicodeEncodeError as error:  # readers of pictures take names as text alone
         return _fail(f"{error.object}: wanted a name in UTF-8", InputError.exit_code)
     except Exception as error:
+        if type(error).__name__ == "Abort":  # Typer's own, for Ctrl-C
+            return _fail("interrupted", INTERRUPTED)
         if hasattr(error, "format_message"):  # Typer's own: a wrong command line
             return _fail(_usage(error), 2)
         if isinstance(error, OSError) and console.is_stuck(error):
@@ -186,7 +84,11 @@ def _command(name: str) -> Any:
 
     Signatures are read once, however often `main` runs in a process.
     """
-    return typer.main.get_command(program(name) if name in COMMANDS else _outline())
+    from typer.main import get_command
+
+    from .build import outline, program
+
+    return get_command(program(name) if name in COMMANDS else outline())
 
 
 def _usage(error: Any) -> str:

@@ -14,6 +14,7 @@ from . import console
 from .values import OwnValues
 
 ALL = "--help-all"
+HELP_FLAGS = ("-h", "--help", ALL)
 _CAMERA = ("--camera", "--lens", "--f-stop", "--focus", "--shutter", "--sensor")
 #: Flags that the page of a command shows first, if all of them would make it long; --help-all
 #: shows the others, too.
