@@ -1,1 +1,0 @@
-/work/main/python/daguerre/_core.pyi
