@@ -14,6 +14,7 @@ from daguerre.errors import DaguerreError, UsageError
 from daguerre.parameters.parameter import Parameter
 from daguerre.rendering.parameters import TABLE
 from daguerre.rendering.settings import RenderSettings
+from daguerre.units import edges_text
 
 #: The library's sensor gives the size, so the size must not be given, too.
 _BY_SENSOR = "sensor_size"
@@ -117,9 +118,10 @@ def _texts(row: Parameter, value: Any) -> Iterator[str]:
             if line is None
             else f"{value.scan_order},{line!r}s/line"
         )
+    elif row.name == "crop":
+        yield edges_text(value)
     elif isinstance(value, tuple | list):
         yield from (mark.join(map(_number, value)) for mark in ("x", ","))
-        yield ",".join(map(_number, (*value[::2], *value[1::2])))  # of a crop
     else:
         yield from (_number(value) + row.unit, _number(value))
 

@@ -12,6 +12,7 @@ import numpy as np
 from daguerre.errors import DaguerreError, InputError
 from daguerre.frame.frame import Frame
 from daguerre.rendering import Cancelled
+from daguerre.rendering.pixels import crop_box
 
 from . import passes, photograph, taking, translation
 from .drawing import Drawing, check_denoiser
@@ -111,7 +112,7 @@ class DaguerreEngine(bpy.types.RenderEngine):
     def _begin(self, shot: translation.Shot, layer: str, view: str) -> Any:
         """Result of the picture's size."""
         film = shot.settings.film
-        x0, y0, x1, y1 = film.crop or (0, 0, *film.resolution)
+        x0, y0, x1, y1 = crop_box(film.crop, (0, 0, *film.resolution))
         return self.begin_result(0, 0, x1 - x0, y1 - y0, layer=layer, view=view)
 
     def _write(self, result: Any, planes: Iterator[tuple[str, Any]]) -> None:

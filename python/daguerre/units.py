@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from fractions import Fraction
 
 from .errors import UsageError, suggest
@@ -29,6 +30,8 @@ ANGLES = {"deg": 1.0, "rad": 180 / math.pi}
 #: The helium d line to the digits that users type and commands print, nm: the default of
 #: ``--wavelength``. The lens code has all its digits (``lenses.lens.DESIGN_WAVELENGTH_NM``).
 TYPED_D_LINE_NM = 587.56
+#: Edges of a region of a picture, in the order in which four plain numbers give them.
+EDGES = ("left", "top", "right", "bottom")
 #: Width x height, mm. s35: the camera aperture of 35 mm film, 4 perforations (SMPTE ST 59).
 SENSORS = {
     "ff": (36.0, 24.0),
@@ -150,6 +153,38 @@ def integers(flag: str, text: str, count: int, example: str) -> tuple[int, ...]:
     if any(value != int(value) for value in values):
         raise _bad(flag, f"{count} whole numbers such as {example}", text)
     return tuple(int(value) for value in values)
+
+
+def edges(flag: str, text: str) -> tuple[int | None, ...]:
+    """Parses edges of a region, px: ``left=100,right=400``, or all of them in the order of EDGES.
+
+    Returns:
+        Left, top, right and bottom; None: not given.
+    """
+    wanted = "edges such as left=100,top=50,right=400,bottom=300"
+    if "=" not in text:
+        try:
+            return integers(flag, text, 4, "100,50,400,300")
+        except UsageError:
+            raise _bad(flag, f"{wanted}, or 100,50,400,300", text) from None
+    found: dict[str, int] = {}
+    for part in text.split(","):
+        name, _, value = (word.strip() for word in part.partition("="))
+        if name not in EDGES:
+            raise UsageError(f"{flag}: wanted {wanted}; got {name!r}{suggest(name, EDGES)}")
+        if name in found:
+            raise UsageError(f"{flag}: wanted each edge once, got {name} twice")
+        try:
+            (found[name],) = integers(flag, value, 1, "100")
+        except UsageError:
+            raise _bad(f"{flag}: {name}", "a whole number of pixels", value) from None
+    return tuple(found.get(name) for name in EDGES)
+
+
+def edges_text(edges: Sequence[int | None]) -> str:
+    """Text from which :func:`edges` reads the same edges."""
+    named = zip(EDGES, edges, strict=True)
+    return ",".join(f"{name}={value}" for name, value in named if value is not None)
 
 
 def sensor_mm(flag: str, text: str) -> tuple[float, float]:

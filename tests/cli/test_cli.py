@@ -103,13 +103,53 @@ def test_aovs(tmp_path: Path, flags: list[str], groups: set[str]) -> None:
     assert names - {*"RGBA", "variance", "samples"} == groups
 
 
-def test_crop_is_x0_x1_y0_y1(tmp_path: Path) -> None:
-    flags = ["--res", "40x30", "--crop", "10,17,20,25"]
-    assert main(["render", "s.glb", "-o", "a.exr", "--spp", "1", *flags]) == 0
+NOTE = "before 1.0.0 the order was left,right,top,bottom"
+
+
+@pytest.mark.parametrize(
+    ("text", "box", "said"),
+    [
+        ("left=10,top=20,right=17,bottom=25", (10, 20, 17, 25), ""),
+        ("bottom=25, right=17, top=20, left=10", (10, 20, 17, 25), ""),
+        ("left=30", (30, 0, 40, 30), ""),
+        ("top=20,bottom=25", (0, 20, 40, 25), ""),
+        ("10,20,17,25", (10, 20, 17, 25), f"is left=10,top=20,right=17,bottom=25; {NOTE}"),
+        ("10,17,20,25", (10, 17, 20, 25), f"is left=10,top=17,right=20,bottom=25; {NOTE}"),
+        ("10,17,2,25", (10, 2, 17, 25), "write --crop left=10,top=2,right=17,bottom=25"),
+        ("35,40,0,30", (35, 0, 40, 30), "write --crop left=35,top=0,right=40,bottom=30"),
+        ("10,12,35,36", None, "left < right within 0..40 and top < bottom within 0..30"),
+    ],
+)
+def test_crop(
+    text: str,
+    box: tuple[int, ...] | None,
+    said: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    words = ["render", "s.glb", "-o", "a.exr", "--spp", "1", "--res", "40x30", "--crop", text]
+    assert main(words) == (0 if box else 2)
+    lines = [line for line in capsys.readouterr().err.splitlines() if "--crop" in line]
+    assert len(lines) == bool(said)
+    assert said in "".join(lines)
+    if box is None:
+        return
     with OpenEXR.File(str(tmp_path / "a.exr")) as file:
         low, high = file.header()["dataWindow"]
-        assert (*low, *high) == (10, 20, 16, 24)
+        assert (*low, *(high + 1)) == box
         assert tuple(file.header()["displayWindow"][1]) == (39, 29)
+    assert main([*words, "--quiet"]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_the_old_order_of_a_crop_where_the_new_one_leaves_the_picture(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    words = ["render", "s.glb", "-o", "a.exr", "--res", "10x40", "--crop", "2,8,15,30"]
+    assert main([*words, "--dry-run"]) == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["crop"] == [2, 15, 8, 30]
+    assert said.err.count("warning: --crop 2,8,15,30: the order left,right,top,bottom is") == 1
 
 
 WRONG = {
@@ -173,7 +213,11 @@ WRONG = {
     ),
     "samples png": (["render", "s.glb", "-o", "a.png", "--samples", "0:8"], 2, ".exr"),
     "aov": (["render", "s.glb", "-o", "a.exr", "--aov", "dept"], 2, "did you mean 'depth'"),
-    "crop": (["render", "s.glb", "-o", "a.exr", "--crop", "5,5,0,9"], 2, "--crop"),
+    "crop": (["render", "s.glb", "-o", "a.exr", "--crop", "left=5,right=5"], 2, "got left=5,"),
+    "edge": (["render", "s.glb", "-o", "a.exr", "--crop", "lft=5"], 2, "got 'lft' (did you mean"),
+    "edge twice": (["render", "s.glb", "-o", "a.exr", "--crop", "top=5,top=6"], 2, "got top twice"),
+    "edge in words": (["render", "s.glb", "-o", "a.exr", "--crop", "top=a"], 2, "--crop: top: "),
+    "three edges": (["render", "s.glb", "-o", "a.exr", "--crop", "1,2,3"], 2, "or 100,50,400,300"),
     "env and sky": (
         ["render", "s.glb", "-o", "a.exr", "--env", "a.hdr", "--sky", "1,1,1"],
         2,

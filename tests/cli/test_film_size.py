@@ -31,7 +31,7 @@ def scene(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.Mo
 @pytest.mark.parametrize(
     ("flags", "size"),
     [([], (30, 20)), (["--res", "12x8"], (12, 8)), (["--res", "50%"], (15, 10)),
-     (["--crop", "3,30,0,20"], (27, 20))],
+     (["--crop", "left=3,top=0,right=30,bottom=20"], (27, 20))],
 )  # fmt: skip
 def test_a_picture_has_the_size_that_the_file_names(
     scene: str, flags: list[str], size: tuple[int, int]
@@ -42,8 +42,22 @@ def test_a_picture_has_the_size_that_the_file_names(
 
 
 def test_a_crop_beyond_it_is_refused(scene: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["render", scene, "-o", "a.png", "--spp", "1", "--crop", "0,31,0,20"]) == 2
-    assert "--crop: wanted x0 < x1 within 0..30" in capsys.readouterr().err
+    assert (
+        main(
+            [
+                "render",
+                scene,
+                "-o",
+                "a.png",
+                "--spp",
+                "1",
+                "--crop",
+                "left=0,top=0,right=31,bottom=20",
+            ]
+        )
+        == 2
+    )
+    assert "--crop: wanted left < right within 0..30" in capsys.readouterr().err
 
 
 def test_info_and_exports_have_it(scene: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -251,7 +251,18 @@ def test_interrupted_rigs_go_on_with_the_camera_that_is_not_complete(tmp_path: P
         ),
         (["-o", "x.exr", "--timeshift"], 2, "--timeshift: wanted --calibration"),
         (["-o", "x.exr", "--calibration", "no.yaml:cam0"], 3, "no.yaml:cam0"),
-        (["-o", "x.exr", "--calibration", "chain.yaml:all", "--crop", "0,32,0,20"], 2, "0..24"),
+        (
+            [
+                "-o",
+                "x.exr",
+                "--calibration",
+                "chain.yaml:all",
+                "--crop",
+                "left=0,top=0,right=32,bottom=20",
+            ],
+            2,
+            "0..24",
+        ),
     ],
 )
 def test_bad_rigs(

@@ -300,7 +300,10 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     words = ["render", str(scene), "--res", "40x20", "--spp", "1", "--overscan"]
     file = tmp_path / "o.exr"
     maps = ["--export-raymap", str(tmp_path / "r.exr")]
-    assert main([*words, "10%", "-o", str(file), "--crop=-4,10,-1,5", *maps]) == 0
+    assert (
+        main([*words, "10%", "-o", str(file), "--crop", "left=-4,top=-1,right=10,bottom=5", *maps])
+        == 0
+    )
     reader = ExrReader(file)
     assert (reader.corner, reader.width, reader.height) == ((-4, -1), 14, 6)
     assert ExrReader(tmp_path / "r.exr").corner == (-4, -2)
@@ -310,7 +313,7 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     for wrong, word in (
         (["10%", "-o", "a.png"], ".exr"),
         (["undistrot", "-o", "a.exr"], "undistort"),
-        (["2", "-o", "a.exr", "--crop", "0,43,0,5"], "--crop"),
+        (["2", "-o", "a.exr", "--crop", "left=0,top=0,right=43,bottom=5"], "--crop"),
         (["2", "-o", "a.exr", "--coco", "a.json"], "--coco"),
         (["2", "--export-raymap", "a.exr", "--coco", "a.json"], "--coco"),
     ):

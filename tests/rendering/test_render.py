@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -271,6 +273,42 @@ def test_crop_is_a_window_of_the_whole() -> None:
     whole = dg.render(scene, camera, resolution=(40, 30), spp=4)
     part = dg.render(scene, camera, resolution=(40, 30), spp=4, crop=(5, 7, 31, 22))
     assert np.array_equal(part.rgb, whole.rgb[7:22, 5:31])
+
+
+@pytest.mark.parametrize(
+    ("crop", "box"),
+    [
+        ({"left": 5, "top": 7, "right": 31, "bottom": 22}, (5, 7, 31, 22)),
+        ({"right": 31}, (-2, -2, 31, 32)),
+        ({"top": 7, "left": 0}, (0, 7, 42, 32)),
+        ((None, 7, None, 22), (-2, 7, 42, 22)),
+        ({}, (-2, -2, 42, 32)),
+    ],
+)
+def test_edges_of_a_crop(crop: Any, box: tuple[int, ...]) -> None:
+    scene, camera = scenes.lamp_room(), dg.Camera(lens="thin", focus_distance=4)
+    settings = dg.RenderSettings.of(resolution=(40, 30), crop=crop, overscan=2)
+    assert Session(scene, camera, settings=settings).crop == box
+    again = dg.RenderSettings.from_json(json.loads(json.dumps(settings.to_json())))
+    assert again == settings
+
+
+@pytest.mark.parametrize(
+    ("crop", "message"),
+    [
+        (
+            {"lft": 5},
+            "crop: wanted some of left, top, right, bottom, got 'lft' .did you mean 'left'",
+        ),
+        ({"left": 1.5}, "crop: wanted whole numbers .left, top, right, bottom., got"),
+        ((1, 2, 3), "crop: wanted whole numbers"),
+        ({"left": 9, "right": 9}, "left < right within 0..40.*got left=9,top=0,right=9,bottom=30"),
+        ((0, 0, 40, 31), "top < bottom within 0..30, got left=0,top=0,right=40,bottom=31"),
+    ],
+)
+def test_edges_that_are_no_crop(crop: Any, message: str) -> None:
+    with pytest.raises(dg.UsageError, match=message):
+        dg.render(scenes.lamp_room(), dg.Camera(), resolution=(40, 30), spp=1, crop=crop)
 
 
 def test_a_stopped_pass_leaves_no_picture_until_whole_sums_are_back() -> None:

@@ -111,7 +111,7 @@ def small(command: str) -> str:
     def tenth(number: re.Match[str]) -> str:
         return str(int(number[0]) // 10)
 
-    for flag in (r"--res \d+x\d+", r"--crop [\d,]+"):
+    for flag in (r"--res \d+x\d+", r"--crop [a-z\d=,]+"):
         command = re.sub(flag, lambda m: re.sub(r"\d+", tenth, m[0]), command)
     for flag, value in (("spp", 2), ("light-paths", 1000), ("flare", 1000)):
         command = re.sub(rf"--{flag} \d+", f"--{flag} {value}", command)

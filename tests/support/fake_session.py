@@ -21,6 +21,7 @@ from daguerre.camera.camera import Camera
 from daguerre.errors import InputError
 from daguerre.frame.frame import Frame
 from daguerre.rendering.keywords import settings_of
+from daguerre.rendering.pixels import crop_within
 from daguerre.rendering.ranges import join_ranges
 from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene
@@ -52,7 +53,7 @@ class FakeSession:
         if camera.f_stop is not None and camera.f_stop <= 0:
             raise InputError(f"camera: f_stop: wanted a number above 0, got {camera.f_stop}")
         self.width, self.height = film.resolution
-        self.crop = film.crop or (0, 0, *film.resolution)
+        self.crop = crop_within(film.crop, (0, 0, *film.resolution))
         self.notes = ["autofocus: centre ray hit at 1.532 m"]
         self.warnings: list[str] = []
         self.key = {

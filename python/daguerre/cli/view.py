@@ -19,7 +19,7 @@ from .flags.scene_file import ScenePath
 from .flags.server import ServerFlags
 from .flags.settings import SettingsFlags
 from .flags.shutter import ShutterFlags
-from .render import checks
+from .render import checks, crops
 from .render.photograph import photograph_of
 from .render.views import Cameras
 
@@ -93,6 +93,7 @@ def view(
     scene, camera = load()
     size = cameras.size(seen, job_flags.res, scene)
     settings = checks.settings_of(job_flags, settings_flags, [], size)
+    (settings,) = crops.placed([settings], settings_flags.crop, tell=True)
     photograph = photograph_of({}, None, None, None, settings.sampling.seed)
     stage = Stage(scene, camera, settings, photograph, job_flags.tone, load)
     stage.try_out(dials)

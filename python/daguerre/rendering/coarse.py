@@ -13,6 +13,7 @@ from daguerre.camera.camera import Camera
 from daguerre.frame.frame import Frame
 from daguerre.scene.scene import Scene
 
+from .pixels import crop_box
 from .settings import RenderSettings
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ def coarse(
     session = Session(scene, camera, settings=few, built=built)
     session.draw(0, 1)
     frame = session.frame()
-    x0, y0, x1, y1 = settings.film.crop or (0, 0, width, height)
+    x0, y0, x1, y1 = crop_box(settings.film.crop, (0, 0, width, height))
     columns = np.clip(np.arange(x0, x1) * size[0] // width, 0, size[0] - 1)
     rows = np.clip(np.arange(y0, y1) * size[1] // height, 0, size[1] - 1)
     facts = {"resolution": (width, height), "crop": (x0, y0, x1, y1)}

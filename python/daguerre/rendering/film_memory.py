@@ -12,8 +12,10 @@ from daguerre import memory
 from daguerre.errors import InputError
 from daguerre.frame.aovs import FILM_CHANNELS
 
+from .pixels import crop_box
+
 if TYPE_CHECKING:
-    from .pixels import Box
+    from .pixels import CropLike
 
 #: Bytes per pixel of a frame beside its film: colours, XYZ, variance, alpha, counts, and buffers of
 #: writing. Measured: bench/film_memory.py.
@@ -60,9 +62,9 @@ def check_film(
     _check(size, each, 0, "keep fewer channels", free)
 
 
-def check_picture(crop: Box | None, resolution: tuple[int, int]) -> None:
+def check_picture(crop: CropLike | None, resolution: tuple[int, int]) -> None:
     """Checks a picture like ``check_film`` when only its size is known: for the smallest film."""
-    x0, y0, x1, y1 = crop or (0, 0, *resolution)
+    x0, y0, x1, y1 = crop_box(crop, (0, 0, *resolution))
     check_film(_core.FilmLayout(width=x1 - x0, height=y1 - y0))
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any, TypedDict
 
 from .diffraction import Diffraction
+from .pixels import CropLike
 from .settings import OverscanLike, RenderSettings
 
 
@@ -22,7 +23,7 @@ class ViewKeywords(TypedDict, total=False):
     gt_lens: str
     gt_rays: int | None
     motion: bool
-    crop: tuple[int, int, int, int] | None
+    crop: CropLike | None
     overscan: OverscanLike | None
     threads: int
     max_depth: int

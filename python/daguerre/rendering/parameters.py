@@ -84,12 +84,6 @@ def _light_paths(value: Any, where: str) -> str | tuple[float, float]:
     return "auto" if found is None else "off" if value == "off" else found
 
 
-def _crop_text(flag: str, text: str) -> tuple[int, int, int, int]:
-    """Corners x0, y0, x1, y1 from the command line's order x0, x1, y0, y1; px, half open."""
-    x0, x1, y0, y1 = units.integers(flag, text, 4, "100,400,50,300")
-    return x0, y0, x1, y1
-
-
 # fmt: off
 SAMPLING_ROWS = (
     Setting(
@@ -125,10 +119,12 @@ FILM_ROWS = (
         kind="value", normal=check_resolution,
     ),
     Setting(
-        "crop", "Draw only the pixels from X0 to X1 and from Y0 to Y1, ends exclusive", "px",
-        kind="value", normal=check_crop, parse=_crop_text,
-        flags=("--crop",), metavar="X0,X1,Y0,Y1", panel=PICTURE,
-        in_python="Pixel region (x0, y0, x1, y1) to draw, end exclusive; default: all.",
+        "crop", "Draw only the pixels between edges such as left=100,top=50,right=400,bottom=300, "
+        "or 100,50,400,300 in this order; right and bottom are exclusive, edges left out are those "
+        "of the picture", "px", kind="value", normal=check_crop, parse=units.edges,
+        flags=("--crop",), metavar="EDGES", panel=PICTURE,
+        in_python="Pixels to draw: edges (left, top, right, bottom), right and bottom exclusive, "
+        "or by name: ``{\"left\": 100, \"right\": 400}``; edges left out are those of the picture.",
     ),
     Setting(
         "overscan", "Extra pixels around the picture, in the data window of the .exr: for all "

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import math
 import operator
+from collections.abc import Mapping
 from typing import Any
 
 from daguerre.checks import MAX_RESOLUTION, short, whole
 from daguerre.errors import UsageError, suggest
+from daguerre.units import EDGES, edges_text
 
 Box = tuple[int, int, int, int]
+#: Left, top, right and bottom edge, px, right and bottom exclusive; None: that of the picture.
+Crop = tuple[int | None, int | None, int | None, int | None]
+CropLike = Crop | Mapping[str, int]
 FILTERS = ("box", "gaussian", "blackman_harris", "mitchell", "tent")
 LEAST_RADIUS, MOST_RADIUS = 0.25, 16.0  # px
 
@@ -25,34 +30,53 @@ def check_resolution(value: Any, where: str = "resolution") -> tuple[int, int]:
     return sides[0], sides[1]
 
 
-def check_crop(value: Any, where: str = "crop") -> Box:
-    """Checks corners (x0, y0, x1, y1) of a region, but not whether they are in the picture."""
+def check_crop(value: Any, where: str = "crop") -> Crop:
+    """Checks edges of a region, in their order or by name, but not whether they are in the picture.
+
+    Returns:
+        Left, top, right and bottom; None: not given.
+    """
+    if isinstance(value, Mapping):
+        for name in value:
+            if name not in EDGES:
+                raise UsageError(
+                    f"{where}: wanted some of {', '.join(EDGES)}, got {short(name)}"
+                    f"{suggest(name, EDGES)}"
+                )
+        value = tuple(value.get(name) for name in EDGES)
     try:
-        x0, y0, x1, y1 = (operator.index(v) for v in value)
+        left, top, right, bottom = (None if v is None else operator.index(v) for v in value)
     except (TypeError, ValueError):
         raise UsageError(
-            f"{where}: wanted whole numbers (x0, y0, x1, y1), got {short(value)}"
+            f"{where}: wanted whole numbers (left, top, right, bottom), got {short(value)}"
         ) from None
-    return x0, y0, x1, y1
+    return left, top, right, bottom
 
 
-def crop_within(crop: Box | None, region: Box) -> Box:
-    """Checks that a crop lies in the region of picture and overscan; None: all of it.
+def crop_box(crop: CropLike | None, region: Box) -> Box:
+    """Pixels of a crop, with the edges of a region in place of those that are not given."""
+    given = (None,) * 4 if crop is None else check_crop(crop)
+    left, top, right, bottom = (
+        other if edge is None else edge for edge, other in zip(given, region, strict=True)
+    )
+    return left, top, right, bottom
+
+
+def crop_within(crop: CropLike | None, region: Box, where: str = "crop") -> Box:
+    """Pixels of a crop like :func:`crop_box`, checked to lie in a region.
 
     Raises:
-        UsageError: It lies outside, or is empty.
+        UsageError: They lie outside, or there are none.
     """
-    if crop is None:
-        return region
-    left, top, right, bottom = region
-    x0, y0, x1, y1 = crop
-    if not (left <= x0 < x1 <= right and top <= y0 < y1 <= bottom):
-        within = f"{right}x{bottom}" if left == top == 0 else f"({left}, {top}, {right}, {bottom})"
+    box = crop_box(crop, region)
+    x0, y0, x1, y1 = region
+    left, top, right, bottom = box
+    if not (x0 <= left < right <= x1 and y0 <= top < bottom <= y1):
         raise UsageError(
-            f"crop: wanted (x0, y0, x1, y1) with x0 < x1 and y0 < y1 within {within}, "
-            f"got ({x0}, {y0}, {x1}, {y1})"
+            f"{where}: wanted left < right within {x0}..{x1} and top < bottom within {y0}..{y1}, "
+            f"got {edges_text(box)}"
         )
-    return crop
+    return box
 
 
 def parse_filter(value: Any, where: str = "filter") -> tuple[str, float]:

@@ -19,6 +19,7 @@ from daguerre.files.value import Value
 from .adaptive import MAX_SPP
 from .diffraction import Diffraction, with_bands
 from .parameters import DEFAULT, DEFAULT_SPP, TABLE, THREADS
+from .pixels import CropLike
 from .rules import Named, check_together
 from .truth import GT_RAYS
 
@@ -53,7 +54,7 @@ class Film(_Group):
     """Film: the pixels that are drawn, and the channels that are kept."""
 
     resolution: tuple[int, int] = DEFAULT["resolution"]
-    crop: tuple[int, int, int, int] | None = DEFAULT["crop"]
+    crop: CropLike | None = DEFAULT["crop"]
     overscan: OverscanLike | None = DEFAULT["overscan"]
     aovs: bool = DEFAULT["aovs"]
     halves: bool = DEFAULT["halves"]

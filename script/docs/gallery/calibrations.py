@@ -67,7 +67,8 @@ def _truth() -> Sheet:
 
 def _shutters() -> Sheet:
     shots = []
-    common = f"{PHONE} --shutter 1/2000 --time 0.5 --res 50% --crop 320,740,430,830"
+    crop = "--crop left=320,top=430,right=740,bottom=830"
+    common = f"{PHONE} --shutter 1/2000 --time 0.5 --res 50% {crop}"
     for name, title, flag in (
         ("global", "all rows at once", ""),
         ("rolling", "rolling, 16 ms", " --rolling top,16ms"),

@@ -89,14 +89,15 @@ PICTURES = [
         "Bokeh close up: lamps far behind the focus take the shape of the pupil. In the centre it "
         "is round; toward the edge of the field the rims of the lens clip it to a cat's eye.",
         NIGHT,
-        f"{GAUSS} --f-stop 2 --focus 0.5 --res 1800x1200 --crop 0,750,50,550 --spp 64 --denoise",
+        f"{GAUSS} --f-stop 2 --focus 0.5 "
+        "--res 1800x1200 --crop left=0,top=50,right=750,bottom=550 --spp 64 --denoise",
     ),
     Picture(
         "bokeh_blades",
         "The same close-up through six straight blades at f/2.8.",
         NIGHT,
         f"{GAUSS} --f-stop 2.8 --focus 0.5 --blades 6 --blade-curvature 0 "
-        "--res 1800x1200 --crop 0,750,50,550 --spp 64 --denoise",
+        "--res 1800x1200 --crop left=0,top=50,right=750,bottom=550 --spp 64 --denoise",
     ),
     Picture(
         "chess",
@@ -244,7 +245,7 @@ MOTION = [
         NIGHT,
         tuple(
             f"--lens thin --f-stop 2 --focus 0.5 --shutter 1/500 {kind} "
-            "--res 900x600 --crop 0,300,25,325 --spp 64 --denoise"
+            "--res 900x600 --crop left=0,top=25,right=300,bottom=325 --spp 64 --denoise"
             for kind in ("--shutter-type box", "--shutter-type leaf --shutter-curve trapezoid:0.5")
         ),
         columns=2,
@@ -358,9 +359,9 @@ GLASS = [
         LAMPS,
         (
             f"--lens zeiss-biotar-50mm-f1.4 --f-stop 1.4 --focus 0.6 --res 1125x750 "
-            f"--crop 375,750,250,500 {FINE_DISCS}",
+            f"--crop left=375,top=250,right=750,bottom=500 {FINE_DISCS}",
             f"--lens nikon-fuwatto-soft-90mm-f4.8 --f-stop 4.8 --res 1125x750 "
-            f"--crop 375,750,250,500 {FINE_DISCS}",
+            f"--crop left=375,top=250,right=750,bottom=500 {FINE_DISCS}",
         ),
         columns=2,
     ),

@@ -50,13 +50,13 @@ softens the rims of discs, which is wrong.""",
             STRINGS,
             f"--lens {NOKTON} --focus 1.6",
             "--f-stop 1.5",
-            f"--res 960x640 --crop 240,720,160,480 {DARK} --spp 48",
+            f"--res 960x640 --crop left=240,top=160,right=720,bottom=480 {DARK} --spp 48",
             (
                 "depth-of-field:f_stop=1.5,focus=1.6m",
                 f"lens-psf:lens={NOKTON},f_stop=1.5,focus=1.6m,zones=3,waves=0",
                 f"vignetting:model=lens,lens={NOKTON},f_stop=1.5,focus=1.6m",
             ),
-            wide=f"--res 960x640 --crop 200,760,120,520 {DARK} --spp 48",
+            wide=f"--res 960x640 --crop left=200,top=120,right=760,bottom=520 {DARK} --spp 48",
             more="--light-paths 300000",
             needs="--aov depth --gt-time mid",
         ).panels(),
@@ -79,9 +79,9 @@ distances.""",
             FAIR,
             f"--lens {PANCOLAR} --focus 60",
             "--f-stop 2",
-            f"--res 1440x960 --crop 40,520,80,400 {DARK} --spp 32",
+            f"--res 1440x960 --crop left=40,top=80,right=520,bottom=400 {DARK} --spp 32",
             flat(PANCOLAR, 2, "focus=60m"),
-            wide=wide(f"--res 1440x960 --crop 0,620,0,480 {DARK} --spp 32"),
+            wide=wide(f"--res 1440x960 --crop left=0,top=0,right=620,bottom=480 {DARK} --spp 32"),
             more="--light-paths 300000",
         ).panels(),
     ),
@@ -104,7 +104,7 @@ missing.""",
                 TREES,
                 f"--lens {ROKKOR} --focus 3",
                 "--f-stop 1.2",
-                f"--res 960x640 --crop 240,720,160,480 {DARK} --spp 56",
+                f"--res 960x640 --crop left=240,top=160,right=720,bottom=480 {DARK} --spp 56",
                 (),
                 more="--light-paths off",
             ).panels()[:2],
@@ -114,8 +114,9 @@ missing.""",
                 (
                     render(
                         TREES,
-                        f"--lens {ROKKOR} --focus 3 --lens-model pinhole --res 960x640 --crop "
-                        f"180,780,100,540 {DARK} --spp 32 --aov depth --gt-time mid",
+                        f"--lens {ROKKOR} --focus 3 --lens-model pinhole --res 960x640 "
+                        f"--crop left=180,top=100,right=780,bottom=540 {DARK} "
+                        "--spp 32 --aov depth --gt-time mid",
                         "axial_pinhole",
                     ),
                     f"python script/docs/gallery/axial_colour.py {OUT}/axial_pinhole.exr "
@@ -146,16 +147,16 @@ blue from green. It is the one aberration that is easy to correct, with
             TREES,
             f"--lens {BIOTAR} --focus 3",
             "--f-stop 8",
-            f"--res 1920x1280 --crop 48,528,60,380 {DARK} --spp 40",
+            f"--res 1920x1280 --crop left=48,top=60,right=528,bottom=380 {DARK} --spp 40",
             flat(BIOTAR, 8, "focus=3m", 3),
-            wide=wide(f"--res 1920x1280 --crop 0,720,0,520 {DARK} --spp 24"),
+            wide=wide(f"--res 1920x1280 --crop left=0,top=0,right=720,bottom=520 {DARK} --spp 24"),
             more="--light-paths off",
         ).panels(),
     ),
     fringes=True,
 )
 
-_BOARD = f"--res 1080x720 --crop 520,1000,200,520 {DARK} --spp 64"
+_BOARD = f"--res 1080x720 --crop left=520,top=200,right=1000,bottom=520 {DARK} --spp 64"
 CURVATURE = Word(
     "field_curvature",
     "Field curvature",
@@ -190,7 +191,9 @@ light.
                 "sensor=36x24",
                 f"vignetting:model=lens,lens={CANON},f_stop=2,focus={focus}m,sensor=36x24",
             ),
-            wide=wide(f"--res 1080x720 --crop 460,1080,160,560 {DARK} --spp 48"),
+            wide=wide(
+                f"--res 1080x720 --crop left=460,top=160,right=1080,bottom=560 {DARK} --spp 48"
+            ),
             more="--light-paths off",
             note=f", {what} in focus",
         ).panels()
@@ -483,8 +486,9 @@ behind the lens, so only the darkroom has an effect for it.""",
                 (
                     render(
                         FAIR,
-                        f"--lens {GAUSS} --f-stop 4 --focus 60 --res 960x640 --crop 0,480,320,640 "
-                        f"{DARK} --spp 24 --light-paths 300000",
+                        f"--lens {GAUSS} --f-stop 4 --focus 60 --res 960x640 "
+                        f"--crop left=0,top=320,right=480,bottom=640 {DARK} "
+                        "--spp 24 --light-paths 300000",
                         "halos_traced",
                     ),
                 ),

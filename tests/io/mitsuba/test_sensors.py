@@ -167,7 +167,7 @@ def test_settings_are_told(tmp_path: Path) -> None:
     assert (found.resolution, found.crop, found.spp) == ((60, 40), (10, 0, 30, 40), 9)
     assert (found.filter, found.max_depth) == ("gaussian:1.2", 4)
     assert scene.warnings == [
-        "the file's film and sampler are set by: --crop 10,30,0,40 --spp 9 "
+        "the file's film and sampler are set by: --crop left=10,top=0,right=30,bottom=40 --spp 9 "
         "--filter gaussian:1.2 --max-depth 4"
     ]
     assert list(scene.cameras) == ["eye", "other"]

@@ -14,6 +14,8 @@ from .from_table import TableFlags, made_of
 class SettingsFlags(TableFlags):
     """Render settings; those not given have the defaults of the table."""
 
+    crop: str | None
+
     def settings(self, **more: Any) -> RenderSettings:
         """Makes the settings, with parameters from other flags.
 

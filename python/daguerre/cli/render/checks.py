@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from daguerre import units as q
-from daguerre.camera.overscan import check_overscan as overscan_of
 from daguerre.cli.flags.job import JobFlags
 from daguerre.cli.flags.map import MapFlags
 from daguerre.cli.flags.settings import SettingsFlags
@@ -13,7 +12,7 @@ from daguerre.errors import UsageError, suggest
 from daguerre.frame.aovs import BY_NAME, EXACT_ONLY, Source, names_of
 from daguerre.rendering.output import DISPARITY, EXPOSED, Output
 from daguerre.rendering.parameters import TABLE
-from daguerre.rendering.settings import Film, RenderSettings
+from daguerre.rendering.settings import RenderSettings
 
 
 def check_files(flags: JobFlags, rows: SettingsFlags, maps: MapFlags) -> list[str]:
@@ -119,20 +118,6 @@ def check_truth(groups: list[str], rows: SettingsFlags, maps: MapFlags) -> None:
         raise UsageError("--aov coverage: wanted --gt-lens mean; chief rays have no coverage")
     if DISPARITY in groups and means:
         raise UsageError("--aov disparity: wanted --gt-lens chief; means have no single position")
-
-
-def check_crop(film: Film) -> None:
-    """Checks that a crop lies within picture and overscan, as far as they are known yet."""
-    beside = overscan_of(film.overscan, film.resolution, "--overscan")
-    if film.crop is None or beside is None:  # the camera decides
-        return
-    x0, y0, x1, y1 = film.crop
-    left, top, right, bottom = beside.region(film.resolution)
-    if not (left <= x0 < x1 <= right and top <= y0 < y1 <= bottom):
-        raise UsageError(
-            f"--crop: wanted x0 < x1 within {left}..{right} and y0 < y1 within "
-            f"{top}..{bottom}; got '{x0},{x1},{y0},{y1}'"
-        )
 
 
 def check_writable(output: Output) -> None:

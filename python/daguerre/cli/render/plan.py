@@ -16,7 +16,7 @@ from daguerre.rendering.picture import Picture, in_order, path_of
 from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene
 
-from . import checks
+from . import checks, crops
 from .frames import check_names, frame_numbers
 from .photograph import photograph_of
 from .views import Cameras, View, check_places
@@ -74,8 +74,7 @@ def plan_of(
     checks.check_overscan(flags, settings[0])
     checks.check_truth(groups, rows, maps)
     if scene is not None or flags.res:  # else its size is not known
-        for one in settings:
-            checks.check_crop(one.film)
+        settings = crops.placed(settings, rows.crop, tell=scene is not None)
     numbers = frame_numbers("--frames", flags.frames) if flags.frames is not None else None
     maps.check()
     files = [*flags.paths, *(flags.noisy or ()), *maps.files]

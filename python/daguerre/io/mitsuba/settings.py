@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from daguerre.files.notes import Notes
+from daguerre.units import edges_text
 
 from .node import Node, leave_out
 
@@ -58,8 +59,7 @@ class Settings:
         """Flags of the command line."""
         flags = []
         if self.crop is not None:
-            x0, y0, x1, y1 = self.crop
-            flags.append(f"--crop {x0},{x1},{y0},{y1}")
+            flags.append(f"--crop {edges_text(self.crop)}")
         flags += [f"--spp {self.spp}", f"--filter {self.filter}"]
         if self.max_depth is not None:
             flags.append(f"--max-depth {self.max_depth}")
