@@ -151,6 +151,9 @@ def test_links_out_of_docs_become_pages_of_the_site(tools: Any, tmp_path: Path) 
         ('<img src="//cdn.org/a.png">', "asks another host: //cdn.org/a.png"),
         ('<script src="https://cdn.org/a.js"></script>', "asks another host: https://cdn.org/a.js"),
         ('<link rel="stylesheet" href="http://cdn.org/a.css">', "asks another host: http://cdn.org/a.css"),
+        ('<p id="there">', "two elements have the id there"),
+        ("<h2>a</h2><h3>b</h3><h2>c</h2>", ""),
+        ("<h3>b</h3>", "a heading of level 3 follows one of level 1"),
         ("<style>a{b:url(https://cdn.org/f.woff)}</style>", "asks another host: https://cdn.org/f.woff"),
     ],
 )  # fmt: skip

@@ -68,7 +68,7 @@ Objects that move while the shutter is open are blurred; [Motion and shutters](.
 explains how. A sheet of several pictures has a command for each.
 """
 
-ABOUT_GLASS = """## Glass
+ABOUT_GLASS = """## Real lenses
 
 These pictures are rendered through real lenses, from their prescriptions. The [lens
 catalogue](../lens-catalogue.md) has a photograph through each lens of the library.

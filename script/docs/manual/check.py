@@ -1,10 +1,11 @@
-"""Checks a site that was built: links and anchors resolve, and nothing comes from another host.
+"""Checks a site: links resolve, nothing comes from another host, ids and headings are in order.
 
 python script/docs/manual/check.py build/manual/site
 """
 
 from __future__ import annotations
 
+import itertools
 import re
 import sys
 from html.parser import HTMLParser
@@ -23,6 +24,8 @@ class Page(HTMLParser):
     def __init__(self, text: str) -> None:
         super().__init__()
         self.anchors: set[str] = set()
+        self.twice: list[str] = []  # ids of two elements
+        self.headings: list[int] = []  # their levels, in order
         self.followed: list[str] = []
         self.fetched: list[str] = _STYLE.findall(text)
         self.feed(text)
@@ -30,6 +33,9 @@ class Page(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         """Keeps what an element names, asks for or leads to."""
         given = {name: value or "" for name, value in attrs}
+        self.twice += {given["id"]} & self.anchors if "id" in given else ()
+        if re.fullmatch(r"h[1-6]", tag):
+            self.headings.append(int(tag[1]))
         self.anchors |= {given[name] for name in ("id", "name") if name in given}
         if tag in FETCHED and (given.get("src") or given.get("data")):
             self.fetched.append(given.get("src") or given["data"])
@@ -40,7 +46,7 @@ class Page(HTMLParser):
 
 
 def faults(site: Path) -> list[str]:
-    """A line for each address that leads nowhere, or to another host by itself."""
+    """A line for each broken link, foreign address, repeated id and skipped level of headings."""
     pages = {file: Page(file.read_text("utf-8")) for file in sorted(site.rglob("*.html"))}
     found = []
     for file, page in pages.items():
@@ -48,6 +54,12 @@ def faults(site: Path) -> list[str]:
         if name.name == "404.html":  # a server shows it at any depth
             continue
         found += [f"{name}: asks another host: {url}" for url in page.fetched if is_other(url)]
+        found += [f"{name}: two elements have the id {anchor}" for anchor in page.twice]
+        found += [
+            f"{name}: a heading of level {below} follows one of level {above}"
+            for above, below in itertools.pairwise(page.headings)
+            if below > above + 1
+        ]
         for url in [*page.followed, *page.fetched]:
             if not is_other(url) and not reached(file, url, pages):
                 found.append(f"{name}: leads nowhere: {url}")
