@@ -6,6 +6,7 @@ from daguerre.camera.parameters import CAMERA
 from daguerre.development.looks import LOOKS
 from daguerre.exposure.metering import MODES
 from daguerre.frame.aovs import Source, made_by
+from daguerre.lenses.kinds import diagonal_mm, kinds_of
 
 #: (identifier, name, description), or with icon and number for flags.
 Item = tuple[str, str, str]
@@ -15,23 +16,18 @@ def _lens(entry: lenses.library.Entry) -> Item:
     """One lens: its name and year; widest stop, focal length and image circle."""
     year = f" ({entry.year})" if entry.year else ""
     facts = [f"{entry.type}, {entry.focal_length}, f/{entry.f_number:.3g} wide open"]
-    if circle := image_circle(entry):
+    if circle := diagonal_mm(entry):
         facts.append(f"image circle {circle:.3g} mm")
     return entry.name, entry.title + year, "; ".join([*facts, entry.patent])
 
 
 def _searched(entry: lenses.library.Entry) -> Item:
-    """One lens as the search shows it, in one line."""
+    """One lens as the search shows it, in one line; Blender looks for words in it, such as zoom."""
     name, title, words = _lens(entry)
-    circle = image_circle(entry)
+    circle = diagonal_mm(entry)
     facts = [title, f"f/{entry.f_number:.3g}", *([f"circle {circle:.3g} mm"] if circle else [])]
+    facts += [kind.words[0] for kind in kinds_of(entry)]
     return name, ", ".join(facts), words
-
-
-def image_circle(entry: lenses.library.Entry) -> float | None:
-    """Diameter of the circle around a lens's format, mm; None: its format is unknown."""
-    sides = [float(side) for side in entry.format.split("x") if side]
-    return sum(side**2 for side in sides) ** 0.5 if len(sides) == 2 else None
 
 
 def _named(words: dict[str, str]) -> list[Item]:

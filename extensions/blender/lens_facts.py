@@ -15,9 +15,9 @@ from daguerre.analysis.bench import half_image
 from daguerre.camera.ideal import IDEAL
 from daguerre.errors import InputError
 from daguerre.lenses.errors import LensError
+from daguerre.lenses.kinds import diagonal_mm
 from daguerre.setup.lens import GRANTED
 
-from .choices import image_circle
 from .reports import told
 
 #: Lenses that a user can choose and that have no prescription.
@@ -100,7 +100,7 @@ def _read(name: str, zoom: float) -> Facts:
 
 def _circle(lens: lenses.Lens, entry: lenses.library.Entry | None) -> float | None:
     """Diameter of the image circle, mm, by the source's words; None: it says nothing."""
-    told_by_format = image_circle(entry) if entry else None
+    told_by_format = diagonal_mm(entry) if entry else None
     if told_by_format or lens.nominal.image_circle_mm:
         return told_by_format or lens.nominal.image_circle_mm
     return 2 * half_image(lens, lens.first_order()) if lens.nominal.full_field_deg else None

@@ -74,6 +74,11 @@ def test_the_menu_has_every_lens_with_its_year_stop_and_image_circle(extension):
     assert "image circle 43.3 mm" in words  # sqrt(36^2 + 24^2)
 
 
+def test_the_search_has_the_kinds_of_a_lens(extension):
+    lines = {key: line for key, line, _ in extension.choices.SEARCHED}
+    assert {"zoom", "wide", "normal"} <= set(lines["canon-ef-24-70mm-f2.8"].split(", "))
+
+
 def test_the_search_sets_a_lens_and_takes_it_back(extension):
     bpy.ops.daguerre.choose_lens("EXEC_DEFAULT", lens="double-gauss-50mm-f2")
     assert camera_group().lens == "double-gauss-50mm-f2"

@@ -21,6 +21,7 @@ from daguerre.viewfinder import messages as m
         ('{"draw": 256}', m.Draw(256)),
         ('{"section": [3, 4.5]}', m.Section(3, 4.5)),
         ('{"reload": true}', m.Reload()),
+        ('{"find": "canon zoom"}', m.Find("canon zoom")),
     ],
 )
 def test_a_message_is_read(text: str, message: Any) -> None:
@@ -64,6 +65,8 @@ def test_a_message_is_read(text: str, message: Any) -> None:
         '{"draw": 0}',
         '{"draw": 99999999999}',
         '{"reload": 1}',
+        '{"find": 50}',
+        '{"find": "' + "a" * 201 + '"}',
         '{"eval": "1"}',
     ],
 )

@@ -16,14 +16,15 @@ from daguerre.camera.ideal import IDEAL
 from daguerre.development.looks import LOOKS
 from daguerre.errors import DaguerreError, UsageError
 from daguerre.files import extras
-from daguerre.lenses import library
 
+from . import lens_list
 from .dials import DIALS, Dials
 from .glass import drawing_of, glass_at
 from .image import image_of, value_at
 from .messages import (
     Draw,
     Drawing,
+    Find,
     Got,
     Message,
     Probe,
@@ -174,6 +175,8 @@ class Hub:
                 await self._tell(guest, {"section": found})
             case Drawing(name):
                 await self._tell(guest, {"drawing": await asyncio.to_thread(drawing_of, name)})
+            case Find(words):
+                await self._tell(guest, {"found": lens_list.found(words)})
             case _ if not guest.turns:
                 raise UsageError("view: this page watches; another one turns the dials")
             case Turn(changes):
@@ -258,7 +261,7 @@ class Hub:
         scene, settings = self._stage.scene, self._stage.settings
         return {
             "scene": "scene" if scene.path is None else scene.path.name,
-            "lenses": _lenses(),
+            "lenses": lens_list.offered(),
             "shutter_types": list(DIALS["shutter_type"].choices),
             "sensors": [*units.SENSORS, *sensors.names()],
             "looks": list(LOOKS),
@@ -363,15 +366,6 @@ def _reason(error: Exception) -> str:
             return f"{error.filename}: {reason}"
     what = f"{type(error).__name__}: {error}"
     return f"internal: {what}; this is a fault of daguerre, please report it"
-
-
-def _lenses() -> list[dict[str, Any]]:
-    """Lenses to choose from, ideal ones first."""
-    ideal = [{"name": name, "title": name, "year": None, "drawn": False} for name in IDEAL]
-    return ideal + [
-        {"name": one.name, "title": one.title, "year": one.year, "drawn": True}
-        for one in library.entries()
-    ]
 
 
 def _stamp(path: Path | None) -> tuple[int, int] | None:

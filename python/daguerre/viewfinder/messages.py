@@ -10,6 +10,7 @@ from typing import Any
 from daguerre import lenses
 from daguerre.checks import short
 from daguerre.errors import UsageError
+from daguerre.lenses.search import MOST
 
 from .dials import DIALS
 
@@ -83,7 +84,14 @@ class Drawing:
     lens: str
 
 
-Message = Turn | Got | Probe | Save | Draw | Section | Reload | Show | Drawing
+@dataclass(frozen=True)
+class Find:
+    """Words of lenses that the page searches for."""
+
+    words: str
+
+
+Message = Turn | Got | Probe | Save | Draw | Section | Reload | Show | Drawing | Find
 
 
 def parse(text: str | bytes) -> Message:
@@ -159,6 +167,12 @@ def _drawing(value: Any) -> Drawing:
     return Drawing(value)
 
 
+def _find(value: Any) -> Find:
+    if not isinstance(value, str) or len(value) > MOST:
+        raise UsageError(f"find: wanted words of at most {MOST} characters, got {short(value)}")
+    return Find(value)
+
+
 def _whole(value: Any, where: str, low: int, high: int) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
         raise UsageError(f"{where}: wanted a whole number of {low} to {high}, got {short(value)}")
@@ -195,4 +209,5 @@ _READERS: dict[str, Callable[[Any], Message]] = {
     "reload": _reload,
     "show": _show,
     "drawing": _drawing,
+    "find": _find,
 }

@@ -3,16 +3,17 @@
 import {showSvg} from './dom.js';
 
 export class LensPicker {
-  /** `ask(name)` wants a lens's drawing, `take(name)` uses the lens; null: the scene's. */
+  /** `ask(message)` asks the server, `take(name)` uses the lens; null: the scene's. */
   constructor(root, ask, take) {
     this.find = (id) => root.getElementById(id);
     this.ask = ask;
     this.take = take;
     this.lenses = [];
+    this.shown = [];   // those that the server has found, or all
     this.chosen = null;
     this.find('lens').addEventListener('click', () => this.open());
     this.find('lenses-close').addEventListener('click', () => this.dialog.close());
-    this.find('lens-search').addEventListener('input', () => this.list());
+    this.find('lens-search').addEventListener('input', () => this.search());
     this.find('lens-take').addEventListener('click', () => this.use());
     this.find('lens-list').addEventListener('keydown', (event) => this.key(event));
   }
@@ -23,7 +24,7 @@ export class LensPicker {
 
   offer(lenses) {
     this.lenses = [{name: null, title: 'as in the scene', year: null}, ...lenses];
-    this.list();
+    this.search();
   }
 
   /** Names the lens on the button. */
@@ -35,20 +36,32 @@ export class LensPicker {
 
   open() {
     this.dialog.showModal();
-    this.list();
+    this.search();
     this.find('lens-search').focus();
   }
 
-  matches() {
-    const words = this.find('lens-search').value.toLowerCase().split(/\s+/);
-    return this.lenses.filter((lens) => {
-      const text = `${lens.name ?? ''} ${lens.title} ${lens.year ?? ''}`.toLowerCase();
-      return words.every((word) => text.includes(word));
-    });
+  get words() {
+    return this.find('lens-search').value.trim();
   }
 
-  list() {
-    const rows = this.matches().map((lens) => {
+  /** Lists all lenses, or asks the server for those that have the words. */
+  search() {
+    if (this.words) this.ask({find: this.words});
+    else this.list(this.lenses, '');
+  }
+
+  found({words, names, all}) {
+    if (words !== this.words) return;   // the user has typed on
+    const lenses = names.map((name) => this.lenses.find((lens) => lens.name === name));
+    const count = `${names.length} ${names.length === 1 ? 'lens' : 'lenses'}`;
+    const none = 'No lens has all these words.';
+    this.list(lenses, all ? count : names.length ? `${none} Nearest:` : none);
+  }
+
+  list(lenses = this.shown, count = this.find('lens-count').textContent) {
+    this.shown = lenses;
+    this.find('lens-count').textContent = count;
+    const rows = lenses.map((lens) => {
       const row = document.createElement('div');
       row.setAttribute('role', 'option');
       row.setAttribute('aria-selected', lens.name === this.chosen);
@@ -62,7 +75,6 @@ export class LensPicker {
     });
     const list = this.find('lens-list');
     list.replaceChildren(...rows);
-    if (!rows.length) list.textContent = 'No lens has these words.';
     const own = list.querySelector('[aria-selected=true]');
     list.toggleAttribute('aria-activedescendant', false);
     if (own) list.setAttribute('aria-activedescendant', own.id);
@@ -74,11 +86,11 @@ export class LensPicker {
     this.find('lens-list').querySelector('[aria-selected=true]')?.scrollIntoView({block: 'nearest'});
     this.find('lens-drawing').removeAttribute('src');
     this.find('lens-facts').textContent = lens.title;
-    if (lens.drawn) this.ask(lens.name);
+    if (lens.drawn) this.ask({drawing: lens.name});
   }
 
   key(event) {
-    const found = this.matches();
+    const found = this.shown;
     const at = found.findIndex((lens) => lens.name === this.chosen);
     const next = {ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: found.length - 1}[event.key];
     if (event.key === 'Enter') this.use();

@@ -35,7 +35,7 @@ class Panel {
     const canvas = this.find('picture');
     this.picture = new Picture(canvas, this.find('over'));
     this.tripod = new Tripod(canvas, (dials) => this.turn(dials));
-    this.lenses = new LensPicker(root, (name) => this.link.send({drawing: name}), (name) => this.turn({lens: name}));
+    this.lenses = new LensPicker(root, (message) => this.link.send(message), (name) => this.turn({lens: name}));
     this.link = makeLink({
       told: (message) => this.told(message),
       picture: (head, bytes) => this.shown(head, bytes),
@@ -75,6 +75,7 @@ class Panel {
     if ('value' in message) this.loupeValue(message.value);
     if (message.section) showSection(this.find, message.section);
     if (message.drawing) this.lenses.drawn(message.drawing);
+    if (message.found) this.lenses.found(message.found);
     if (message.saved) this.find('saved').textContent = `Saved ${message.saved}`;
     if (message.changed) {
       this.find('changed').hidden = false;
