@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from daguerre.checks import number, rows, wavelengths
 from daguerre.doors import guarded
 from daguerre.errors import UsageError
+from daguerre.files.value import BriefRecord
 from daguerre.lenses import FirstOrder, Lens
 from daguerre.lenses.errors import LensError
 from daguerre.lenses.focus import focused
@@ -29,8 +30,8 @@ FDC_NM = (LINE_F, LINE_D, LINE_C)
 FDC_WEIGHTS = (0.181, 0.783, 0.072)
 
 
-@dataclass(frozen=True)
-class Rays:
+@dataclass(frozen=True, repr=False)
+class Rays(BriefRecord):
     """Traced rays, each at the last surface that it met.
 
     Attributes:
@@ -58,8 +59,8 @@ class Rays:
 
 
 @guarded
-@dataclass(frozen=True)
-class Bench:
+@dataclass(frozen=True, repr=False)
+class Bench(BriefRecord):
     """A lens at one focus, zoom and f-stop.
 
     Attributes:

@@ -15,6 +15,7 @@ from daguerre.camera.projection import MODELS, NEEDED, Projection
 from daguerre.checks import number, numbers, whole
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
+from daguerre.files.value import BriefRecord
 from daguerre.lenses import Lens, load
 from daguerre.lenses.setting import By, LensSetting
 from daguerre.parameters.keywords import takes
@@ -63,8 +64,8 @@ class CalibrateKeywords(_PictureKeywords, total=False):
     wavelength_nm: float
 
 
-@dataclass(frozen=True)
-class ProjectionFit:
+@dataclass(frozen=True, repr=False)
+class ProjectionFit(BriefRecord):
     """A fitted projection, and how well it fits.
 
     Attributes:

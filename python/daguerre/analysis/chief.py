@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from daguerre.checks import line
 from daguerre.doors import guarded
+from daguerre.files.value import BriefRecord
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench, FloatArray
@@ -20,8 +21,8 @@ ON_THE_WAY = 1e-3  # tolerance of all steps but the last, of the iris radius
 EXACT = 1e-11  # tolerance of the last step, of the iris radius
 
 
-@dataclass(frozen=True)
-class ChiefRays:
+@dataclass(frozen=True, repr=False)
+class ChiefRays(BriefRecord):
     """Rays through the centre of the stop, one for each film point; NaN where there is none.
 
     Attributes:

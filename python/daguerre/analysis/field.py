@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from daguerre.checks import line
 from daguerre.doors import guarded
+from daguerre.files.value import BriefRecord
 from daguerre.lenses import FirstOrder
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
@@ -19,8 +20,8 @@ from .chief import chief_rays
 from .pencils import FLAT_FIELD, Pencil, unbounded
 
 
-@dataclass(frozen=True)
-class FieldCurve:
+@dataclass(frozen=True, repr=False)
+class FieldCurve(BriefRecord):
     """Foci of the rays close to the chief ray, relative to the film.
 
     Attributes:
@@ -70,8 +71,8 @@ def narrow(bench: Bench, height: float) -> Pencil | None:
     return unbounded(bench, np.array([0.0, height]), bench.focus_mm)
 
 
-@dataclass(frozen=True)
-class Distortion:
+@dataclass(frozen=True, repr=False)
+class Distortion(BriefRecord):
     """Real image heights, and those of the lens's nominal projection.
 
     Attributes:

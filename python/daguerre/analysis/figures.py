@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daguerre.files.value import BriefRecord
+
 from .bench import FDC_NM, Bench, FloatArray
 from .field import (
     Distortion,
@@ -37,8 +39,8 @@ PUPIL_SHARES = np.linspace(0, 1, 33)
 COLORS_NM = np.linspace(400, 700, 31)
 
 
-@dataclass(frozen=True)
-class FieldPoint:
+@dataclass(frozen=True, repr=False)
+class FieldPoint(BriefRecord):
     """Spot, PSF and outline of the pupil at one image height."""
 
     height_mm: float
@@ -48,8 +50,8 @@ class FieldPoint:
     outline: FloatArray
 
 
-@dataclass(frozen=True)
-class Figures:
+@dataclass(frozen=True, repr=False)
+class Figures(BriefRecord):
     """Figures at one focal length, focus and f-stop.
 
     The field ends where 2 % of the axis's light is left, if that is within the image circle.

@@ -16,6 +16,7 @@ import daguerre._core as _core
 from daguerre.checks import whole
 from daguerre.doors import guarded
 from daguerre.errors import InputError, core_errors
+from daguerre.files.value import BriefRecord
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench
@@ -31,8 +32,8 @@ RAYS = 4096
 _DRAWN = 9  # most rays of a drawing
 
 
-@dataclass(frozen=True)
-class Ghost:
+@dataclass(frozen=True, repr=False)
+class Ghost(BriefRecord):
     """One ghost: light that is reflected by two surfaces.
 
     Attributes:

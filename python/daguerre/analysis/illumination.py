@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from daguerre.checks import line, rows, whole
 from daguerre.doors import guarded
+from daguerre.files.value import BriefRecord
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench, FloatArray
@@ -21,8 +22,8 @@ CHANGE = 0.1  # largest relative change of the outline's radii with wavelength
 DARK = 0.02  # share of the axis's light at which figures end
 
 
-@dataclass(frozen=True)
-class Illumination:
+@dataclass(frozen=True, repr=False)
+class Illumination(BriefRecord):
     """Light on the film over the field.
 
     Attributes:

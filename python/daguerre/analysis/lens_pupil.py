@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from daguerre.doors import guarded
 from daguerre.errors import InputError
+from daguerre.files.value import BriefRecord
 
 from .bench import Bench, FloatArray
 from .diffraction import Pupil
@@ -31,8 +32,8 @@ PATH_DEGREE = 12
 DESIGN_NM = 550.0
 
 
-@dataclass(frozen=True)
-class LensPupil:
+@dataclass(frozen=True, repr=False)
+class LensPupil(BriefRecord):
     """The part of the iris seen from a film point, and the wave that comes from it.
 
     Attributes:

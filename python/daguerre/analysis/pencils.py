@@ -10,6 +10,7 @@ import numpy as np
 from daguerre.checks import rows
 from daguerre.doors import guarded
 from daguerre.errors import InputError
+from daguerre.files.value import BriefRecord
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench, FloatArray, Rays
@@ -20,8 +21,8 @@ FLAT_FIELD = math.radians(75)  # beyond it object points lie on a sphere, not on
 
 
 @guarded
-@dataclass(frozen=True)
-class Pencil:
+@dataclass(frozen=True, repr=False)
+class Pencil(BriefRecord):
     """Rays from one object point through a window in front of the lens.
 
     The window is normal to the chief ray, at ``center``, with the axes ``sagittal`` and

@@ -9,6 +9,7 @@ import numpy as np
 
 from daguerre.checks import number, whole
 from daguerre.doors import guarded
+from daguerre.files.value import BriefRecord
 
 from .bench import FloatArray
 from .pencils import Pencil
@@ -23,8 +24,8 @@ MOST_POINTS = 320  # most points across the PSF of waves, before they are summed
 
 
 @guarded
-@dataclass(frozen=True)
-class Psf:
+@dataclass(frozen=True, repr=False)
+class Psf(BriefRecord):
     """Light of an object point in a window on the film.
 
     Attributes:

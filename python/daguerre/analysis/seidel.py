@@ -9,6 +9,7 @@ import numpy as np
 
 from daguerre.doors import guarded
 from daguerre.errors import InputError, core_errors
+from daguerre.files.value import BriefRecord
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench, FloatArray
@@ -27,8 +28,8 @@ WIDEST_FIELD_DEG = 45.0  # a paraxial chief ray at a larger angle is meaningless
 
 
 @guarded
-@dataclass(frozen=True)
-class SeidelSums:
+@dataclass(frozen=True, repr=False)
+class SeidelSums(BriefRecord):
     """Welford's sums, mm of wavefront, for the edge of the pupil and of the field.
 
     Attributes:

@@ -10,6 +10,7 @@ import numpy as np
 
 from daguerre.doors import guarded
 from daguerre.errors import UsageError
+from daguerre.files.value import BriefRecord
 
 from .bench import FDC_NM, FDC_WEIGHTS, FloatArray
 from .pencils import Pencil
@@ -18,8 +19,8 @@ GRID = 48
 
 
 @guarded
-@dataclass(frozen=True)
-class Spot:
+@dataclass(frozen=True, repr=False)
+class Spot(BriefRecord):
     """Rays of one object point on the film, at one or more wavelengths.
 
     Attributes:

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from daguerre.files.value import BriefRecord
+
 from .mtf import diffraction_mtf, geometric_mtf
 from .pencils import Pencil
 from .psf import WHITE_NM, WHITE_WEIGHTS, Psf, geometric_psf, psf_of, waves_of
@@ -15,8 +17,8 @@ from .spots import Spot, spot
 PIXELS = 96
 
 
-@dataclass(frozen=True)
-class Step:
+@dataclass(frozen=True, repr=False)
+class Step(BriefRecord):
     """The image of a point source on one film.
 
     Attributes:

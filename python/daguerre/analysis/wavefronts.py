@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from daguerre.checks import rows, whole
 from daguerre.doors import guarded
+from daguerre.files.value import BriefRecord
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import BoolArray, FloatArray, Rays
@@ -30,8 +31,8 @@ PROBES = 25  # rays across to fit the map
 
 
 @guarded
-@dataclass(frozen=True)
-class Wavefront:
+@dataclass(frozen=True, repr=False)
+class Wavefront(BriefRecord):
     """The pupil of one image point on a regular grid of directions.
 
     Attributes:

@@ -15,6 +15,7 @@ from daguerre.camera.projection import Projection
 from daguerre.checks import number, short
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
+from daguerre.files.value import BriefRecord
 from daguerre.setup.pose import mounted
 
 FloatArray = NDArray[np.float64]
@@ -33,8 +34,8 @@ OF_LENSES: dict[str, Any] = {
 
 
 @guarded
-@dataclass(frozen=True)
-class Calibration:
+@dataclass(frozen=True, repr=False)
+class Calibration(BriefRecord):
     """Calibration of one camera.
 
     Attributes:

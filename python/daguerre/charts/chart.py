@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from daguerre.checks import number
 from daguerre.doors import guarded
 from daguerre.errors import UsageError
+from daguerre.files.value import BriefRecord
 
 if TYPE_CHECKING:
     import os
@@ -36,8 +37,8 @@ GROUND = 2.0
 
 
 @guarded
-@dataclass(frozen=True)
-class Patch:
+@dataclass(frozen=True, repr=False)
+class Patch(BriefRecord):
     """A polygon of one colour.
 
     Attributes:

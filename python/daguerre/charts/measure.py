@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from daguerre.checks import line, numbers, rows, to_numbers, whole
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
+from daguerre.files.value import BriefRecord
 
 from .chart import Chart
 
@@ -20,8 +21,8 @@ _FINER = 4  # bins of the edge's profile per pixel, as in ISO 12233
 
 
 @guarded
-@dataclass(frozen=True)
-class EdgeResponse:
+@dataclass(frozen=True, repr=False)
+class EdgeResponse(BriefRecord):
     """Response to an edge.
 
     Attributes:

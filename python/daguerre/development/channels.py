@@ -19,6 +19,7 @@ from daguerre.checks import plain_light
 from daguerre.color import illuminants
 from daguerre.errors import UsageError, suggest
 from daguerre.files import extras
+from daguerre.files.value import BriefRecord
 from daguerre.sensors.sensor import GREY_LX_S
 
 from .binning import bayer_of, is_mono
@@ -102,8 +103,8 @@ class Demosaic:
 USUAL = Demosaic()
 
 
-@dataclass(frozen=True)
-class Channels:
+@dataclass(frozen=True, repr=False)
+class Channels(BriefRecord):
     """Light in three channels, for development.
 
     Attributes:

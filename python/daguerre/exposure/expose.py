@@ -19,6 +19,7 @@ from daguerre.checks import number, whole
 from daguerre.color import illuminants
 from daguerre.color.spectra import luminance_of_rgb
 from daguerre.errors import InputError, UsageError
+from daguerre.files.value import BriefRecord
 from daguerre.frame.frame import Frame
 from daguerre.frame.raw import Raw
 from daguerre.frame.seen_by import seen_of
@@ -33,8 +34,8 @@ NOISY_SHARE = 0.01
 _STRIPE = 256  # rows
 
 
-@dataclass(frozen=True)
-class Light:
+@dataclass(frozen=True, repr=False)
+class Light(BriefRecord):
     """Light on a sensor, plane by plane.
 
     Attributes:

@@ -21,6 +21,8 @@ from daguerre.errors import InputError
 
 _Seen = dict[tuple[int, int], tuple[Any, Any]]
 _PLAIN = str | int | bool | None
+#: Most elements of arrays and lists, and characters of a record within another, that print.
+_FEW, _LONG = 4, 160
 #: Key under which a pickle keeps the version that made it; no attribute has this name.
 MADE_BY = "made by daguerre"
 
@@ -131,5 +133,14 @@ def _default(field: Field[Any]) -> Any:
 
 def _brief(value: Any) -> str:
     if isinstance(value, np.ndarray):
-        return f"<array {value.shape}>"
-    return repr(value) if isinstance(value, BriefRecord) else short(value)
+        if value.ndim != 1 or value.size > _FEW or value.dtype.kind not in "iuf":
+            return f"<array {value.shape}>"
+        return f"[{', '.join(f'{number:.4g}' for number in value)}]"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, tuple | list | dict) and len(value) > _FEW:
+        return f"<{type(value).__name__} of {len(value)}>"
+    text = repr(value) if isinstance(value, BriefRecord) else short(value)
+    if isinstance(value, Value) and (head := repr(value)).count("\n"):
+        return f"<{head.partition(chr(10))[0]}>"
+    return text if len(text) <= _LONG else f"<{type(value).__name__}>"

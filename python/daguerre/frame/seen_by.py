@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from daguerre.color.spectra import rgb_from_xyz
 from daguerre.errors import InputError
+from daguerre.files.value import BriefRecord
 from daguerre.sensors.bands import weights_of_bands
 
 if TYPE_CHECKING:
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Seen:
+@dataclass(frozen=True, repr=False)
+class Seen(BriefRecord):
     """Planes of a frame, and their weights in the channels of a sensor or a film stock.
 
     Attributes:

@@ -19,6 +19,7 @@ from daguerre.camera.ideal import IDEAL
 from daguerre.checks import short
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, core_errors
+from daguerre.files.value import BriefRecord
 from daguerre.rendering.session import Session
 from daguerre.rendering.truth import GroundTruth, Moment
 from daguerre.scene.scene import Scene
@@ -32,8 +33,8 @@ NO_GROUP = 0xFFFFFFFF
 FLIP = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
-@dataclass(frozen=True, eq=False)
-class Annotation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Annotation(BriefRecord):
     """Annotation of one object in a picture.
 
     Attributes:
@@ -65,8 +66,8 @@ class Annotation:
     camera_from_node: NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
-class Annotations:
+@dataclass(frozen=True, eq=False, repr=False)
+class Annotations(BriefRecord):
     """Annotations of all objects in a picture.
 
     Attributes:

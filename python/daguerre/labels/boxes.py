@@ -9,6 +9,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files.value import BriefRecord
 from daguerre.scene.curves import balls_along
 from daguerre.scene.parts import Curves, Mesh
 from daguerre.scene.scene import Scene
@@ -18,8 +19,8 @@ FloatArray = NDArray[np.float64]
 Balls = tuple[NDArray[np.floating], FloatArray]
 
 
-@dataclass(frozen=True, eq=False)
-class Box3:
+@dataclass(frozen=True, eq=False, repr=False)
+class Box3(BriefRecord):
     """An oriented box in space.
 
     Attributes:

@@ -22,6 +22,7 @@ from daguerre.distortion.overscan import overscan_of
 from daguerre.distortion.rectified import built
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, core_errors, suggest
+from daguerre.files.value import BriefRecord
 from daguerre.rendering.parameters import TABLE
 from daguerre.rendering.truth import GT_TIMES, instants
 from daguerre.scene.scene import Scene
@@ -42,8 +43,8 @@ _OPENCV = np.array([1.0, -1.0, -1.0])
 
 
 @guarded
-@dataclass(frozen=True)
-class RayMap:
+@dataclass(frozen=True, repr=False)
+class RayMap(BriefRecord):
     """Ray of each pixel; NaN where a pixel sees nothing.
 
     Attributes:

@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color import srgb
+from daguerre.files.value import BriefRecord
 
 Kind = Literal["raw", "display", "linear"]
 XY = tuple[float, float]
 
 
-@dataclass(frozen=True, eq=False)
-class RawNumbers:
+@dataclass(frozen=True, eq=False, repr=False)
+class RawNumbers(BriefRecord):
     """Digital numbers of a mosaic, upright.
 
     Attributes:
@@ -37,8 +38,8 @@ class RawNumbers:
     white_balance: XY
 
 
-@dataclass(frozen=True, eq=False)
-class Photograph:
+@dataclass(frozen=True, eq=False, repr=False)
+class Photograph(BriefRecord):
     """A photograph.
 
     Attributes:

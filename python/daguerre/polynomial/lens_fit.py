@@ -13,6 +13,7 @@ import daguerre._core as _core
 from daguerre.checks import wavelengths
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, core_errors
+from daguerre.files.value import BriefRecord
 
 from .fit_data import error_zone, from_dict, to_dict
 from .setting import FitSetting
@@ -21,8 +22,8 @@ FloatArray = NDArray[np.float64]
 
 
 @guarded
-@dataclass(frozen=True)
-class SceneRays:
+@dataclass(frozen=True, repr=False)
+class SceneRays(BriefRecord):
     """Scene rays for N film rays by a fit; lens frame, mm.
 
     Attributes:

@@ -20,6 +20,7 @@ from daguerre.checks import whole
 from daguerre.color.spectra import band_colors, band_wavelengths
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
+from daguerre.files.value import BriefRecord
 from daguerre.sensors.bands import MOST_BANDS, weights_of_bands
 
 if TYPE_CHECKING:
@@ -118,8 +119,8 @@ def _pupils(wanted: Diffraction, camera: Camera, setup: ResolvedCamera) -> list[
     return zone_pupils(bench, setup.frame_size_mm, wanted.zones, iris, center_mm=(-x, -y))
 
 
-@dataclass
-class Developed:
+@dataclass(repr=False)
+class Developed(BriefRecord):
     """A diffracted picture.
 
     Attributes:

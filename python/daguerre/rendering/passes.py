@@ -39,6 +39,7 @@ from numpy.typing import NDArray
 from daguerre._core import __version__
 from daguerre.errors import InputError, MismatchError
 from daguerre.files.json_item import short
+from daguerre.files.value import BriefRecord
 from daguerre.io.exr.layout import Layout, read_layouts
 from daguerre.io.exr.parts import PartReader
 from daguerre.io.exr.write import Channels, channels, jsonable, write_parts
@@ -78,8 +79,8 @@ WORDS = {
 SETTINGS = ("resolution", "crop", "overscan", "seed", "filter", "light_paths")
 
 
-@dataclass(frozen=True)
-class Pass:
+@dataclass(frozen=True, repr=False)
+class Pass(BriefRecord):
     """The sums of some samples of one picture.
 
     Attributes:

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from daguerre.doors import guarded
 from daguerre.errors import InputError
-from daguerre.files.value import Value
+from daguerre.files.value import BriefRecord, Value
 
 FloatArray = NDArray[np.float64]
 
 
 @guarded
-@dataclass(frozen=True, eq=False)
-class Curve(Value):
+@dataclass(frozen=True, eq=False, repr=False)
+class Curve(Value, BriefRecord):
     """A transmittance by wavelength, interpolated linearly, constant beyond its ends.
 
     Attributes:

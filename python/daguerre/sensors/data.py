@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from daguerre.checks import number
 from daguerre.doors import guarded
-from daguerre.files.value import Value
+from daguerre.files.value import BriefRecord, Value
 
 from .curve import Curve
 from .mosaic import Mosaic
@@ -69,8 +69,8 @@ class DualGain:
     full_well: float
 
 
-@dataclass(frozen=True, eq=False)
-class SensorData(Value):
+@dataclass(frozen=True, eq=False, repr=False)
+class SensorData(Value, BriefRecord):
     """Values of a sensor; :class:`~daguerre.sensors.sensor.Sensor` lists each with its unit."""
 
     name: str

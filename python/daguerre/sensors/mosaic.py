@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from daguerre.checks import short
 from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
-from daguerre.files.value import Value
+from daguerre.files.value import BriefRecord, Value
 
 #: Rows of the repeating cell, by name; the first letter is the top left photosite of a picture.
 PATTERNS = {
@@ -27,8 +27,8 @@ PATTERNS = {
 
 
 @guarded
-@dataclass(frozen=True, eq=False)
-class Mosaic(Value):
+@dataclass(frozen=True, eq=False, repr=False)
+class Mosaic(Value, BriefRecord):
     """A colour filter array.
 
     Attributes:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre.camera.camera import Camera
 from daguerre.errors import InputError, UsageError, suggest
+from daguerre.files.value import BriefRecord
 from daguerre.scene.node_names import find_node
 from daguerre.scene.scene import Scene
 
@@ -37,8 +38,8 @@ class Sharp:
     notes: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
-class Focus:
+@dataclass(frozen=True, repr=False)
+class Focus(BriefRecord):
     """Finds the focus distance.
 
     Attributes:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import lens_h0
+from daguerre.files.value import BriefRecord
 from daguerre.lenses import Lens
 from daguerre.lenses.setting import LensSetting
 
@@ -110,8 +111,8 @@ class ResolvedLens:
         return 1e-3 * (self.entrance_pupil_offset_mm or 0.0) / cosine(tilt_deg)
 
 
-@dataclass(frozen=True, eq=False)
-class ResolvedCamera:
+@dataclass(frozen=True, eq=False, repr=False)
+class ResolvedCamera(BriefRecord):
     """A camera at mid-exposure, ready to draw.
 
     Attributes:

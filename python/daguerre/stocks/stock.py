@@ -14,7 +14,7 @@ from daguerre.checks import number, short
 from daguerre.color import illuminants
 from daguerre.doors import guarded
 from daguerre.errors import InputError
-from daguerre.files.value import Value
+from daguerre.files.value import BriefRecord, Value
 from daguerre.sensors.checking import tells_colors
 from daguerre.sensors.curve import rising
 
@@ -49,8 +49,8 @@ class Halation:
 
 
 @guarded(init=True)
-@dataclass(frozen=True, eq=False)
-class Layer(Value):
+@dataclass(frozen=True, eq=False, repr=False)
+class Layer(Value, BriefRecord):
     """A layer of emulsion.
 
     Attributes:

@@ -19,13 +19,15 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files.value import BriefRecord
+
 FloatArray = NDArray[np.float64]
 #: Number of coefficients that select a block, and of those that measure noise.
 LOW_COUNT, HIGH_COUNT = 9, 16
 
 
-@dataclass(frozen=True)
-class Blocks:
+@dataclass(frozen=True, repr=False)
+class Blocks(BriefRecord):
     """Blocks of photosites of one channel each.
 
     Attributes:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files.value import BriefRecord
 from daguerre.plates.photograph import Photograph, encoded
 
 from .grain import SIDE
@@ -40,8 +41,8 @@ _CELL = 8
 _CLIPPED = 0.15
 
 
-@dataclass(frozen=True)
-class FlatBlocks:
+@dataclass(frozen=True, repr=False)
+class FlatBlocks(BriefRecord):
     """Flat blocks.
 
     Attributes:

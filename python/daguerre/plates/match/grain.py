@@ -13,6 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.files.value import BriefRecord
+
 FloatArray = NDArray[np.float64]
 #: Side of the blocks for spectra, px; frequencies are multiples of 1 / SIDE.
 SIDE = 32
@@ -21,8 +23,8 @@ HALF = SIDE // 2 + 1
 FOLDED = np.minimum(np.arange(SIDE), SIDE - np.arange(SIDE))
 
 
-@dataclass(frozen=True, eq=False)
-class Grain:
+@dataclass(frozen=True, eq=False, repr=False)
+class Grain(BriefRecord):
     """Noise of a developed picture.
 
     Attributes:

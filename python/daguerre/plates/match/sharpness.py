@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from daguerre.charts.measure import EdgeResponse, edge_response
 from daguerre.errors import InputError
+from daguerre.files.value import BriefRecord
 from daguerre.plates.photograph import Photograph
 
 from .blur import Blur, fitted
@@ -28,8 +29,8 @@ _NOISE, _CONTRAST = 0.08, 0.3
 _SHARPEST = 0.8
 
 
-@dataclass(frozen=True, eq=False)
-class Sharpness:
+@dataclass(frozen=True, eq=False, repr=False)
+class Sharpness(BriefRecord):
     """Sharpness of a photograph.
 
     Attributes:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.doors import guarded
+from daguerre.files.value import BriefRecord
 from daguerre.parameters.keywords import takes
 
 from .asked import Asked
@@ -23,8 +24,8 @@ from .restore import clipped_facts, ground_illuminance
 from .sun import Sun
 
 
-@dataclass(frozen=True)
-class LightProbe:
+@dataclass(frozen=True, repr=False)
+class LightProbe(BriefRecord):
     """A light probe.
 
     Attributes:
