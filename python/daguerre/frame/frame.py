@@ -20,6 +20,7 @@ from daguerre.files.value import Value
 
 from .aovs import channels_named
 from .cryptomatte import Cryptomatte
+from .shown import Shown
 
 if TYPE_CHECKING:
     import os
@@ -34,7 +35,7 @@ _STRIPE = 64  # rows
 
 @guarded(init=True)
 @dataclass(eq=False)
-class Frame(Value, ArrayValue, array="rgb"):
+class Frame(Value, ArrayValue, Shown, array="rgb"):
     """A rendered picture, or the state of one that is being rendered.
 
     NumPy takes a frame for its ``rgb``: ``np.asarray(frame)``, ``np.mean(frame)``.

@@ -13,13 +13,15 @@ from daguerre.doors import guarded
 from daguerre.files import formats
 from daguerre.files.array_value import ArrayValue
 
+from .shown import Shown
+
 if TYPE_CHECKING:
     import os
 
 
 @guarded
 @dataclass(eq=False)
-class Picture(ArrayValue, array="pixels"):
+class Picture(ArrayValue, Shown, array="pixels"):
     """A developed picture, encoded for display.
 
     NumPy takes it for its ``pixels``.
