@@ -187,7 +187,7 @@ def test_the_list_says_what_parameters_are(capsys: pytest.CaptureFixture[str]) -
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["chart"], "wanted NAME -o FILE.glb"),
+        (["chart"], "wanted CHART -o FILE.glb"),
         (["chart", "siemens", "-o", "x.glb"], "siemens-star"),
         (["chart", "colour", "-o", "x.obj"], "ending in .glb"),
         (["chart", "colour", "-o", "x.glb", "--set", "steps=3"], "steps"),

@@ -344,9 +344,14 @@ def _grid(
     return pixels, film
 
 
+def names_of_models() -> list[str]:
+    """Names of the models that can be fitted."""
+    return ["fisheye", *(name for name in MODELS if name not in UNFIT)]
+
+
 def _count(model: str, terms: int | None) -> int:
     if model not in MODELS or model in UNFIT:
-        known = ["fisheye", *(name for name in MODELS if name not in UNFIT)]
+        known = names_of_models()
         raise UsageError(
             f"calibrate: model: wanted {', '.join(known)}; got {model!r}{suggest(model, known)}"
         )

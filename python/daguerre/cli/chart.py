@@ -18,7 +18,7 @@ from .flags.groups import option
 
 def chart(
     name: Annotated[
-        str | None, typer.Argument(metavar="NAME", help="Kind of chart; see --list.")
+        str | None, typer.Argument(metavar="CHART", help="Kind of chart; see --list.")
     ] = None,
     output: Annotated[
         Path | None,
@@ -67,7 +67,7 @@ def chart(
                 console.show(f"    {p.name}: {_about(make, p.name)} [{p.default}]")
         return 0
     if name is None or output is None:
-        raise UsageError("chart: wanted NAME -o FILE.glb (see `daguerre chart --list`)")
+        raise UsageError("chart: wanted CHART -o FILE.glb (see `daguerre chart --list`)")
     made = charts.make(name, **_parameters(parameter or []))
     made.save(
         output,

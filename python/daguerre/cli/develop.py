@@ -30,11 +30,11 @@ if TYPE_CHECKING:
 _SENSOR = Table(
     Parameter(
         "sensor", "Sensor that takes the picture, with its noise", kind="text",
-        flags=("--sensor",), metavar="NAME|FILE", default_words="a perfect sensor",
+        flags=("--sensor",), metavar="SENSOR", default_words="a perfect sensor",
     ),
     Parameter(
         "stock", "Film stock to expose and print, instead of a sensor; see `daguerre stocks`",
-        kind="text", flags=("--stock",), metavar="NAME|FILE",
+        kind="text", flags=("--stock",), metavar="STOCK",
     ),
     Parameter(
         "iso", "ISO of the sensor", flags=("--iso",), metavar="N",

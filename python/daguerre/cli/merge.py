@@ -23,9 +23,7 @@ def merge(
     ],
     output: Annotated[
         list[Path],
-        option(
-            "-o", "--output", metavar="FILE", help="Picture to write: .exr or .png; repeatable."
-        ),
+        option("-o", "--output", metavar="FILE.exr|png", help="Picture to write; repeatable."),
     ],
     strict: Annotated[
         bool, option("--strict", help="Fail if a range of samples is missing.")

@@ -34,7 +34,7 @@ def post(
         list[str] | None,
         option(
             "--effect",
-            metavar="NAME:KEY=VALUE,...",
+            metavar="EFFECT:KEY=VALUE,...",
             help="Effect with its parameters; repeatable, applied in order.",
         ),
     ] = None,

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def sensor(
-    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Library name or sensor file.")],
+    name: Annotated[str, typer.Argument(metavar="SENSOR", help="Library name or sensor file.")],
     json: Annotated[bool, option("--json", help="Print all numbers as one JSON object.")] = False,
     plot: Annotated[
         Path | None,

@@ -106,9 +106,9 @@ SAMPLING_ROWS = (
         flags=("--seed",), metavar="N", panel=SAMPLING, tells_default=True,
     ),
     Setting(
-        "filter", "Pixel filter: box, tent, gaussian, mitchell or blackman_harris; NAME:PX sets "
-        "its radius", default="blackman_harris", kind="value", normal=check_filter,
-        flags=("--filter",), metavar="NAME", panel=SAMPLING, tells_default=True,
+        "filter", "Pixel filter: box, tent, gaussian, mitchell or blackman_harris; PX sets its "
+        "radius", default="blackman_harris", kind="value", normal=check_filter,
+        flags=("--filter",), metavar="FILTER[:PX]", panel=SAMPLING, tells_default=True,
         in_python="Pixel filter: box, tent, gaussian, blackman_harris (default) or mitchell; "
         "``\"name:radius\"`` sets the radius in px.",
     ),

@@ -38,7 +38,7 @@ def focus_by(meaning: str, first: str) -> Parameter:
 # fmt: off
 MODEL = Parameter(
     "model", "Projection model to fit: opencv, fisheye, double_sphere, ...; all compares them",
-    default="opencv", kind="text", flags=("--model",), metavar="NAME", tells_default=True,
+    default="opencv", kind="text", flags=("--model",), metavar="MODEL|all", tells_default=True,
 )
 TERMS = Parameter(
     "terms", "Number of parameters to fit", kind="whole",

@@ -91,7 +91,7 @@ SENSOR = (
         "mm",
         kind="value",
         flags=("--sensor",),
-        metavar="NAME|FILE|WxH|" + "|".join(units.SENSORS),
+        metavar="SENSOR|WxH|" + "|".join(units.SENSORS),
         parse=typed.sensor,
         default_words=f"{FULL_FRAME[0]:g}x{FULL_FRAME[1]:g}",
         in_python="``Sensor``, library name, or file. The frame then also holds the sensor's "

@@ -31,7 +31,7 @@ LENS = (
         "Lens: a library name (see `daguerre lenses`), a lens file, thin or pinhole",
         kind="text",
         flags=("--lens",),
-        metavar="|".join(("NAME", "FILE", *IDEAL)),
+        metavar="|".join(("LENS", *IDEAL)),
         default_words="the scene's, else thin",
         in_python=f"Library name, file, ``Lens``, {_QUOTED}; default: thin.",
         explained=("lens-format.md", "lens-import.md"),

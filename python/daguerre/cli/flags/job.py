@@ -25,9 +25,9 @@ class JobFlags(ClusterFlags):
         option(
             "-o",
             "--output",
-            metavar="FILE",
-            help="Picture to write: .exr, .png, .jpg, .tif or .dng; repeatable. Needed unless only "
-            "maps (--export-...) are written.",
+            metavar="FILE.exr|png|jpg|tif|dng",
+            help="Picture to write; repeatable. Needed unless only maps (--export-...) are "
+            "written.",
             panel=FILES,
         ),
     ] = None
@@ -45,7 +45,7 @@ class JobFlags(ClusterFlags):
         list[str] | None,
         option(
             "--aov",
-            metavar="LIST",
+            metavar="AOV,...",
             help="Channels to write beside the picture, with commas between: depth, P, N, albedo, "
             "object_id, or all (these five); ground truth: distance, material_id, motion, "
             "motion_back, coverage; with --stereo: disparity; of a photograph: exposure, "
@@ -113,7 +113,7 @@ class JobFlags(ClusterFlags):
         Text,
         option(
             "--look",
-            metavar="NAME",
+            metavar="LOOK",
             help="Tone curve of developed pictures: neutral, standard, film, filmic or ocio:VIEW "
             "[neutral].",
             panel=PICTURE,

@@ -53,9 +53,8 @@ class SceneFileFlags:
         str | None,
         option(
             "--purpose",
-            metavar="LIST",
-            help="Purposes of prims of a USD stage to draw besides default: render,proxy,guide "
-            "[render].",
+            metavar="render,proxy,guide",
+            help="Purposes of prims of a USD stage to draw besides default [render].",
             panel=_FILE,
         ),
     ] = None

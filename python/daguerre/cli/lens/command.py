@@ -52,7 +52,7 @@ class SettingFlags(BenchFlags):
 
 @with_flags(files=FileFlags, psf=PsfFlags, flare=FlareFlags, setting=SettingFlags)
 def lens(
-    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="Library name or lens file.")],
+    name: Annotated[str, typer.Argument(metavar="LENS", help="Library name or lens file.")],
     *,
     json: Annotated[
         bool, option("--json", help="Print all numbers as one JSON object, lengths in mm.")

@@ -47,7 +47,7 @@ MATCH = Table(
     _row(
         "lens",
         "Lens of the library or a lens file; `thin`: an ideal lens",
-        metavar="NAME|FILE|thin",
+        metavar="LENS|thin",
     ),
     _row("focal_length", "Focal length of the photo, mm", flags=("--focal-length",)),
     _row("f_stop", "F-number of the photo"),
@@ -60,7 +60,7 @@ MATCH = Table(
     _row(
         "sensor",
         "Sensor of the library, a sensor file, or the sensor's size, mm",
-        metavar="NAME|FILE|WxH|ff|apsc",
+        metavar="SENSOR|WxH|ff|apsc",
     ),
     _row("white_balance", "White balance of the developed photo, K or x,y"),
     Parameter(
@@ -68,7 +68,7 @@ MATCH = Table(
         "Tone curve of a developed photo",
         kind="text",
         flags=("--look",),
-        metavar="NAME",
+        metavar="LOOK",
         panel="Camera",
         default_words="standard",
         in_python=DEVELOP["look"].in_python,
