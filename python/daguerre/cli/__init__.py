@@ -19,7 +19,7 @@ from daguerre.errors import DaguerreError, InputError, OutputError, suggest
 from daguerre.memory import left_bytes, shown
 
 from . import console
-from .commands import COMMANDS
+from .commands import COMMANDS, COMPLETE
 
 INTERNAL = 70
 INTERRUPTED = 75
@@ -37,6 +37,10 @@ def __getattr__(name: str) -> Any:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs a command line; returns its exit code."""
     console.argv = list(sys.argv[1:] if arguments is None else arguments)
+    if console.argv[:1] == [COMPLETE]:
+        from .completion.shells import complete
+
+        return complete(console.argv[1:])
     console.quiet, console.writer = False, None
     console.open_streams()
     try:

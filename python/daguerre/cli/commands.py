@@ -48,7 +48,10 @@ GROUPS = {
         "worker": Command(".cluster", "Start a worker of a cluster."),
     },
     "This program": {
+        "completion": Command(".completion.command", "Complete commands by TAB in your shell."),
         "version": Command(".version", "Print the version and the libraries in use."),
     },
 }
+#: First word of a command line by which a shell asks how to complete another.
+COMPLETE = "__complete"
 COMMANDS = {name: command for group in GROUPS.values() for name, command in group.items()}

@@ -1,4 +1,4 @@
-"""Texts generated from tables of parameters: tables of flags, and docstrings of records.
+"""Texts generated from tables: flags on pages, docstrings of records, words of completion.
 
 ``script/docs/make-cli-reference`` writes them; a test fails if one is stale.
 """
@@ -9,6 +9,7 @@ from pathlib import Path
 
 from daguerre.camera.camera import Camera
 from daguerre.camera.parameters import CAMERA, CAMERA_FLAGS, SHUTTER
+from daguerre.cli.completion import making as words
 from daguerre.parameters.table import Table
 from daguerre.parameters.texts import attributes, page_table, put_between_marks
 from daguerre.plates.match.parameters import MATCH
@@ -16,6 +17,7 @@ from daguerre.plates.probe.parameters import LIGHT_PROBE
 from daguerre.rendering.parameters import FLAGS
 
 PAGE = Path("docs", "cli.md")
+WORDS = Path("python", "daguerre", "cli", "completion", "words.json")
 _BEGIN, _END = "    Attributes:\n", '    """\n'
 
 
@@ -50,7 +52,7 @@ def texts(root: Path) -> dict[Path, str]:
     page = (root / PAGE).read_text("utf-8")
     for section in SECTIONS:
         page = put_between_marks(page, section.name, page_table(section.table, section.names))
-    made = {PAGE: page}
+    made = {PAGE: page, WORDS: words.text()}
     for path, (record, table) in RECORDS.items():
         text = (root / path).read_text("utf-8")
         made[path] = with_attributes(text, record.__name__, table, record.__dataclass_fields__)
