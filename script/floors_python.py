@@ -48,6 +48,9 @@ FLOORS = [
 FREE = {"_core"}
 #: (file, method, module above, or a higher one of its room): a value that hands itself up.
 HAND_OVERS = {
+    ("analysis/plotted.py", "_repr_png_", "plots.results"),
+    ("analysis/plotted.py", "_repr_svg_", "plots.results"),
+    ("analysis/plotted.py", "plot", "plots.results"),
     ("camera/camera.py", "from_colmap", "calibration.cameras"),
     ("camera/camera.py", "from_kalibr", "calibration.cameras"),
     ("camera/camera.py", "from_opencv", "calibration.cameras"),

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.analysis import Psf
 from daguerre.development import Picture
 from daguerre.files.array_value import ArrayValue
 from daguerre.scene.parts import Plate, Texture
@@ -30,6 +31,7 @@ VALUES: dict[str, tuple[Any, str]] = {
     "Raw": (raw(), "mosaic"),
     "Picture": (Picture(RGB / 4), "pixels"),
     "Negative": (Negative(DENSITY, load("generic-colour-negative-400")), "density"),
+    "Psf": (Psf(np.ones((4, 4)), 0.1, np.zeros(2), diffraction=False), "image"),
     "Texture": (Texture(np.zeros((2, 3, 4), np.uint8)), "pixels"),
     "Plate": (Plate(RGB), "pixels"),
     "DensityGrid": (dg.DensityGrid(np.ones((2, 3, 4), np.float32)), "values"),

@@ -6,7 +6,10 @@ All figures come from exact rays through the prescription; docs/lens-bench.md ha
 from .bench import Bench, set_up
 from .chief import chief_rays, film_heights
 from .field import axial_colour, distortion, field_curvature, lateral_colour, spherical_aberration
+from .figures import Figures
+from .figures import figures as data_sheet
 from .illumination import pupil_outline, relative_illumination, spectral_illumination
+from .modulation import Mtf, modulation_transfer
 from .mtf import diffraction_mtf, geometric_mtf, perfect_mtf
 from .pencils import Pencil, pencil
 from .psf import Psf, diffraction_psf, geometric_psf, point_spread, strehl_ratio
@@ -16,6 +19,8 @@ from .wavefronts import Wavefront, wavefront
 
 __all__ = [
     "Bench",
+    "Figures",
+    "Mtf",
     "Pencil",
     "Psf",
     "SeidelSums",
@@ -24,6 +29,7 @@ __all__ = [
     "axial_colour",
     "best_film_z",
     "chief_rays",
+    "data_sheet",
     "diffraction_mtf",
     "diffraction_psf",
     "distortion",
@@ -32,6 +38,7 @@ __all__ = [
     "geometric_mtf",
     "geometric_psf",
     "lateral_colour",
+    "modulation_transfer",
     "pencil",
     "perfect_mtf",
     "point_spread",

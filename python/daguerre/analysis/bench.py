@@ -22,6 +22,8 @@ from daguerre.lenses.glasses.catalogue import LINE_C, LINE_D, LINE_F
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 from daguerre.lenses.setting import By, LensSetting
 
+from .plotted import Sectioned
+
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
@@ -60,7 +62,7 @@ class Rays(BriefRecord):
 
 @guarded
 @dataclass(frozen=True, repr=False)
-class Bench(BriefRecord):
+class Bench(BriefRecord, Sectioned):
     """A lens at one focus, zoom and f-stop.
 
     Attributes:

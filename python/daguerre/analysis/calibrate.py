@@ -23,6 +23,7 @@ from daguerre.parameters.keywords import takes
 from .bench import Bench, FloatArray, on_bench
 from .chief import ChiefRays, chief_rays
 from .least_squares import least_squares
+from .plotted import Plotted
 
 #: Initial parameters of models that are not valid with zeros.
 STARTS = {"double_sphere": (0.0, 0.5), "eucm": (0.5, 1.0), "omni": (1.0,), "fov": (0.5,)}
@@ -65,7 +66,7 @@ class CalibrateKeywords(_PictureKeywords, total=False):
 
 
 @dataclass(frozen=True, repr=False)
-class ProjectionFit(BriefRecord):
+class ProjectionFit(BriefRecord, Plotted):
     """A fitted projection, and how well it fits.
 
     Attributes:

@@ -18,10 +18,11 @@ from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 from .bench import FDC_NM, Bench, FloatArray, projected
 from .chief import chief_rays
 from .pencils import FLAT_FIELD, Pencil, unbounded
+from .plotted import Plotted
 
 
 @dataclass(frozen=True, repr=False)
-class FieldCurve(BriefRecord):
+class FieldCurve(BriefRecord, Plotted):
     """Foci of the rays close to the chief ray, relative to the film.
 
     Attributes:
@@ -72,7 +73,7 @@ def narrow(bench: Bench, height: float) -> Pencil | None:
 
 
 @dataclass(frozen=True, repr=False)
-class Distortion(BriefRecord):
+class Distortion(BriefRecord, Plotted):
     """Real image heights, and those of the lens's nominal projection.
 
     Attributes:

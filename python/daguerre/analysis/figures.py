@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daguerre.doors import guarded
 from daguerre.files.value import BriefRecord
 
 from .bench import FDC_NM, Bench, FloatArray
@@ -21,6 +22,7 @@ from .field import (
 from .illumination import Illumination, pupil_outline, relative_illumination, within_light
 from .mtf import diffraction_mtf, geometric_mtf
 from .pencils import Pencil, pencil
+from .plotted import Plotted
 from .psf import Psf, point_spread, strehl_ratio
 from .seidel import SeidelSums, seidel_sums
 from .spots import Spot, spot
@@ -51,7 +53,7 @@ class FieldPoint(BriefRecord):
 
 
 @dataclass(frozen=True, repr=False)
-class Figures(BriefRecord):
+class Figures(BriefRecord, Plotted):
     """Figures at one focal length, focus and f-stop.
 
     The field ends where 2 % of the axis's light is left, if that is within the image circle.
@@ -92,6 +94,7 @@ class Figures(BriefRecord):
         return strehl_ratio(self.on_axis) if self.on_axis is not None else float("nan")
 
 
+@guarded
 def figures(bench: Bench, *, psf_pixels: int = 64) -> Figures:
     """Computes every figure.
 

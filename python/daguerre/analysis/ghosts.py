@@ -20,6 +20,7 @@ from daguerre.files.value import BriefRecord
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench
+from .plotted import Plotted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -56,7 +57,7 @@ class Ghost(BriefRecord):
 
 
 @guarded(init=True)
-class Ghosts:
+class Ghosts(Plotted):
     """The ghosts of a lens for a distant source, brightest first.
 
     Args:

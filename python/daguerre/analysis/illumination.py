@@ -14,6 +14,7 @@ from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench, FloatArray
 from .chief import chief_rays
+from .plotted import Plotted
 
 GRID = 96
 COARSE = 20  # rays across a pupil for its transmittance by wavelength
@@ -23,7 +24,7 @@ DARK = 0.02  # share of the axis's light at which figures end
 
 
 @dataclass(frozen=True, repr=False)
-class Illumination(BriefRecord):
+class Illumination(BriefRecord, Plotted):
     """Light on the film over the field.
 
     Attributes:

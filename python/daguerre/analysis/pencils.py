@@ -15,6 +15,7 @@ from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench, FloatArray, Rays
 from .chief import chief_rays
+from .plotted import Sectioned
 
 COARSE = 41  # rays across, in the search for the light's bounds
 FLAT_FIELD = math.radians(75)  # beyond it object points lie on a sphere, not on a plane
@@ -22,7 +23,7 @@ FLAT_FIELD = math.radians(75)  # beyond it object points lie on a sphere, not on
 
 @guarded
 @dataclass(frozen=True, repr=False)
-class Pencil(BriefRecord):
+class Pencil(BriefRecord, Sectioned):
     """Rays from one object point through a window in front of the lens.
 
     The window is normal to the chief ray, at ``center``, with the axes ``sagittal`` and

@@ -9,10 +9,12 @@ import numpy as np
 
 from daguerre.checks import number, whole
 from daguerre.doors import guarded
+from daguerre.files.array_value import ArrayValue
 from daguerre.files.value import BriefRecord
 
 from .bench import FloatArray
 from .pencils import Pencil
+from .plotted import Plotted
 from .spots import Spot, spot
 from .wavefronts import Wavefront, wavefront
 
@@ -25,7 +27,7 @@ MOST_POINTS = 320  # most points across the PSF of waves, before they are summed
 
 @guarded
 @dataclass(frozen=True, repr=False)
-class Psf(BriefRecord):
+class Psf(BriefRecord, ArrayValue, Plotted, array="image"):
     """Light of an object point in a window on the film.
 
     Attributes:

@@ -13,6 +13,7 @@ from daguerre.files.value import BriefRecord
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench, FloatArray
+from .plotted import Plotted
 
 NAMES = ("S1", "S2", "S3", "S4", "S5", "C1", "C2")
 MEANINGS = (
@@ -29,7 +30,7 @@ WIDEST_FIELD_DEG = 45.0  # a paraxial chief ray at a larger angle is meaningless
 
 @guarded
 @dataclass(frozen=True, repr=False)
-class SeidelSums(BriefRecord):
+class SeidelSums(BriefRecord, Plotted):
     """Welford's sums, mm of wavefront, for the edge of the pupil and of the field.
 
     Attributes:

@@ -14,13 +14,14 @@ from daguerre.files.value import BriefRecord
 
 from .bench import FDC_NM, FDC_WEIGHTS, FloatArray
 from .pencils import Pencil
+from .plotted import Plotted
 
 GRID = 48
 
 
 @guarded
 @dataclass(frozen=True, repr=False)
-class Spot(BriefRecord):
+class Spot(BriefRecord, Plotted):
     """Rays of one object point on the film, at one or more wavelengths.
 
     Attributes:

@@ -23,6 +23,7 @@ from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import BoolArray, FloatArray, Rays
 from .pencils import Pencil
+from .plotted import Plotted
 
 ComplexArray = NDArray[np.complex128]
 
@@ -32,7 +33,7 @@ PROBES = 25  # rays across to fit the map
 
 @guarded
 @dataclass(frozen=True, repr=False)
-class Wavefront(BriefRecord):
+class Wavefront(BriefRecord, Plotted):
     """The pupil of one image point on a regular grid of directions.
 
     Attributes:

@@ -10,7 +10,7 @@ import numpy as np
 from daguerre.analysis.bench import FDC_NM
 from daguerre.analysis.figures import FIELDS, FREQUENCIES, MTF_FIELDS, Figures
 
-from .lens_file import add_shape
+from . import images
 from .lens_section import COLORS as FIELD_COLORS
 from .lens_section import section
 
@@ -64,27 +64,7 @@ def layout(axes: Axes, made: Figures) -> None:
     """Draws the section with rays from three fields."""
     bench = made.bench
     drawing = section(bench.lens, bench.film_z, bench.field_mm)
-    for shape in drawing.shapes:
-        add_shape(axes, shape, 0.6)
-    axes.set_aspect("equal")
-    axes.set_xlim(drawing.left, drawing.right)
-    axes.set_ylim(-drawing.top, drawing.top)
-    axes.set_axis_off()
-    axes.margins(0)
-    scale_bar(axes, drawing.left, -drawing.top, drawing.right - drawing.left)
-
-
-def scale_bar(axes: Axes, x: float, y: float, span: float) -> None:
-    """Draws a scale bar of 1, 2 or 5 times a power of ten, mm, below the drawing."""
-    length = round_length(0.2 * span)
-    axes.plot([x, x + length], [y, y], color=INK, lw=1)
-    axes.text(x + 0.5 * length, y, f"{length:g} mm", size=5.5, ha="center", va="bottom")
-
-
-def round_length(about: float) -> float:
-    """Largest 1, 2 or 5 times a power of ten, up to ``about``."""
-    power = 10.0 ** math.floor(math.log10(about))
-    return max(k * power for k in (1, 2, 5) if k * power <= about)
+    images.lens(axes, drawing, 0.6)
 
 
 def facts(axes: Axes, made: Figures) -> None:

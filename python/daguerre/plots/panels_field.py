@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from daguerre.analysis.figures import COLORS_NM, CURVE, PUPIL_SHARES, Figures
-from daguerre.analysis.seidel import NAMES
 
+from . import curves
+from .curves import around_zero
 from .panels import LINE_COLORS, LINE_NAMES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-SURFACE_COLORS = "tab20"
 
 
 def spherical(axes: Axes, made: Figures) -> None:
@@ -43,14 +42,9 @@ def curvature(axes: Axes, made: Figures) -> None:
 
 def distorted(axes: Axes, made: Figures) -> None:
     """Plots distortion over the field, percent."""
-    axes.plot(made.distortion.percent, made.distortion.height_mm, color="#1a202c")
-    law = {"rectilinear": "f tan θ"}.get(
-        made.distortion.law, made.distortion.law.replace("fisheye-", "")
-    )
-    axes.set_title("Distortion")
-    axes.set_xlabel(f"% of the ideal height ({law})")
+    curves.distortion(axes, made.distortion)
+    axes.set_ylabel("")
     axes.set_ylim(0, made.bench.field_mm)
-    around_zero(axes, made.distortion.percent, least=0.5)
 
 
 def lateral(axes: Axes, made: Figures) -> None:
@@ -66,18 +60,9 @@ def lateral(axes: Axes, made: Figures) -> None:
 
 
 def illumination(axes: Axes, made: Figures) -> None:
-    """Plots relative illumination over the field, with cos^4 (Kolb, Mitchell, Hanrahan 1995)."""
-    light = made.illumination
-    axes.plot(light.height_mm, 100 * light.relative, color="#1a202c", label="exact")
-    axes.plot(
-        light.height_mm, 100 * light.cos4_object, color="#c53030", ls="--", label="cos⁴, object"
-    )
-    axes.plot(light.height_mm, 100 * light.cos4_film, color="#2b6cb0", ls=":", label="cos⁴, film")
-    axes.set_title("Relative illumination, %")
-    axes.set_xlabel("image height, mm")
+    """Plots relative illumination over the field."""
+    curves.illumination(axes, made.illumination)
     axes.set_xlim(0, made.bench.field_mm)
-    axes.set_ylim(0, max(105, 100 * float(np.nanmax(light.relative)) + 5))
-    axes.legend(loc="lower left")
 
 
 def pupils(axes: Axes, made: Figures) -> None:
@@ -112,41 +97,10 @@ def axial(axes: Axes, made: Figures) -> None:
 
 
 def seidel(axes: Axes, made: Figures) -> None:
-    """Plots Seidel sums by surface as stacked bars, with their totals."""
-    axes.set_title("Seidel sums, mm")
-    if made.seidel is None:
-        axes.set_axis_off()
-        axes.text(
-            0.5, 0.5, "no axial symmetry", ha="center", transform=axes.transAxes, color="#888888"
-        )
+    """Plots Seidel sums by surface, if the lens has any."""
+    if made.seidel is not None:
+        curves.seidel(axes, made.seidel)
         return
-    rows = made.seidel.surfaces
-    at = np.arange(len(NAMES))
-    for sign in (1, -1):
-        base = np.zeros(len(NAMES))
-        for i, row in enumerate(rows):
-            part = np.where(sign * row > 0, row, 0)
-            axes.bar(at, part, 0.75, base, color=_color(i), lw=0)
-            base = base + part
-    axes.plot(at, made.seidel.total, "k_", ms=9, mew=1.4)
-    axes.axhline(0, color="#444444", lw=0.5)
-    axes.set_xticks(at, NAMES)
-    axes.set_xlabel("by surface; bar: total", labelpad=1)
-    axes.grid(axis="x", visible=False)
-
-
-def _color(i: int) -> tuple[float, float, float, float]:
-    from matplotlib import colormaps
-
-    r, g, b, a = colormaps[SURFACE_COLORS](i % 20)
-    return float(r), float(g), float(b), float(a)
-
-
-def around_zero(axes: Axes, values: object, least: float = 0.02) -> None:
-    """Sets a range symmetric about zero that contains the values, and draws a line at zero."""
-    parts = [np.ravel(np.asarray(v, np.float64)) for v in values]  # type: ignore[attr-defined]
-    flat = np.concatenate(parts) if parts else np.zeros(1)
-    finite = np.abs(flat[np.isfinite(flat)])
-    reach = max(least, 1.08 * float(finite.max(initial=0)))
-    axes.set_xlim(-reach, reach)
-    axes.axvline(0, color="#444444", lw=0.5)
+    axes.set_title("Seidel sums, mm")
+    axes.set_axis_off()
+    axes.text(0.5, 0.5, "no axial symmetry", ha="center", transform=axes.transAxes, color="#888888")

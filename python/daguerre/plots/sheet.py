@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from daguerre.analysis.bench import Bench
 from daguerre.analysis.figures import Figures, figures
@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.gridspec import SubplotSpec
 
+Sheet = TypeVar("Sheet", bound="Figure")
 A4 = (8.27, 11.69)  # inches
 STYLE: Any = {  # matplotlib's keys
     "font.size": 6.5,
@@ -59,18 +60,17 @@ def sheet(bench: Bench, kind: str = "svg") -> bytes:
 def page(made: Figures, kind: str = "svg") -> bytes:
     """Draws the data sheet of given figures; returns the bytes of a file."""
     from matplotlib import rc_context
-
-    with rc_context(STYLE):
-        return saved(draw_sheet(made), kind, made.bench.lens.name)
-
-
-def draw_sheet(made: Figures) -> Figure:
-    """Draws the page of given figures as a matplotlib figure."""
     from matplotlib.figure import Figure
 
+    with rc_context(STYLE):
+        return saved(draw_sheet(made, Figure), kind, made.bench.lens.name)
+
+
+def draw_sheet(made: Figures, kind: type[Sheet]) -> Sheet:
+    """Draws the page of given figures as a figure of matplotlib of a kind."""
     from . import panels, panels_field
 
-    page = Figure(figsize=A4)
+    page = kind(figsize=A4)
     panels.header(page, made)
     top = _row(page, 0.742, 0.93).subgridspec(1, 2, width_ratios=(2.15, 1), wspace=0.06)
     panels.layout(page.add_subplot(top[0]), made)
