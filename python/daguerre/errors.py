@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 
@@ -18,6 +19,7 @@ __all__ = [
     "asked_by",
     "core_errors",
     "did_you_mean",
+    "nearest",
     "suggest",
 ]
 
@@ -79,12 +81,25 @@ def asked_by(place: object) -> Iterator[None]:
 def suggest(name: object, known: Iterable[str], *, few: bool = False) -> str:
     """Makes " (did you mean 'a', 'b' or 'c'?)" from the nearest known names.
 
-    With ``few``, for messages that do not list the names, a short list is shown if none is near.
+    The spelling decides, upper and lower case alike; else names that have all words of the given
+    one. With ``few``, for messages that do not list the names, a short list is shown if none is
+    near.
     """
     names = sorted(known)
-    if near := difflib.get_close_matches(str(name), names, n=3, cutoff=0.5):
+    if near := nearest(name, names):
         return did_you_mean(near)
     return f" (known: {', '.join(map(repr, names))})" if few and 0 < len(names) <= 8 else ""
+
+
+def nearest(name: object, names: list[str]) -> list[str]:
+    """Names with a spelling near another; if there are none, those that have all of its words."""
+    text = str(name).casefold()
+    plain = {each: each.casefold() for each in names}
+    close = difflib.get_close_matches(text, list(plain.values()), n=3, cutoff=0.5)
+    if close:
+        return sorted((n for n in names if plain[n] in close), key=lambda n: close.index(plain[n]))
+    words = [word for word in re.findall(r"[^\W_]+", text) if len(word) > 1]
+    return [n for n in names if words and all(word in plain[n] for word in words)]
 
 
 def did_you_mean(names: Sequence[str]) -> str:

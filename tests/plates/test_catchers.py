@@ -91,7 +91,7 @@ def test_effects_are_marked_by_name() -> None:
 @pytest.mark.parametrize(
     ("node", "effects", "words"),
     [
-        ("Ground", "shadow", r"catcher: no node 'Ground' \(did you mean 'ground'\?\)"),
+        ("Ground", "shadow", r"catcher: no node named 'Ground' \(did you mean 'ground'\?\)"),
         ("ground", "shadows", "wanted shadow, reflection, gi, or holdout, got 'shadows'"),
         ("ground", "", "wanted shadow, reflection, gi, or holdout"),
         ("ground", "holdout,gi", "wanted shadow, reflection, gi, or holdout"),
@@ -174,7 +174,7 @@ def test_the_command_line_marks_nodes(tmp_path: Path, capsys: pytest.CaptureFixt
     assert frame.catcher is not None
     assert np.abs(frame.catcher).max() > 0
     assert main(["render", str(path), *flags, "--catcher", "grund"]) == 2
-    assert "no node 'grund' (did you mean 'ground'?)" in capsys.readouterr().err
+    assert "no node named 'grund' (did you mean 'ground'?)" in capsys.readouterr().err
     assert main(["render", str(path), *flags, "--catcher", "ground:shade"]) == 2
     assert "wanted shadow, reflection, gi, or holdout, got 'shade'" in capsys.readouterr().err
     assert main(["render", str(path), *flags, "--background", "clear"]) == 2

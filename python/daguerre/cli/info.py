@@ -18,6 +18,9 @@ from .render.views import Cameras
 if TYPE_CHECKING:
     from daguerre.setup.camera_facts import Facts
 
+#: Names of a list in the text; JSON has all.
+_MOST_NAMES = 12
+
 
 @with_flags(
     camera_flags=CameraFlags,
@@ -139,6 +142,9 @@ def _scene_lines(content: dict[str, Any]) -> list[str]:
     sizes = ", ".join(f"{t['width']}x{t['height']}" for t in textures[:8])
     more = ", ..." if len(textures) > 8 else ""
     lights = ", ".join(f"{n} {kind}" for kind, n in content["lights"].items())
+    nodes = [node["name"] for node in content["nodes"]]
+    meshed = [node["name"] for node in content["nodes"] if node["instances"]]
+    materials, lamps = content["material_names"], [lamp["name"] for lamp in content["lamps"]]
     rows = {
         "scene": content["file"] or "",
         "meshes": f"{content['meshes']} ({content['triangles']} triangles)",
@@ -146,9 +152,11 @@ def _scene_lines(content: dict[str, Any]) -> list[str]:
         "size": "empty"
         if low is None
         else " x ".join(f"{b - a:.3g}" for a, b in zip(low, high, strict=True)) + " m",
-        "materials": f"{content['materials']}",
+        "nodes": _listed(len(nodes), nodes),
+        "with meshes": _listed(len(meshed), meshed),
+        "materials": _listed(len(materials), materials),
         "textures": f"{len(textures)}" + (f" ({sizes}{more})" if textures else ""),
-        "lights": lights or "none",
+        "lights": _listed(lights or "none", lamps),
         "emissive": f"{content['emissive_instances']} instances",
         "environment": content["environment"] or "none",
     }
@@ -162,6 +170,16 @@ def _scene_lines(content: dict[str, Any]) -> list[str]:
         rows["animation"] = f"{content['animation_duration_s']:.4g} s"
     lines = [f"{key:12} {value}" for key, value in rows.items()]
     return lines + [f"note: {text}" for text in content["warnings"]]
+
+
+def _listed(count: int | str, names: list[str]) -> str:
+    """A count, and the first names in quotes; empty names are left out."""
+    from daguerre.checks import short
+
+    named = [name for name in names if name]
+    first = ", ".join(short(name, 120) for name in named[:_MOST_NAMES])
+    more = ", ... (--json lists all)" if len(named) > _MOST_NAMES else ""
+    return f"{count}: {first}{more}" if first else f"{count}"
 
 
 def _moving(moves: dict[str, Any]) -> str:

@@ -43,7 +43,7 @@ from .materials import Diffuse, Kind, Material, bounds_media, check_material, ch
 from .media import Medium, check_fog
 from .mesh import MESH, MeshKeywords, mesh_of
 from .motion import SceneMotion
-from .node_names import find_node
+from .node_names import find_node, no_node
 from .parts import Curves, Environment, Instance, Mesh, Plate, Texture, vertices_of
 from .point_cache import PointCache, steps_of
 from .polygon_mesh import Over, mesh_of_polygons, polygons_of
@@ -184,7 +184,7 @@ class Scene(Value):
         """
         named = find_node(node, self.nodes)
         if named is None:
-            raise UsageError(f"catcher: no node {node!r}{suggest(node, self.nodes, few=True)}")
+            raise UsageError(f"catcher: {no_node(node, self.nodes)}")
         node = named
         found = check_effects(effects, f"catcher {node!r}: effects")
         if not self.nodes[node]:
@@ -603,7 +603,7 @@ class Scene(Value):
         if name not in self.cameras:
             raise InputError(
                 f"{self.path or 'scene'}: no camera named {name!r}"
-                f"{suggest(name, self.cameras, few=True)}"
+                f"{suggest(name, [*self.cameras, *self.camera_aliases], few=True)}"
             )
         return name
 

@@ -18,6 +18,8 @@ from daguerre.motion.subdivision import some_breaks
 from daguerre.scene.framing import bounds
 from daguerre.scene.parts import Curves
 
+from .contents import contents
+
 if TYPE_CHECKING:
     from daguerre.camera.camera import Camera
     from daguerre.scene.materials import Material
@@ -264,6 +266,7 @@ def scene_facts(scene: Scene) -> dict[str, Any]:
         "moves": _moves(scene),
         "variants": list(scene.variants),
         "warnings": list(scene.warnings),
+        **contents(scene),
     }
 
 

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 from daguerre.camera.camera import Camera
-from daguerre.errors import InputError, UsageError, suggest
+from daguerre.errors import InputError, UsageError
 from daguerre.files.value import BriefRecord
-from daguerre.scene.node_names import find_node
+from daguerre.scene.node_names import find_node, no_node
 from daguerre.scene.scene import Scene
 
 from .near_clip import Directions, view_begins
@@ -118,9 +118,7 @@ class Focus(BriefRecord):
         known = set(scene.node_positions) | set(scene.nodes)
         found = find_node(name, known)
         if found is None:
-            raise InputError(
-                f"camera: focus_on: no node named {name!r}{suggest(name, known, few=True)}"
-            )
+            raise InputError(f"camera: focus_on: {no_node(name, known)}")
         name = found
         instances = [i for i in scene.nodes.get(name, []) if scene.instances[i].shown]
         eye, axis = self.world[:3, 3], -self.world[:3, 2]

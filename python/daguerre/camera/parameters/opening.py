@@ -97,7 +97,7 @@ FOCUS = (
     ),
     _FocusRow(
         "focus_on",
-        "Focus on the nearest surface point of the node NODE",
+        "Focus on the nearest surface point of the node NODE; `daguerre info` lists names",
         kind="text",
         flags=("--focus-on",),
         metavar="NODE",

@@ -3,7 +3,7 @@
 Annotations must be real objects here (see ``groups.py``), so no ``annotations`` future.
 """
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -69,9 +69,9 @@ class SceneFlags(SceneFileFlags):
         option(
             "--catcher",
             metavar="NODE[:EFFECTS]",
-            help="Node that stands in for something in the plate: it catches "
-            "shadow,reflection,gi of objects as a layer [all three], or only hides what is behind "
-            "it (holdout); repeatable.",
+            help="Node (`daguerre info` lists names) that stands in for something in the plate: "
+            "it catches shadow,reflection,gi of objects as a layer [all three], or only hides "
+            "what is behind it (holdout); repeatable.",
             panel=_LIGHT,
         ),
     ] = None
@@ -123,7 +123,7 @@ class SceneFlags(SceneFileFlags):
         if lux is not None:
             self._light(scene, lux)
         for text in self.catcher or ():
-            node, _, effects = text.partition(":") if text not in scene.nodes else (text, "", "")
+            node, effects = _catcher(text, scene.nodes)
             scene.set_catcher(node, effects or EFFECTS)
         if not self.plate_moves:
             self.throw_plate(scene, taken)
@@ -254,3 +254,13 @@ class SceneFlags(SceneFileFlags):
         if self.env_rotation is not None:
             changes["rotation"] = self._rotation()
         scene.environment = replace(scene.environment, **changes)
+
+
+def _catcher(text: str, nodes: Collection[str]) -> tuple[str, str]:
+    """Node and effects of ``NODE[:EFFECTS]``; names of nodes may have colons, too."""
+    from daguerre.scene.node_names import find_node
+
+    if ":" not in text or find_node(text, nodes) is not None:
+        return text, ""
+    node, _, effects = text.rpartition(":")
+    return node, effects
