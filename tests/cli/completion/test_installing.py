@@ -148,6 +148,17 @@ def test_wrong_shells_are_one_error(
     assert message in capsys.readouterr().err
 
 
+def test_a_user_without_a_home_is_one_error(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def none() -> Path:
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.setattr(Path, "home", none)
+    assert main(["completion", "bash", "--install"]) == 2
+    assert "$HOME: wanted a folder, got nothing" in capsys.readouterr().err
+
+
 def test_a_home_that_cannot_be_written_is_one_error(
     home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -98,12 +98,19 @@ def _place(shell: str) -> Path:
 
 def _start(shell: str) -> Path:
     """Start-up file of bash or zsh."""
-    return Path.home() / ".bashrc" if shell == "bash" else _folder("ZDOTDIR", "") / ".zshrc"
+    return _home() / ".bashrc" if shell == "bash" else _folder("ZDOTDIR", "") / ".zshrc"
 
 
 def _folder(variable: str, usual: str) -> Path:
     named = os.environ.get(variable, "")
-    return Path(named) if Path(named).is_absolute() else Path.home() / usual
+    return Path(named) if Path(named).is_absolute() else _home() / usual
+
+
+def _home() -> Path:
+    try:
+        return Path.home()
+    except RuntimeError:
+        raise UsageError("completion: $HOME: wanted a folder, got nothing") from None
 
 
 def _folders_made(path: Path) -> int | None:
