@@ -10,6 +10,7 @@ from daguerre import sensors, stocks
 from daguerre.cli import main
 from daguerre.errors import did_you_mean, suggest
 from daguerre.scene.node_names import no_node
+from daguerre.scene.packed.values import _camera
 from tests.support import scenes
 
 NODES = ["World/Table/Top", "World/Lamp/Top", "World/Lamp/Shade", "ground"]
@@ -65,6 +66,9 @@ def test_nodes_cameras_sensors_and_stocks_say_it_alike(
         ("--catcher", "tble", "Table"),
         ("--camera", "master2", "Master"),
         ("--sensor", "A7R-II", "sony-a7r-ii"),
+        ("--lens", "thinn", "thin"),
+        ("--lens", "canon 50mm 1.4", "canon-rf-50mm-f1.2"),
+        ("--lens", "cannon", "canon-35mm-f1.8"),
     ):
         assert main(["info", "room.glb", flag, wrong]) in (2, 3)
         assert f"(did you mean '{right}'" in capsys.readouterr().err
@@ -72,3 +76,11 @@ def test_nodes_cameras_sensors_and_stocks_say_it_alike(
         sensors.load("a7r")
     with pytest.raises(dg.InputError, match=r"stock '800': .* \(did you mean 'generic-tungsten"):
         stocks.load("800")
+
+
+def test_a_scene_file_with_a_wrong_lens_says_it_alike() -> None:
+    for wrong, right in (("canon 50mm 1.4", "canon-rf-50mm-f1.2"), ("pinhol", "pinhole")):
+        with pytest.raises(dg.InputError, match=f"did you mean '{right}'"):
+            _camera(lens=wrong)
+    with pytest.raises(dg.InputError, match="did you mean 'sony-a7r-ii'"):
+        _camera(sensor="a7r")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from daguerre.checks import short
@@ -39,5 +40,21 @@ def load(name_or_path: str | Path | Lens, configuration: str | None = None) -> L
                 f"got {short(configuration)}"
             )
         return name_or_path
-    path = file_of("lens", name_or_path, FOLDER, names(), (".json", *SUFFIXES), suggest)
-    return read(path, configuration)
+    return read(path_of(name_or_path), configuration)
+
+
+def path_of(name_or_path: str | Path, others: Iterable[str] = ()) -> Path:
+    """File of a lens of the library, or the given file.
+
+    Args:
+        name_or_path: As for ``load``.
+        others: Other names that would do, for suggestions.
+
+    Raises:
+        InputError: The name is unknown; the message suggests the nearest.
+    """
+
+    def near(name: str) -> str:
+        return suggest(name, others)
+
+    return file_of("lens", name_or_path, FOLDER, names(), (".json", *SUFFIXES), near)

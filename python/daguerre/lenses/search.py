@@ -78,12 +78,19 @@ def find(words: str) -> list[Entry]:
     return [by_name[name] for name in ranked(words, library())]
 
 
-def suggest(name: object) -> str:
-    """Makes " (did you mean 'a' or 'b'?)" for a lens name that is unknown: found, near, similar."""
+def suggest(name: object, others: Iterable[str] = ()) -> str:
+    """Makes " (did you mean 'a' or 'b'?)" for a lens name that is unknown: found, near, similar.
+
+    Args:
+        name: The name.
+        others: Names beside those of the library that would do, such as thin.
+    """
     text = str(name)[:MOST]
     if not _asked(text):
         return ""
-    found = ranked(text, library()) or nearest(text, library())
+    found = (
+        ranked(text, library()) or errors.nearest(text, list(others)) or nearest(text, library())
+    )
     return errors.did_you_mean(found) or errors.suggest(text, names())
 
 

@@ -18,6 +18,7 @@ from daguerre.camera.parameters.needs import LENS_ITSELF, TRACED
 from daguerre.checks import short
 from daguerre.errors import UsageError
 from daguerre.lenses.dispersion import without_dispersion
+from daguerre.lenses.library import path_of
 from daguerre.parameters.parameter import Parameter
 
 #: Trait of a camera's lens, without and with a prescription.
@@ -59,7 +60,9 @@ def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
 
 def prescription_of(camera: Camera) -> lenses.Lens:
     """Loads the lens of a camera that has one with a prescription."""
-    lens = lenses.load(camera.lens or "")
+    lens = camera.lens or ""
+    if not isinstance(lens, lenses.Lens):
+        lens = lenses.read(path_of(lens, IDEAL))
     return lens if camera.dispersion else without_dispersion(lens)
 
 

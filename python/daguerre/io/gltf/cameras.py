@@ -21,6 +21,7 @@ from daguerre.camera.parameters import LIMITS
 from daguerre.files.json_item import Item, clean, short
 from daguerre.files.notes import Notes
 from daguerre.lenses import library
+from daguerre.lenses.search import suggest
 
 from .shutter import SHUTTER
 
@@ -62,7 +63,8 @@ def _lens(item: Item) -> str:
     # For safety a scene file may name a lens of the library, but no lens file.
     name = item.text()
     if name not in (*IDEAL, *library.names()):
-        item.fail(f"refused: wanted the name of a lens in the library, got {short(name)}")
+        hint = suggest(name, IDEAL)
+        item.fail(f"refused: wanted the name of a lens in the library, got {short(name)}{hint}")
     return clean(name)
 
 

@@ -6,7 +6,9 @@ numbers, names or flags are rows of ``PLAIN``, by which ``camera_writer`` writes
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -20,6 +22,7 @@ from daguerre.checks import short
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.io.iris import read_grey
 from daguerre.lenses import library as lenses
+from daguerre.lenses import search
 from daguerre.motion.values import Keys, at, keys
 from daguerre.sensors import library as sensors
 
@@ -105,8 +108,12 @@ def read_ours(read: Checked) -> dict[str, Any]:
         InputError: A value is wrong; the message names the attribute.
     """
     found = {row.field: _plain(read, row) for row in PLAIN}
-    found["lens"] = _named(read, LENS, (*IDEAL, *lenses.names()))
-    found["sensor"] = _named(read, SENSOR, sensors.names())
+    found["lens"] = _named(
+        read, LENS, (*IDEAL, *lenses.names()), partial(search.suggest, others=IDEAL)
+    )
+    found["sensor"] = _named(
+        read, SENSOR, sensors.names(), partial(suggest, known=sensors.names(), few=True)
+    )
     for field, (name, counts) in ARRAYS.items():
         found[field] = _array(read, name, counts)
     for field, name in PICTURES.items():
@@ -135,15 +142,20 @@ def _plain(read: Checked, row: Plain) -> Any:
     return None if value is None else read.accepted(name, row.field, value)
 
 
-def _named(read: Checked, name: str, names: tuple[str, ...] | list[str]) -> str | None:
-    """Name of a library, or the file of an asset."""
+def _named(
+    read: Checked,
+    name: str,
+    names: tuple[str, ...] | list[str],
+    near: Callable[[str], str],
+) -> str | None:
+    """Name of a library, or the file of an asset; ``near`` suggests names after a wrong one."""
     word = read.text(f"{PREFIX}{name}:name")
     if word is not None:
         if word not in names:
             read.fail(
                 f"{PREFIX}{name}:name",
                 f"a {name} of the library",
-                short(word) + suggest(word, names, few=True),
+                short(word) + near(word),
             )
         return word
     path = read.asset(f"{PREFIX}{name}:file")

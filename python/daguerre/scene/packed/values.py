@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,9 +14,9 @@ from daguerre.camera.lens_scatter import LensScatter
 from daguerre.camera.projection import Projection
 from daguerre.camera.rolling_shutter import RollingShutter
 from daguerre.checks import short
-from daguerre.errors import InputError
+from daguerre.errors import InputError, suggest
 from daguerre.files.value import MADE_BY
-from daguerre.lenses import library
+from daguerre.lenses import library, search
 from daguerre.motion.values import Composite, Keys, Spin, is_dynamic, keys, spin
 from daguerre.scene.light_profile import LightProfile, ProfileCone, ProfileFocus, ProfileTable
 from daguerre.scene.lights import DirectionalLight, PointLight, SphereLight, SpotLight
@@ -67,8 +68,15 @@ def _keys(times: Any, values: Any, interpolation: str, pivot: Any = None) -> Key
 
 def _camera(**given: Any) -> Camera:
     """A camera; for safety a file may name a lens or a sensor of the library, but no file."""
-    _listed("lens", given.get("lens"), (*IDEAL, *library.names()))
-    _listed("sensor", given.get("sensor"), sensor_names())
+    _listed(
+        "lens", given.get("lens"), (*IDEAL, *library.names()), partial(search.suggest, others=IDEAL)
+    )
+    _listed(
+        "sensor",
+        given.get("sensor"),
+        sensor_names(),
+        partial(suggest, known=sensor_names(), few=True),
+    )
     motion = given.get("motion", {})
     if not isinstance(motion, Mapping) or not all(map(is_dynamic, motion.values())):
         raise InputError("camera: motion: wanted values over time, got others")
@@ -77,11 +85,11 @@ def _camera(**given: Any) -> Camera:
     return Camera(**given)
 
 
-def _listed(what: str, name: Any, names: Any) -> None:
+def _listed(what: str, name: Any, names: Any, near: Callable[[str], str]) -> None:
     if name is not None and not (isinstance(name, str) and name in names):
         raise InputError(
             f"camera: {what}: refused: wanted the name of a {what} in the library, got "
-            f"{short(name)}"
+            f"{short(name)}{near(str(name))}"
         )
 
 
