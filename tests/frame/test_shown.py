@@ -16,7 +16,7 @@ import pytest
 import daguerre as dg
 from daguerre.development import Picture
 from daguerre.errors import OutputError
-from daguerre.frame import shown
+from daguerre.frame import viewer as opening
 
 FRAME = dg.Frame(np.full((4, 6, 3), 0.5, np.float32))
 PICTURES = [FRAME, Picture(np.full((4, 6, 3), 0.5, np.float32))]
@@ -32,7 +32,7 @@ def desktop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("PATH", str(folder))
     monkeypatch.setenv("DISPLAY", ":99")
     (tmp_path / "tmp").mkdir()
-    monkeypatch.setattr(shown.tempfile, "tempdir", str(tmp_path / "tmp"))
+    monkeypatch.setattr(opening.tempfile, "tempdir", str(tmp_path / "tmp"))
     return tmp_path
 
 
@@ -54,7 +54,7 @@ def gone(folder: Path, seconds: float = 10.0) -> bool:
 def test_the_viewer_gets_the_picture_and_its_file_goes(
     picture: Any, desktop: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(shown, "KEPT_S", 2)
+    monkeypatch.setattr(opening, "KEPT_S", 2)
     viewer(desktop, f'cp "$1" {desktop}/seen.png')
     picture.show()
     assert len((desktop / "seen.png").read_bytes()) == len(picture._repr_png_())
@@ -65,7 +65,7 @@ def test_the_viewer_gets_the_picture_and_its_file_goes(
 def test_a_viewer_that_stays_open_does_not_hold_up(
     desktop: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(shown, "KEPT_S", 0)
+    monkeypatch.setattr(opening, "KEPT_S", 0)
     viewer(desktop, "exec sleep 4", "feh")
     begin = time.monotonic()
     FRAME.show()
@@ -104,7 +104,7 @@ def test_a_full_disk_is_an_error(desktop: Path, monkeypatch: pytest.MonkeyPatch)
     def refuse(*given: Any, **more: Any) -> Any:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(shown.os, "fdopen", refuse)
+    monkeypatch.setattr(opening.os, "fdopen", refuse)
     with pytest.raises(OutputError, match="cannot write: No space left on device"):
         FRAME.show()
     assert gone(desktop / "tmp", 0)

@@ -15,6 +15,8 @@ import pytest
 
 import daguerre
 from daguerre import analysis, lenses
+from daguerre.analysis.ghosts import Ghosts
+from daguerre.analysis.glare import VeilingGlare
 from daguerre.files.value import BriefRecord
 
 #: Rooms with records that users get; those of readers (`io`, `blender`) stay inside.
@@ -88,7 +90,11 @@ def test_results_of_the_bench_print_in_a_line(light: analysis.Pencil) -> None:
         assert "array(" not in text
     assert repr(bench).startswith("Bench(lens=<Tessar")
     assert "f_stop=4, " in repr(bench)
-    assert "bench=<Bench>, film=[0, 12], " in repr(light)
+    assert ", film=[0, 12], " in repr(light)
+    assert re.search(r"efl=49\.99\d*, .*entrance_pupil=Pupil\(z=", repr(bench.order))
+    ghosts = Ghosts(bench, 15, rays=9)
+    assert re.match(r"<Ghosts of Tessar .*: \d+, light from 15 deg>", repr(ghosts))
+    assert re.match(r"<VeilingGlare \d.* %>", repr(VeilingGlare(bench, walks=600)))
     assert re.match(r"Spot\(points=<array \(\d+, 2\)>", repr(analysis.spot(light)))
 
 
@@ -105,7 +111,9 @@ def test_what_a_record_prints_of_its_parts() -> None:
     assert text(np.zeros(5)) == "<array (5,)>"
     assert text(np.zeros((2, 2))) == "<array (2, 2)>"
     assert text(1 / 3) == text(np.float64(1 / 3)) == "0.333333"
-    assert text((1, 2)) == "(1, 2)"
+    assert text((1, 2 / 3)) == "(1, 0.666667)"
+    assert text((1,)) == "(1,)"
+    assert text((1, (2.0, 1 / 3))) == "(1, (2, 0.333333))"
     assert text(list(range(99))) == "<list of 99>"
     assert text(Part(3)) == "Part(values=3)"
     assert text(Part(Part("x" * 200, "y" * 200), "z" * 200)) == "<Part>"

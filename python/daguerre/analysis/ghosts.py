@@ -102,6 +102,10 @@ class Ghosts(Plotted):
             for surfaces, light, everywhere, center, radius, points in found
         ]
 
+    def __repr__(self) -> str:
+        name = self.bench.lens.name
+        return f"<Ghosts of {name}: {len(self.all)}, light from {self.angle_deg:g} deg>"
+
     def find(self, surfaces: Sequence[int]) -> Ghost:
         """Returns the ghost of two surfaces, given in either order.
 

@@ -95,6 +95,9 @@ class VeilingGlare:
         glare = self.ghosts + self.scatter
         self.index = 100 * glare / (1 + glare)
 
+    def __repr__(self) -> str:
+        return f"<VeilingGlare {self.index:.3g} %>"
+
     def facts(self) -> dict[str, Any]:
         """Returns all results as plain values."""
         return {

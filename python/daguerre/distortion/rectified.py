@@ -66,6 +66,9 @@ class RectifiedView:
             film = lens.projection.film(self.setup.frame_size_mm[0])
             self._focal, self._principal = map(np.array, (film["focal_mm"], film["principal_mm"]))
 
+    def __repr__(self) -> str:
+        return "<RectifiedView {}x{}>".format(*self.resolution)
+
     @cached_property
     def distance(self) -> float:
         """Distance of the plane on which both cameras are compared, m."""

@@ -140,6 +140,8 @@ def _brief(value: Any) -> str:
         return f"{value:.6g}"
     if isinstance(value, tuple | list | dict) and len(value) > _FEW:
         return f"<{type(value).__name__} of {len(value)}>"
+    if type(value) is tuple and len(value) > 1:
+        return f"({', '.join(map(_brief, value))})"
     text = repr(value) if isinstance(value, BriefRecord) else short(value)
     if isinstance(value, Value) and (head := repr(value)).count("\n"):
         return f"<{head.partition(chr(10))[0]}>"

@@ -17,7 +17,7 @@ from daguerre.cached import cached_property
 from daguerre.checks import whole
 from daguerre.doors import guarded
 from daguerre.errors import InputError
-from daguerre.files.value import Value
+from daguerre.files.value import BriefRecord, Value
 
 from .configurations import Configuration
 from .errors import reported
@@ -48,8 +48,8 @@ class Nominal:
 
 
 @guarded
-@dataclass(frozen=True)
-class Pupil:
+@dataclass(frozen=True, repr=False)
+class Pupil(BriefRecord):
     """An image of the stop: z in the lens frame and diameter wide open, mm."""
 
     z: float
@@ -57,8 +57,8 @@ class Pupil:
 
 
 @guarded
-@dataclass(frozen=True)
-class FirstOrder:
+@dataclass(frozen=True, repr=False)
+class FirstOrder(BriefRecord):
     """First-order properties at one wavelength.
 
     Lengths in mm. Points and pupils are z in the lens frame: z = 0 at the first vertex, +z toward
