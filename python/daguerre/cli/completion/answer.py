@@ -43,6 +43,15 @@ class _Flag(NamedTuple):
     of: list[str]
 
 
+class _Read(NamedTuple):
+    """Words between a command and the cursor: flags, the one without its value, arguments."""
+
+    given: list[_Flag]
+    arguments: int
+    open: _Flag | None
+    ended: bool
+
+
 def answer(before: list[str], current: str) -> Answer:
     """Finds what can stand at the cursor.
 
@@ -70,33 +79,45 @@ def _of_command(
 ) -> Answer:
     """Answers inside a command: a value of a flag, a flag, or an argument."""
     by_name = {name: flag for flag in flags for name in flag.names}
-    given, arguments, open_flag, ended = [], 0, None, False
+    read = _read(words, by_name)
+    if read.open is not None:
+        return _value(takes(read.open.takes or "", kinds), "", current)
+    if current.startswith("-") and not read.ended:
+        kept, flag = _attached(current, by_name)
+        if flag is not None:
+            return _value(takes(flag.takes or "", kinds), kept, current.removeprefix(kept))
+        return _flags(flags, read.given, current)
+    wanted = _argument(command["takes"], read.arguments)
+    if wanted is None and not current and not read.ended:
+        return _flags(flags, read.given, current)
+    return _value(takes(wanted or "", kinds), "", current)
+
+
+def _read(words: list[str], by_name: dict[str, _Flag]) -> _Read:
+    """Reads the words between a command and the cursor."""
+    given: list[_Flag] = []
+    arguments, open_flag, ended = 0, None, False
     for word in words:
         if open_flag is not None:
             open_flag = None
         elif word == "--":
             ended = True
         elif word.startswith("-") and not ended:
-            flag = by_name.get(word.partition("=")[0]) or by_name.get(word[:2])
+            flag = by_name.get(word) or _attached(word, by_name)[1]
             given += [flag] if flag else []
-            if flag and flag.takes is not None and word in flag.names:
-                open_flag = flag
+            open_flag = flag if flag and flag.takes is not None and word in flag.names else None
         else:
             arguments += 1
-    if open_flag is not None:
-        return _value(takes(open_flag.takes or "", kinds), "", current)
-    if current.startswith("-") and not ended:
-        name, equals, value = current.partition("=")
-        short = by_name.get(current[:2]) if current[:2] != "--" and len(current) > 2 else None
-        if equals and (flag := by_name.get(name)):
-            return _value(takes(flag.takes or "", kinds), name + "=", value)
-        if short is not None and short.takes is not None:
-            return _value(takes(short.takes, kinds), current[:2], current[2:])
-        return _flags(flags, given, current)
-    wanted = _argument(command["takes"], arguments)
-    if wanted is None and not current and not ended:
-        return _flags(flags, given, current)
-    return _value(takes(wanted or "", kinds), "", current)
+    return _Read(given, arguments, open_flag, ended)
+
+
+def _attached(word: str, by_name: dict[str, _Flag]) -> tuple[str, _Flag | None]:
+    """Beginning and flag of a word that holds its value, too: ``--res=8x6`` or ``-oFILE``."""
+    name, equals, _ = word.partition("=")
+    if equals and name in by_name:
+        return name + equals, by_name[name]
+    short = by_name.get(word[:2]) if len(word) > 2 else None
+    return word[:2], short if short and short.takes is not None else None
 
 
 def _argument(placeholders: list[str], count: int) -> str | None:
