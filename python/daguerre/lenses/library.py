@@ -47,7 +47,7 @@ def path_of(name_or_path: str | Path, others: Iterable[str] = ()) -> Path:
     """File of a lens of the library, or the given file.
 
     Args:
-        name_or_path: As for ``load``.
+        name_or_path: The same as for ``load``.
         others: Other names that would do, for suggestions.
 
     Raises:
