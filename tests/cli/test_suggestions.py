@@ -53,6 +53,11 @@ def test_the_last_part_of_a_path_suggests_its_node(name: str, hint: str) -> None
     assert f"no node named {name!r} {hint}" in no_node(name, NODES)
 
 
+def test_a_part_of_several_paths_suggests_them_all() -> None:
+    nodes = ["A/Lamp/Top", "B/Lamp/Top", "C/Chair/Top"]
+    assert no_node("Lamp/Top", nodes).endswith("(did you mean 'A/Lamp/Top' or 'B/Lamp/Top'?)")
+
+
 def test_nodes_cameras_sensors_and_stocks_say_it_alike(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -66,7 +71,7 @@ def test_nodes_cameras_sensors_and_stocks_say_it_alike(
         ("--catcher", "tble", "Table"),
         ("--camera", "master2", "Master"),
         ("--sensor", "A7R-II", "sony-a7r-ii"),
-        ("--lens", "thinn", "thin"),
+        ("--lens", "pinhol", "pinhole"),
         ("--lens", "canon 50mm 1.4", "canon-rf-50mm-f1.2"),
         ("--lens", "cannon", "canon-35mm-f1.8"),
     ):

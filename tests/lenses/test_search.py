@@ -113,6 +113,12 @@ def test_kinds_come_from_the_numbers(name: str, those: set[str], not_those: set[
     assert not not_those & kinds(name)
 
 
+def test_a_telephoto_construction_with_a_wide_angle_is_wide() -> None:
+    for words in ("tele", "telephoto", "telepho"):
+        assert "olympus-xa-35mm-f2.8" not in found(words)
+    assert "olympus-xa-35mm-f2.8" in found("wide compact")
+
+
 def test_each_kind_has_a_lens_and_each_lens_a_kind() -> None:
     used = {kind.words for entry in ENTRIES for kind in kinds_of(entry)}
     assert used == {kind.words for kind in KINDS}
