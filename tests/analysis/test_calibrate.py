@@ -268,7 +268,7 @@ def test_a_stage_says_where_the_lens_puts_things(tmp_path: Path) -> None:
         (["--model", "fishey"], 2, "did you mean 'fisheye'"),
         (["--model", "cube"], 2, "model"),
         (["--terms", "15"], 2, "terms of opencv"),
-        (["--model", "all", "--terms", "4"], 2, "no --terms"),
+        (["--model", "all", "--terms", "4"], 2, "writes no file"),
         (["--model", "all", "-o", "x.yaml"], 2, "no file"),
         (["--shift", "3"], 2, "--shift"),
         (["--focus-by", "eye"], 2, "--focus-by"),

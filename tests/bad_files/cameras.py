@@ -100,7 +100,7 @@ BAD: dict[str, tuple[Change, str]] = {
 ODD: dict[str, tuple[Change, str]] = {
     "on the wall": (lit({"type": "point"}, translation=[0, 0, -2]), ""),
     "at the camera": (lit({"type": "point", "intensity": 1}), ""),
-    "of 1e38 cd": (lit({"type": "point", "intensity": 1e38}), "samples were NaN or Inf"),
+    "of 1e38 cd": (lit({"type": "point", "intensity": 1e38}), "samples were NaN or infinite"),
     "of 1e-300 cd": (lit({"type": "point", "intensity": 1e-300}), ""),
     "of 0 cd": (lit({"type": "point", "intensity": 0}), ""),
     "with a tiny range": (lit({"type": "point", "range": 1e-30}), ""),

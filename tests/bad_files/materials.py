@@ -256,7 +256,7 @@ ODD: dict[str, tuple[Change, str]] = {
     **{f"empty {name}": (put(E + name, {}), "") for name in EVERYTHING},
     "emission of 1e38": (
         put("materials.0.emissiveFactor", [1e38, 1e38, 1e38]),
-        "samples were NaN or Inf",
+        "samples were NaN or infinite",
     ),
     "emission of 1e-300": (put("materials.0.emissiveFactor", [1e-300, 0, 0]), ""),
     "emission of a denormal": (put("materials.0.emissiveFactor", [1e-42, 0, 0]), ""),

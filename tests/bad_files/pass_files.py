@@ -109,11 +109,11 @@ FACTS: dict[str, dict[str, Any]] = {
     "aovs of numbers": {"aovs": [3]},
 }
 STATES: dict[str, tuple[Callable[[np.ndarray], np.ndarray], str]] = {
-    "all ones": (lambda words: np.full_like(words, 0xFFFFFFFF), "samples were NaN or Inf"),
+    "all ones": (lambda words: np.full_like(words, 0xFFFFFFFF), "samples were NaN or infinite"),
     "all zeros": (np.zeros_like, ""),
     "noise": (
         lambda words: np.random.default_rng(1).integers(0, 2**32, words.shape, np.uint32),
-        "samples were NaN or Inf",
+        "samples were NaN or infinite",
     ),
 }
 
@@ -242,7 +242,7 @@ CASES = [
                 f"{D}: daguerre:key",
             ),
             (
-                "no words",
+                "has no data",
                 text(b"daguerre:words\0int\0", b"daguerre:wordz\0int\0"),
                 f"{D}: daguerre:w",
             ),

@@ -118,8 +118,8 @@ def test_lamps_that_are_hidden_from_the_camera_are_noted_and_lamps_without_size_
         thing.visible_camera, thing.visible_diffuse = False, kind != "SUN"
         lights.note_visibility(thing, notes)
     assert notes.sentences() == [
-        "a lamp that the camera cannot see in Blender is seen (2 uses)",
-        "a lamp that diffuse surfaces cannot see in Blender is seen (1 use)",
+        "a lamp hidden from the camera in Blender is visible in Daguerre (2 uses)",
+        "a lamp hidden from diffuse surfaces in Blender is visible in Daguerre (1 use)",
     ]
 
 

@@ -238,7 +238,8 @@ def test_vertices_that_become_more():
     scene = translated()
     assert not scene.motion.meshes
     assert scene.warnings == [
-        "a mesh whose vertices become more or fewer while the shutter is open rests (1 use)"
+        "a mesh that gains or loses vertices while the shutter is open is drawn without motion "
+        "(1 use)"
     ]
 
 

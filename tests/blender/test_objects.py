@@ -282,7 +282,7 @@ def test_what_cannot_be_drawn_is_counted():
     link(grid(1), "flat", scale=(1, 0, 0))
     assert not translated().instances
     assert sorted(translated().warnings) == [
-        "an object that is scaled to nothing is left out (1 use)",
+        "an object with a scale of 0 is left out (1 use)",
         "grease pencil drawings are left out (1 use)",
         "point clouds are left out (1 use)",
         "volumes are left out (2 uses)",

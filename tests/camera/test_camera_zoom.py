@@ -140,7 +140,7 @@ def test_a_model_without_elements_has_none_to_move() -> None:
 @pytest.mark.parametrize(
     ("camera", "wanted"),
     [
-        (thick(), r"25.* to 48.* mm and stands at"),
+        (thick(), r"25.* to 48.* mm, set to"),
         (dg.Camera(lens=LENS, lens_model="thin", t_stop=4.0), r"T/4 of .* is f/3\.\d+: \d+"),
         (dg.Camera(tilt=(6.0, 0.0), focal_length=50.0), r"6 deg: .* line 478 mm from the lens"),
     ],

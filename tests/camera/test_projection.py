@@ -232,7 +232,7 @@ def test_bad_calibrations_name_the_field(values: dict[str, Any], message: str) -
     ("changes", "message"),
     [
         ({"lens": "thin"}, "lens"),
-        ({"focal_length": 50}, "focal_length=None takes it away"),
+        ({"focal_length": 50}, "focal_length=None removes it"),
         ({"tilt": (3, 0)}, "tilt"),
         ({"natural_vignetting": True}, "natural_vignetting"),
         ({"projection": "opencv"}, "Projection"),

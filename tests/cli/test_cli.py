@@ -163,7 +163,7 @@ WRONG = {
     "channels in a png": (
         ["render", "s.glb", "-o", "a.png", "--aov", "depth"],
         2,
-        "--aov: wanted an .exr with -o",
+        "--aov needs an .exr output",
     ),
     "allowed folder": (
         ["render", "s.glb", "-o", "a.exr", "--allow-dir", "no"],
@@ -657,7 +657,7 @@ def test_the_picture_before_denoising_can_be_kept(
 
 def test_a_noisy_picture_needs_a_clean_one(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["render", "s.glb", "-o", "a.exr", "--noisy", "b.exr", *SMALL]) == 2
-    assert "--noisy: wanted --denoise too" in capsys.readouterr().err
+    assert "--noisy needs --denoise" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("stream", ["stdout", "stderr"])

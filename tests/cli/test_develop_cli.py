@@ -133,9 +133,9 @@ def test_mono_files(tmp_path):
 @pytest.mark.parametrize(
     ("words", "code", "named"),
     [
-        (["-o", "x.dng"], 2, "no raw data: wanted --sensor NAME"),
+        (["-o", "x.dng"], 2, "no raw data; add --sensor NAME"),
         (["-o", "x.gif"], 2, "wanted a name ending in"),
-        (["-o", "in.exr"], 2, "wanted another file than the one that is developed"),
+        (["-o", "in.exr"], 2, "this is the file to develop"),
         (["-o", "x.jpg", "--sensor", "ideel"], 3, "ideal"),
         (["-o", "x.jpg", "--sensor", "ideal", "--iso", "1e9"], 2, "iso: wanted"),
         (["-o", "x.jpg", "--iso", "-5"], 2, "--iso"),

@@ -58,7 +58,7 @@ def test_damage_is_found() -> None:
 def test_strangers_are_refused(name: str) -> None:
     session = drawn(0, 1)
     sums = Sums("worker", session.key | {name: "another"}, columns_of(session.state()), {})
-    with pytest.raises(MismatchError, match=f"{name}: wanted that of the client"):
+    with pytest.raises(MismatchError, match=f"{name}: wanted the same as the client's"):
         sums.check_key(session.key)
     if name == "build":
         sums.check_key(session.key, mixed=True)

@@ -133,7 +133,7 @@ def test_a_worker_whose_disk_is_full_draws_nothing() -> None:
     crew = Crew(Full(["good", "full"], plan), tell=told.append)
     assert np.array_equal(drawn(crew).rgb, alone().rgb)
     assert crew.workers.good == {"good"}
-    assert sum("No space left on device; it draws nothing" in text for text in told) == 1
+    assert sum("No space left on device; this worker is not used" in text for text in told) == 1
     with pytest.raises(InputError, match="failed on full: /values: cannot write: No space left"):
         drawn(Crew(Full(["full"], plan)))
 
@@ -186,7 +186,7 @@ def test_workers_of_another_build_draw_nothing() -> None:
     fake = Mixed(["good", "old", "bare"])
     assert np.array_equal(drawn(Crew(fake, tell=told.append)).rgb, alone().rgb)
     assert {name for name, _ in fake.done} == {"good"}
-    assert any(f"old: build: wanted that of the client, {build()}" in text for text in told)
+    assert any(f"old: build: wanted the same as the client's, {build()}" in text for text in told)
     assert any("bare: it has no daguerre of this version" in text for text in told)
     with pytest.raises(InputError, match="no worker can draw: old: build"):
         drawn(Crew(Mixed(["old"])))

@@ -160,7 +160,7 @@ def test_a_worker_of_another_build_is_refused_by_name(client: Any, file: Path) -
     scene = dg.load(file)
     session = Session(scene, scene.camera(), resolution=(24, 16), spp=8)
     session.key["build"] = "1.2.3 of another machine"
-    with pytest.raises(InputError, match=r"build: wanted that of the client, 1\.2\.3"):
+    with pytest.raises(InputError, match=r"build: wanted the same as the client's, 1\.2\.3"):
         drawn(Crew(client), session)
     session.clear()
     drawn(Crew(client, mixed=True), session)

@@ -73,5 +73,5 @@ def test_the_folder_of_strangers_is_refused(
     assert folder.parent == tmp_path
     assert folder.stat().st_mode & 0o777 == 0o700
     folder.chmod(0o777)
-    with pytest.raises(OutputError, match="wanted a folder that only this user can write"):
+    with pytest.raises(OutputError, match="wanted a folder to which only this user can write"):
         Store()

@@ -276,7 +276,7 @@ def test_undistort_needs_nothing_where_nothing_is_lost(room: dg.Scene) -> None:
         dg.render(room, dg.Camera(projection=folds, f_stop=None), resolution=SIZE,
                   overscan="undistort")  # fmt: skip
     absurd = dg.Projection("opencv", SIZE, (12.0, 12.0), None, (9.0, 9.0))
-    with pytest.raises(UsageError, match="px beside a picture of 24 x 16"):
+    with pytest.raises(UsageError, match="px around a picture of 24 x 16"):
         dg.render(room, dg.Camera(projection=absurd, f_stop=None), resolution=SIZE,
                   overscan="undistort")  # fmt: skip
 

@@ -162,12 +162,14 @@ def test_the_head_says_what_lens_it_is(double_gauss, suffix):
 def test_what_code_cannot_express(double_gauss, tmp_path):
     data = double_gauss.to_dict()
     picture = fit("double-gauss-50mm-f2", degree=1, iris=Iris.image(np.ones((4, 4), np.float32)))
-    with pytest.raises(dg.InputError, match="iris: wanted a round one or blades, got a picture"):
+    with pytest.raises(
+        dg.InputError, match="iris: wanted a round iris or blades, got an aperture_image"
+    ):
         picture.save(tmp_path / "lens.osl")
     picture.save(tmp_path / "lens.json")
     tilted = {**data, "film": {**data["film"]}}
     tilted["film"]["plane"] = {**data["film"]["plane"], "x": [0.99, 0, 0.14]}
-    with pytest.raises(dg.InputError, match="film: wanted it across the lens's axis"):
+    with pytest.raises(dg.InputError, match="film: wanted it centred on the lens's axis"):
         code(tilted, ".osl")
     with pytest.raises(dg.InputError, match="setting: wanted the f-stop"):
         code({**data, "setting": None}, ".c")

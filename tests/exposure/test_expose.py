@@ -381,5 +381,5 @@ def test_channels_bands_and_xyz_of_a_render_agree() -> None:
 
 def test_a_frame_whose_sensor_is_gone_asks_for_its_file() -> None:
     frame = flat(0.1, sensor="mine")
-    with pytest.raises(dg.InputError, match=r"frame: sensor 'mine': .* wanted its file, as sensor"):
+    with pytest.raises(dg.InputError, match=r"frame: sensor 'mine': .* give its file as sensor"):
         frame.expose()

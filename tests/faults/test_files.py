@@ -264,7 +264,7 @@ def test_a_snapshot_that_cannot_be_written_does_not_end_the_render(folder: Path)
     process.send_signal(signal.SIGTERM)
     _, said = process.communicate(timeout=60)
     assert process.returncode == 75, said
-    assert "no snapshot: " in said
+    assert "snapshot not saved: " in said
 
 
 def test_a_clock_that_goes_back_changes_nothing(

@@ -37,7 +37,7 @@ def test_streams_that_take_nothing_do_not_end_a_render(
     with OpenEXR.File(str(tmp_path / "a.exr")) as file:
         assert file.channels()  # words would have gone into it
     if more == "--json-progress" and streams == ">/dev/full":
-        assert run.stderr.count("no more progress") == 1
+        assert run.stderr.count("progress is no longer reported") == 1
     if more == "--json-progress" and ">" not in streams:
         assert json.loads(run.stdout.splitlines()[-1])["event"] == "done"
 

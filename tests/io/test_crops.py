@@ -74,4 +74,4 @@ def test_the_command_joins(
     assert main(["merge", *names, "-o", str(tmp_path / "a.exr")]) == 0
     assert "40 x 150 px of 3 crops" in capsys.readouterr().err
     assert main(["merge", *names, "-o", str(tmp_path / "a.png")]) == 2
-    assert "wanted one .exr output" in capsys.readouterr().err
+    assert "crops are joined into one .exr output" in capsys.readouterr().err

@@ -168,8 +168,12 @@ def test_annotations_change_nothing_of_the_picture(folder: Path) -> None:
     [
         (["--coco", "c.txt"], 2, "--coco: wanted a name ending in .json, got c.txt"),
         (["--coco", "no/such/c.json"], 5, "c.json"),
-        (["--categories", "k.json"], 2, "--categories: wanted --coco FILE.json too"),
-        (["--coco", "k.json", "--categories", "k.json"], 2, "this name is taken"),
+        (["--categories", "k.json"], 2, "--categories needs --coco FILE.json"),
+        (
+            ["--coco", "k.json", "--categories", "k.json"],
+            2,
+            "another file of this command has this name",
+        ),
         (["--coco", "c.json", "--categories", "none.json"], 3, "none.json: no such file"),
         (["--coco", "c.json", "--categories", "k.json"], 2, "did you mean 'Tent'"),
     ],

@@ -82,7 +82,9 @@ def test_what_cannot_be_a_background_is_refused() -> None:
     with pytest.raises(dg.UsageError, match=r"plate: wanted a photograph \(--plate\), got none"):
         dg.render(scene, dg.Camera(), background="plate", **OPTIONS)
     scene.set_plate(np.ones((48, 48, 3)))
-    with pytest.raises(dg.InputError, match=r"72 x 48 px or as many times that, got 48 x 48 px"):
+    with pytest.raises(
+        dg.InputError, match=r"72 x 48 px, as the picture, or a multiple of it, got 48 x 48 px"
+    ):
         dg.render(scene, dg.Camera(), background="plate", **OPTIONS)
     scene.set_plate(np.ones((48, 72, 3)), dg.Camera(focal_length=35))
     with pytest.raises(dg.UsageError, match="wanted a photo by the camera that renders"):

@@ -121,19 +121,19 @@ def test_what_is_missing_is_named_before_anything_is_made(
     ("objects", "out", "flags", "message"),
     [
         ("object.####.exr", "out.png", ("--frames", "1-3"), "wanted a name with # for 3 frames"),
-        ("object.####.exr", "out.png", (), "wanted --frames for # in the name, got none"),
+        ("object.####.exr", "out.png", (), "# stands for the frame number and needs --frames"),
         (
             "object.0001.exr",
             "out.#.png",
             ("--frames", "1-3"),
             "wanted # for the frame number in the name",
         ),
-        ("object.0001.exr", "out.png", ("--resume",), "--resume: needs --frames"),
+        ("object.0001.exr", "out.png", ("--resume",), "--resume needs --frames"),
         (
             "object.####.exr",
             "object.####.exr",
             ("--frames", "1-3"),
-            "wanted an output file that is not an input",
+            "this is one of the inputs",
         ),
         ("object.####.exr", "out.#.png", ("--frames", "3-1"), "--frames: wanted frames such as"),
     ],

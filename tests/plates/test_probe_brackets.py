@@ -115,7 +115,7 @@ def test_linear_files_with_ev(tmp_path):
     made = dg.light_probe(paths, ev=(-2, 2), sun="off")
     fine = light.max(axis=2) < 30
     assert made.image[fine] == pytest.approx(light[fine], rel=1e-4)
-    with pytest.raises(InputError, match=r"wanted --ev, such as .*, as linear files have none"):
+    with pytest.raises(InputError, match=r"linear files do not store it; give --ev, such as "):
         dg.light_probe(paths)
 
 
@@ -183,14 +183,16 @@ def test_turned_photographs_stand_upright(tmp_path):
 
 def test_clipped_everywhere(tmp_path):
     path = save(tmp_path / "white.jpg", np.full((64, 128, 3), 255, np.uint8), exposure(1))
-    with pytest.raises(InputError, match="wanted light that is not clipped, got hardly any"):
+    with pytest.raises(InputError, match="nearly all light is clipped"):
         dg.light_probe(path)
     path = save(tmp_path / "black.jpg", np.zeros((64, 128, 3), np.uint8), exposure(1))
-    with pytest.raises(InputError, match="wanted light, got a black picture"):
+    with pytest.raises(InputError, match="the picture is black"):
         dg.light_probe(path)
 
 
 def test_recovery_needs_brackets(tmp_path):
     path = save(tmp_path / "one.png", np.full((64, 128, 3), 90, np.uint8), exposure(1))
-    with pytest.raises(UsageError, match=r"wanted photographs at least 0.3 EV apart for recover"):
+    with pytest.raises(
+        UsageError, match=r"--response recover needs photographs at least 0.3 EV apart"
+    ):
         dg.light_probe(path, response="recover")

@@ -181,7 +181,7 @@ def test_nan_is_counted_and_kept(tmp_path, capsys):
     given["G"][60, 1] = np.inf
     source = write(tmp_path / "in.exr", given)
     assert cli.main(["post", str(source), "-o", str(source), "--effect", NOTHING]) == 0
-    assert "2 pixels with NaN" in capsys.readouterr().err
+    assert "2 pixels are NaN" in capsys.readouterr().err
     found, _ = read(source)
     assert np.array_equal(found["R"], given["R"], equal_nan=True)
     assert np.isinf(found["G"][60, 1])
@@ -243,7 +243,7 @@ def test_units_of_parameters():
         (["vignetting:modl=natural"], 2, "did you mean 'model'"),
         (["vigneting"], 2, "did you mean 'vignetting'"),
         (["vignetting:k1"], 2, "wanted key=value, got 'k1'"),
-        (["vignetting:k1=1,k1=2"], 2, "got it twice"),
+        (["vignetting:k1=1,k1=2"], 2, "got twice"),
         (["vignetting:model=natral"], 2, "did you mean 'natural'"),
         (["vignetting:k1=much"], 2, "k1: wanted a number, got 'much'"),
         (
@@ -251,8 +251,8 @@ def test_units_of_parameters():
             2,
             "focal_length: wanted a number of mm of at least",
         ),
-        (["vignetting"], 2, "wanted its size, such as sensor=36x24"),
-        (["vignetting:sensor=36x24"], 2, "focal_length: wanted a focal length in mm"),
+        (["vignetting"], 2, "the file has none; give its size in mm, such as sensor=36x24"),
+        (["vignetting:sensor=36x24"], 2, "focal_length: the file has none"),
         (["vignetting:model=lens,sensor=36x24"], 2, "lens: wanted a name"),
         (["vignetting:model=lens,lens=nothing,sensor=36x24"], 3, "no lens of the library"),
         (["film"], 2, "gain: wanted a number of stops of at least -10, got nothing"),

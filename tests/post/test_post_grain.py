@@ -84,5 +84,5 @@ def test_black_alpha_and_what_is_no_number_stay() -> None:
     assert (out[3, 3, :3] == 0).all()
     assert np.isnan(out[4, 4, 0])
     assert np.isfinite(np.delete(out.ravel(), (4 * 20 + 4) * 4)).all()
-    with pytest.raises(UsageError, match="sensor: wanted its size"):
+    with pytest.raises(UsageError, match="sensor: the file has none; give its size"):
         dg.post.grain(image)

@@ -89,7 +89,7 @@ def test_bad_pixels_are_counted_once(tmp_path: Path, capsys: pytest.CaptureFixtu
     source = write(tmp_path / "in.exr", picture())
     words = ["post", str(source), "-o", str(tmp_path / "out.exr"), "--effect", WORDS["bloom"]]
     assert cli.main(words) == 0
-    assert "2 pixels with NaN or infinity, kept" in capsys.readouterr().err
+    assert "2 pixels are NaN or infinite; they are kept" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("size", [(20, 11), (31, 31), (280, 301)])

@@ -144,7 +144,7 @@ def test_light_paths_find_what_the_camera_finds_in_fog(density: dg.DensityGrid |
 def test_media_refuse_catchers_which_do_not_know_them() -> None:
     scene = box_of(dg.Medium((1,) * 3))
     scene.set_catcher("cloud")
-    with pytest.raises(dg.InputError, match="catchers: wanted none in a scene with media"):
+    with pytest.raises(dg.InputError, match="catchers cannot be used in a scene with media"):
         mean(scene, samples=1)
 
 
@@ -153,5 +153,7 @@ def test_endless_fog_says_that_it_keeps_out_the_sky() -> None:
     scene.set_environment(color=(1, 1, 1))
     scene.set_fog(dg.Medium((1,) * 3))
     session = dg.Session(scene, NARROW, resolution=(4, 4))
-    assert any("fog without end" in note for note in session.warnings)
+    assert any(
+        "endless fog absorbs all light of the environment" in note for note in session.warnings
+    )
     assert mean(scene, samples=1) == pytest.approx([0] * 3)

@@ -133,7 +133,7 @@ def test_overlap_is_refused() -> None:
     ],
 )
 def test_passes_of_other_settings_are_refused(options: dict[str, object], says: str) -> None:
-    with pytest.raises(MismatchError, match=rf"different: .*{says}"):
+    with pytest.raises(MismatchError, match=rf"they differ in .*{says}"):
         merging.merge([drawn((0, 4)), drawn((4, 8), **options)])
 
 
@@ -150,7 +150,7 @@ def test_passes_of_another_camera_or_scene_are_refused() -> None:
         aovs=True,
     )
     stopped.draw(4, 8)
-    with pytest.raises(MismatchError, match="different: the camera"):
+    with pytest.raises(MismatchError, match="they differ in the camera"):
         merging.merge([drawn((0, 4)), passes.pass_of(stopped)])
 
 

@@ -136,9 +136,9 @@ def test_files_say_how_and_merge_keeps_it(tmp_path: Path, monkeypatch: pytest.Mo
             ["--gt-lens", "meen", "--aov", "N"],
             "--gt-lens: wanted chief or mean, got 'meen' (did you mean",
         ),
-        (["--gt-lens", "mean"], "--gt-lens: wanted channels to write"),
-        (["--aov", "coverage"], "--aov coverage: wanted --gt-lens mean"),
-        (["--gt-rays", "9", "--aov", "N"], "--gt-rays: wanted --gt-lens mean too"),
+        (["--gt-lens", "mean"], "--gt-lens needs ground truth to write"),
+        (["--aov", "coverage"], "--aov coverage needs --gt-lens mean"),
+        (["--gt-rays", "9", "--aov", "N"], "--gt-rays needs --gt-lens mean"),
         (["--gt-lens", "mean", "--gt-rays", "0", "--aov", "N"], "--gt-rays: wanted 1 .. 65536"),
     ],
 )

@@ -129,7 +129,7 @@ class Odd:
     [
         (dg.Material(dg.Gltf(roughness=2)), "roughness"),
         (dg.Material(dg.Gltf(base_color="red")), "base_color"),  # type: ignore[arg-type]
-        (dg.Material(dg.Diffuse()), "kind: wanted Gltf at all times, got Diffuse"),
+        (dg.Material(dg.Diffuse()), "kind: cannot change .*, from Gltf to Diffuse"),
         (dg.Material(dg.Gltf(alpha_mode="mask")), "numbers alone change"),
         ("paint", "wanted a Material"),
     ],
@@ -144,7 +144,7 @@ def test_materials_that_turn_into_something_else(later: Any, message: str) -> No
 @pytest.mark.parametrize(
     ("later", "message"),
     [
-        ((dg.SpotLight(), np.eye(4)), "kind: wanted a point light at all times"),
+        ((dg.SpotLight(), np.eye(4)), "kind: cannot change .*, from point to "),
         ((dg.PointLight(intensity=(-1, 0, 0)), np.eye(4)), "intensity"),
         ((None, np.eye(4)), "wanted a point, spot, directional or sphere light"),
     ],

@@ -245,11 +245,11 @@ def test_the_command_line_exposes_film(tmp_path: Path, capsys: pytest.CaptureFix
     frame.metadata["isoSpeed"] = 100.0
     frame.save(tmp_path / "set.exr")
     assert main(["develop", str(tmp_path / "set.exr"), "-o", out, *film]) == 0
-    assert "2.0 EV too much light; --ev -2.0" in capsys.readouterr().err
+    assert "the picture is 2.0 EV overexposed; --ev -2.0" in capsys.readouterr().err
     for extra, message in (
         (["--sensor", "ideal"], "--stock"),
         (["--iso", "400"], "--stock"),
-        (["-o", str(tmp_path / "x.dng")], "film has no raw stage"),
+        (["-o", str(tmp_path / "x.dng")], "film has no raw data"),
     ):
         assert main(["develop", source, "-o", out, *film, *extra]) == 2
         assert message in capsys.readouterr().err

@@ -74,7 +74,7 @@ def test_a_port_in_use_is_said_and_the_next_one_serves(file: Path) -> None:
         port = taken.getsockname()[1]
         with viewed(str(file), *QUICK, "--port", str(port)) as process:
             lines = lines_until_address(process)
-            assert any(line.startswith(f"port {port} is in use; this is ") for line in lines), lines
+            assert any(line.startswith(f"port {port} is in use; using ") for line in lines), lines
             assert f":{port}/" not in lines[-1]
 
 
@@ -98,7 +98,7 @@ def test_the_command_has_the_flags_given(file: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "wanted", "code"),
     [
-        (["--host", "0.0.0.0"], "wanted --token too", 2),
+        (["--host", "0.0.0.0"], "needs --token", 2),
         (["--host", "192.0.2.1", "--token", "x" * 20], "--host 192.0.2.1", 2),
         (["--lens", "no-such-lens"], "no-such-lens", 3),
         (["--f-stop", "-1"], "--f-stop", 2),

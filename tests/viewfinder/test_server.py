@@ -126,8 +126,11 @@ def test_a_dial_that_cannot_be_goes_back(server: Live) -> None:
     ("fault", "said"),
     [
         (OSError(28, "No space left on device", "desk-1.png"), "desk-1.png: No space left"),
-        (MemoryError(), "memory: wanted more"),
-        (RuntimeError("planted"), "internal: RuntimeError: planted; this is a fault of daguerre"),
+        (MemoryError(), "out of memory"),
+        (
+            RuntimeError("planted"),
+            "internal error: RuntimeError: planted; this is a bug in daguerre",
+        ),
     ],
     ids=["disk", "memory", "ours"],
 )

@@ -69,5 +69,5 @@ def test_a_wrong_address_is_refused(address: str) -> None:
 def test_where_nothing_listens(tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-    with pytest.raises(UsageError, match="wanted a tev that listens there"):
+    with pytest.raises(UsageError, match="no tev listens there"):
         Tev(f"127.0.0.1:{port}")

@@ -176,7 +176,7 @@ def zone_pupils(
     if not lit:  # only corners, all outside the image circle
         lit = [p for p in [lens_pupil(bench, center_mm, iris, wavelengths_nm)] if p is not None]
     if not lit:
-        raise InputError(f"{bench.lens.name}: no light arrives at the film")
+        raise InputError(f"{bench.lens.name}: no light reaches the film")
     spare = found[zones // 2][zones // 2] or lit[0]
     return [[p or spare for p in row] for row in found]
 

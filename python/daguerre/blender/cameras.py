@@ -56,7 +56,7 @@ def camera_of(
     where = f"camera {thing.name!r}"
     placed = without_scale(np.asarray(matrix, np.float64))
     if placed is None:
-        raise InputError(f"{where}: scale: wanted one above 0, got 0")
+        raise InputError(f"{where}: scale: wanted a scale above 0, got 0")
     data, panel = thing.data, CameraPanel(thing.data)
     metres = metres_per_unit(render.id_data)
     film = film_of(data, render, shift_x)
@@ -129,7 +129,7 @@ def _glass(data: Any, film: Film, lens: str, panel: CameraPanel, notes: Notes) -
     if panel.chosen("dispersion") is False:
         found["dispersion"] = False
     if data.type == "PANO":
-        notes.add("a lens with a prescription takes the place of a panoramic projection")
+        notes.add("a lens with a prescription replaces the panoramic projection")
     if not film.square:
         notes.add("pixels behind a lens with a prescription are drawn square")
     return found | _movements(film, None if model == "pinhole" else panel)
@@ -180,7 +180,7 @@ def _iris(
         width = values["sensor_size"][0] / values["projection"].size[0]
         found["f_stop"] *= (across + down) / 2 * width / data.lens
     if abs(dof.aperture_ratio - 1) > 1e-6 and dof.use_dof:
-        notes.add("the ratio of an anamorphic iris is left out: it stays round")
+        notes.add("the ratio of an anamorphic iris is left out: the iris stays round")
     return found | _blades(dof, panel)
 
 

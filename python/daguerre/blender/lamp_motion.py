@@ -49,7 +49,7 @@ class Rigid(Value):
         """The transform at a time, s, shape (4, 4)."""
         made = without_scale(np.asarray(self.world.at(time_s), np.float64))
         if made is None:
-            raise InputError(f"lamp: wanted a size, got none at {time_s:g} s")
+            raise InputError(f"lamp: wanted a size above 0, got 0 at {time_s} s")
         return made
 
     def breaks(self, begin: float, end: float) -> list[float]:

@@ -72,7 +72,7 @@ def add_light(
     """
     world = np.asarray(value_at(matrix, scene.time), np.float64)
     if without_scale(world) is None:
-        notes.add("a lamp that is scaled to nothing is left out")
+        notes.add("a lamp with a scale of 0 is left out")
         return
     if light.type == "AREA" and getattr(getattr(light, "cycles", None), "is_portal", False):
         notes.add("a portal is left out: it gives no light")
@@ -98,7 +98,7 @@ def glow_of(light: bpy.types.Light, notes: Notes) -> Color:
     node = _emission_node(light, notes)
     parts = [strength * c * t * n for c, t, n in zip(light.color, tint, node, strict=True)]
     if min(parts) < 0:
-        notes.add("a lamp of negative power or colour is black")
+        notes.add("a lamp with negative power or colour is black")
     red, green, blue = (min(max(0.0, part), MOST) for part in parts)
     return red, green, blue
 
@@ -113,7 +113,7 @@ def note_visibility(thing: bpy.types.Object, notes: Notes) -> None:
     for flag, rays in _RAYS.items():
         unseen = flag == "visible_camera" and (not sized or light.type == "SUN")
         if not unseen and not getattr(thing, flag, True):
-            notes.add(f"a lamp that {rays} cannot see in Blender is seen")
+            notes.add(f"a lamp hidden from {rays} in Blender is visible in Daguerre")
 
 
 def _factor(light: bpy.types.Light, metres_per_unit: float) -> float:
@@ -139,7 +139,7 @@ def _lamp(
         return DirectionalLight(rgb, name, angle=math.degrees(light.angle))
     radius = light.shadow_soft_size * metres_per_unit
     if radius > 0 and light.use_soft_falloff:
-        notes.add("soft falloff of a lamp is left out: nearer than ten radii it is brighter")
+        notes.add("soft falloff of a lamp is left out: within ten radii it is brighter")
     profile = None
     if light.type == "SPOT":
         lengths = np.linalg.norm(world[:3, :3], axis=0)
@@ -161,10 +161,10 @@ def _add_area(
     width = light.size
     height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else width
     if not width * height > 0:
-        notes.add("an area lamp without area is left out")
+        notes.add("an area lamp with an area of 0 is left out")
         return
     if light.spread <= 0:
-        notes.add("an area lamp without spread is left out: no lamp makes parallel rays")
+        notes.add("an area lamp with a spread of 0 is left out: no lamp makes parallel rays")
         return
     positions, triangles = (ellipse if light.shape in _ROUND else rectangle)(width, height)
     world = np.asarray(value_at(matrix, scene.time), np.float64)
@@ -218,7 +218,7 @@ def _note_the_rest(light: bpy.types.Light, notes: Notes) -> None:
     if any(getattr(light, name, 1.0) != 1.0 for name in factors):
         notes.add("a lamp's own factor for a kind of surface is left out")
     if getattr(light, "use_square", False) and light.type == "SPOT":
-        notes.add("a spot lamp of a square cone has a round one")
+        notes.add("the square cone of a spot lamp is drawn round")
 
 
 def _scaled(lit: Any, factor: float) -> Any:

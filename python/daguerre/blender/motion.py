@@ -215,7 +215,10 @@ def _collected(now: Look, looks: Sequence[Look], times: list[float], notes: Note
         mine, at = looks[::stride], times[::stride]
         places = [one.matrices.get(key) for one in mine]
         if any(place is None for place in places):
-            notes.add("an object that comes or goes while the shutter is open rests")
+            notes.add(
+                "an object that appears or disappears while the shutter is open is drawn without "
+                "motion"
+            )
             continue
         if any(place is not now.matrices[key] for place in places):
             matrices[key] = [(t, place) for t, place in zip(at, places, strict=True)]
@@ -234,6 +237,8 @@ def _steps(
     if base is None or all(shape is base for shape in shapes):
         return None
     if any(shape is None or shape.shape != base.shape for shape in shapes):
-        notes.add("a mesh whose vertices become more or fewer while the shutter is open rests")
+        notes.add(
+            "a mesh that gains or loses vertices while the shutter is open is drawn without motion"
+        )
         return None
     return times, np.stack(shapes)

@@ -75,7 +75,7 @@ class Placing:
         moving = [one for one in copies.moving if _is_solid(one)]
         flat = int((~solid).sum()) + len(copies.moving) - len(moving)
         if flat:
-            self._notes.add("an object that is scaled to nothing is left out", flat)
+            self._notes.add("an object with a scale of 0 is left out", flat)
         return still[solid], moving
 
 

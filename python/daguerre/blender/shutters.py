@@ -50,7 +50,7 @@ def _of_blender(render: Any, fps: float, notes: Notes) -> dict[str, Any]:
     opens = OPENS[render.motion_blur_position] * share
     cycles = getattr(render.id_data, "cycles", None)
     if getattr(cycles, "rolling_shutter_type", "NONE") != "NONE":
-        notes.add("the rolling shutter of Cycles is left out: Daguerre's panel has one")
+        notes.add("the rolling shutter of Cycles is left out: set the one in Daguerre's panel")
     found = {"shutter_time": share / fps, "shutter_offset": opens}
     curve = _curve(render.motion_blur_shutter_curve)
     return found | ({"shutter_curve": curve} if curve else {})

@@ -173,7 +173,9 @@ class _Translation:
         note_visibility(seen.object, self._notes)
         moments = self.motion.probed.get(seen.identity) if self.motion.probed else None
         if moments and not move_lights(scene, first, moments):
-            self._notes.add("a light that becomes another kind while the shutter is open rests")
+            self._notes.add(
+                "a light that changes its kind while the shutter is open is drawn without motion"
+            )
 
     def _add_camera(self, seen: Seen, world: Matrix) -> None:
         render = self._depsgraph.scene.render
@@ -192,7 +194,7 @@ class _Translation:
         elif thing.is_shadow_catcher:
             self._effects[seen.name] = "shadow"
         if seen.object.type == "MESH" and not thing.visible_camera:
-            self._notes.add("an object that is hidden from the camera alone is drawn")
+            self._notes.add("an object hidden from the camera only is drawn")
 
     def finish(self) -> None:
         """Adds instances, cameras and the world, and groups of objects below others."""

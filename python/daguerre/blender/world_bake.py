@@ -36,7 +36,7 @@ def baked(world: Any, notes: Notes) -> Picture | None:
         kept = _KEPT.get(world.name_full)
         if kept is None:
             names = ", ".join(sorted({node.bl_label for node in world.node_tree.nodes}))
-            notes.add(f"a world of other nodes is black, as it cannot be baked now: {names}")
+            notes.add(f"a world with other nodes is black, as it cannot be baked now: {names}")
         return kept
     notes.add(
         f"nodes of a world are baked to {SIZE[0]} x {SIZE[1]} pixels, as the camera sees them"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from daguerre.checks import line, numbers, rows, to_numbers, whole
+from daguerre.checks import line, numbers, rows, short, to_numbers, whole
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.files.value import BriefRecord
@@ -111,7 +111,8 @@ def plane(values: ArrayLike, where: str, least: int = 2) -> FloatArray:
         )
     if not np.isfinite(light).all():
         raise InputError(
-            f"{where}: wanted finite light, got others in {(~np.isfinite(light)).sum()} pixels"
+            f"{where}: wanted finite light, got NaN or infinity in "
+            f"{(~np.isfinite(light)).sum()} pixels"
         )
     return light
 
@@ -170,8 +171,11 @@ def places(points: ArrayLike, metadata: Mapping[str, Any]) -> FloatArray:
     except KeyError as error:
         raise InputError(f"chart: metadata: wanted {error}, got none") from None
     except (TypeError, ValueError):
-        wanted = "a matrix worldToNDC and a resolution of two numbers"
-        raise InputError(f"chart: metadata: wanted {wanted}, got others") from None
+        got = ", ".join(f"{key} = {short(metadata[key])}" for key in ("worldToNDC", "resolution"))
+        raise InputError(
+            "chart: metadata: wanted worldToNDC as a 4x4 matrix and resolution as two numbers, "
+            f"got {got}"
+        ) from None
     flat = rows(points, "places: points", 2)
     seen = np.c_[flat, np.zeros(len(flat)), np.ones(len(flat))] @ matrix
     ndc = seen[:, :2] / seen[:, 3:]
@@ -208,7 +212,8 @@ def means(
         part = pixels[max(y0, 0) : max(y1, 0), max(x0, 0) : max(x1, 0)]
         if part.size == 0:
             raise InputError(
-                f"chart: patch {patch['name']!r}: wanted pixels in the picture, got none"
+                f"chart: patch {patch['name']!r}: wanted a patch inside the picture, got one "
+                "outside"
             )
         found.append(part.reshape(-1, *part.shape[2:]).mean(axis=0))
     return np.asarray(found, np.float64)

@@ -76,8 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _out_of_memory() -> int:
     return _fail(
-        f"memory: wanted more than there is ({shown(left_bytes() or 0)} are left); "
-        "try smaller pictures or files",
+        f"out of memory ({shown(left_bytes() or 0)} are left): use smaller pictures or files",
         InputError.exit_code,
     )
 
@@ -131,8 +130,8 @@ def _internal(error: Exception) -> int:
         traceback.print_exception(error)
     what = f"{type(error).__name__}: {error}"
     return _fail(
-        f"internal: {what}; this is a fault of daguerre, please report it with the command "
-        "and the output of DAGUERRE_DEBUG=1",
+        f"internal error: {what}; this is a bug in daguerre: please report it with the "
+        "command and the output of DAGUERRE_DEBUG=1",
         INTERNAL,
     )
 

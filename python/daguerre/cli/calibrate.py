@@ -82,7 +82,10 @@ def calibrate(
     model = use.pop("model", MODEL.default)
     if model == ALL:
         if "terms" in use or output or residuals or map_flags.files:
-            raise UsageError("--model all compares models: wanted no file and no --terms with it")
+            raise UsageError(
+                "--model all compares models and writes no file: leave out -o, --residuals, "
+                "--export-... and --terms"
+            )
         _compare(calibrate_all(name, **use), json=json)
         return 0
     if file_format == "kalibr" and model == "opencv":
@@ -129,7 +132,7 @@ def _check_files(output: Path | None, file_format: str | None, residuals: Path |
             f"{suggest(file_format, FORMATS)}"
         )
     if file_format is not None and output is None:
-        raise UsageError("--format: needs -o FILE")
+        raise UsageError("--format needs -o FILE")
     if output is not None:
         check_writable(output)
     check_drawing("--residuals", residuals, formats=PICTURES)

@@ -40,8 +40,9 @@ def scheduler(
     files = Certificates.of({"ca": ca, "cert": cert, "key": key}, "--ca, --cert and --key")
     if not (files or insecure_cluster or is_loopback(host)):
         raise UsageError(
-            f"--host: {host}: wanted --ca, --cert and --key for other machines, as whoever reaches "
-            "a scheduler can run code on its workers; --insecure-cluster does without"
+            f"--host {host}: other machines can reach this address, and anyone who can reach "
+            "a scheduler can run code on its workers; give --ca, --cert and --key, or "
+            "--insecure-cluster to do without"
         )
     run_scheduler(host, whole(port, "--port", 0, 65535), files)
     return 0

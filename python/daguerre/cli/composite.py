@@ -61,7 +61,7 @@ def composite(
 
     console.quiet = sequence.quiet
     if sequence.resume and sequence.frames is None:
-        raise UsageError("--resume: needs --frames")
+        raise UsageError("--resume needs --frames")
     numbers = None if sequence.frames is None else frame_numbers("--frames", sequence.frames)
     check_names(output, numbers)
     shots = shots_of(plate, objects, output, numbers, placing.seed)

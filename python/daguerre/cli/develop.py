@@ -134,10 +134,15 @@ def _check(source: Path, outputs: list[Path]) -> None:
     for path in outputs:
         check_written(path, (*written("picture"), ".dng"))
         if path.exists() and source.exists() and path.samefile(source):
-            raise UsageError(f"{path}: wanted another file than the one that is developed")
+            raise UsageError(
+                f"-o {path}: this is the file to develop; choose another name for the picture"
+            )
         check_writable(path)
         if path.suffix.lower() == ".dng" and source.suffix.lower() != ".exr":
-            raise UsageError(f"{path}: wanted a picture format, as {source} is a raw file already")
+            raise UsageError(
+                f"-o {path}: {source} is a raw file already; write a picture, such as "
+                f"{path.stem}.png"
+            )
 
 
 def _check_stock(source: Path, outputs: list[Path], used: dict[str, Any]) -> None:
@@ -146,10 +151,14 @@ def _check_stock(source: Path, outputs: list[Path], used: dict[str, Any]) -> Non
         if name in used:
             raise UsageError(f"--stock and --{name}: wanted one of them, got both")
     if source.suffix.lower() != ".exr":
-        raise UsageError(f"--stock: wanted a frame (.exr), got {source}, which is a photo already")
+        raise UsageError(
+            f"--stock needs a frame of `render` (.exr); {source} is a finished exposure"
+        )
     for path in outputs:
         if path.suffix.lower() == ".dng":
-            raise UsageError(f"{path}: film has no raw stage; wanted another format")
+            raise UsageError(
+                f"-o {path}: film has no raw data; write a picture, such as {path.stem}.png"
+            )
 
 
 def _on_film(frame: Frame, stock: str, wanted: dict[str, Any]) -> Frame:
@@ -169,8 +178,9 @@ def _tell_speed(film: float, camera: float | None) -> None:
     stops = 0.0 if camera is None else math.log2(film / camera)
     if abs(stops) >= 0.5:
         console.note(
-            f"the film has ISO {film:g}, the camera was set to ISO {camera:g}: {abs(stops):.1f} EV "
-            f"too {'much' if stops > 0 else 'little'} light; --ev {-stops:+.1f} compensates for it"
+            f"the film is ISO {film:g}, but the camera was set to ISO {camera:g}: the picture "
+            f"is {abs(stops):.1f} EV {'over' if stops > 0 else 'under'}exposed; --ev "
+            f"{-stops:+.1f} compensates"
         )
 
 
@@ -190,7 +200,7 @@ def _taken(frame: Frame, used: dict[str, Any], wanted: dict[str, Any]) -> Raw | 
     if sensor is None and frame.metadata.get("sensor") is None:
         if iso is not None:
             if iso <= 0:
-                raise UsageError(f"--iso: wanted above 0, got {iso:g}")
+                raise UsageError(f"--iso: wanted a number above 0, got {iso:g}")
             frame.metadata["isoSpeed"] = iso
         return frame
     ev = float(frame.metadata.get("exposure_compensation") or 0.0) + wanted.get("exposure", 0.0)
@@ -204,7 +214,9 @@ def _taken(frame: Frame, used: dict[str, Any], wanted: dict[str, Any]) -> Raw | 
 
 def _shot(path: Path, used: dict[str, Any], wanted: dict[str, Any]) -> Channels:
     for name in used:
-        raise UsageError(f"--{name}: wanted a frame (.exr): {path} has its own sensor and ISO")
+        raise UsageError(
+            f"--{name} applies to frames of `render` (.exr): {path} has its own sensor and ISO"
+        )
     from daguerre.development.camera_raw import read_shot
     from daguerre.development.develop import Recipe
 
@@ -216,9 +228,7 @@ def _shot(path: Path, used: dict[str, Any], wanted: dict[str, Any]) -> Channels:
 
 def _save_dng(path: Path, taken: Any, source: Path) -> None:
     if not hasattr(taken, "mosaic"):
-        raise UsageError(
-            f"{path}: {source} has no raw data: wanted --sensor NAME, which makes them"
-        )
+        raise UsageError(f"-o {path}: {source} has no raw data; add --sensor NAME to make them")
     from daguerre.development.dng import size_note
 
     taken.save(path)

@@ -59,7 +59,9 @@ def export_scene(
     flags = Cameras(camera_flags.camera, calibration_flags, changes, camera_flags.placement)
     views = flags.views(None)
     if len(views) > 1:
-        raise UsageError(f"export-scene: wanted one camera, got {len(views)}")
+        raise UsageError(
+            f"export-scene: wanted one camera, got {len(views)}; --camera NAME chooses one"
+        )
     calibration_flags.check(changes)
     scene = file_flags.read(scene_path)
     camera = views[0].view(flags).camera(scene)

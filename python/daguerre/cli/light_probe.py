@@ -82,7 +82,9 @@ def _check(photographs: list[Path], output: Path, sun_out: Path | None) -> None:
         check_writable(sun_out)
     for path in photographs:
         if output.exists() and path.exists() and path.samefile(output):
-            raise UsageError(f"{output}: wanted another file than the photographs")
+            raise UsageError(
+                f"-o {output}: this is one of the photographs; choose another name for the map"
+            )
     check_writable(output)
 
 

@@ -53,7 +53,7 @@ def merge(
     if tone not in TONES:
         raise UsageError(f"--tone: wanted {' or '.join(TONES)}; got {tone!r}")
     if keep_sums and (denoise or ".exr" not in formats):
-        raise UsageError("--keep-sums: wanted an .exr output, and no --denoise")
+        raise UsageError("--keep-sums needs an .exr output (-o NAME.exr), and no --denoise")
     for path in output:
         atomic.check_writable(path)
     if denoise:
@@ -90,7 +90,8 @@ def _join(crops: list[Path], output: list[Path], *, plain: bool) -> int:
 
     if not plain or [path.suffix.lower() for path in output] != [".exr"]:
         raise UsageError(
-            "merge: crops: wanted one .exr output, without --strict, --keep-sums or --denoise"
+            "merge: crops are joined into one .exr output, without --strict, --keep-sums or "
+            "--denoise"
         )
     x0, y0, x1, y1 = join_crops(crops, output[0])
     console.note(f"wrote {output[0]} ({x1 - x0} x {y1 - y0} px of {len(crops)} crops)")

@@ -78,7 +78,7 @@ def post(
     for remark in report.remarks:
         console.note(remark)
     if report.bad_pixels:
-        console.warn(f"{picture}: {report.bad_pixels} pixels with NaN or infinity, kept")
+        console.warn(f"{picture}: {report.bad_pixels} pixels are NaN or infinite; they are kept")
     console.note(f"wrote {output}")
     return 0
 
@@ -103,7 +103,7 @@ def _roles(given: list[str] | None) -> dict[str, str]:
         role, _, name = word.partition("=")
         if role not in USUAL or not name:
             raise UsageError(
-                f"--channel: wanted ROLE=NAME, ROLE one of {', '.join(USUAL)}; got {word!r}"
+                f"--channel: wanted ROLE=NAME, with one of {', '.join(USUAL)} as ROLE; got {word!r}"
             )
         roles[role] = name
     return roles

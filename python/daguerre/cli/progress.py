@@ -84,7 +84,9 @@ class JsonLines(Silent):
             console.nobody_reads(sys.stdout)
             console.writer = None
             if not isinstance(error, BrokenPipeError):
-                console.warn(f"--json-progress: {error.strerror or error}; no more progress")
+                console.warn(
+                    f"--json-progress: {error.strerror or error}; progress is no longer reported"
+                )
 
 
 class Bar(Silent):

@@ -72,8 +72,8 @@ def check_address(address: str, *, insecure: bool, flag: str = "--cluster") -> s
     host = parts.hostname or ""
     if parts.scheme == "tcp" and not insecure and not is_loopback(host):
         raise UsageError(
-            f"{flag}: {address}: wanted tls:// for another machine, as whoever reaches a "
-            "scheduler can run code on its workers; --insecure-cluster does without"
+            f"{flag} {address}: wanted tls:// for another machine, as anyone who can reach a "
+            "scheduler can run code on its workers; --insecure-cluster allows tcp://"
         )
     return host
 
@@ -131,6 +131,8 @@ def _read(path: Path) -> tuple[str, Certificates | None]:
         raise InputError(f"{path}: cannot read: {error.strerror or error}") from None
     found = yaml_text.parse(data, str(path)).value
     if not isinstance(found, dict) or "address" not in found or found.keys() - set(_KEYS):
-        raise InputError(f"{path}: wanted address and perhaps ca, cert and key, got {short(found)}")
+        raise InputError(
+            f"{path}: wanted address, and optionally ca, cert and key, got {short(found)}"
+        )
     files = {name: path.parent / str(found[name]) for name in _KEYS[1:] if name in found}
     return str(found["address"]), Certificates.of(files, f"{path}: ca, cert and key")

@@ -81,7 +81,9 @@ class Sums:
         for name, value in wanted.items():
             got = self.key.get(name)
             if got != value and not (mixed and name == "build"):
-                raise MismatchError(f"{name}: wanted that of the client, {value[:60]}, got {got}")
+                raise MismatchError(
+                    f"{name}: wanted the same as the client's, {value[:60]}, got {got}"
+                )
 
 
 #: Most bytes of the line.

@@ -105,6 +105,7 @@ def _own_folder() -> Path:
         raise OutputError(f"{folder}: cannot write: {error.strerror or error}") from error
     if facts.st_uid != user or facts.st_mode & 0o022:
         raise OutputError(
-            f"{folder}: wanted a folder that only this user can write; {FOLDER} names another"
+            f"{folder}: wanted a folder to which only this user can write; set {FOLDER} to "
+            "another one"
         )
     return folder

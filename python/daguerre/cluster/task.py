@@ -110,7 +110,7 @@ def _answered(task: Task, act: Callable[[Task], memoryview]) -> bytes | memoryvi
 def _reason(error: Exception) -> str:
     """Sentence that says why a worker cannot do its task."""
     if isinstance(error, MemoryError):
-        return "memory: wanted more than there is"
+        return "out of memory"
     return str(error) if isinstance(error, DaguerreError | OSError) else repr(error)
 
 

@@ -86,7 +86,7 @@ class ClusterRange(Range):
         if len(self._given_up) == 1:
             return first
         ranges = show_ranges(join_ranges(self._given_up))
-        return InputError(f"{first}; in all, samples {ranges} were given up")
+        return InputError(f"{first}; in all, samples {ranges} were not drawn")
 
     def _fill(self) -> bool:
         """Begins tasks while there is room; False: nothing is left to begin."""

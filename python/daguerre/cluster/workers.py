@@ -93,7 +93,7 @@ class Workers:
         """Keeps a worker from drawing."""
         if worker not in self._refused:
             self._refused[worker] = reason
-            self._tell(f"cluster: {worker}: {reason}; it draws nothing")
+            self._tell(f"cluster: {worker}: {reason}; this worker is not used")
 
     def _alone(self) -> str:
         address = self._client.scheduler.address
@@ -115,7 +115,7 @@ class Workers:
             if isinstance(got, ImportError | AttributeError):
                 self.refuse(worker, f"it has no daguerre of this version ({got})")
             elif isinstance(got, str) and got != wanted and not self._mixed:
-                self.refuse(worker, f"build: wanted that of the client, {wanted}, got {got}")
+                self.refuse(worker, f"build: wanted the same as the client's, {wanted}, got {got}")
         self._reached |= reached(self._client, new)
 
 

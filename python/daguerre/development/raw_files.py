@@ -41,7 +41,7 @@ def as_dng(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
         UsageError: A parameter of development is given.
     """
     if look:
-        raise UsageError(f"{Path(path)}: wanted no development for a DNG, got {', '.join(look)}")
+        raise UsageError(f"{Path(path)}: a DNG is not developed: leave out {', '.join(look)}")
     write_dng(path, raw)
 
 

@@ -55,8 +55,8 @@ class LensDistortion(Radial):
     def __post_init__(self) -> None:
         if not self.bench.lens.prescription.is_axially_symmetric:
             raise InputError(
-                f"{self.bench.lens.name}: distortion: wanted an axially symmetric lens, got "
-                "another (use LensMap)"
+                f"{self.bench.lens.name}: distortion: wanted an axially symmetric lens; use "
+                "LensMap for this one"
             )
 
     @cached_property

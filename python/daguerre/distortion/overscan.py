@@ -68,16 +68,16 @@ def _reach(view: RectifiedView, place: Any, where: str) -> Overscan:
     if lost.any():
         row, column = np.argwhere(lost)[0]
         raise UsageError(
-            f"{where}: impossible: the camera does not see what the undistorted picture shows at "
-            f"({x[column]:.0f}, {y[row]:.0f}) px ({lost.mean():.2g} of the picture is lost); "
-            "wanted a number of pixels"
+            f"{where}: impossible: the camera does not see what the undistorted picture shows "
+            f"at ({x[column]:.0f}, {y[row]:.0f}) px ({lost.mean():.2g} of the picture is "
+            "lost); give a number of pixels"
         )
     (left, top), (right, bottom) = found.min(axis=(0, 1)), found.max(axis=(0, 1))
     beside = (-left, -top, right - width, bottom - height)
     if max(beside) > MOST * max(width, height):
         raise UsageError(
-            f"{where}: needs {max(beside):.0f} px beside a picture of {width} x {height}, at most "
-            f"{MOST * max(width, height):.0f} are possible; wanted a number of pixels"
+            f"{where}: needs {max(beside):.0f} px around a picture of {width} x {height}, but at "
+            f"most {MOST * max(width, height):.0f} are possible; give a number of pixels"
         )
     # Rounding is not distortion: a camera without distortion needs no overscan.
     return Overscan(*(math.ceil(n) + FILTER_MARGIN if n > 0.01 else 0 for n in beside))

@@ -49,11 +49,12 @@ def _check(data: dict[str, Any]) -> None:
     if setting is None:
         raise InputError(f"{where}: setting: wanted the f-stop of the fit, got none")
     if setting["iris"] == "picture":
-        raise InputError(f"{where}: iris: wanted a round one or blades, got a picture")
+        raise InputError(f"{where}: iris: wanted a round iris or blades, got an aperture_image")
     plane = data["film"]["plane"]
     if plane["x"] != [1, 0, 0] or plane["y"] != [0, 1, 0] or any(plane["center"][:2]):
         raise InputError(
-            f"{where}: film: wanted it across the lens's axis, got it tilted or shifted"
+            f"{where}: film: wanted it centred on the lens's axis and perpendicular to it, "
+            "got it tilted or shifted"
         )
 
 

@@ -76,12 +76,12 @@ def expose(
     mosaic, saturated, negative, bad, place = _core.expose(light.planes, shot)
     if bad:
         raise InputError(
-            f"frame: {light.source}: wanted finite numbers, got others at {bad} photosites, the "
-            f"first at {place}"
+            f"frame: {light.source}: wanted finite numbers, got NaN or infinity at {bad} "
+            f"photosites, the first at {place}"
         )
     if negative:
         share = negative / mosaic.size
-        notes.append(f"light was below 0 at {share:.2%} of the photosites, and is clipped to 0")
+        notes.append(f"light below 0 was clipped to 0 at {share:.2%} of the photosites")
     notes += [*_source_note(frame, body, light), *_pitch_note(frame, body)]
     notes += _noise_note(frame, body, light)
     return Raw(
@@ -108,7 +108,7 @@ def chosen_sensor(frame: Frame, sensor: str | Sensor | None) -> Sensor:
     try:
         return load(name)
     except InputError as error:
-        raise InputError(f"frame: {error}; wanted its file, as sensor") from None
+        raise InputError(f"frame: {error}; give its file as sensor") from None
 
 
 def chosen_iso(frame: Frame, sensor: Sensor, iso: float | None, notes: list[str]) -> float:
@@ -121,7 +121,10 @@ def chosen_iso(frame: Frame, sensor: Sensor, iso: float | None, notes: list[str]
     if camera is not None and low <= camera <= high:
         return camera
     if camera is not None:
-        notes.append(f"ISO {camera:g} is beyond {sensor.name}: exposed at {sensor.base_iso:g}")
+        notes.append(
+            f"ISO {camera:g} is outside the range of {sensor.name}: exposed at ISO "
+            f"{sensor.base_iso:g}"
+        )
     return float(sensor.base_iso)
 
 
@@ -212,8 +215,8 @@ def _noise_note(frame: Frame, sensor: Sensor, light: Light) -> list[str]:
     if share <= NOISY_SHARE:
         return []
     return [
-        f"the render's own noise is larger than photon noise in {share:.0%} of the pixels: more "
-        "samples reduce it"
+        f"the render's own noise is larger than photon noise in {share:.0%} of the "
+        "pixels; more samples reduce it"
     ]
 
 

@@ -27,7 +27,8 @@ def pinhole_note(metadata: Mapping[str, Any]) -> str | None:
     if metadata.get("aperture") is not None or metadata.get("h0") is None:
         return None
     return (
-        f"a pinhole has no f-stop: exposed as at f/{PINHOLE_F_STOP:g}; exposure_f_stop changes that"
+        f"a pinhole has no f-stop: exposed as if at f/{PINHOLE_F_STOP:g}; exposure_f_stop "
+        "sets another"
     )
 
 

@@ -127,10 +127,10 @@ def meter(frame: Frame, mode: str = "centre", *, at: tuple[float, float] | None 
             total += float(weights.sum())
             light += float((weights * y).sum())
         if not total > 0:
-            raise UsageError(f"meter: spot at {place.focus}: wanted a place in the picture")
+            raise UsageError(f"meter: spot at {place.focus}: wanted a point inside the picture")
         luminance = light / total
     if not luminance > 0:
-        raise InputError(f"meter: {mode}: wanted some light to meter, got black")
+        raise InputError(f"meter: {mode}: the metered area is black: there is no light to meter")
     return Metered(mode, luminance, GREY_LUX_S / (luminance * unit))
 
 

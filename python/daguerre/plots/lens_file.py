@@ -31,8 +31,8 @@ def check_available(suffix: str, *, needed: bool) -> None:
     if (needed or suffix != ".svg") and extras.missing("matplotlib"):
         other = "--drawing FILE.svg" if needed else ".svg"
         raise UsageError(
-            f"a plot as {suffix} needs matplotlib: {extras.hint('matplotlib')}; "
-            f"{other} needs nothing"
+            f"a plot as {suffix} needs matplotlib: {extras.hint('matplotlib')}; {other} works "
+            "without it"
         )
 
 

@@ -69,8 +69,7 @@ def film_plane(canvas: Canvas, values: Values) -> Plane:
     pitch_mm = _pitch_mm(canvas, values)
     if pitch_mm is None:
         raise UsageError(
-            f"{canvas.where}: sensor: wanted its size, such as sensor=36x24 (mm), "
-            "as the file has none"
+            f"{canvas.where}: sensor: the file has none; give its size in mm, such as sensor=36x24"
         )
     return Plane(axis(canvas, values), pitch_mm)
 
@@ -110,7 +109,7 @@ def focal_length_mm(canvas: Canvas, values: Values) -> float:
         if isinstance(found, float) and 0 < found < math.inf:
             return found
     raise UsageError(
-        f"{canvas.where}: focal_length: wanted a focal length in mm, as the file has none"
+        f"{canvas.where}: focal_length: the file has none; give it in mm, such as focal_length=50"
     )
 
 

@@ -51,7 +51,7 @@ def from_words(words: Sequence[str]) -> list[Planned]:
             if not equals:
                 raise UsageError(f"{where}: wanted key=value, got {part!r}")
             if key in given:
-                raise UsageError(f"{where}: {key}: wanted once, got it twice")
+                raise UsageError(f"{where}: {key}: wanted once, got twice")
             given[key] = value.strip()
         planned.append(plan(name.strip(), given, where, UsageError))
     return planned

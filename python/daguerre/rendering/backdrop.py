@@ -50,8 +50,8 @@ def check_backdrop(scene: Scene, settings: RenderSettings) -> None:
         > _ROUNDING
     ):
         raise InputError(
-            f"background: plate: wanted the picture's shape, {wide} x {high} px or as many times "
-            f"that, got {width} x {height} px"
+            f"background: plate: wanted {wide} x {high} px, as the picture, or a multiple of "
+            f"it, got {width} x {height} px"
         )
 
 

@@ -57,7 +57,7 @@ def export_scene(
     prepared = prepare(scene, camera, settings)
     notes = Notes()
     if scene.motion:
-        notes.add(f"motion is left out: the scene stands as at {scene.time:g} s")
+        notes.add(f"motion is left out: the scene is written as it is at {scene.time:g} s")
     if scene.plate is not None:
         notes.add("photograph on catchers is left out")
     view = view_of(prepared.setup, notes)
@@ -75,4 +75,4 @@ def _check_other(scene: Scene, path: Path) -> None:
     """
     with suppress(OSError):  # one of them is not there
         if scene.path is not None and path.samefile(scene.path):
-            raise UsageError(f"{path}: wanted another file than the scene's own, got that one")
+            raise UsageError(f"{path}: this is the scene's own file; choose another name")

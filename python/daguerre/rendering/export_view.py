@@ -75,7 +75,7 @@ def _with_lens(view: View, setup: ResolvedCamera, glass: Glass, notes: Notes) ->
     stop = 2 * order.stop_semi_diameter * wide / setup.lens.f_stop
     rows = np.array(_rows(surfaces))
     pupil = glass.entrance_pupil_offset_mm * 1e-3
-    notes.add("coatings and absorption of a lens are left out: its light is scaled to ours")
+    notes.add("coatings and absorption of a lens are left out: the light is scaled to match them")
     lens = LensFile(
         rows,
         stop,
@@ -123,11 +123,11 @@ def _disperses(surface: LensSurface) -> bool:
 def _note_camera(setup: ResolvedCamera, notes: Notes) -> None:
     camera: Camera = setup.camera
     if setup.changes:
-        notes.add("motion of the camera is left out: it stands as at mid-exposure")
+        notes.add("motion of the camera is left out: it is written as it is at mid-exposure")
     if any(camera.tilt):
         notes.add("tilt of the lens is left out")
     if setup.lens.f_stop is not None and (camera.blades or camera.aperture_image is not None):
-        notes.add("shape of the iris is left out: it is round")
+        notes.add("shape of the iris is left out: it is written as round")
     if setup.lens.squeeze != 1:
         notes.add("squeeze of an anamorphic lens is left out")
     for name, sentence in _LEFT_OUT.items():

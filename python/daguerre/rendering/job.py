@@ -234,8 +234,8 @@ class Drawing:
             else ""
         )
         return (
-            f"picture: memory: wanted more than there is while drawing; {kept}draw it in parts "
-            "(--crop), use fewer --threads, or stop other programs"
+            f"picture: out of memory while drawing; {kept}draw it in parts (--crop), use "
+            "fewer --threads, or stop other programs"
         )
 
     def _finish(self) -> None:

@@ -132,11 +132,14 @@ def _check_catchers(one: Prepared) -> None:
     for name in DARK:
         if check_paths(getattr(light, name), name) != 0:
             raise UsageError(
-                f"{name}: wanted off with catchers: the plate has the {name} of its own lights"
+                f"{name}: cannot be used with catchers: the plate already has the {name} of its "
+                "own lights"
             )
     if one.settings.diffraction is not None or one.settings.film.bands:
         name = "bands" if one.settings.diffraction is None else "diffraction"
-        raise UsageError(f"{name}: wanted none with catchers, whose layers hold only colours")
+        raise UsageError(
+            f"{name}: cannot be used with catchers, as their layers store only colours"
+        )
     if check_light_paths(light.light_paths) not in (None, OFF):
         raise UsageError("light_paths: wanted auto or off with catchers, got a number of paths")
 

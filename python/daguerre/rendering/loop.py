@@ -113,7 +113,7 @@ class Loop:
         path = self.checkpoint.save_elsewhere(self.session)
         if path is not None:
             self._kept(path, rescued=True)
-            self.reporter.warning(f"to go on with --resume, move {path} to {wanted}")
+            self.reporter.warning(f"to continue with --resume, move {path} to {wanted}")
         return path
 
     def _kept(self, path: Path, *, rescued: bool) -> None:
@@ -125,7 +125,7 @@ class Loop:
         try:
             self.snapshot()
         except DaguerreError as error:
-            self.reporter.warning(f"no snapshot: {error}")
+            self.reporter.warning(f"snapshot not saved: {error}")
 
     def _draw(self, size: float) -> bool:
         """Draws a pass in another thread, as Python runs signal handlers only in the main one."""

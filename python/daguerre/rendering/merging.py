@@ -50,7 +50,7 @@ def merge(
         if one.round is not None:
             raise MismatchError(
                 f"{one.path or 'pass'}: drawn with --noise, so pixels differ in sample count; "
-                "wanted passes of --samples"
+                "merge joins passes of --samples"
             )
         _check_overlap(ranges, one)
         ranges += [(r, one.path) for r in one.ranges]

@@ -131,8 +131,8 @@ class Output:
         if self.is_pass or exposed:
             what = "a pass" if self.is_pass else f"{exposed[0]}, which is exposed and developed,"
             raise UsageError(
-                f"background: plate: {what} holds no plate; wanted --background transparent, and "
-                "daguerre composite after it"
+                f"background: plate: {what} does not contain the plate; use --background "
+                "transparent, then `daguerre composite`"
             )
 
     def frame(self, session: Session, samples: float, tell: Reporter) -> Frame:
@@ -155,7 +155,7 @@ class Output:
         if cut := frame.metadata.get("mattes_cut"):
             tell.note(
                 f"cryptomatte: {cut['pixels']} pixels have more names than ranks and lose up to "
-                f"{cut['share']:.2g} of coverage; more --cryptomatte-ranks keep it"
+                f"{cut['share']:.2g} of their coverage; raise --cryptomatte-ranks to keep it"
             )
         if DISPARITY in self.aovs:
             from .rig import disparity

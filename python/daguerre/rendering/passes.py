@@ -186,8 +186,8 @@ def check_key(first: Pass, other: Pass) -> None:
     if differing:
         words = [_difference(name, first, other) for name in differing]
         raise MismatchError(
-            f"{other.path or 'this render'}: does not belong to {first.path or 'this render'}; "
-            f"different: {'; '.join(words)}"
+            f"{other.path or 'this render'}: does not belong to "
+            f"{first.path or 'this render'}: they differ in {'; '.join(words)}"
         )
 
 
@@ -216,7 +216,7 @@ def _words(part: Layout, count: Any) -> NDArray[np.uint32]:
     """Inverse of :func:`_words_part`: the words (H, W, count) of a part."""
     names = [f"words.{color}" for color in "RGBA"]
     if sorted(names) != list(part.channels) or set(part.channels.values()) != {"uint32"}:
-        raise InputError(f"{part.path}: damaged pass file: part {part.name} has no words")
+        raise InputError(f"{part.path}: damaged pass file: part {part.name} has no data")
     size = 4 * part.width
     if not isinstance(count, int) or count < 1 or size % count:
         raise InputError(f"{part.path}: damaged pass file: daguerre:words is {count}")

@@ -98,10 +98,9 @@ class Photograph:
         """
         if not any(self.exposes(path) for path in paths):
             if self.meters or self.bracket:
-                raise UsageError(
-                    f"--{'exposure' if self.meters else 'bracket'}: wanted a picture with -o that "
-                    f"is exposed (.dng, {', '.join(PICTURES)})"
-                )
+                flag = "--exposure" if self.meters else "--bracket"
+                known = ", ".join(PICTURES)
+                raise UsageError(f"{flag} needs an output that is exposed (-o .dng, {known})")
             return
         from daguerre.exposure.lux_seconds import luminance_exposure, pinhole_note
 
@@ -109,7 +108,7 @@ class Photograph:
         if note := pinhole_note(metadata):
             tell.note(note)
         if self.bracket:
-            tell.note("bracketed by time: motion blur is that of 0 EV")
+            tell.note("bracketed by time: motion blur is the same as at 0 EV")
 
     def metered(self, frame: Frame, paths: Sequence[Path], tell: Reporter) -> Frame:
         """Returns the frame with the metered ISO, if metering is on, and reports the ISO."""
@@ -120,7 +119,7 @@ class Photograph:
         try:
             read = meter(frame, self.meters, at=self.focus_at)
         except DaguerreError as error:  # such as a black picture, which must not cost the render
-            tell.warning(f"--exposure auto: {error}; exposed as set")
+            tell.warning(f"--exposure auto: {error}; the ISO stays as set")
             return frame
         wanted = read.iso * 2.0**self.ev
         low, high = (1.0, 1e7) if self.sensor is None else self.sensor.iso_range
@@ -132,8 +131,8 @@ class Photograph:
         )
         if not low <= wanted <= high:
             tell.warning(
-                f"--exposure auto: ISO {wanted:.3g} is beyond {low:g} .. {high:g}: the picture is "
-                f"{_stops(wanted, iso)}"
+                f"--exposure auto: ISO {wanted:.3g} is outside {low:g} .. {high:g}: the picture "
+                f"is {_stops(wanted, iso)}"
             )
         facts = {**frame.metadata, "isoSpeed": iso, "metering": read.mode}
         facts.pop("exposure_compensation", None)  # the ISO has it

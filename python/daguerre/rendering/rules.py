@@ -27,14 +27,14 @@ def check_together(values: Mapping[str, Any], named: Named = str) -> None:
     """
     flare, scatter = (check_paths(values[name], name) != 0 for name in ("flare", "scatter"))
     if values["flare_order"] != DEFAULT["flare_order"] and not flare:
-        raise UsageError(f"{named('flare_order')}: needs {named('flare')} to be on")
+        raise UsageError(f"{named('flare_order')} needs {named('flare')}")
     if not (check_highlights(values["flare_highlights"]) or flare or scatter):
         raise UsageError(
-            f"{named('flare_highlights')}: needs {named('flare')} or {named('scatter')} to be on"
+            f"{named('flare_highlights')} needs {named('flare')} or {named('scatter')}"
         )
     if values["gt_lens"] == "chief" and values["gt_rays"] is not None:
         raise UsageError(
-            f"{named('gt_rays')}: wanted {named('gt_lens')} mean too; a chief ray is single"
+            f"{named('gt_rays')} needs {named('gt_lens')} mean: a pixel has one chief ray"
         )
     if values["noise"] is not None and values["spp"] == 1:
         raise UsageError(f"{named('spp')}: wanted 2 .. 2^31 with {named('noise')}, got 1")

@@ -53,7 +53,7 @@ class Range:
         """Refuses checkpoints with samples outside of the range."""
         if saved.round is not None:
             raise MismatchError(
-                f"{saved.path}: drawn with --noise; go on with --noise, or remove the file"
+                f"{saved.path}: drawn with --noise; continue with --noise, or remove the file"
             )
         begin, end = self.wanted
         for a, b in saved.ranges:
@@ -105,7 +105,7 @@ class Rounds:
         """Accepts checkpoints with rounds, or with samples 0:n of every pixel."""
         if saved.round is None and saved.ranges and (len(saved.ranges) > 1 or saved.ranges[0][0]):
             raise MismatchError(
-                f"{saved.path}: holds samples {saved.ranges}; --noise can go on from 0:N alone"
+                f"{saved.path}: holds samples {saved.ranges}; --noise can only continue from 0:N"
             )
 
     def prepare(self, limit: float) -> float:

@@ -103,7 +103,8 @@ class Session:
     def _whole_film(self) -> _core.Film:
         if self._torn:
             raise UsageError(
-                "session: a pass was stopped midway; wanted set_state with saved sums, or a new one"
+                "session: a pass was stopped midway; restore saved sums with set_state, or make "
+                "a new session"
             )
         return self._film
 

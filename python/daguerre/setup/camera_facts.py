@@ -220,13 +220,13 @@ def camera_warnings(camera: Camera) -> list[str]:
     focal, width = camera.focal_length, camera.sensor_size[0]
     if focal is not None and not 1 <= focal <= 2000:
         found.append(
-            f"the camera has a focal length of {_mm(focal)}, outside 1 mm .. 2 m; "
-            "is its unit mm, or are the units of the file wrong?"
+            f"the camera has a focal length of {_mm(focal)}, outside 1 mm .. 2 m: check the "
+            "units of the file"
         )
     if not 0.5 <= width <= 200:
         found.append(
-            f"the camera has a sensor {_mm(width)} wide, outside 0.5 .. 200 mm; "
-            "is its unit mm, or are the units of the file wrong?"
+            f"the camera has a sensor {_mm(width)} wide, outside 0.5 .. 200 mm: check the "
+            "units of the file"
         )
     return found
 

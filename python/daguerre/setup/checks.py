@@ -74,7 +74,7 @@ def _projection(camera: Camera) -> str:
         raise UsageError(f"camera: projection: wanted a Projection, got {short(camera.projection)}")
     for row in CAMERA:
         if LENS_ITSELF in row.needs and is_given(camera, row):
-            way_out = f"; {row.name}=None takes it away" if row.default is None else ""
+            way_out = f"; {row.name}=None removes it" if row.default is None else ""
             raise UsageError(f"camera: wanted either projection or {row.name}, got both{way_out}")
     return "projection"
 

@@ -126,7 +126,7 @@ class Focus(BriefRecord):
             place = scene.node_positions.get(name)
             if place is None:
                 raise InputError(f"camera: focus_on: node {name!r} is hidden at {scene.time:g} s")
-            return self._in_front(name, float((place - eye) @ axis), "is", place - eye)
+            return self._in_front(name, float((place - eye) @ axis), "", place - eye)
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
         nearest, farthest = math.inf, -math.inf
         vertex = eye
@@ -143,19 +143,20 @@ class Focus(BriefRecord):
             if hit is not None and hit[1] in instances:
                 depth = hit[0] * float(middle @ axis) / float(np.linalg.norm(middle))
                 place = hit[0] / float(np.linalg.norm(middle)) * middle
-                return self._in_front(name, depth, "has its visible middle", place)
+                return self._in_front(name, depth, "the visible middle of", place)
         depth = nearest if nearest < math.inf else farthest
-        return self._in_front(name, depth, "has its nearest vertex", vertex - eye)
+        return self._in_front(name, depth, "the nearest vertex of", vertex - eye)
 
-    def _in_front(self, name: str, depth: float, verb: str, from_eye: NDArray[np.float64]) -> Sharp:
+    def _in_front(self, name: str, depth: float, part: str, from_eye: NDArray[np.float64]) -> Sharp:
         if not depth > 0:
             raise InputError(
-                f"camera: focus_on: node {name!r} lies behind the camera ({depth:.4g} m)"
+                f"camera: focus_on: node {name!r} is behind the camera ({depth:.4g} m)"
             )
         distance = (
             depth if self.sharp_at is None else self.sharp_at(self.world[:3, :3].T @ from_eye)
         )
-        return Sharp(distance, (f"focus: node {name!r} {verb} {depth:.4g} m away",))
+        what = f"{part} node {name!r}".lstrip()
+        return Sharp(distance, (f"focus: {what} is {depth:.4g} m away",))
 
 
 def _world_vertices(scene: Scene, instances: list[int]) -> Iterator[NDArray[np.float64]]:

@@ -52,7 +52,10 @@ def _projection(framing: Framing, projection: Projection) -> ResolvedLens:
         (fx, fy), (cx, cy) = film["focal_mm"], film["principal_mm"]
         seen = projection.core.unproject(np.array([[(x - cx) / fx, (cy - y) / fy]]))[0]
         if not np.isfinite(seen).all():
-            raise UsageError("camera: focus_at: the projection sees nothing there")
+            raise UsageError(
+                "camera: focus_at: wanted a pixel that the projection covers; no light reaches "
+                "this one"
+            )
         return np.asarray(seen * (1, -1, -1))
 
     if projection.is_wide:  # the surface of focus is a sphere

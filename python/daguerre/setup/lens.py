@@ -157,13 +157,13 @@ def _notes(camera: Camera, chosen: _Chosen) -> list[str]:
     if lens.zoom_range_mm and camera.zoom is None:
         short_end, long_end = lens.zoom_range_mm
         notes.append(
-            f"{lens.name} is a zoom of {short_end:.4g} to {long_end:.4g} mm and stands at "
+            f"{lens.name} is a zoom lens of {short_end:.4g} to {long_end:.4g} mm, set to "
             f"{lens.zoom_mm:.4g} mm"
         )
     if camera.t_stop is not None:
         notes.append(
-            f"T/{camera.t_stop:.3g} of {lens.name} is f/{chosen.f_stop:.3g}: "
-            f"{100 * chosen.transmittance:.3g} % of the light passes the glass"
+            f"T/{camera.t_stop:.3g} of {lens.name} is f/{chosen.f_stop:.3g}: the glass "
+            f"transmits {100 * chosen.transmittance:.3g} % of the light"
         )
     if squeeze != 1:
         notes.append(

@@ -80,8 +80,8 @@ class LensMotion:
         """
         if "sensor_size" in self.changing:
             raise UsageError(
-                "camera: sensor_size: cannot change while the shutter is open; "
-                "wanted a focal_length that does, or shutter_time=0"
+                "camera: sensor_size: cannot change while the shutter is open; change "
+                "focal_length instead, or set shutter_time=0"
             )
         notes: list[str] = []
         if not self._in_states:
@@ -182,7 +182,7 @@ class LensMotion:
         if "polynomial" in models and "exact" in models:
             notes.append(
                 f"polynomials fit {models.count('exact')} of the {len(models)} states of the lens "
-                "too badly: the exact lens draws these"
+                "poorly: the exact lens is used for these"
             )
         return notes
 

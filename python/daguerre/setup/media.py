@@ -14,8 +14,8 @@ from daguerre.scene.scene import Scene
 from daguerre.scene.spectrum import Spectrum
 
 ENDLESS = (
-    "fog without end keeps out the environment and directional lights: fog within a mesh of "
-    "dg.Boundary lets them in"
+    "endless fog absorbs all light of the environment and of directional lights; put "
+    "the fog inside a mesh of dg.Boundary to let this light in"
 )
 
 
@@ -31,7 +31,9 @@ def add_media(builder: _core.SceneBuilder, scene: Scene, notes: list[str]) -> No
         InputError: The scene has both media and catchers.
     """
     if scene.has_media and scene.has_catchers:
-        raise InputError("catchers: wanted none in a scene with media, which they do not know")
+        raise InputError(
+            "catchers cannot be used in a scene with media: remove the catchers or the media"
+        )
     known: list[Medium] = []
 
     def index(medium: Medium | None) -> int:

@@ -64,7 +64,7 @@ class MovingParts:
             if not all(same_array(getattr(s, name), getattr(steps[0], name)) for s in steps):
                 raise InputError(
                     f"mesh {mesh.name or index!r}: {name}: changes while the shutter is open, "
-                    "which has no blur; wanted constant values, or a shutter time of 0"
+                    "which cannot be blurred; keep it constant, or set shutter_time=0"
                 )
         moved = {name: _stacked(steps, name) for name in ("positions", "normals", "tangents")}
         return replace(steps[0], **moved)

@@ -115,9 +115,7 @@ def add_environment(builder: _core.SceneBuilder, scene: Scene, interval: Interva
 def _pose(environment: Environment, image: Any) -> tuple[tuple[float, ...], float]:
     """Factor on the environment's light, and its rotation about +y, rad."""
     if environment.image is not image:
-        raise InputError(
-            "environment: image: wanted the same image at all times, got another later"
-        )
+        raise InputError("environment: image: cannot change while the shutter is open")
     color = (1.0, 1.0, 1.0)
     if environment.image is None:
         color = environment.color or (0.0, 0.0, 0.0)
@@ -133,8 +131,8 @@ def _checker(first: Material, index: int) -> Callable[[Any], Material]:
         check_material(material, where)
         if not isinstance(material.kind, kind):
             raise InputError(
-                f"{where}: kind: wanted {kind.__name__} at all times, "
-                f"got {type(material.kind).__name__} at one"
+                f"{where}: kind: cannot change while the shutter is open, from {kind.__name__} to "
+                f"{type(material.kind).__name__}"
             )
         return material  # type: ignore[no-any-return]
 
@@ -146,8 +144,8 @@ def _light_checker(kind: str) -> Callable[[Any], CoreLight]:
         light = _core_light(*pair)
         if light[0] != kind:
             raise InputError(
-                f"light {pair[0].name!r}: kind: wanted a {kind} light at all times, "
-                f"got a {light[0]} light at one"
+                f"light {pair[0].name!r}: kind: cannot change while the shutter is open, from "
+                f"{kind} to {light[0]}"
             )
         return light
 

@@ -75,7 +75,7 @@ def glass_at(session: Session, x: float, y: float) -> dict[str, Any]:
 def _lit(bench: Bench, film: tuple[float, float], distance_mm: float | None) -> Pencil:
     found = pencil(bench, film, distance_mm=distance_mm)
     if found is None:
-        raise UsageError("section: wanted a point whose light reaches the film; here it is dark")
+        raise UsageError("section: no light from this point reaches the film; choose another point")
     return found
 
 

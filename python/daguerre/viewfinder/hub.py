@@ -178,7 +178,7 @@ class Hub:
             case Find(words):
                 await self._tell(guest, {"found": lens_list.found(words)})
             case _ if not guest.turns:
-                raise UsageError("view: this page watches; another one turns the dials")
+                raise UsageError("view: read-only: another page controls the camera")
             case Turn(changes):
                 await self._turn(self.dials.turned(changes))
                 await self._tell(guest, {"heard": True})
@@ -211,7 +211,7 @@ class Hub:
         if show.denoised:
             extras.need("mitsuba_oidn", "denoise")
         if show.models and self._shot.camera.lens in IDEAL:
-            raise UsageError("show: wanted a lens of the library to compare its models")
+            raise UsageError("show: models can be compared only for a lens of the library")
         redraws, self._show = show.models != self._show.models, show
         if redraws:
             self._wish()
@@ -243,7 +243,7 @@ class Hub:
 
     def _section(self, x: float, y: float) -> dict[str, Any]:
         if self._sheet is None:
-            raise UsageError("section: wanted a picture; it is not drawn yet")
+            raise UsageError("section: the picture is not drawn yet; try again in a moment")
         drawn = self._sheet.drawn
         width, height = drawn.wish.shot.settings.film.resolution
         own = drawn.session.prepared.setup.resolution
@@ -251,7 +251,7 @@ class Hub:
 
     def _save(self, kind: str) -> Path:
         if self._sheet is None:
-            raise UsageError("save: wanted a picture; it is not drawn yet")
+            raise UsageError("save: the picture is not drawn yet; try again in a moment")
         if kind == "json":
             return save_camera(self._sheet.drawn, self._folder, self.command, self.dials.texts)
         return save(self._sheet.drawn, self._folder, kind)
@@ -361,11 +361,11 @@ def _reason(error: Exception) -> str:
         case DaguerreError():
             return str(error)
         case MemoryError():
-            return "memory: wanted more than there is; try a smaller picture"
+            return "out of memory: use a smaller picture"
         case OSError(strerror=str(reason)):
             return f"{error.filename}: {reason}"
     what = f"{type(error).__name__}: {error}"
-    return f"internal: {what}; this is a fault of daguerre, please report it"
+    return f"internal error: {what}; this is a bug in daguerre: please report it"
 
 
 def _stamp(path: Path | None) -> tuple[int, int] | None:

@@ -63,15 +63,20 @@ def run(
     """
     if not is_loopback(where.host):
         if where.token is None:
-            raise UsageError(f"--host {where.host}: wanted --token too: others can reach it")
-        say(f"warning: whoever reaches {where.host} and has the token can see and turn the camera")
+            raise UsageError(
+                f"--host {where.host} needs --token: other machines can reach this address"
+            )
+        say(
+            f"warning: anyone who can reach {where.host} and has the token can see the "
+            "picture and control the camera"
+        )
     for proxy in where.proxies:
         check_origin(proxy)
     tev = None if where.tev is None else Tev(where.tev)
     sock = free_socket(where.host, where.port)
     port = sock.getsockname()[1]
     if port != where.port and where.port:
-        say(f"port {where.port} is in use; this is {port}")
+        say(f"port {where.port} is in use; using {port}")
     token = where.token or new_token()
     host = f"[{where.host}]" if ":" in where.host else where.host
     url = f"http://{host}:{port}/#{token}"

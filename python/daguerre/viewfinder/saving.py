@@ -31,7 +31,7 @@ def save(drawn: Drawn, folder: Path, kind: str) -> Path:
     """
     shot = drawn.shot
     if not drawn.whole:
-        raise UsageError("save: wanted a picture at full size; wait until it is drawn")
+        raise UsageError("save: the picture is not drawn at full size yet; try again in a moment")
     facts = {
         "resolution": shot.settings.film.resolution,
         "crop": drawn.session.crop,
@@ -61,4 +61,4 @@ def _free(folder: Path, drawn: Drawn, kind: str) -> Path:
             return path
         if number > _MOST:
             break
-    raise OutputError(f"{folder}: wanted fewer than {_MOST} files {stem}-N.{kind}")
+    raise OutputError(f"{folder}: holds {_MOST} files {stem}-N.{kind} already; move some of them")

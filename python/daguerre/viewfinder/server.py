@@ -168,7 +168,7 @@ def free_socket(host: str, port: int) -> socket.socket:
         except OSError as error:
             if error.errno != errno.EADDRINUSE:
                 raise UsageError(f"--host {host}: {error.strerror or error}") from None
-    raise UsageError(f"--port {port}: wanted a free port, got none up to {port + TRIES - 1}")
+    raise UsageError(f"--port {port}: no port from {port} to {port + TRIES - 1} is free")
 
 
 async def serve(

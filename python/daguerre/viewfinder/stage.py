@@ -106,7 +106,7 @@ class Stage:
             DaguerreError: It cannot be loaded.
         """
         if self.load is None:
-            raise UsageError("reload: wanted a scene from a file")
+            raise UsageError("reload: this scene was not read from a file")
         scene, camera = self.load()
         return replace(self, scene=scene, camera=camera, built=None)
 

@@ -43,7 +43,7 @@ class Tev:
             )
         except OSError as error:
             raise UsageError(
-                f"--tev {address}: wanted a tev that listens there ({error.strerror or error})"
+                f"--tev {address}: no tev listens there ({error.strerror or error})"
             ) from None
         self._size: tuple[int, int] | None = None
 

@@ -133,7 +133,7 @@ class Networks:
                 return _Found(_Place(node, stack), output)
             if socket is None:
                 return _nothing(output)
-        raise InputError(f"{where}: node {place.name!r}: wanted links without a circle, got one")
+        raise InputError(f"{where}: node {place.name!r}: wanted links without a cycle, got one")
 
     def _link(self, socket: Any) -> Any | None:
         """Link to a socket; None: none that passes anything."""

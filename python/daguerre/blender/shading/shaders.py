@@ -137,7 +137,7 @@ def transparent(sockets: Sockets) -> Closure:
     color = sockets.math.fraction(sockets.value("Color"))
     numbers = numbers_of(color)
     if numbers is None or len(set(numbers)) > 1:
-        sockets.note("the colour of what passes is averaged")
+        sockets.note("the colour of transmitted light is averaged")
     mean = sockets.math.multiply(sockets.math.dot(color, WHITE), (1 / 3,))
     return Closure(None, BLACK, sockets.math.fraction(sockets.math.subtract((1.0,), mean)))
 

@@ -47,7 +47,7 @@ class Tree:
             if name not in self._done and missing:
                 if name in entered:
                     place = self._graph.nodes[name].place
-                    raise InputError(f"{place}: wanted links without a circle, got one")
+                    raise InputError(f"{place}: wanted links without a cycle, got one")
                 entered.add(name)
                 waiting += missing
                 continue

@@ -100,15 +100,15 @@ class CalibrationFlags:
             for name in (f.name for f in fields(self)):
                 if getattr(self, name):
                     flag = "--" + name.replace("_", "-")
-                    raise UsageError(f"{flag}: wanted --calibration too")
+                    raise UsageError(f"{flag} needs --calibration")
             return {}
         found: dict[str, Any] = {}
         for text in self.calibration:
             for name, one in _read(text, self._options).items():
                 if name in found:
                     raise UsageError(
-                        f"--calibration {text}: wanted cameras of different names, got {name!r} "
-                        "twice (a file with one camera gives it its own name)"
+                        f"--calibration {text}: wanted cameras with different names, got {name!r} "
+                        "twice (the only camera of a file is named after the file)"
                     )
                 found[name] = one
         return found
@@ -188,11 +188,11 @@ class CalibrationFlags:
         notes = [*calibration.notes, *field_notes(calibration.projection)]
         if self.timeshift and not any(one.delay_s for one in self.found.values()):
             notes.append(
-                "--timeshift has no effect: all cameras have the timeshift_cam_imu of the first"
+                "--timeshift has no effect: all cameras have the same timeshift_cam_imu"
             )
         if camera.f_stop is not None and self.pixel_pitch is None and not calibration.pixel_pitch:
             notes.append(
-                f"no --pixel-pitch: blur assumes a sensor {camera.sensor_size[0]:g} mm wide"
+                f"no --pixel-pitch: blur is computed for a sensor {camera.sensor_size[0]:g} mm wide"
             )
         return notes
 
@@ -214,7 +214,7 @@ def _read(text: str, options: dict[str, Any]) -> dict[str, Any]:
     if not names:
         first = next(iter(known))
         if len(known) > 1:
-            hint = ":all takes all; # in a name stands for the frame number"
+            hint = ":all uses all; # in a name stands for the frame number"
             console.note(f"{file} has {_some(known)}; using {first} ({hint})")
         return {first: known[first]}
     wanted = [names] if names in known else [name.strip() for name in names.split(",")]

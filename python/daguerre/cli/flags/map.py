@@ -82,7 +82,7 @@ class MapFlags:
 
         check_frame(self.raymap_frame, "--raymap-frame")
         if self.raymap_frame != "camera" and self.export_raymap is None:
-            raise UsageError("--raymap-frame: wanted --export-raymap too")
+            raise UsageError("--raymap-frame needs --export-raymap")
         for path in self.files:
             if path.suffix.lower() != ".exr":
                 raise UsageError(f"{path}: a map wanted a name ending in .exr")
@@ -127,8 +127,10 @@ def _write_stmaps(
 
     maps = StMaps(RectifiedView(camera, size, scene=scene, overscan=overscan), overscan)
     maps.save(**files)
-    source = {"undistort": "a picture of this camera", "redistort": "a straight picture"}
+    source = {"undistort": "pictures of this camera", "redistort": "straight pictures"}
     for name, path in files.items():
         needed = maps.needed[name]
-        what = "no bounds" if needed is None else f"--overscan {needed}" if needed else "none"
-        console.note(f"wrote {path} (overscan that {source[name]} needs for it: {what})")
+        what = f"--overscan {needed}" if needed else "no overscan"
+        if needed is None:
+            what = "unlimited overscan"
+        console.note(f"wrote {path} ({source[name]} need {what} for it)")

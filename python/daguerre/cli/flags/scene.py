@@ -148,7 +148,7 @@ class SceneFlags(SceneFileFlags):
         for frame in frames:
             if frame is None:
                 raise UsageError(
-                    f"--plate {self.plate}: # stands for the number of a frame; wanted --frames"
+                    f"--plate {self.plate}: # stands for the frame number and needs --frames"
                 )
             if not (path := numbered(self.plate, frame)).exists():
                 raise InputError(f"frame {frame}: {path}: wanted a photograph, got no file")
@@ -167,7 +167,7 @@ class SceneFlags(SceneFileFlags):
         if self.plate is None:
             for name, value in (("camera", self.plate_camera), ("scale", self.plate_scale)):
                 if value is not None:
-                    raise UsageError(f"--plate-{name}: wanted --plate too")
+                    raise UsageError(f"--plate-{name} needs --plate")
             return
         from daguerre.plates.photo_light import photo_light
 
@@ -207,7 +207,7 @@ class SceneFlags(SceneFileFlags):
         from daguerre.scene.illuminance import scale_for
 
         if scene.environment is None:
-            raise UsageError("--env-lux: wanted an environment (--env or --sky), got none")
+            raise UsageError("--env-lux needs an environment: --env or --sky")
         scale = scale_for(scene.environment, lux, "--env-lux")
         scene.environment = replace(scene.environment, scale=scale)
 
@@ -247,7 +247,7 @@ class SceneFlags(SceneFileFlags):
         from daguerre.errors import UsageError
 
         if scene.environment is None:
-            raise UsageError("--env-scale, --env-rotation: wanted an environment (--env), got none")
+            raise UsageError("--env-scale and --env-rotation need --env")
         changes: dict[str, float] = {}
         if self.env_scale is not None:
             changes["scale"] = self._scale()

@@ -35,5 +35,5 @@ class SettingsFlags(TableFlags):
         if given.get("diffraction"):
             given["diffraction"] = Diffraction(*waves.values())
         elif any(waves[row.name] != row.default for row in DIFFRACTION_ROWS):
-            raise UsageError("--diffraction-bands, --diffraction-zones: wanted --diffraction too")
+            raise UsageError("--diffraction-bands and --diffraction-zones need --diffraction")
         return RenderSettings.read(given | more, FLAGS.flag)

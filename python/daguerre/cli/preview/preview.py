@@ -51,7 +51,7 @@ class Preview:
                 self._write(look)
         except (DaguerreError, OSError) as error:
             self.works = False
-            console.warn(f"--preview: {error}; no more previews")
+            console.warn(f"--preview: {error}; the preview stops")
 
     def _write(self, look: Look) -> None:
         look.write(look.path)

@@ -20,7 +20,10 @@ def check_files(flags: JobFlags, rows: SettingsFlags, maps: MapFlags) -> list[st
     from daguerre.frame.frame import TONES, check_format
 
     if not flags.paths and not maps.files:
-        raise UsageError("-o, --output: wanted a picture or a map (--export-...), got neither")
+        raise UsageError(
+            "nothing to write: name a picture with -o NAME.exr or -o NAME.png, or a map with "
+            "--export-..."
+        )
     formats = [check_format(path, (".dng",)) for path in flags.paths]
     tone = flags.tone
     if tone not in TONES:
@@ -36,15 +39,19 @@ def check_files(flags: JobFlags, rows: SettingsFlags, maps: MapFlags) -> list[st
     )
     if not formats and any(drawn):
         raise UsageError(
-            "-o: wanted a picture for --aov, --samples, --noise, --denoise or --preview, got only "
-            "maps"
+            "--aov, --samples, --noise, --denoise and --preview need a picture (-o "
+            "NAME.exr), but only maps are written"
         )
     if groups and ".exr" not in formats:
-        raise UsageError("--aov: wanted an .exr with -o, which alone holds channels, got none")
+        raise UsageError(
+            "--aov needs an .exr output (-o NAME.exr): PNG and JPEG cannot store channels"
+        )
     if flags.samples and ".exr" not in formats:
-        raise UsageError("--samples: wanted an .exr with -o for the sums of the pass, got none")
+        raise UsageError(
+            "--samples needs an .exr output (-o NAME.exr), which stores the sums of the pass"
+        )
     if flags.noisy and not flags.denoise:
-        raise UsageError("--noisy: wanted --denoise too; without it -o is that picture")
+        raise UsageError("--noisy needs --denoise; without it, -o writes that picture")
     for path in flags.noisy or ():
         check_format(path, (".dng",))
     if flags.denoise:
@@ -63,8 +70,8 @@ def check_samples(
     given = rows.given()
     if "noise" in given:
         raise UsageError(
-            "--noise and --samples: wanted one of them, got both; adaptive sampling depends on the "
-            "samples before, so it has no passes"
+            "--noise and --samples: wanted one of them, got both; adaptive sampling decides "
+            "from all samples before, so it cannot be split into passes"
         )
     samples = q.sample_range("--samples", flags.samples)
     TABLE["spp"].check(samples[1], f"--samples {flags.samples}")
@@ -72,13 +79,19 @@ def check_samples(
         raise UsageError(f"--samples {flags.samples}: wanted at most --spp {given['spp']}")
     if flags.denoise:
         raise UsageError(
-            "--samples and --denoise: wanted one of them, got both; `daguerre merge --denoise` "
-            "denoises merged passes"
+            "--samples and --denoise: wanted one of them, got both; denoise the merged "
+            "passes with `daguerre merge --denoise`"
         )
     if found := [name for name in EXPOSED if name in groups]:
-        raise UsageError(f"--samples: a pass is not exposed; wanted no --aov {','.join(found)}")
+        raise UsageError(
+            f"--samples and --aov {','.join(found)}: wanted one of them, got both; a pass is "
+            "not exposed"
+        )
     if DISPARITY in groups:
-        raise UsageError("--samples: wanted no --aov disparity; a pass keeps --aov depth")
+        raise UsageError(
+            "--samples and --aov disparity: wanted one of them, got both; a pass can keep "
+            "--aov depth"
+        )
     return samples
 
 
@@ -104,7 +117,9 @@ def check_overscan(flags: JobFlags, settings: RenderSettings) -> None:
     if settings.film.overscan is None or not flags.paths:
         return
     if not any(path.suffix.lower() == ".exr" for path in flags.paths):
-        raise UsageError("--overscan: wanted an .exr with -o; other formats hold no overscan")
+        raise UsageError(
+            "--overscan needs an .exr output (-o NAME.exr): other formats cannot store it"
+        )
 
 
 def check_truth(groups: list[str], rows: SettingsFlags, maps: MapFlags) -> None:
@@ -113,11 +128,13 @@ def check_truth(groups: list[str], rows: SettingsFlags, maps: MapFlags) -> None:
     means = given.get("gt_lens", "chief") != "chief"
     if not groups and (means or ("gt_time" in given and maps.export_raymap is None)):
         flag = "--gt-time" if "gt_time" in given else "--gt-lens"
-        raise UsageError(f"{flag}: wanted channels to write, such as --aov depth,motion")
+        raise UsageError(f"{flag} needs ground truth to write, such as --aov depth,motion")
     if "coverage" in groups and not means:
-        raise UsageError("--aov coverage: wanted --gt-lens mean; chief rays have no coverage")
+        raise UsageError("--aov coverage needs --gt-lens mean: a single chief ray has no coverage")
     if DISPARITY in groups and means:
-        raise UsageError("--aov disparity: wanted --gt-lens chief; means have no single position")
+        raise UsageError(
+            "--aov disparity needs --gt-lens chief: a mean over rays has no single position"
+        )
 
 
 def check_writable(output: Output) -> None:

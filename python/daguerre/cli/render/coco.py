@@ -65,19 +65,19 @@ def coco_of(path: Path | None, categories: Path | None, plan: Plan) -> Labels:
     """
     if path is None:
         if categories is not None:
-            raise UsageError("--categories: wanted --coco FILE.json too")
+            raise UsageError("--categories needs --coco FILE.json")
         return Labels()
     if path.suffix.lower() != ".json":
         raise UsageError(f"--coco: wanted a name ending in .json, got {path}")
     if not plan.flags.paths:
-        raise UsageError("--coco: wanted a picture with -o, got maps alone")
+        raise UsageError("--coco needs a picture (-o NAME.png): only maps are written")
     if plan.pictures[0].settings.film.overscan is not None:
         raise UsageError("--coco and --overscan: wanted one of them, got both")
     taken = {file.resolve() for picture in plan.pictures for file in picture.output.written}
     if path.resolve() in taken or (
         categories is not None and path.resolve() == categories.resolve()
     ):
-        raise UsageError(f"--coco {path}: this name is taken by another file of this call")
+        raise UsageError(f"--coco {path}: another file of this command has this name")
     from daguerre.labels.categories import Categories
     from daguerre.labels.coco import CocoFile
 

@@ -40,7 +40,7 @@ def check_names(outputs: list[Path], frames: list[int] | None) -> None:
     for path in outputs:
         has_place = has_frame(path)
         if frames is None and has_place:
-            raise UsageError(f"-o {path}: # stands for the number of a frame; wanted --frames")
+            raise UsageError(f"-o {path}: # stands for the frame number and needs --frames")
         if frames is not None and len(frames) > 1 and not has_place:
             raise UsageError(
                 f"-o {path}: wanted a name with # for {len(frames)} frames, "

@@ -97,11 +97,16 @@ def _output(
     """Makes the output: files of the pictures, exposure and development."""
     cameras.flags.check(cameras.changes)
     if settings.light.scatter in ("off", 0) and "scatter" in cameras.changes:
-        raise UsageError("--scatter-barrel, -blades, -surface-nm: wanted --scatter too")
+        raise UsageError(
+            "--scatter-barrel, --scatter-blades and --scatter-surface-nm need --scatter"
+        )
     asked = (flags.exposure, flags.bracket, flags.look)
     photograph = photograph_of(cameras.changes, *asked, settings.sampling.seed, cameras.plate)
     if photograph.develops and flags.tone != "srgb":
-        raise UsageError(f"--tone {flags.tone}: wanted --look, as these pictures are developed")
+        raise UsageError(
+            f"--tone {flags.tone}: these pictures are developed, so their tone curve is set "
+            "by --look"
+        )
     is_pass = flags.samples is not None
     noisy = tuple(flags.noisy or ())
     return Output(flags.paths, tuple(groups), flags.denoise, noisy, flags.tone, photograph, is_pass)
@@ -110,7 +115,7 @@ def _output(
 def _output_of(output: Output, view: View, settings: RenderSettings) -> Output:
     """Makes the output of one camera, whose picture may have another size."""
     if DISPARITY in output.aovs and not view.shift:
-        raise UsageError("--aov disparity: wanted --stereo, got no pair")
+        raise UsageError("--aov disparity needs --stereo")
     return replace(output, baseline=2 * abs(view.shift))
 
 

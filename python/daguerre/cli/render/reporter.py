@@ -99,10 +99,11 @@ class ConsoleReporter(Reporter):
         sampling, reached = result.session.settings.sampling, result.frame.metadata.get("noise")
         if sampling.noise is None or reached is None:
             return
-        console.note(f"noise {reached:.3g}, wanted {sampling.noise:g}")
+        console.note(f"noise {reached:.3g} (wanted {sampling.noise:g})")
         if reached > sampling.noise:
             console.warn(
-                f"--noise {sampling.noise:g} is not reached: --spp {sampling.most} stopped it first"
+                f"--noise {sampling.noise:g} was not reached: --spp {sampling.most} ended the "
+                "render before"
             )
 
     def stopped(self, result: Stopped) -> None:
@@ -123,4 +124,4 @@ def bad_samples(count: int, places: list[tuple[int, int, int]]) -> str:
     """Message with the number of dropped samples, and the first of them."""
     named = ", ".join(f"sample {sample} of pixel ({x}, {y})" for x, y, sample in places[:4])
     more = ", ..." if len(places) > 4 else ""
-    return f"{count} samples were NaN or Inf and are left out: {named}{more}"
+    return f"{count} samples were NaN or infinite and were left out: {named}{more}"

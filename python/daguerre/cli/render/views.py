@@ -149,7 +149,7 @@ def views_of(
     asking = [flag for flag, yes in several.items() if yes]
     if len(asking) > 1:
         raise UsageError(
-            f"{' and '.join(asking)}: wanted several cameras from one of them, got them from both"
+            f"{' and '.join(asking)}: wanted one of them, got both; each stands for several cameras"
         )
     if stereo is not None:
         baseline = q.distance_m("--stereo", stereo)
@@ -186,6 +186,6 @@ def check_places(outputs: list[Path], views: list[View]) -> None:
                 raise UsageError(f"-o {path}: wanted {CAMERA}, got {place}")
         if CAMERA in str(path) and not views[0].name:
             raise UsageError(
-                f"-o {path}: {CAMERA} stands for the name of a camera; wanted --camera, "
+                f"-o {path}: {CAMERA} stands for the name of a camera and needs --camera, "
                 "--calibration or --stereo"
             )

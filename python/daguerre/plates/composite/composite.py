@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.checks import number, short
+from daguerre.checks import number
 from daguerre.color import srgb
 from daguerre.color.spectra import xyz_of
 from daguerre.development.looks import GREY
@@ -74,7 +74,9 @@ def composite(
         source = _raw(source, look)
     if isinstance(source, Raw):
         if scale is not None:
-            raise UsageError("scale: wanted none for a raw plate, which counts electrons, got one")
+            raise UsageError(
+                "scale: leave it out for a raw plate, which has its scale in electrons"
+            )
         return composite_raw(source, seen, form=form, seed=seed)
     if isinstance(source, Frame):
         return _linear(source, seen, form, 1.0 if scale is None else _positive(scale))
@@ -90,8 +92,8 @@ def _look(like_plate: PathLike | PlateCamera | None) -> PlateLook | None:
 def _raw(source: Photograph, look: PlateLook | None) -> Raw:
     if look is None:
         raise InputError(
-            f"{source.path}: composite: wanted the matched camera of a raw plate, got none "
-            "(run daguerre match-plate, then use --like-plate)"
+            f"{source.path}: composite: a raw plate needs its matched camera: run `daguerre "
+            "match-plate`, then add --like-plate"
         )
     return raw_of(source, look.plate)
 
@@ -198,6 +200,7 @@ def save(made: Composite, path: Path, **look: Any) -> None:
     """
     if path.suffix.lower() == ".dng" and not isinstance(made, Raw):
         raise UsageError(
-            f"{path}: wanted a composite of a raw plate for a DNG, got {short(type(made).__name__)}"
+            f"{path}: only the composite of a raw plate can be a DNG; write a picture, such "
+            "as .png or .tif"
         )
     made.save(path, **look)

@@ -117,8 +117,8 @@ def _change(frame: Frame, body: Sensor, light: Light, form: str) -> Change:
         caught = frame.catcher_channels * per_one
         return change_of(added, frame.alpha, caught, frame.catcher_ratio_channels, form)
     raise InputError(
-        "composite: wanted a frame with catcher channels of the plate's sensor for a raw plate, "
-        f"got none (render with --sensor {body.name})"
+        "composite: a raw plate needs catcher channels of its own sensor: render with "
+        f"--sensor {body.name}"
     )
 
 

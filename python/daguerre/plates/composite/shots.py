@@ -85,7 +85,7 @@ def shots_of(
 def _check_places(plate: Path, objects: Path, frames: Sequence[int] | None) -> None:
     marked = [path for path in (plate, objects) if has_frame(path)]
     if frames is None and marked and not marked[0].exists():
-        raise UsageError(f"{marked[0]}: wanted --frames for # in the name, got none")
+        raise UsageError(f"{marked[0]}: # stands for the frame number and needs --frames")
     if frames is not None and len(frames) > 1 and not marked:
         raise UsageError(
             f"--frames: wanted # for the frame number in the name of the plate or the objects, "
@@ -99,7 +99,7 @@ def _check_files(shots: list[Shot]) -> None:
     written = [path for shot in shots for path in shot.outputs]
     for path in written:
         if path.resolve() in read:
-            raise UsageError(f"{path}: wanted an output file that is not an input, got an input")
+            raise UsageError(f"-o {path}: this is one of the inputs; choose another name")
     if twice := [path for path, count in Counter(written).items() if count > 1]:
         raise UsageError(f"-o {twice[0]}: wanted one file for each frame, got one for several")
     missing = [

@@ -116,7 +116,7 @@ def _means(flat: Photograph) -> tuple[FloatArray, FloatArray, FloatArray]:
     plane, _ = overview(flat)
     clipped = _top(flat)
     if (plane >= clipped).mean() > 1e-3:
-        raise InputError(f"{flat.path}: flat: wanted no clipped pixels, got some")
+        raise InputError(f"{flat.path}: flat: some pixels are clipped; take it with less exposure")
     side = max(max(plane.shape) // _CELLS, 1)
     rows, columns = (length // side for length in plane.shape)
     cut = plane[: rows * side, : columns * side] - np.float32(_black(flat))

@@ -185,7 +185,7 @@ def _transfer(
         )
     elif found.read_noise_error > _UNSURE:
         sure = f"{found.read_noise_error:.0%}"
-        notes.append(f"read noise: has an error of {sure}, as little of the picture is dark")
+        notes.append(f"read noise: uncertain by {sure}, as little of the picture is dark")
     return found
 
 
@@ -195,7 +195,8 @@ def _sharpness(
     found = sharpness_of(photograph)
     if found is None:
         notes.append(
-            "sharpness: not measured, as no edge is good enough; objects keep that of the render"
+            "sharpness: not measured, as no edge is good enough; objects keep the sharpness "
+            "of the render"
         )
         return None
     if bench is None:

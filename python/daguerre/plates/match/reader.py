@@ -155,7 +155,8 @@ def _transfer(item: Item) -> Transfer:
 def _grain(item: Item, *, linear: bool) -> Grain:
     levels, deviations = _rows(item.need("levels")), _rows(item.need("deviations"))
     if levels.shape != deviations.shape:
-        item.need("deviations").fail("wrong shape: wanted the shape of levels, got another")
+        got = f"{deviations.shape[1]} values for each colour, got {levels.shape[1]}"
+        item.need("levels").fail(f"wrong length: wanted {got}")
     if (np.diff(levels, axis=1) < 0).any() or (deviations < 0).any():
         item.need("levels").fail("wanted levels in ascending order, and deviations of at least 0")
     spectra = np.zeros((HALF, HALF, 3, 3))

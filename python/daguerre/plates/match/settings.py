@@ -72,7 +72,7 @@ def settings_of(photograph: Photograph, given: Mapping[str, Any]) -> Settings:
     if missing:
         words = ", ".join(words for _, words in missing)
         flags = ", ".join(MATCH[name].flag for name, _ in missing)
-        raise InputError(f"{where}: EXIF: wanted {words}; got none; set with {flags}")
+        raise InputError(f"{where}: EXIF: wanted {words}, got none; give {flags}")
     camera = Camera().with_(
         **values,
         focus_distance=wanted.get("focus_distance", facts.get("focus")),

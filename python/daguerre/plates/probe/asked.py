@@ -55,8 +55,8 @@ class Asked:
         _refuse_idle(ball, given)
         if len(paths) % len(yaws):
             raise UsageError(
-                f"--ball-direction: wanted equally many photographs for each of {len(yaws)} sides, "
-                f"got {len(paths)} in all"
+                f"--ball-direction: wanted the same number of photographs for each of {len(yaws)} "
+                f"sides, got {len(paths)} in all"
             )
         notes = Notes()
         reading = Reading(given["wb"], given["response"], given["scale"], notes)
@@ -134,15 +134,13 @@ def _refuse_idle(ball: str | None, given: dict[str, Any]) -> None:
     flags = ("circle", "reflectance", "ball_direction", "pitch")
     idle = [n for n in flags if given[n] is not None and not (n == "pitch" and given[n] == 0)]
     if ball is None and idle:
-        raise UsageError(
-            f"--{idle[0].replace('_', '-')}: wanted --ball mirror or --ball grey as well, got none"
-        )
+        raise UsageError(f"--{idle[0].replace('_', '-')} needs --ball mirror or --ball grey")
     if given["grey"] and (given["illuminance"] or ball == "grey"):
         other = "--ball grey" if ball == "grey" else "--illuminance"
         raise UsageError(f"--grey and {other}: wanted one of them, got both")
     if not given["grey"]:
         for name in ("grey_circle", "grey_direction"):
             if given[name] is not None:
-                raise UsageError(f"--{name.replace('_', '-')}: wanted --grey as well, got none")
+                raise UsageError(f"--{name.replace('_', '-')} needs --grey")
     if ball == "grey" and np.size(given["ball_direction"]) > 1:
         raise UsageError("--ball-direction: wanted one value for a grey ball, got several")

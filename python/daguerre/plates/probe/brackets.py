@@ -75,9 +75,11 @@ def read_view(paths: Sequence[str | Path], ev: Sequence[float] | None, how: Read
     curve, kind = _curve(shots, exposures.stops, how)
     merged = merge(shots, exposures, curve)
     if merged.clipped.mean() > 0.98:
-        raise InputError(f"{shots[0].path}: wanted light that is not clipped, got hardly any")
+        raise InputError(
+            f"{shots[0].path}: nearly all light is clipped; take it with less exposure"
+        )
     if not merged.light.any():
-        raise InputError(f"{shots[0].path}: wanted light, got a black picture")
+        raise InputError(f"{shots[0].path}: the picture is black; take it with more exposure")
     if merged.negative:
         how.notes.add("pixel outside the Rec.709 gamut: negative light set to 0", merged.negative)
     return View(merged, shots, exposures, kind)
@@ -93,7 +95,7 @@ def _curve(shots: list[Shot], stops: tuple[float, ...], how: Reading) -> tuple[F
     apart = max(stops) - min(stops) >= 0.3
     if how.response == "recover" and not apart:
         raise UsageError(
-            "--response: wanted photographs at least 0.3 EV apart for recover, got "
+            "--response recover needs photographs at least 0.3 EV apart, got "
             + ("one" if len(shots) == 1 else f"{max(stops) - min(stops):.1f} EV")
         )
     if how.response == "srgb" or not apart:

@@ -74,7 +74,8 @@ def exposures_of(
     if all(not shot.metered for shot in shots):
         if len(shots) > 1:
             raise InputError(
-                f"{shots[1].path}: exposure: wanted --ev, such as -4,0, as linear files have none"
+                f"{shots[1].path}: exposure: linear files do not store it; give --ev, such as "
+                "--ev -4,0"
             )
         return Exposures((scale or 1.0,), True)
     return _by_exif(shots, scale, notes, flag)

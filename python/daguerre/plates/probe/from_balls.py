@@ -57,7 +57,8 @@ def _one_unit(views: list[View]) -> bool:
     absolute = all(view.exposures.absolute for view in views)
     if not absolute and len(views) > 1 and any(view.exposures.absolute for view in views):
         raise InputError(
-            f"{views[1].path}: exposure: wanted a known exposure for every side or for none"
+            f"{views[1].path}: exposure: wanted a known exposure for every side or for none, "
+            "got it for some"
         )
     return absolute
 

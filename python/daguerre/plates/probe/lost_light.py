@@ -104,8 +104,8 @@ def _solved(asked: Asked, source: Source, taken: Taken | None) -> Lit:
     if asked.illuminance is not None:
         if not source.absolute:
             raise InputError(
-                f"{asked.photographs[0]}: --illuminance: wanted light in a known unit, so that the "
-                "rest of it can be subtracted, got none; set --scale, or use --grey instead"
+                f"{asked.photographs[0]}: --illuminance needs light in a known unit, to subtract "
+                "the rest of it; give --scale, or use --grey instead"
             )
         sun = by_illuminance(taken.sun, taken.rest, asked.illuminance)
     else:

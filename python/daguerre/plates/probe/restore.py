@@ -66,9 +66,9 @@ def by_grey_ball(sun: Sun, rest: NDArray[np.float32], shading: Shading) -> Sun:
         factor, amount = np.linalg.lstsq(columns, shading.irradiance[:, c], rcond=None)[0]
         if factor <= 0 or amount <= 0:
             raise InputError(
-                "--grey: wanted a ball that is brighter toward the sun of the map (azimuth "
-                f"{sun.azimuth_deg:.0f}, elevation {sun.elevation_deg:.0f} degrees), got one that "
-                "is not; check --grey-direction"
+                "--grey: the ball is not brighter toward the sun of the map (azimuth "
+                f"{sun.azimuth_deg:.0f}, elevation {sun.elevation_deg:.0f} degrees); check "
+                "--grey-direction"
             )
         found[c] = amount / factor
     return _solved(sun, found, "grey")

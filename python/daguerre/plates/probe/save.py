@@ -72,7 +72,7 @@ def write_sun(path: str | os.PathLike[str], sun: Sun | None) -> None:
 
     check_written(path, SUNS)
     if sun is None:
-        raise InputError(f"{path}: wanted a sun in the light to write, got none")
+        raise InputError(f"{path}: no sun was found in the photographs, so there is none to write")
     file = Glb("daguerre light-probe")
     lux = max(sun.illuminance)
     light = {

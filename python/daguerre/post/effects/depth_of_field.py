@@ -76,7 +76,7 @@ def _given(canvas: Canvas, values: Values, name: str, fact: str, wanted: str) ->
     value = values[name] if values[name] is not None else canvas.facts.get(fact)
     if isinstance(value, int | float) and value > 0:
         return float(value)
-    raise UsageError(f"{canvas.where}: {name}: wanted {wanted}, as the file has none")
+    raise UsageError(f"{canvas.where}: {name}: the file has none; give {wanted}")
 
 
 class _DepthOfField(Step):

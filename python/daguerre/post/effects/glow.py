@@ -68,9 +68,7 @@ def _halo(canvas: Canvas, values: Values) -> Step:
     shares = np.array([values["red"], values["green"], values["blue"]], np.float32)
     shares = values["share"] * (shares if colors == 3 else shares[:1])
     if (shares > 1).any():
-        raise UsageError(
-            f"{canvas.where}: halo: wanted share times red, green and blue of at most 1, got more"
-        )
+        raise UsageError(f"{canvas.where}: halo: share times red, green or blue must be at most 1")
 
     return _shared(canvas, shares, kernel[:, :, None])
 
