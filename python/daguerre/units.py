@@ -95,19 +95,29 @@ def plain_number(flag: str, text: str, wanted: str) -> float:
 
 
 def f_number(flag: str, text: str) -> float:
-    """Parses an f-number: ``2.8`` or ``f/2.8``."""
-    number = re.sub(r"^[fF]/?", "", text.strip())
-    return _finite(
-        flag, text, _quantity(flag, number, {"": 1.0}, "", "an f-stop such as 2.8 or f/2.8")
-    )
+    """Parses an f-number: ``2.8``, ``f/2.8`` or ``f2.8``."""
+    return _stop(flag, text, "f")
 
 
 def t_number(flag: str, text: str) -> float:
-    """Parses a T-number: ``2.9``, ``T2.9`` or ``T/2.9``."""
-    number = re.sub(r"^[tT]/?", "", text.strip())
-    return _finite(
-        flag, text, _quantity(flag, number, {"": 1.0}, "", "a T-stop such as 2.9 or T2.9")
-    )
+    """Parses a T-number: ``2.8``, ``T/2.8`` or ``T2.8``."""
+    return _stop(flag, text, "T")
+
+
+def _stop(flag: str, text: str, letter: str) -> float:
+    """Parses an f-number or T-number; a fraction such as a shutter time is an error."""
+    wanted = f"an {letter}-stop" if letter == "f" else f"a {letter}-stop"
+    wanted += f" such as 2.8, {letter}/2.8 or {letter}2.8"
+    number = re.fullmatch(rf"(?:{letter}/?)?([^/:]*)", text.strip(), re.IGNORECASE)
+    if number is None:
+        ratio = re.fullmatch(r"1[/:](\d+\.?\d*)", text.strip())
+        near = f" (did you mean {letter}/{ratio[1]}?)" if ratio and float(ratio[1]) <= 64 else ""
+        raise UsageError(f"{flag}: wanted {wanted}; got {text!r}{near}")
+    try:
+        value = _quantity(flag, number[1], {"": 1.0}, "", wanted)
+    except UsageError:
+        raise _bad(flag, wanted, text) from None
+    return _finite(flag, text, value)
 
 
 def white(flag: str, text: str) -> float | tuple[float, float]:
@@ -139,7 +149,7 @@ def decenter(
 
 def numbers(flag: str, text: str, count: int, example: str) -> tuple[float, ...]:
     """Parses ``count`` finite numbers between commas."""
-    wanted = f"{count} numbers such as {example}"
+    wanted = f"{count} numbers such as {example}" if count > 1 else f"numbers such as {example}"
     parts = text.split(",")
     if len(parts) != count:
         raise _bad(flag, wanted, text)

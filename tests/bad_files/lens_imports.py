@@ -342,7 +342,7 @@ THEMES = {"zmx": ZMX, "seq": SEQ, "bench": BENCH, "pbrt": PBRT}
 
 #: Good files that a command asks too much of.
 ASKED: dict[str, tuple[tuple[str, ...], str]] = {
-    "f-stop": (("--f-stop", "0.8"), r"f-stop: wanted f/.* \[lens-f-stop\]"),
+    "f-stop": (("--f-stop", "0.8"), r"f_stop: wanted .* opens to f/.* \[lens-f-stop\]"),
     "focus": (("--focus", "0.01"), r"nearest possible.* \[lens-focus-near\]"),
     "dark": (
         ("--shift", "300,0", "--focus", "inf"),

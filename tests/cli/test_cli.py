@@ -157,7 +157,7 @@ WRONG = {
     "misspelt flag": (["lenses", "--jsn"], 2, "--jsn (did you mean --json?)"),
     "no value": (["render", "s.glb", "-o"], 2, "(see `daguerre render --help`)"),
     "unknown command": (["rendr"], 2, "'render'"),
-    "no output": (["render", "s.glb"], 2, "--output"),
+    "no output": (["render", "s.glb"], 2, "nothing to write: name a picture with -o NAME.exr"),
     "no scene": (["render", "-o", "a.exr"], 2, "SCENE"),
     "format": (["render", "s.glb", "-o", "a.gif"], 2, "ending in .exr, .png"),
     "channels in a png": (
@@ -440,8 +440,8 @@ def interrupted_checkpoint() -> None:
 @pytest.mark.parametrize(
     ("flags", "text"),
     [
-        (["--f-stop", "4"], "different: the camera"),
-        (["--seed", "3"], "different: seed 0 (wanted 3)"),
+        (["--f-stop", "4"], "they differ in the camera"),
+        (["--seed", "3"], "they differ in seed 0 (wanted 3)"),
         (["--spp", "2"], "holds samples 0:4, wanted only 0:2"),
     ],
 )

@@ -180,7 +180,7 @@ def test_frames_of_unknown_exposure(tmp_path, capsys, facts, named):
 def test_files_that_are_no_raw_files(tmp_path, capsys):
     (tmp_path / "x.dng").write_bytes(b"II*\0 no picture at all")
     assert run(tmp_path / "x.dng", "-o", tmp_path / "x.jpg") == 3
-    assert "wanted a raw file, got a file that LibRaw cannot read" in capsys.readouterr().err
+    assert "wanted a camera raw file; LibRaw cannot read this one" in capsys.readouterr().err
     assert run(tmp_path / "none.dng", "-o", tmp_path / "x.jpg") == 3
     assert "no such file" in capsys.readouterr().err
     assert run(tmp_path / "x.dng", "-o", tmp_path / "x.jpg", "--iso", "200") == 2

@@ -132,8 +132,8 @@ def test_an_export_says_where_it_does_not_follow_the_lens(
         (["--export", "lens.txt"], "--export: wanted a name ending in .c, .glsl, .osl"),
         (["--export", "lens.osl", "--degree", "4"], "degree: wanted an odd number"),
         (["--export", "lens.osl", "--sensor", "huge"], "--sensor: wanted a size in mm"),
-        (["--degree", "5"], "--degree: needs --export FILE"),
-        (["--blade-rotation", "5"], "--blade-rotation: needs --export FILE"),
+        (["--degree", "5"], "--degree needs --export FILE"),
+        (["--blade-rotation", "5"], "--blade-rotation needs --export FILE"),
         (["--export", "lens.osl", "--blades", "2"], "blades: wanted 3 to 64"),
     ],
 )

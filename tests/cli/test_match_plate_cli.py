@@ -72,10 +72,10 @@ def test_flags_say_what_the_photograph_does_not(tmp_path, capsys):
         (["plate.dng", "-o", "x.txt"], 2, "ending in .json"),
         (["plate.dng", "-o", "no/x.json"], 5, "no such folder"),
         (["plate.dng", "--lens", "canon-ef-85"], 3, "did you mean"),
-        (["plate.dng", "--flat", "none.dng"], 3, "none.dng: wanted a photograph"),
+        (["plate.dng", "--flat", "none.dng"], 3, "none.dng: no such file"),
         (["plate.dng", "--f-stop", "1.2"], 3, "wanted f/1.8 or narrower"),
         (["plate.dng", "--iso", "-5"], 2, "iso: wanted a number above 0"),
-        (["plate.dng", "--look", "sepia"], 2, "look: wanted one of"),
+        (["plate.dng", "--look", "sepia"], 2, "look (--look): wanted one of"),
     ],
 )
 def test_errors_are_one_line(plate, tmp_path, monkeypatch, capsys, words, code, wanted):

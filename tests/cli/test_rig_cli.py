@@ -250,9 +250,9 @@ def test_interrupted_rigs_go_on_with_the_camera_that_is_not_complete(tmp_path: P
         (
             ["-o", "x.exr", "--calibration-unit", "mm"],
             2,
-            "--calibration-unit: wanted --calibration",
+            "--calibration-unit needs --calibration",
         ),
-        (["-o", "x.exr", "--timeshift"], 2, "--timeshift: wanted --calibration"),
+        (["-o", "x.exr", "--timeshift"], 2, "--timeshift needs --calibration"),
         (["-o", "x.exr", "--calibration", "no.yaml:cam0"], 3, "no.yaml:cam0"),
         (
             [

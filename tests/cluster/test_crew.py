@@ -112,7 +112,7 @@ def test_a_task_that_is_given_up_ends_the_render_when_all_else_is_drawn() -> Non
 def test_where_every_task_fails_the_render_ends_soon() -> None:
     names = ["a", "b", "c", "d"]
     fake = Fake(names, failed_on(set(names)))
-    with pytest.raises(InputError, match=r"no space; in all, samples 0:\d were given up"):
+    with pytest.raises(InputError, match=r"no space; in all, samples 0:\d were not drawn"):
         drawn(Crew(fake))
     assert len(fake.done) < 60  # of 3 x 64
 
@@ -207,7 +207,7 @@ def test_wrong_sums_refuse_their_worker() -> None:
     crew = Crew(Fake(["good", "liar"], plan), tell=told.append)
     assert np.array_equal(drawn(crew).rgb, alone().rgb)
     assert crew.workers.good == {"good"}
-    assert any("liar: scene: wanted that of the client" in text for text in told)
+    assert any("liar: scene: wanted the same as the client's" in text for text in told)
 
 
 def test_damaged_answers_are_drawn_again() -> None:

@@ -174,7 +174,7 @@ def test_nothing_is_left_of_a_file_that_fails(tmp_path):
     raw = raw_of(load("ideal"), greys(0.18))
     with pytest.raises(dg.OutputError, match="no such folder"):
         raw.save(tmp_path / "no" / "x.dng")
-    with pytest.raises(dg.UsageError, match=r"wanted no development for a DNG, got wb"):
+    with pytest.raises(dg.UsageError, match=r"a DNG is not developed: leave out wb"):
         raw.save(tmp_path / "x.dng", wb="auto")
     with pytest.raises(dg.UsageError, match=r"did you mean '\.dng'"):
         raw.save(tmp_path / "x.dgn")

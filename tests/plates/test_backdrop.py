@@ -128,7 +128,7 @@ def test_the_command_line_says_what_it_wants(
     size = [] if "--res" in flags else ["--res", "30x20"]
     assert main(["render", str(scene), *common, *size, *flags]) in (2, 3)
     told = capsys.readouterr().err
-    assert "background: plate" in told
+    assert "background (--background): plate" in told
     assert words in told
     assert not list(tmp_path.glob("a.*"))
 

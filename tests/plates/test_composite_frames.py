@@ -107,10 +107,10 @@ def test_what_is_missing_is_named_before_anything_is_made(
     Path("object.0002.exr").unlink()
     assert composite("plate.png", "object.####.exr", "out.#.png", "--frames", "1-3") == 3
     said = capsys.readouterr().err
-    assert "frame 2: object.0002.exr: wanted a picture, got no file (only this frame)" in said
+    assert "frame 2: object.0002.exr: no such file (only this frame)" in said
     assert not list(Path().glob("out.*"))
     assert composite("plate.#.png", "object.####.exr", "out.#.png", "--frames", "1-3") == 3
-    assert "frame 1: plate.1.png: wanted a picture, got no file (3 of 3" in capsys.readouterr().err
+    assert "frame 1: plate.1.png: no such file (3 of 3" in capsys.readouterr().err
     Path("object.0002.exr").write_bytes(b"no picture")
     assert composite("plate.png", "object.####.exr", "out.#.png", "--frames", "1-3") == 3
     assert "error: frame 2: object.0002.exr" in capsys.readouterr().err

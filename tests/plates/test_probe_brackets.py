@@ -139,7 +139,7 @@ def test_missing_exposures(tmp_path):
         InputError, match=r"b.jpg: EXIF: wanted the exposure time, got none; give --ev"
     ):
         dg.light_probe([one, two])
-    with pytest.raises(UsageError, match=r"--ev: wanted one for each of 2 photographs, got 3"):
+    with pytest.raises(UsageError, match=r"--ev: wanted 2, one for each photograph, got 3"):
         dg.light_probe([one, two], ev=(0, 1, 2))
 
 

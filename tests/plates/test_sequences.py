@@ -138,7 +138,7 @@ def test_each_frame_sees_its_own_plate(
     assert not np.array_equal(found[1], found[2])
     assert not np.array_equal(found[0], found[1])
     assert main([*run, "--frames", "1-4"]) == 3
-    assert "frame 3: plate.03.exr: wanted a photograph, got no file" in capfd.readouterr().err
+    assert "frame 3: plate.03.exr: no such file" in capfd.readouterr().err
     alone = ["--plate", "plate.##.exr", "-o", "o.exr"]
     assert main(["render", "set.gltf", *how, *alone]) == 2
-    assert "--plate plate.##.exr: # stands for the number" in capfd.readouterr().err
+    assert "--plate plate.##.exr: # stands for the frame number" in capfd.readouterr().err

@@ -86,7 +86,7 @@ def test_what_is_wrong_is_named_and_nothing_is_added(
         ({"lens": 5}, "lens: wanted a name"),
         ({"aperture_image": np.ones(4)}, r"aperture_image: wanted shape \(H, W\)"),
         ({"lens": "tessar-50mm-f2.8", "focal_length": 35}, "prescription has its own"),
-        ({"lens": "pinhole", "f_stop": 2}, "a pinhole has no f_stop"),
+        ({"lens": "pinhole", "f_stop": 2}, "f_stop: a pinhole has none"),
         ({"focus_on": "wall", "focus_distance": 2}, "wanted either"),
     ],
 )

@@ -391,7 +391,9 @@ class Camera(Value):
         if hole := next((name for name in WITHOUT_IRIS if name in asked), None):
             odd = sorted(name for name in given if OPENING in CAMERA[name].needs)
             if odd:
-                raise UsageError(f"camera: a {hole} has no {odd[0]}")
+                raise UsageError(
+                    f"camera: {odd[0]}: a {hole} has none; choose another lens, or leave it out"
+                )
         replaced: dict[str, Any] = {}
         if changes.get("lens") is not None:  # of the lens that goes
             replaced |= {name: _default(name) for name in ("zoom", "decenter", "ripple")}

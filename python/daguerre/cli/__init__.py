@@ -13,13 +13,17 @@ import sys
 import traceback
 from collections.abc import Sequence
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from daguerre.errors import DaguerreError, InputError, OutputError, suggest
 from daguerre.memory import left_bytes, shown
 
 from . import console
 from .commands import COMMANDS, COMPLETE
+
+if TYPE_CHECKING:
+    from daguerre.parameters.table import Table
+    from daguerre.rendering.parameters import Setting
 
 INTERNAL = 70
 INTERRUPTED = 75
@@ -115,14 +119,32 @@ def _named() -> str:
 
 
 def _with_flag(text: str) -> str:
-    """Adds the flag to an error of a camera's parameter: ``camera: zoom (--zoom): wanted ...``."""
-    found = re.match(r"camera: (\w+)(?=:)", text)
+    """Adds the flag to an error of a parameter: ``camera: zoom (--zoom): wanted ...``."""
+    found = re.match(r"(?:(camera|develop|light_probe): )?(\w+)(?=:)", text)
     if not found:
         return text
-    from daguerre.camera.parameters import CAMERA
-
-    flags = CAMERA[found[1]].flags if found[1] in CAMERA else ()
+    table = _table(found[1])
+    flags = table[found[2]].flags if found[2] in table else ()
     return f"{found[0]} ({flags[0]}){text[found.end() :]}" if flags else text
+
+
+def _table(owner: str | None) -> Table | dict[str, Setting]:
+    """Parameters of a camera, of development, of a light probe, or of a render."""
+    if owner == "camera":
+        from daguerre.camera.parameters import CAMERA
+
+        return CAMERA
+    if owner == "develop":
+        from daguerre.development.parameters import DEVELOP
+
+        return DEVELOP
+    if owner == "light_probe":
+        from daguerre.plates.probe.parameters import LIGHT_PROBE
+
+        return LIGHT_PROBE
+    from daguerre.rendering.parameters import TABLE
+
+    return TABLE
 
 
 def _internal(error: Exception) -> int:

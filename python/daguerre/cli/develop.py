@@ -131,6 +131,7 @@ def _check(source: Path, outputs: list[Path]) -> None:
     from daguerre.files.atomic import check_writable
     from daguerre.files.formats import check_written, written
 
+    _check_source(source)
     for path in outputs:
         check_written(path, (*written("picture"), ".dng"))
         if path.exists() and source.exists() and path.samefile(source):
@@ -143,6 +144,20 @@ def _check(source: Path, outputs: list[Path]) -> None:
                 f"-o {path}: {source} is a raw file already; write a picture, such as "
                 f"{path.stem}.png"
             )
+
+
+def _check_source(source: Path) -> None:
+    """Refuses files that are no frame and no raw file, as far as their suffix says so."""
+    from daguerre.files.formats import formats
+    from daguerre.files.reading import size_of
+
+    size_of(source)
+    suffix = source.suffix.lower()
+    takes = "develop reads .exr frames of `render` and camera raw files"
+    if suffix in (".png", ".jpg", ".jpeg", ".webp"):  # a raw file may end in .tif
+        raise InputError(f"{source} is already developed: {takes}")
+    if any(suffix in row.suffixes for row in formats("scene")):
+        raise InputError(f"{source} is a scene: {takes}; render it first")
 
 
 def _check_stock(source: Path, outputs: list[Path], used: dict[str, Any]) -> None:

@@ -124,12 +124,9 @@ def reason_of(error: BaseException) -> str:
 def _read(path: Path) -> tuple[str, Certificates | None]:
     """Address and certificates of a file; paths in it are relative to it."""
     from daguerre.files import yaml_text
+    from daguerre.files.reading import read_bytes
 
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot read: {error.strerror or error}") from None
-    found = yaml_text.parse(data, str(path)).value
+    found = yaml_text.parse(read_bytes(path), str(path)).value
     if not isinstance(found, dict) or "address" not in found or found.keys() - set(_KEYS):
         raise InputError(
             f"{path}: wanted address, and optionally ca, cert and key, got {short(found)}"

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from daguerre.errors import InputError, UsageError
+from daguerre.files.reading import read_bytes
 
 
 @dataclass(frozen=True)
@@ -57,10 +58,7 @@ class Certificates:
 
     def _check(self) -> None:
         for file in (self.ca, self.cert, self.key):
-            try:
-                file.read_bytes()
-            except OSError as error:
-                raise InputError(f"{file}: cannot read: {error.strerror or error}") from None
+            read_bytes(file)
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
         try:
             context.load_verify_locations(self.ca)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from daguerre.color import illuminants
 from daguerre.errors import InputError
 from daguerre.files import extras
+from daguerre.files.reading import size_of
 
 from .channels import USUAL, XY, Channels, Demosaic
 from .dng import LEAST_XTRANS
@@ -62,12 +63,10 @@ def opened_raw(path: str | os.PathLike[str]) -> Iterator[Any]:
     Raises:
         InputError: The file is not a raw file; also if LibRaw finds that out within the block.
     """
+    size_of(Path(path))
     extras.need("rawpy", f"{path}: a raw file")
     import rawpy
 
-    if not Path(path).is_file():
-        got = "a folder" if Path(path).is_dir() else "no such file"
-        raise InputError(f"{path}: wanted a raw file, got {got}")
     try:
         with rawpy.imread(str(path)) as opened:
             yield opened
@@ -75,7 +74,7 @@ def opened_raw(path: str | os.PathLike[str]) -> Iterator[Any]:
         reason = error.args[0] if error.args else error
         reason = reason.decode() if isinstance(reason, bytes) else str(reason)
         raise InputError(
-            f"{path}: wanted a raw file, got a file that LibRaw cannot read: {reason}"
+            f"{path}: wanted a camera raw file; LibRaw cannot read this one: {reason}"
         ) from None
 
 

@@ -42,6 +42,19 @@ _XTRANS_METHODS = {"best": "DHT", "good": "PPG", "fast": "LINEAR"}
 DEMOSAICS = ("best", "good", "fast", "linear", "vng", "ppg", "ahd", "dcb", "dht")
 
 
+def check_method(name: str) -> None:
+    """Checks the name of a demosaicing method.
+
+    Raises:
+        UsageError: It is unknown; the message suggests the nearest.
+    """
+    if str(name) not in DEMOSAICS:
+        raise UsageError(
+            f"develop: demosaic: wanted one of {', '.join(DEMOSAICS)}, got {name!r}"
+            f"{suggest(name, DEMOSAICS)}"
+        )
+
+
 @dataclass(frozen=True)
 class Demosaic:
     """Options of demosaicing by LibRaw.
@@ -91,11 +104,7 @@ class Demosaic:
     def _algorithm(self, xtrans: bool) -> Any:
         import rawpy
 
-        if str(self.method) not in DEMOSAICS:
-            raise UsageError(
-                f"develop: demosaic: wanted one of {', '.join(DEMOSAICS)}, got {self.method!r}"
-                f"{suggest(self.method, DEMOSAICS)}"
-            )
+        check_method(self.method)
         chosen = _XTRANS_METHODS if xtrans else _BAYER_METHODS
         return rawpy.DemosaicAlgorithm[chosen.get(self.method, self.method.upper())]
 

@@ -22,7 +22,7 @@ from daguerre.files import formats
 from daguerre.frame.picture import Picture
 from daguerre.parameters.keywords import takes
 
-from .channels import XY, Channels, Demosaic, of_frame, of_raw
+from .channels import XY, Channels, Demosaic, check_method, of_frame, of_raw
 from .looks import encode_table, look_of, saturation, tone_table
 from .parameters import DEVELOP, RecipeKeywords
 from .white import white_of
@@ -59,10 +59,15 @@ class Recipe:
     def __post_init__(self) -> None:
         if not isinstance(self.look, str):
             raise UsageError(f"develop: look: wanted a name, got {shown(self.look)}")
+        check_method(self.demosaic)
         if not self.view:
             look_of(self.look)
         elif self.colour_space == "rec2020":
             raise UsageError("develop: colour_space: wanted srgb or p3 for OCIO, got 'rec2020'")
+        else:
+            from .ocio import check_view
+
+            check_view(self.view, self.colour_space)
 
     @property
     def view(self) -> str:

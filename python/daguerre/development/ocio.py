@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -27,19 +28,32 @@ def view_of(light: NDArray[np.float32], view: str, space: str = "srgb") -> NDArr
     Raises:
         UsageError: The view is unknown, or OpenColorIO is not installed.
     """
-    ocio = _module()
-    config = ocio.Config.CreateFromFile(CONFIG)
-    display = DISPLAYS[space]
-    known = list(config.getViews(display))
+    check_view(view, space)
+    ocio, display = _module(), DISPLAYS[space]
+    config = _config(ocio)
+    transform = ocio.DisplayViewTransform(src=LINEAR, display=display, view=view)
+    light = np.ascontiguousarray(np.nan_to_num(light, copy=False), np.float32)
+    config.getProcessor(transform).getDefaultCPUProcessor().applyRGB(light)
+    return np.clip(light, 0, 1, out=light)
+
+
+def check_view(view: str, space: str = "srgb") -> None:
+    """Checks that a view exists, before there is light to show.
+
+    Raises:
+        UsageError: The view is unknown, or OpenColorIO is not installed.
+    """
+    known = list(_config(_module()).getViews(DISPLAYS[space]))
     if view not in known:
         raise UsageError(
             f"develop: look: wanted ocio: and a view of {', '.join(map(repr, known))}; "
             f"got {view!r}{suggest(view, known)}"
         )
-    transform = ocio.DisplayViewTransform(src=LINEAR, display=display, view=view)
-    light = np.ascontiguousarray(np.nan_to_num(light, copy=False), np.float32)
-    config.getProcessor(transform).getDefaultCPUProcessor().applyRGB(light)
-    return np.clip(light, 0, 1, out=light)
+
+
+@cache
+def _config(ocio: Any) -> Any:
+    return ocio.Config.CreateFromFile(CONFIG)
 
 
 def _module() -> Any:

@@ -95,7 +95,7 @@ class Lens(Value):
 
     Attributes:
         name: Name of the lens.
-        source: File from which it was read.
+        source: File from which it was read; a lens of the library: its name there.
         patent: Patent or book that gives the prescription.
         note: Remarks in the file.
         nominal: Values that the source states: focal length, f-number, field.

@@ -13,6 +13,7 @@ from daguerre.files.reading import read_bytes
 from . import formats
 from .checking import checked
 from .errors import LensError, reported
+from .index import FOLDER
 from .json_lens import lens_from
 from .lens import Lens
 from .unknown import unknown_members
@@ -36,7 +37,8 @@ def read(path: str | Path, configuration: str | None = None) -> Lens:
     with reported(str(path), "lens-format"):
         root, notes = _root(data, path)
         lens = lens_from(root, path, configuration)
-        return checked(replace(lens, notes=(*notes, *unknown_members(root))))
+        source = path.stem if path.parent == FOLDER else str(path)
+        return checked(replace(lens, source=source, notes=(*notes, *unknown_members(root))))
 
 
 def _root(data: bytes, path: Path) -> tuple[Item, list[str]]:

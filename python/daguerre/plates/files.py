@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from daguerre.errors import InputError
+from daguerre.files.reading import size_of
 
 from .display_file import read_display
 from .linear_file import read_linear
@@ -26,9 +26,7 @@ def read(path: str | os.PathLike[str]) -> Photograph:
         InputError: There is no such file, or it has no RGB or grey picture.
     """
     file = Path(path)
-    if not file.is_file():
-        got = "a folder" if file.is_dir() else "no such file"
-        raise InputError(f"{file}: wanted a photograph, got {got}")
+    size_of(file)
     suffix = file.suffix.lower()
     if suffix == ".exr":
         return read_linear(file)

@@ -73,9 +73,8 @@ def check_linear(path: str | os.PathLike[str]) -> None:
     suffix = os.path.splitext(path)[1].lower()  # noqa: PTH122 - may be any path-like
     if suffix != ".exr":
         raise UsageError(
-            f"{path}: wanted a scene-linear .exr, got {suffix or 'no suffix'!r}: display-referred "
-            "pictures are not proportional to light and are clipped at white; "
-            "convert the picture to linear OpenEXR first"
+            f"{path}: wanted a scene-linear .exr, got {suffix or 'no suffix'}: other pictures are "
+            "not proportional to light and are clipped at white; convert it to linear OpenEXR first"
         )
 
 
@@ -88,7 +87,7 @@ def check_target(path: str | os.PathLike[str]) -> None:
     suffix = os.path.splitext(path)[1].lower()  # noqa: PTH122 - may be any path-like
     if suffix != ".exr":
         raise UsageError(
-            f"{path}: wanted .exr, or .png for viewing only, got {suffix or 'no suffix'!r}"
+            f"{path}: wanted .exr, or .png for viewing only, got {suffix or 'no suffix'}"
         )
 
 

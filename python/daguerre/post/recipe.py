@@ -65,14 +65,9 @@ def from_file(path: Path) -> list[Planned]:
             message has its place in the file.
     """
     from daguerre.files.json_text import parse
+    from daguerre.files.reading import read_bytes
 
-    try:
-        if path.stat().st_size > _MOST_BYTES:
-            raise InputError(f"{path}: wanted at most {_MOST_BYTES} bytes, got more")
-        data = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: cannot read: {error.strerror or error}") from error
-    root = parse(data, str(path)).value
+    root = parse(read_bytes(path, _MOST_BYTES), str(path)).value
     if not isinstance(root, list) or not all(isinstance(entry, dict) for entry in root):
         raise InputError(f'{path}: wanted a list of objects such as {{"effect": "vignetting"}}')
     planned = []

@@ -39,6 +39,7 @@ from numpy.typing import NDArray
 from daguerre._core import __version__
 from daguerre.errors import InputError, MismatchError
 from daguerre.files.json_item import short
+from daguerre.files.reading import size_of
 from daguerre.files.value import BriefRecord
 from daguerre.io.exr.layout import Layout, read_layouts
 from daguerre.io.exr.parts import PartReader
@@ -152,8 +153,7 @@ def read_pass(path: str | os.PathLike[str]) -> Pass:
         InputError: The file is missing, damaged, or an EXR without sums.
     """
     path = Path(path)
-    if not path.is_file():
-        raise InputError(f"{path}: no such pass file")
+    size_of(path)
     parts = read_layouts(path)
     state: State = {}
     facts = found = None

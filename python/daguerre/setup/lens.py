@@ -196,13 +196,22 @@ def _f_stop(
     if camera.t_stop is None:
         f_stop = camera.f_stop or max(DEFAULT_F_STOP, order.f_number)
         # A pinhole has no f-stop, so a scene's f-stop that the lens lacks is no error.
-        return max(f_stop, order.f_number) if model in WITHOUT_IRIS else f_stop
+        if model in WITHOUT_IRIS:
+            return max(f_stop, order.f_number)
+        if f_stop < GRANTED * order.f_number:
+            raise LensError(
+                f"{lens.source}: f_stop: wanted {order.f_number:.3g} or more, as this lens opens "
+                f"to f/{order.f_number:.3g}; got {f_stop:.4g}",
+                "lens-f-stop",
+            )
+        return f_stop
     f_stop = camera.t_stop * math.sqrt(transmittance)
     if f_stop < GRANTED * order.f_number:
         widest = order.f_number / math.sqrt(transmittance)
         raise LensError(
-            f"{lens.source}: t-stop: wanted T/{widest:.3g} or narrower (f/{order.f_number:.3g} "
-            f"and {100 * transmittance:.3g} % of the light), got T/{camera.t_stop:.4g}",
+            f"{lens.source}: t_stop: wanted {widest:.3g} or more, as this lens opens to "
+            f"f/{order.f_number:.3g} and transmits {100 * transmittance:.3g} % of the light; "
+            f"got {camera.t_stop:.4g}",
             "lens-f-stop",
         )
     return f_stop

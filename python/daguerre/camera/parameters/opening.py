@@ -12,7 +12,7 @@ from . import needs, typed
 _Row = partial(Parameter, panel="Aperture")
 _FocusRow = partial(Parameter, panel="Focus")
 _F_STOP = 5.6
-_NO_PINHOLE = "; a pinhole is its own kind: lens='pinhole'"
+_NO_PINHOLE = "; for a pinhole, set lens to pinhole"
 
 STOP = (
     _Row(

@@ -187,9 +187,7 @@ class CalibrationFlags:
 
         notes = [*calibration.notes, *field_notes(calibration.projection)]
         if self.timeshift and not any(one.delay_s for one in self.found.values()):
-            notes.append(
-                "--timeshift has no effect: all cameras have the same timeshift_cam_imu"
-            )
+            notes.append("--timeshift has no effect: all cameras have the same timeshift_cam_imu")
         if camera.f_stop is not None and self.pixel_pitch is None and not calibration.pixel_pitch:
             notes.append(
                 f"no --pixel-pitch: blur is computed for a sensor {camera.sensor_size[0]:g} mm wide"

@@ -85,7 +85,7 @@ class MapFlags:
             raise UsageError("--raymap-frame needs --export-raymap")
         for path in self.files:
             if path.suffix.lower() != ".exr":
-                raise UsageError(f"{path}: a map wanted a name ending in .exr")
+                raise UsageError(f"{path}: wanted a name ending in .exr for a map")
 
     def write(
         self,

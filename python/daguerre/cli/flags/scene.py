@@ -142,6 +142,7 @@ class SceneFlags(SceneFileFlags):
             InputError: One is missing; the message names the first frame and its file.
         """
         from daguerre.errors import InputError, UsageError
+        from daguerre.files.reading import fault_of
 
         if self.plate is None or not self.plate_moves:
             return
@@ -150,8 +151,9 @@ class SceneFlags(SceneFileFlags):
                 raise UsageError(
                     f"--plate {self.plate}: # stands for the frame number and needs --frames"
                 )
-            if not (path := numbered(self.plate, frame)).exists():
-                raise InputError(f"frame {frame}: {path}: wanted a photograph, got no file")
+            path = numbered(self.plate, frame)
+            if fault := fault_of(path):
+                raise InputError(f"frame {frame}: {path}: {fault}")
 
     def throw_plate(self, scene: Any, taken: Any, frame: int = 0) -> None:
         """Sets the plate of the scene, in a sequence that of a frame.

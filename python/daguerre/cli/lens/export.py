@@ -79,7 +79,7 @@ class FileFlags(TableFlags):
             for row in _FIT:
                 served = film_serves and row.name == "sensor_size"
                 if getattr(self, row.field) is not None and not served:
-                    raise UsageError(f"{row.flag}: needs --export FILE")
+                    raise UsageError(f"{row.flag} needs --export FILE")
             return
         from daguerre.export import check_suffix
         from daguerre.files.atomic import check_writable

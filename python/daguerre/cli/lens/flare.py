@@ -82,7 +82,7 @@ class FlareFlags(TableFlags):
         """
         for row in _FLARE:
             if getattr(self, row.field) is not None and not self.wanted:
-                raise UsageError(f"{row.flag}: needs --flare ANGLE")
+                raise UsageError(f"{row.flag} needs --flare ANGLE")
         self.given()
 
     def show(self, bench: Bench, files: FileFlags, *, json: bool) -> int:

@@ -63,7 +63,7 @@ class PsfFlags(TableFlags):
         """
         given = self.given()
         if given.get("through_focus") and "psf" not in given:
-            raise UsageError("--through-focus: needs --psf FIELD,DISTANCE")
+            raise UsageError("--through-focus needs --psf FIELD,DISTANCE")
 
     @property
     def wanted(self) -> bool:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from daguerre.errors import InputError, UsageError
+from daguerre.files.reading import fault_of
 from daguerre.rendering.names import has_frame, numbered
 
 #: Upper limit of seeds; sums below 0 wrap around to it.
@@ -103,10 +104,10 @@ def _check_files(shots: list[Shot]) -> None:
     if twice := [path for path, count in Counter(written).items() if count > 1]:
         raise UsageError(f"-o {twice[0]}: wanted one file for each frame, got one for several")
     missing = [
-        (shot, path) for shot in shots for path in (shot.plate, shot.objects) if not path.exists()
+        (shot, path) for shot in shots for path in (shot.plate, shot.objects) if fault_of(path)
     ]
     if missing and missing[0][0].frame is not None:
         shot, path = missing[0]
         count = len({each.frame for each, _ in missing})
         which = "only this frame" if count == 1 else f"{count} of {len(shots)} frames miss a file"
-        raise InputError(f"frame {shot.frame}: {path}: wanted a picture, got no file ({which})")
+        raise InputError(f"frame {shot.frame}: {path}: {fault_of(path)} ({which})")

@@ -66,9 +66,7 @@ def exposures_of(
     """
     if ev is not None:
         if len(ev) != len(shots):
-            raise UsageError(
-                f"--ev: wanted one for each of {len(shots)} photographs, got {len(ev)}"
-            )
+            raise UsageError(f"--ev: wanted {len(shots)}, one for each photograph, got {len(ev)}")
         values = tuple((scale or 1.0) / 2**one for one in ev)
         return Exposures(values, scale is not None)
     if all(not shot.metered for shot in shots):

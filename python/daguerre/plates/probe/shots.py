@@ -15,6 +15,7 @@ from daguerre.color.adaptation import adaptation
 from daguerre.color.spectra import rgb_from_xyz
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
+from daguerre.files.reading import size_of
 from daguerre.io.images import read_environment
 from daguerre.plates.display_file import read_display
 from daguerre.plates.files import DISPLAY
@@ -98,9 +99,7 @@ def read_shot(path: str | Path, white: White, notes: Notes, one_of: int = 1) -> 
     if suffix in LINEAR:
         light = read_environment(file)
         return Shot(file, light, _plateau(light, one_of), None, {})
-    if not file.is_file():
-        got = "a folder" if file.is_dir() else "no such file"
-        raise InputError(f"{file}: wanted a photograph, got {got}")
+    size_of(file)
     if suffix not in DISPLAY:
         return _raw(file, white, notes)
     photograph = read_display(file)
