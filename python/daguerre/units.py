@@ -44,6 +44,10 @@ SENSORS = {
     "645": (56.0, 41.5),
 }
 
+#: f-numbers and T-numbers, for messages.
+F_NUMBER = "an f-stop such as 2.8, f/2.8 or f2.8"
+_T_NUMBER = "a T-stop such as 2.8, T/2.8 or T2.8"
+
 _NUMBER = re.compile(
     r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?:/\d+\.?\d*)?|[-+]?inf)\s*([a-z]*)"
 )
@@ -96,18 +100,16 @@ def plain_number(flag: str, text: str, wanted: str) -> float:
 
 def f_number(flag: str, text: str) -> float:
     """Parses an f-number: ``2.8``, ``f/2.8`` or ``f2.8``."""
-    return _stop(flag, text, "f")
+    return _stop(flag, text, "f", F_NUMBER)
 
 
 def t_number(flag: str, text: str) -> float:
     """Parses a T-number: ``2.8``, ``T/2.8`` or ``T2.8``."""
-    return _stop(flag, text, "T")
+    return _stop(flag, text, "T", _T_NUMBER)
 
 
-def _stop(flag: str, text: str, letter: str) -> float:
+def _stop(flag: str, text: str, letter: str, wanted: str) -> float:
     """Parses an f-number or T-number; a fraction such as a shutter time is an error."""
-    wanted = f"an {letter}-stop" if letter == "f" else f"a {letter}-stop"
-    wanted += f" such as 2.8, {letter}/2.8 or {letter}2.8"
     number = re.fullmatch(rf"(?:{letter}/?)?([^/:]*)", text.strip(), re.IGNORECASE)
     if number is None:
         ratio = re.fullmatch(r"1[/:](\d+\.?\d*)", text.strip())

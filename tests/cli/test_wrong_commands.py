@@ -88,6 +88,7 @@ OTHERS = [
     ("develop f.exr -o a.png --wb purple", 2, "develop: wb (--wb): wanted as-shot, auto"),
     ("post x.png -o a.exr --effect glare", 2, "wanted a scene-linear .exr, got .png: other"),
     ("post f.exr -o a.exr --effect glare:share=1,share=1", 2, "share: wanted once, got twice"),
+    ("post f.exr -o a.exr --effect star:f_number=1/2", 2, "f_number: wanted an f-stop such as"),
     ("merge f.exr -o a.png --keep-sums", 2, "--keep-sums needs an .exr output (-o NAME.exr)"),
     ("lens double-gauss-50mm-f2 --degree 5", 2, "--degree needs --export FILE"),
     ("lens double-gauss-50mm-f2 --ghost 1,2", 2, "--ghost needs --flare ANGLE"),

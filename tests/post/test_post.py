@@ -224,7 +224,7 @@ def test_a_recipe_says_the_same_as_words(tmp_path, toys):
 def test_a_recipe_of_many_megabytes_is_refused_before_it_is_parsed(tmp_path):
     file = tmp_path / "recipe.json"
     file.write_text("[" + "[]," * 400_000 + "[]]")
-    with pytest.raises(InputError, match="wanted at most 1000000 bytes, got more"):
+    with pytest.raises(InputError, match="wanted at most 1000000 bytes, got 1200004"):
         recipe.from_file(file)
 
 
@@ -256,7 +256,11 @@ def test_units_of_parameters():
         (["vignetting:model=lens,sensor=36x24"], 2, "lens: wanted a name"),
         (["vignetting:model=lens,lens=nothing,sensor=36x24"], 3, "no lens of the library"),
         (["film"], 2, "gain: wanted a number of stops of at least -10, got nothing"),
-        (["diffraction"], 2, "f_number: wanted a number of at least 0.3, got nothing"),
+        (
+            ["diffraction"],
+            2,
+            "f_number: wanted an f-stop such as 2.8, f/2.8 or f2.8, at least 0.3, got nothing",
+        ),
         (["deep"], 3, "channel for motion.u: wanted motion.U or"),
     ],
 )

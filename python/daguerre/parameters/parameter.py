@@ -258,7 +258,7 @@ class Parameter:
                 return checks.numbers(value, where, self.count, self.wanted)
         if isinstance(value, bool):
             return None
-        number = _number(value, self.unit, where) if isinstance(value, str) else float(value)
+        number = self._number(value, where) if isinstance(value, str) else float(value)
         if self.kind == "whole":
             number = int(number) if number == int(number) else math.nan
         fits = self.low <= number <= self.high and (
@@ -266,18 +266,16 @@ class Parameter:
         )
         return number if fits else None
 
+    def _number(self, text: str, where: str) -> float:
+        parse = self.parse or _PARSERS.get(self.unit)
+        return float(parse(where, text)) if parse else units.plain_number(where, text, "")
+
 
 def fill(text: str, shown: Callable[[str], str]) -> str:
     """Replaces parameters in braces in a text by the names that ``shown`` gives them."""
     parts = text.split("{")
     rest = (part.partition("}") for part in parts[1:])
     return parts[0] + "".join(shown(name) + after for name, _, after in rest)
-
-
-def _number(text: str, unit: str, where: str) -> float:
-    if unit in _PARSERS:
-        return float(_PARSERS[unit](where, text))
-    return units.plain_number(where, text, "")
 
 
 def _size(value: Any, where: str) -> tuple[float, float] | None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre import units
 from daguerre.convolution.rows import Rows
 from daguerre.errors import UsageError
 
@@ -29,7 +30,10 @@ LENS = (
         "focus_by", "focus by the paraxial image, or by the smallest spot", kind="choice",
         default="paraxial", choices=("paraxial", "best"),
     ),
-    Parameter("f_stop", "f-stop of the lens; default: wide open", low=1e-2),
+    Parameter(
+        "f_stop", "f-stop of the lens; default: wide open", low=1e-2, parse=units.f_number,
+        wants=units.F_NUMBER,
+    ),
 )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre import units
 from daguerre._core import defocus
 from daguerre.convolution.rows import Rows
 from daguerre.doors import guarded
@@ -150,7 +151,14 @@ DEPTH_OF_FIELD = Effect(
     "depth-of-field",
     "depth of field from a depth channel, for pinhole pictures",
     (
-        Parameter("f_stop", "f-stop; default: from the file", low=1e-2, high=1e9),
+        Parameter(
+            "f_stop",
+            "f-stop; default: from the file",
+            low=1e-2,
+            high=1e9,
+            parse=units.f_number,
+            wants=units.F_NUMBER,
+        ),
         Parameter("focus", "focus distance along the axis; default: from the file", "m", low=1e-6),
         FOCAL_LENGTH,
         SENSOR,

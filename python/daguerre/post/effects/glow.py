@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from daguerre import units
 from daguerre.convolution.convolve import spreader_of
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
@@ -27,7 +28,14 @@ LARGEST = 2049  # px, largest width of a kernel
 COARSE = 768  # px, shorter side of the reduced picture on which veils are spread
 
 IRIS = (
-    Parameter("f_number", "working f-number (image side)", default=REQUIRED, low=0.3),
+    Parameter(
+        "f_number",
+        "working f-number (image side)",
+        default=REQUIRED,
+        low=0.3,
+        parse=units.f_number,
+        wants=f"{units.F_NUMBER}, at least 0.3",
+    ),
     Parameter("blades", "number of iris blades; 0: round", default=0, kind="whole", low=0, high=64),
     Parameter("rotation", "rotation of the blades", "deg", 0.0),
     Parameter(
