@@ -14,7 +14,7 @@ from pathlib import Path
 
 # Lowest first. Rooms are folders, or files at the root; on one floor they do not see each other.
 FLOORS = [
-    {"errors", "cached", "compiled", "forks"},
+    {"errors", "cached", "compiled", "forks", "on_use"},
     {"checks"},
     {"kinds"},
     {"doors"},

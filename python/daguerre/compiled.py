@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import platform
 import sys
 from pathlib import Path
 
@@ -40,6 +39,8 @@ def check() -> None:
 
 def unloadable(error: ImportError) -> ImportError:
     """Turns the loader's error into one that says how to solve the problem."""
+    import platform  # not at every start of the program
+
     library, version = platform.libc_ver()
     text = str(error)
     if "GLIBC" in text and "not found" in text:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -85,6 +84,8 @@ def suggest(name: object, known: Iterable[str], *, few: bool = False) -> str:
     one. With ``few``, for messages that do not list the names, a short list is shown if none is
     near.
     """
+    import difflib  # not at every start of the program
+
     names = sorted(known)
     if near := nearest(name, names):
         return did_you_mean(near)

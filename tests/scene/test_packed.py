@@ -19,7 +19,8 @@ from daguerre.errors import InputError, UsageError
 from daguerre.files.value import same
 from daguerre.motion.values import Composite
 from daguerre.scene import shapes
-from daguerre.scene.packed.chunk import CHUNK, embed
+from daguerre.scene.packed import CHUNK
+from daguerre.scene.packed.chunk import embed
 from daguerre.scene.packed.parts import packable, parts_of
 from daguerre.scene.packed.rebuild import rebuilt
 from tests.faults.scene import write_scene

@@ -2,8 +2,22 @@
 
 from __future__ import annotations
 
-from .camera import Camera
-from .projection import Projection
-from .rolling_shutter import RollingShutter
+from typing import TYPE_CHECKING
+
+from daguerre.on_use import on_use
+
+if TYPE_CHECKING:
+    from .camera import Camera
+    from .projection import Projection
+    from .rolling_shutter import RollingShutter
 
 __all__ = ["Camera", "Projection", "RollingShutter"]
+
+__getattr__, __dir__ = on_use(
+    __name__,
+    {
+        "Camera": "camera",
+        "Projection": "projection",
+        "RollingShutter": "rolling_shutter",
+    },
+)

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from .model import Distortion, Radial
-from .opencv import BrownConrady, OpenCV, OpenCVFisheye
-from .projections import Division, Equidistant, Equisolid, Orthographic, Stereographic
+from typing import TYPE_CHECKING
+
+from daguerre.on_use import on_use
+
+if TYPE_CHECKING:
+    from .model import Distortion, Radial
+    from .opencv import BrownConrady, OpenCV, OpenCVFisheye
+    from .projections import Division, Equidistant, Equisolid, Orthographic, Stereographic
 
 __all__ = [
     "BrownConrady",
@@ -18,3 +23,19 @@ __all__ = [
     "Radial",
     "Stereographic",
 ]
+
+__getattr__, __dir__ = on_use(
+    __name__,
+    {
+        "BrownConrady": "opencv",
+        "Distortion": "model",
+        "Division": "projections",
+        "Equidistant": "projections",
+        "Equisolid": "projections",
+        "OpenCV": "opencv",
+        "OpenCVFisheye": "opencv",
+        "Orthographic": "projections",
+        "Radial": "model",
+        "Stereographic": "projections",
+    },
+)

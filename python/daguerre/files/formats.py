@@ -71,8 +71,8 @@ _FORMATS = [
            takes=("unit_m", "allow_dirs")),
     Format("Mitsuba", "scene", (".xml",), "daguerre.io.mitsuba.reader:read",
            takes=("define", "unit_m", "allow_dirs")),
-    Format("OpenEXR", "frame", _EXR, _READ_EXR, f"{_FRAMES}:as_exr", _SHOWN),
-    Format("PNG", "frame", _PNG, None, f"{_FRAMES}:as_png", _SHOWN),
+    Format("OpenEXR", "frame", _EXR, _READ_EXR, "daguerre.io.exr.write:as_exr", _SHOWN),
+    Format("PNG", "frame", _PNG, None, "daguerre.io.png:as_png", _SHOWN),
     Format("JPEG", "frame", _JPEG, None, f"{_FRAMES}:as_picture", _SHOWN),
     Format("TIFF", "frame", _TIFF, None, f"{_FRAMES}:as_picture", _SHOWN),
     Format("JPEG", "picture", _JPEG, None, f"{_FRAMES}:picture", _CODED),
@@ -175,6 +175,13 @@ def write(kind: Kind, path: str | os.PathLike[str], value: Any, **options: Any) 
     assert row is not None
     assert row.writes is not None
     _ready(row, row.writes, path, options)(path, value, **options)
+
+
+def load_writer(kind: Kind, path: str | os.PathLike[str]) -> None:
+    """Imports what writes a file of a kind, if its suffix is one of the kind's."""
+    row = _row(formats(kind), Path(path).suffix.lower())
+    if row is not None and isinstance(row.writes, str):
+        import_module(row.writes.partition(":")[0])
 
 
 def check_written(path: str | os.PathLike[str], known: tuple[str, ...]) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Iterable, Mapping
 
 _LEFT = 'style="text-align: left"'
@@ -15,6 +14,8 @@ def shown_numbers(numbers: Iterable[float]) -> str:
 
 def html_table(caption: str, rows: Mapping[str, str]) -> str:
     """Makes a table of names and values; texts are escaped."""
+    import html  # not at every start of the program
+
     cells = "".join(
         f"<tr><th {_LEFT}>{html.escape(name)}</th><td {_LEFT}>{html.escape(text)}</td></tr>"
         for name, text in rows.items()

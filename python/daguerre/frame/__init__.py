@@ -2,8 +2,22 @@
 
 from __future__ import annotations
 
-from .frame import Frame
-from .picture import Picture
-from .raw import Raw
+from typing import TYPE_CHECKING
+
+from daguerre.on_use import on_use
+
+if TYPE_CHECKING:
+    from .frame import Frame
+    from .picture import Picture
+    from .raw import Raw
 
 __all__ = ["Frame", "Picture", "Raw"]
+
+__getattr__, __dir__ = on_use(
+    __name__,
+    {
+        "Frame": "frame",
+        "Picture": "picture",
+        "Raw": "raw",
+    },
+)

@@ -24,7 +24,6 @@ from daguerre.files.json_item import short
 from daguerre.files.reading import size_of
 
 from . import ktx2
-from .exr.reader import ExrReader, is_exr, light_names
 
 MAX_PIXELS = 16384 * 16384
 #: Largest decoded size of a texture and of an environment (16384 x 8192 in float is 1.5 GiB).
@@ -96,6 +95,8 @@ def read_environment(path: str | Path) -> NDArray[np.float32]:
     Raises:
         InputError: The file cannot be read, has no colour, or has NaN, Inf or negative light.
     """
+    from .exr.reader import is_exr
+
     file = Path(path)
     size_of(file)
     if is_exr(file):
@@ -137,6 +138,8 @@ def read_file(path: Path, *, floats: bool = False) -> tuple[NDArray[Any], Any]:
     Raises:
         InputError: The file cannot be decoded, is truncated or too large.
     """
+    from .exr.reader import is_exr
+
     with path.open("rb") as stream:
         start = stream.read(8)
     if is_exr(path):
@@ -258,6 +261,8 @@ def _rgb(pixels: NDArray[Any], spec: Any, file: Path) -> NDArray[Any]:
 
 def _linear(file: Path) -> tuple[NDArray[np.float32], int]:
     """Reads an EXR's display window, 0 outside its data window, and its orientation."""
+    from .exr.reader import ExrReader, light_names
+
     with ExrReader(file) as reader:
         names = light_names(list(reader.channels), str(file))
         full = (reader.full_size[1], reader.full_size[0])

@@ -115,6 +115,11 @@ def write_png(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") ->
         _write(temp, frame, tone, path)
 
 
+def as_png(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
+    """Writes a display picture with EXIF, without overscan."""
+    write_png(path, frame.without_overscan(), tone)
+
+
 def png_bytes(frame: Frame, tone: str = "srgb") -> bytes:
     """Returns the same file as bytes, for notebooks."""
     with TemporaryDirectory() as folder:

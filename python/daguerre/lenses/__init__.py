@@ -1,15 +1,22 @@
 """Real lenses: the library, files of the schema ``daguerre-lens/0.1``, one lens on the bench."""
 
-from .configurations import Configuration
-from .errors import LensError
-from .focus import Focused
-from .index import Entry, names
-from .lens import FirstOrder, Lens, Nominal, Pupil
-from .library import load
-from .reader import read
-from .search import find
-from .setting import LensSetting
-from .surface import LensSurface
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from daguerre.on_use import on_use
+
+if TYPE_CHECKING:
+    from .configurations import Configuration
+    from .errors import LensError
+    from .focus import Focused
+    from .index import Entry, names
+    from .lens import FirstOrder, Lens, Nominal, Pupil
+    from .library import load
+    from .reader import read
+    from .search import find
+    from .setting import LensSetting
+    from .surface import LensSurface
 
 __all__ = [
     "Configuration",
@@ -27,3 +34,23 @@ __all__ = [
     "names",
     "read",
 ]
+
+__getattr__, __dir__ = on_use(
+    __name__,
+    {
+        "Configuration": "configurations",
+        "Entry": "index",
+        "FirstOrder": "lens",
+        "Focused": "focus",
+        "Lens": "lens",
+        "LensError": "errors",
+        "LensSetting": "setting",
+        "LensSurface": "surface",
+        "Nominal": "lens",
+        "Pupil": "lens",
+        "find": "search",
+        "load": "library",
+        "names": "index",
+        "read": "reader",
+    },
+)

@@ -2,6 +2,21 @@
 
 from __future__ import annotations
 
-from .values import Keys, Spin, keys, spin
+from typing import TYPE_CHECKING
+
+from daguerre.on_use import on_use
+
+if TYPE_CHECKING:
+    from .values import Keys, Spin, keys, spin
 
 __all__ = ["Keys", "Spin", "keys", "spin"]
+
+__getattr__, __dir__ = on_use(
+    __name__,
+    {
+        "Keys": "values",
+        "Spin": "values",
+        "keys": "values",
+        "spin": "values",
+    },
+)

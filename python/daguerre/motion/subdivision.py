@@ -38,9 +38,10 @@ def some_breaks(dynamic: Dynamic, open_s: float, close_s: float, most: int) -> l
     """Breaks inside an interval; if there are more than ``most``, every second, third, ..."""
     if most == 0:
         return []
-    found = np.unique(np.asarray(dynamic.breaks(open_s, close_s), np.float64))
-    inside = found[(open_s < found) & (found < close_s)]
-    return [float(t) for t in inside[:: max(1, math.ceil(len(inside) / most))]]
+    found = np.asarray(dynamic.breaks(open_s, close_s), np.float64)
+    # A set, as np.unique imports np.ma, in each program that has anything that moves.
+    inside = sorted(set(found[(open_s < found) & (found < close_s)].tolist()))
+    return inside[:: max(1, math.ceil(len(inside) / most))]
 
 
 class Subdivision(Generic[T]):

@@ -1,15 +1,21 @@
 """Rendering for any front end: settings, sessions, jobs with checkpoints, passes and merging."""
 
-from daguerre._core import Cancelled, CancelToken
+from __future__ import annotations
 
-from .checkpoint import Checkpoint
-from .job import Job
-from .output import Output
-from .photograph import Photograph
-from .picture import Picture, View, in_order
-from .progress import Status
-from .reporter import Control, Finished, Reporter, Stopped
-from .settings import RenderSettings
+from typing import TYPE_CHECKING
+
+from daguerre._core import Cancelled, CancelToken
+from daguerre.on_use import on_use
+
+if TYPE_CHECKING:
+    from .checkpoint import Checkpoint
+    from .job import Job
+    from .output import Output
+    from .photograph import Photograph
+    from .picture import Picture, View, in_order
+    from .progress import Status
+    from .reporter import Control, Finished, Reporter, Stopped
+    from .settings import RenderSettings
 
 __all__ = [
     "CancelToken",
@@ -28,3 +34,22 @@ __all__ = [
     "View",
     "in_order",
 ]
+
+__getattr__, __dir__ = on_use(
+    __name__,
+    {
+        "Checkpoint": "checkpoint",
+        "Control": "reporter",
+        "Finished": "reporter",
+        "Job": "job",
+        "Output": "output",
+        "Photograph": "photograph",
+        "Picture": "picture",
+        "RenderSettings": "settings",
+        "Reporter": "reporter",
+        "Status": "progress",
+        "Stopped": "reporter",
+        "View": "picture",
+        "in_order": "picture",
+    },
+)

@@ -5,13 +5,10 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from tempfile import mkdtemp
 from typing import TYPE_CHECKING
 
 from daguerre.errors import DaguerreError
 from daguerre.files import atomic
-
-from . import passes
 
 if TYPE_CHECKING:
     from .schedule import Work
@@ -38,6 +35,13 @@ class Checkpoint:
         """Whether the file exists."""
         return self.path is not None and self.path.exists()
 
+    def load_writer(self) -> None:
+        """Imports what writes the file, as memory may be short after hours of drawing."""
+        if self.path is not None:
+            import OpenEXR  # noqa: F401
+
+            from . import passes  # noqa: F401
+
     def save(self, session: Session) -> None:
         """Writes the sums of a session.
 
@@ -45,6 +49,8 @@ class Checkpoint:
             DaguerreError: The file cannot be written.
         """
         if self.path is not None:
+            from . import passes
+
             frame = replace(session.frame(truth=False, waves=False), aovs={})
             passes.write_pass(self.path, frame, passes.pass_of(session))
 
@@ -56,6 +62,8 @@ class Checkpoint:
         """
         assert self.path is not None
         with suppress(OSError):
+            from tempfile import mkdtemp
+
             folder = Path(mkdtemp(prefix="daguerre-"))
             try:
                 replace(self, path=folder / self.path.name).save(session)
@@ -73,6 +81,8 @@ class Checkpoint:
         """
         if self.path is None or not self.path.exists():
             return False
+        from . import passes
+
         saved = passes.read_pass(self.path)
         passes.check_key(passes.pass_of(session), saved)
         work.check(saved)

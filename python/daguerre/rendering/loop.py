@@ -77,6 +77,7 @@ class Loop:
             if self.control.snapshot():
                 self._snapshot()
             if self.work.done() < self.work.total():
+                self.checkpoint.load_writer()
                 self.preview()
             interval = self.checkpoint.interval_s
             since = time.monotonic() - saved_at

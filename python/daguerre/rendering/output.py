@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daguerre.errors import OutputError, UsageError
-from daguerre.files import extras
+from daguerre.files import extras, formats
 from daguerre.frame.aovs import Source, names_of
 
 from .parameters import PLATE
@@ -111,15 +111,18 @@ class Output:
         Raises:
             UsageError: The package of an extra is not installed.
         """
-        import OpenEXR  # noqa: F401
-
         for path in self.files:
+            formats.load_writer("frame", path)
             for package in self.photograph.packages(path):
                 extras.need(package, str(path))
                 import_module(package)
 
+        if any(path.suffix == ".exr" for path in self.files):
+            import OpenEXR  # noqa: F401
         if any(path.suffix != ".exr" for path in self.files):
             import OpenImageIO  # noqa: F401
+        if self.is_pass:
+            from . import passes  # noqa: F401
 
     def _check_plate(self) -> None:
         """Refuses outputs that would process the plate twice, or lose it.
@@ -199,10 +202,10 @@ class Output:
 
     def write(self, session: Session, frame: Frame, paths: Sequence[Path], tell: Reporter) -> None:
         """Writes the picture to these files."""
-        from .passes import pass_of, write_pass
-
         passes = [p for p in paths if self.is_pass and p.suffix.lower() == ".exr"]
         for path in passes:
+            from .passes import pass_of, write_pass
+
             write_pass(path, frame, replace(pass_of(session), metadata=frame.metadata))
         pictures = [path for path in paths if path not in passes]
         self.photograph.write(frame, pictures, self.tone, tell)

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import daguerre._core as _core
-from daguerre import sensors
 from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.overscan import Overscan, check_overscan
 from daguerre.camera.settled import settled
 from daguerre.checks import short
-from daguerre.distortion.overscan import note as overscan_note
-from daguerre.distortion.overscan import to_undistort
-from daguerre.distortion.rectified import RectifiedView
 from daguerre.errors import UsageError
 from daguerre.scene.scene import Scene
 from daguerre.setup.built_scene import BuiltScene
@@ -28,6 +24,9 @@ from .mattes import matte_facts
 from .pixels import Box, crop_within
 from .settings import RenderSettings
 from .truth import focused
+
+if TYPE_CHECKING:
+    from daguerre.sensors import Sensor
 
 
 @dataclass(frozen=True)
@@ -57,7 +56,7 @@ class Prepared:
     interval: tuple[float, float]
     overscan: Overscan
     crop: Box
-    sensor: sensors.Sensor | None
+    sensor: Sensor | None
     pupils: dict[str, Any] | None
     mattes: dict[str, Any] | None
     notes: tuple[str, ...]
@@ -113,12 +112,19 @@ def prepare(
     notes = list(setup.notes)
     overscan = check_overscan(settings.film.overscan, size)
     if overscan is None:
-        overscan = to_undistort(
+        from daguerre.distortion import overscan as around
+        from daguerre.distortion.rectified import RectifiedView
+
+        overscan = around.to_undistort(
             RectifiedView(focused(camera, setup.lens.focus_distance_m), size, scene=scene)
         )
-        notes.append(overscan_note(overscan))
+        notes.append(around.note(overscan))
     crop = crop_within(settings.film.crop, overscan.region(size))
-    sensor = None if camera.sensor is None else sensors.load(camera.sensor)
+    sensor = None
+    if camera.sensor is not None:
+        from daguerre import sensors
+
+        sensor = sensors.load(camera.sensor)
     check_backdrop(scene, settings)
     film = settings.film
     mattes = matte_facts(scene, tuple(film.cryptomatte), film.cryptomatte_ranks)

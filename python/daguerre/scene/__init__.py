@@ -2,6 +2,18 @@
 
 from __future__ import annotations
 
-from .scene import Scene
+from typing import TYPE_CHECKING
+
+from daguerre.on_use import on_use
+
+if TYPE_CHECKING:
+    from .scene import Scene
 
 __all__ = ["Scene"]
+
+__getattr__, __dir__ = on_use(
+    __name__,
+    {
+        "Scene": "scene",
+    },
+)

@@ -46,7 +46,6 @@ from .motion import SceneMotion
 from .node_names import find_node, no_node
 from .parts import Curves, Environment, Instance, Mesh, Plate, Texture, vertices_of
 from .point_cache import PointCache, steps_of
-from .polygon_mesh import Over, mesh_of_polygons, polygons_of
 from .subdivision.rules import integers
 
 
@@ -331,6 +330,8 @@ class Scene(Value):
         if sizes is None and subdivision is None:
             mesh = mesh_of(self._now(positions), indices, given, where, name)
         else:
+            from .polygon_mesh import Over, mesh_of_polygons, polygons_of
+
             over = Over(moving, moving_normals, motion)
             polygons = polygons_of(self._now(positions), indices, sizes, given, where)
             mesh, over = mesh_of_polygons(polygons, over, subdivision, name)

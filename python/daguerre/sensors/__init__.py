@@ -1,12 +1,19 @@
 """Image sensors: the library, files of the schema ``daguerre-sensor/0.1``, and ``Sensor``."""
 
-from .curve import Curve
-from .data import DarkCurrent, DualGain, HotPixels
-from .ideal import ideal
-from .library import load, names
-from .mosaic import PATTERNS, Mosaic
-from .reader import read
-from .sensor import Sensor
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from daguerre.on_use import on_use
+
+if TYPE_CHECKING:
+    from .curve import Curve
+    from .data import DarkCurrent, DualGain, HotPixels
+    from .ideal_sensor import ideal
+    from .library import load, names
+    from .mosaic import PATTERNS, Mosaic
+    from .reader import read
+    from .sensor import Sensor
 
 __all__ = [
     "PATTERNS",
@@ -21,3 +28,20 @@ __all__ = [
     "names",
     "read",
 ]
+
+__getattr__, __dir__ = on_use(
+    __name__,
+    {
+        "Curve": "curve",
+        "DarkCurrent": "data",
+        "DualGain": "data",
+        "HotPixels": "data",
+        "Mosaic": "mosaic",
+        "PATTERNS": "mosaic",
+        "Sensor": "sensor",
+        "ideal": "ideal_sensor",
+        "load": "library",
+        "names": "library",
+        "read": "reader",
+    },
+)

@@ -7,7 +7,7 @@ from pathlib import Path
 from daguerre.doors import guarded
 from daguerre.files.library import find, stems
 
-from .ideal import NAMES, ideal
+from .ideal_sensor import NAMES, ideal
 from .reader import read
 from .sensor import Sensor
 

@@ -6,11 +6,11 @@ Lengths are in mm unless the name says otherwise. Focus distances are in m.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import daguerre._core as _core
-from daguerre import lenses
 from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import exposure_notes
@@ -23,16 +23,17 @@ from daguerre.errors import UsageError
 from daguerre.scene.scene import Scene
 
 from . import ideal, tilt
-from . import lens as real
 from .checks import check, lens_and_model
 from .film import frame_size
 from .focus import Focus
 from .framing import Framing
-from .lens_motion import LensMotion
 from .near_clip import set_near_clip
 from .pose import changes
 from .pose import pose as pose_over
 from .resolved import ResolvedCamera, ResolvedLens
+
+if TYPE_CHECKING:
+    from daguerre.lenses import Lens
 
 
 def set_up(
@@ -83,6 +84,8 @@ def set_up(
         return _set_up_lens(replace(framing, camera=moment, focus=known), prescription, like)
 
     if of_lens := set(changing) - {"transform"}:
+        from .lens_motion import LensMotion
+
         motion = LensMotion(camera, of_lens, begin, end, lens, lens_of)
         notes += motion.apply(size, framing.pitch_mm)
     set_near_clip(lens.core, now, size)
@@ -124,7 +127,9 @@ def _film_size(
     return size[0] + 2 * across, size[1] + 2 * along
 
 
-def _set_up_lens(framing: Framing, prescription: lenses.Lens | None, model: str) -> ResolvedLens:
+def _set_up_lens(framing: Framing, prescription: Lens | None, model: str) -> ResolvedLens:
     if prescription is None:
         return ideal.set_up(framing, model)
-    return real.set_up(framing, prescription, model)
+    from . import lens
+
+    return lens.set_up(framing, prescription, model)

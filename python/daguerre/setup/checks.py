@@ -17,8 +17,6 @@ from daguerre.camera.parameters import CAMERA, OPTICS
 from daguerre.camera.parameters.needs import LENS_ITSELF, TRACED
 from daguerre.checks import short
 from daguerre.errors import UsageError
-from daguerre.lenses.dispersion import without_dispersion
-from daguerre.lenses.library import path_of
 from daguerre.parameters.parameter import Parameter
 
 #: Trait of a camera's lens, without and with a prescription.
@@ -44,22 +42,25 @@ def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
         return None, _projection(camera)
     model = camera.lens_model
     CAMERA["lens_model"].check(model, "camera: lens_model")
-    if not isinstance(camera.lens, lenses.Lens | str | Path | None):
-        raise UsageError(
-            f"camera: lens: wanted a name, a file, a Lens or None, got {short(camera.lens)}"
-        )
-    if camera.lens is None or camera.lens in IDEAL:
+    if camera.lens is None or (isinstance(camera.lens, str) and camera.lens in IDEAL):
         kind = str(camera.lens or "thin")
         if model in (*TRACED, "thick"):
             raise UsageError(
                 f"camera: lens_model {model}: wanted the name or file of a lens, got none"
             )
         return None, model or kind
+    if not isinstance(camera.lens, lenses.Lens | str | Path):
+        raise UsageError(
+            f"camera: lens: wanted a name, a file, a Lens or None, got {short(camera.lens)}"
+        )
     return prescription_of(camera), model or "exact"
 
 
 def prescription_of(camera: Camera) -> lenses.Lens:
     """Loads the lens of a camera that has one with a prescription."""
+    from daguerre.lenses.dispersion import without_dispersion
+    from daguerre.lenses.library import path_of
+
     lens = camera.lens or ""
     if not isinstance(lens, lenses.Lens):
         lens = lenses.read(path_of(lens, IDEAL))

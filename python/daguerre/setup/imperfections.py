@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from daguerre.camera.camera import Camera, Decenter
 from daguerre.checks import number, numbers, short, whole
 from daguerre.errors import UsageError
-from daguerre.lenses import Lens
+
+if TYPE_CHECKING:
+    from daguerre.lenses import Lens
 
 #: height, nm; period, um; seed
 Ripple = tuple[float, float, int]

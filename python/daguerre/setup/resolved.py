@@ -18,15 +18,16 @@ import daguerre._core as _core
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import lens_h0
 from daguerre.files.value import BriefRecord
-from daguerre.lenses import Lens
-from daguerre.lenses.setting import LensSetting
 
-from .fit import FitQuality
 from .pose import Change
 from .tilt import cosine
 
 if TYPE_CHECKING:
     from daguerre.camera.projection import Projection
+    from daguerre.lenses import Lens
+    from daguerre.lenses.setting import LensSetting
+
+    from .fit import FitQuality
 
 
 @dataclass(frozen=True)
@@ -153,6 +154,8 @@ class ResolvedCamera(BriefRecord):
     @property
     def setting(self) -> LensSetting:
         """Setting of a lens with glass, for the bench."""
+        from daguerre.lenses.setting import LensSetting
+
         glass, zoomed = self.lens.glass, self.camera.zoom is not None
         return LensSetting(
             f_stop=self.lens.f_stop,

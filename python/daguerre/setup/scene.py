@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import hashlib
 from typing import Any
 
@@ -104,21 +105,28 @@ def content_hash(scene: Scene, interval: tuple[float, float] | None = None) -> s
         interval: Exposure interval, s; motion is sampled at its ends, at keys and between.
     """
     digest = hashlib.sha256()
+    pending: list[str] = []
+
+    def flush() -> None:
+        digest.update("".join(pending).encode())
+        pending.clear()
 
     def add(value: Any) -> None:
+        kind: Any = type(value)
         if isinstance(value, np.ndarray):
-            digest.update(f"{value.dtype}{value.shape}".encode())
+            pending.append(f"{value.dtype}{value.shape}")
+            flush()
             digest.update(np.ascontiguousarray(value).data)
-        elif dataclasses.is_dataclass(value):
-            for field in dataclasses.fields(value):
-                digest.update(field.name.encode())
-                add(getattr(value, field.name))
+        elif (names := _field_names(kind)) is not None:
+            for name in names:
+                pending.append(name)
+                add(getattr(value, name))
         elif isinstance(value, (list, tuple)):
-            digest.update(f"[{len(value)}".encode())
+            pending.append(f"[{len(value)}")
             for item in value:
                 add(item)
         else:
-            digest.update(repr(value).encode())
+            pending.append(repr(value))
 
     for part in (
         scene.meshes,
@@ -135,4 +143,13 @@ def content_hash(scene: Scene, interval: tuple[float, float] | None = None) -> s
         for where, dynamic in scene.motion.parts():
             add(where)
             add(samples(dynamic, *interval))
+    flush()
     return digest.hexdigest()
+
+
+@functools.cache
+def _field_names(kind: type) -> tuple[str, ...] | None:
+    """Names of the fields of a data class; None for other classes."""
+    if not dataclasses.is_dataclass(kind):
+        return None
+    return tuple(field.name for field in dataclasses.fields(kind))

@@ -78,11 +78,13 @@ class MapFlags:
             UsageError: Another suffix, or no such frame.
         """
         from daguerre.errors import UsageError
-        from daguerre.maps.ray_map import check_frame
 
-        check_frame(self.raymap_frame, "--raymap-frame")
-        if self.raymap_frame != "camera" and self.export_raymap is None:
-            raise UsageError("--raymap-frame needs --export-raymap")
+        if self.raymap_frame != "camera":
+            from daguerre.maps.ray_map import check_frame
+
+            check_frame(self.raymap_frame, "--raymap-frame")
+            if self.export_raymap is None:
+                raise UsageError("--raymap-frame needs --export-raymap")
         for path in self.files:
             if path.suffix.lower() != ".exr":
                 raise UsageError(f"{path}: wanted a name ending in .exr for a map")

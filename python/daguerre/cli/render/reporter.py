@@ -6,14 +6,16 @@ import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from daguerre.cli import console, progress
-from daguerre.cli.preview.preview import Preview
-from daguerre.cli.preview.screen import Screen
 from daguerre.rendering.job import shown
 from daguerre.rendering.progress import Status
 from daguerre.rendering.reporter import Finished, Look, Reporter, Stopped
+
+if TYPE_CHECKING:
+    from daguerre.cli.preview.preview import Preview
+    from daguerre.cli.preview.screen import Screen
 
 
 class ConsoleReporter(Reporter):
@@ -29,8 +31,12 @@ class ConsoleReporter(Reporter):
     def __init__(self, *, quiet: bool, as_json: bool, stats: bool, preview: bool = False) -> None:
         self._quiet, self._as_json, self._stats = quiet, as_json, stats
         self._shown = progress.Silent()
-        self._preview = Preview(in_terminal=not (quiet or as_json)) if preview else None
+        self._preview: Preview | None = None
         self._screen: Screen | None = None
+        if preview:
+            from daguerre.cli.preview.preview import Preview
+
+            self._preview = Preview(in_terminal=not (quiet or as_json))
 
     @property
     def previews(self) -> bool:
@@ -42,6 +48,8 @@ class ConsoleReporter(Reporter):
         if self._preview is None or not self._preview.works:
             return
         if self._preview.way is not None and self._screen is None:
+            from daguerre.cli.preview.screen import Screen
+
             self._screen = Screen(self._preview.way, sys.stderr)
             self._screen.start()  # lines of the set-up are said below it
         self._preview.show(look, self._screen)

@@ -13,7 +13,6 @@ from daguerre.rendering.picture import Picture
 from daguerre.scene.scene import Scene
 
 from .coco import Labels
-from .maps import write_maps
 from .plan import Plan
 from .reporter import ConsoleReporter
 
@@ -60,6 +59,8 @@ def run(
         if plan.flags.paths:
             complete = job.run(resume=plan.flags.resume, since=launched)
         else:
+            from .maps import write_maps
+
             complete = write_maps(plan, job)
     except KeyboardInterrupt:
         return (

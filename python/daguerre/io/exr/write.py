@@ -147,6 +147,11 @@ def write_exr(path: str | os.PathLike[str], frame: Frame) -> None:
     write_parts(path, [("beauty", header(frame), channels(frame))], frame)
 
 
+def as_exr(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
+    """Writes all data of a frame; ``tone`` has no effect on linear files."""
+    write_exr(path, frame)
+
+
 def write_parts(
     path: str | os.PathLike[str], parts: list[tuple[str, dict[str, Any], Channels]], frame: Frame
 ) -> None:

@@ -121,7 +121,9 @@ def breaks_of(channels: Sequence[Channel], begin: float, end: float) -> FloatArr
     """Increasing times of the keys inside of (begin, end), s."""
     tracks = {id(c.track): c.track for c in channels}  # many nodes may share one
     times = [track.breaks(begin, end) for track in tracks.values()]
-    return times[0] if len(times) == 1 else np.unique(np.concatenate([np.zeros(0), *times]))
+    if len(times) == 1:
+        return times[0]
+    return np.array(sorted({key for track in times for key in track.tolist()}), np.float64)
 
 
 def _write(target: Target, value: Any) -> None:

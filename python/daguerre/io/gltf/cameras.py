@@ -15,13 +15,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre import lenses
 from daguerre.camera.camera import Camera
 from daguerre.camera.ideal import IDEAL
 from daguerre.camera.parameters import LIMITS
 from daguerre.files.json_item import Item, clean, short
 from daguerre.files.notes import Notes
-from daguerre.lenses import library
-from daguerre.lenses.search import suggest
 
 from .shutter import SHUTTER
 
@@ -62,7 +61,9 @@ def _f_stop(item: Item) -> float:
 def _lens(item: Item) -> str:
     # For safety a scene file may name a lens of the library, but no lens file.
     name = item.text()
-    if name not in (*IDEAL, *library.names()):
+    if name not in (*IDEAL, *lenses.names()):
+        from daguerre.lenses.search import suggest
+
         hint = suggest(name, IDEAL)
         item.fail(f"refused: wanted the name of a lens in the library, got {short(name)}{hint}")
     return clean(name)

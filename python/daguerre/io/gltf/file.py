@@ -19,7 +19,7 @@ from daguerre.files.json_item import Item, short
 from daguerre.files.json_text import parse
 from daguerre.files.reading import reading, size_of, why
 from daguerre.files.uris import Folder, data_bytes, is_data
-from daguerre.scene.packed.chunk import CHUNK as PACKED_CHUNK
+from daguerre.scene.packed import CHUNK as PACKED_CHUNK
 
 from .meshopt import placeholders
 

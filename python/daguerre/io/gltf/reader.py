@@ -20,7 +20,6 @@ from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item
 from daguerre.files.notes import Notes, Silence
 from daguerre.files.uris import Folder
-from daguerre.scene.packed.chunk import scene_of
 from daguerre.scene.scene import Scene
 from daguerre.scene.transforms import without_scale
 
@@ -99,6 +98,8 @@ def _packed(chunk: memoryview, path: Path, notes: Notes, *, other: bool) -> Scen
     if other:
         notes.add("the exact scene holds the moment of its export alone: plain glTF is read")
         return None
+    from daguerre.scene.packed.chunk import scene_of
+
     try:
         return scene_of(chunk, path)
     except MismatchError as error:

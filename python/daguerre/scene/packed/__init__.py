@@ -4,3 +4,6 @@
 and ``chunk.py`` writes and reads the bytes. What is read may come from strangers: ``values.py``
 lists all classes that it may name, and makes each by its own checks.
 """
+
+#: Type of the chunk: the letters DGSC.
+CHUNK = int.from_bytes(b"DGSC", "little")

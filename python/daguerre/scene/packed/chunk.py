@@ -17,12 +17,11 @@ from daguerre.files.atomic import write_bytes
 from daguerre.files.packing import damage, pack, unpack
 from daguerre.scene.scene import Scene
 
+from . import CHUNK
 from .parts import parts_of
 from .rebuild import rebuilt
 from .values import make
 
-#: Type of the chunk: the letters DGSC.
-CHUNK = int.from_bytes(b"DGSC", "little")
 _HEADER, _MOST = 12, (1 << 32) - 1
 
 

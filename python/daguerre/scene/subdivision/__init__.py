@@ -12,7 +12,24 @@ SIGGRAPH, 295; DeRose, Kass and Truong 1998, SIGGRAPH, 85; the subdivision rules
 documents.
 """
 
-from .refiner import Refiner
-from .rules import Rules, Subdivision, edges_of_chains
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from daguerre.on_use import on_use
+
+if TYPE_CHECKING:
+    from .refiner import Refiner
+    from .rules import Rules, Subdivision, edges_of_chains
 
 __all__ = ["Refiner", "Rules", "Subdivision", "edges_of_chains"]
+
+__getattr__, __dir__ = on_use(
+    __name__,
+    {
+        "Refiner": "refiner",
+        "Rules": "rules",
+        "Subdivision": "rules",
+        "edges_of_chains": "rules",
+    },
+)
