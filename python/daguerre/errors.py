@@ -84,8 +84,6 @@ def suggest(name: object, known: Iterable[str], *, few: bool = False) -> str:
     one. With ``few``, for messages that do not list the names, a short list is shown if none is
     near.
     """
-    import difflib  # not at every start of the program
-
     names = sorted(known)
     if near := nearest(name, names):
         return did_you_mean(near)
@@ -94,6 +92,8 @@ def suggest(name: object, known: Iterable[str], *, few: bool = False) -> str:
 
 def nearest(name: object, names: list[str]) -> list[str]:
     """Names with a spelling near another; if there are none, those that have all of its words."""
+    import difflib  # not at every start of the program
+
     text = str(name).casefold()
     plain = {each: each.casefold() for each in names}
     close = difflib.get_close_matches(text, list(plain.values()), n=3, cutoff=0.5)

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from fractions import Fraction
 
 from .errors import UsageError, suggest
 
@@ -266,6 +265,8 @@ def _quantity(flag: str, text: str, units: dict[str, float], default: str, wante
     number = match[1]
     try:
         if "/" in number:
+            from fractions import Fraction
+
             top, bottom = number.split("/")
             value = float(Fraction(top) / Fraction(bottom))
         else:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
@@ -301,6 +300,8 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
         from base64 import b64encode
 
         data = b64encode(self._repr_png_()).decode("ascii")
+        import html
+
         caption = html.escape(self._caption())
         return (
             f'<figure><img src="data:image/png;base64,{data}" width="{self.width}" '

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 import struct
-import tempfile
 import zlib
 from pathlib import Path
 from typing import Any
@@ -67,6 +66,8 @@ def decode(data: bytes | memoryview, where: str) -> NDArray[np.uint8] | NDArray[
         suffix = ".webp"
     else:
         raise InputError(f"{where}: wanted a PNG, JPEG, WebP or KTX2 image, got {short(data[:8])}")
+    import tempfile
+
     descriptor, name = tempfile.mkstemp(suffix=suffix, prefix="daguerre-")
     try:
         with os.fdopen(descriptor, "wb") as stream:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
@@ -122,6 +121,8 @@ def as_png(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> No
 
 def png_bytes(frame: Frame, tone: str = "srgb") -> bytes:
     """Returns the same file as bytes, for notebooks."""
+    from tempfile import TemporaryDirectory
+
     with TemporaryDirectory() as folder:
         path = Path(folder) / "frame.png"
         _write(path, frame, tone, path)

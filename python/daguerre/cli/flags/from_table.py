@@ -46,6 +46,8 @@ def made_of(
             bases=(base,),
             namespace={"table": table, "__doc__": base.__doc__, "__module__": base.__module__},
             frozen=True,
+            eq=False,  # nobody compares or prints flags, and long classes take long to make
+            repr=False,
         )
         return made
 

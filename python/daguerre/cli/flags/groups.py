@@ -6,7 +6,7 @@ the signature that Typer reads. Annotations must be real objects here, so no ``a
 
 import inspect
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import MISSING, Field, fields
 from typing import Any
 
 import typer
@@ -21,6 +21,12 @@ def option(*names: str, help: str, metavar: str | None = None, panel: str | None
     )
 
 
+def _parameter(field: Field[Any]) -> inspect.Parameter:
+    default = inspect.Parameter.empty if field.default is MISSING else field.default
+    kind = inspect.Parameter.KEYWORD_ONLY
+    return inspect.Parameter(field.name, kind, default=default, annotation=field.type)
+
+
 def with_flags(**groups: type) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Replaces the parameters named in ``groups`` by the flags of those data classes."""
 
@@ -28,10 +34,11 @@ def with_flags(**groups: type) -> Callable[[Callable[..., Any]], Callable[..., A
         parameters = []
         for parameter in inspect.signature(command, eval_str=True).parameters.values():
             group = groups.get(parameter.name)
-            inner = inspect.signature(group, eval_str=True).parameters.values() if group else []
-            parameters += [
-                p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in (inner or [parameter])
-            ]
+            parameters += (
+                [parameter.replace(kind=parameter.KEYWORD_ONLY)]
+                if group is None
+                else [_parameter(one) for one in fields(group)]
+            )
 
         def run(**values: Any) -> Any:
             made = {

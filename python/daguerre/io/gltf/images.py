@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +61,10 @@ class Images:
             pixels = images.decode(self._bytes(index), self._where(index))
             budget.spend(pixels.nbytes, self._images[index])
             return pixels
+
+        if not wanted:
+            return
+        from concurrent.futures import ThreadPoolExecutor
 
         # OpenImageIO releases the interpreter's lock while it decodes.
         with ThreadPoolExecutor(min(8, os.cpu_count() or 1)) as pool:
