@@ -39,8 +39,8 @@ def test_a_command_loads_no_room_that_it_does_not_enter(
     assert not rooms & set(done.stdout.splitlines()[-1].split())
 
 
-#: What a small .png without textures, sensor and lens of glass does without. Typer would load
-#: pydantic, with email and sockets.
+#: Modules that a small .png without textures, sensor and lens of glass does not need. Typer would
+#: load pydantic, with email and sockets.
 NEEDLESS = {
     *("OpenEXR", "asyncio", "concurrent.futures", "email", "html", "http", "logging", "numpy.ma"),
     *("multiprocessing", "pydantic", "rich", "secrets", "socket", "ssl", "tempfile", "unittest"),
