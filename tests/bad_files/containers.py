@@ -29,7 +29,7 @@ def header(
 
 
 FILES = {
-    "empty": (b"", r"header\.magic: wanted .* begins with b'glTF', got b''"),
+    "empty": (b"", r"empty file"),
     "magic": (
         header(magic=b"glTf"),
         r"header\.magic: wanted .* begins with b'glTF', got b'glTf'",
@@ -68,7 +68,10 @@ FILES = {
     ),
     "not utf-8": (glb_bytes(b'{"a":"\xff"}'), r"JSON: wanted UTF-8, got byte 0xff at byte 6"),
     "deep json": (glb_bytes(b"[" * 200_000), r"JSON: nested too deeply"),
-    "long integer": (glb_bytes(b'{"a":' + b"9" * 9000 + b"}"), r"JSON: Exceeds the limit"),
+    "long integer": (
+        glb_bytes(b'{"a":' + b"9" * 9000 + b"}"),
+        r"JSON: a whole number has too many digits",
+    ),
     "a list": (glb_bytes(b"[1, 2]"), r"wrong type: wanted an object, got \[1, 2\]"),
     "a string": (glb_bytes(b'"scene"'), r"wrong type: wanted an object, got 'scene'"),
 }
@@ -81,7 +84,7 @@ DOUBLED = (
 TEXTS: dict[str, tuple[bytes, str]] = {
     "empty text": (
         b"",
-        r"header\.magic: wanted .* begins with b'glTF' or a JSON object, got b''",
+        r"empty file",
     ),
     "stl": (
         b"solid cube",
@@ -119,7 +122,7 @@ TEXTS: dict[str, tuple[bytes, str]] = {
     ),
     "no camera": (
         json.dumps({"asset": {"version": "2.0"}}).encode(),
-        r"wanted visible geometry or a camera, got neither",
+        r"no camera and nothing visible",
     ),
     "lone surrogate": (
         b'{"asset":{"version":"2.0"},"extensionsRequired":["\\ud800"]}',
@@ -180,7 +183,7 @@ def truncated(tenths: int) -> Case:
         path.write_bytes(data[: len(data) * tenths // 10])
         return path
 
-    return Case(f"container-cut at {tenths} tenths", make, r"header")
+    return Case(f"container-cut at {tenths} tenths", make, "header" if tenths else "empty file")
 
 
 def trailing(folder: Path) -> Path:
@@ -221,6 +224,10 @@ CASES = [
     Case("file-sparse giant", a_sparse_giant, r"wanted at most \d+ bytes of JSON"),
     Case("file-giant tail", a_giant_tail, warning="after the stated end"),
     Case("buffer-short file", short_buffer_file, r"buffers\[0\]\.byteLength: 'mesh\.bin' is too"),
-    Case("buffer-sparse giant", sparse_buffer_file, r"buffers\[0\]\.byteLength: wanted at most"),
+    Case(
+        "buffer-sparse giant",
+        sparse_buffer_file,
+        r"buffers\[0\]\.byteLength: too many bytes of buffers",
+    ),
     Case("info-nothing", no_file, r"no such file", command=("info", "{bad}")),
 ]

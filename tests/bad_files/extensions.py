@@ -44,7 +44,7 @@ MOVING: dict[str, tuple[Change, str]] = {
     "skin out of range": (put("nodes.0.skin", 7), r"nodes\[0\]\.skin: index out of range"),
     "skin is text": (put("nodes.0.skin", "0"), r"nodes\[0\]\.skin: wrong type"),
     "skins is an object": (put("skins", {}), r"skins: wrong type"),
-    "no joints": (put("skins.0.joints", []), r"skins\[0\]\.joints: wanted at least one joint"),
+    "no joints": (put("skins.0.joints", []), r"skins\[0\]\.joints: the list is empty"),
     "joints missing": (put("skins.0.joints", ...), r"skins\[0\]\.joints: missing"),
     "joint out of range": (put("skins.0.joints", [1, 99]), r"joints\[1\]: index out of range"),
     "joint is null": (put("skins.0.joints", [None, 1]), r"joints\[0\]: wrong type"),
@@ -63,7 +63,7 @@ MOVING: dict[str, tuple[Change, str]] = {
     ),
     "weights missing": (
         put("meshes.0.primitives.0.attributes.WEIGHTS_0", ...),
-        r"attributes\.JOINTS_0: wanted WEIGHTS_0 beside it",
+        r"attributes\.JOINTS_0: WEIGHTS_0 is missing",
     ),
     "weights NaN": (
         primitive("WEIGHTS_0", lambda b: b.accessor([[float("nan")] * 4] * 3)),

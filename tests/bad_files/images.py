@@ -65,7 +65,7 @@ GOOD = png(PIXELS)
 WEBP = b"RIFF" + struct.pack("<I", 1000) + b"WEBPVP8L"
 BAD: dict[str, tuple[bytes | Callable[[Path], bytes], str]] = {
     "cut png": (GOOD[:-20], "truncated PNG"),
-    "png without end": (GOOD[:33], "truncated PNG: wanted an IEND chunk"),
+    "png without end": (GOOD[:33], "truncated PNG: the IEND chunk is missing"),
     "png of a magic": (GOOD[:8], "truncated PNG"),
     "corrupt png": (damaged(GOOD, 45), "corrupt PNG: wrong checksum of chunk b'IDAT'"),
     "corrupt png header": (damaged(GOOD, 20), "corrupt PNG: wrong checksum of chunk b'IHDR'"),
@@ -84,7 +84,7 @@ BAD: dict[str, tuple[bytes | Callable[[Path], bytes], str]] = {
         GOOD[:33] + struct.pack(">I4s", 2**32 - 1, b"IDAT") + bytes(99),
         "truncated PNG: wanted at least 4294967340 bytes",
     ),
-    "cut jpeg": (lambda d: jpeg(PIXELS, d)[:-10], "truncated JPEG: wanted an end marker"),
+    "cut jpeg": (lambda d: jpeg(PIXELS, d)[:-10], "truncated JPEG: the end marker is missing"),
     "jpeg of 20 bytes": (lambda d: jpeg(PIXELS, d)[:20], "cannot be decoded: .*Premature end"),
     "jpeg of a magic": (b"\xff\xd8\xff", "cannot be decoded|truncated JPEG"),
     "jpeg 65535x65535": (

@@ -45,7 +45,7 @@ LENSES: dict[str, tuple[Any, str]] = {
     "schema is 1": (change("schema", 1), "schema: wrong type"),
     "no surfaces": (change("surfaces", ...), "surfaces: missing"),
     "surfaces is an object": (change("surfaces", {}), "surfaces: wrong type"),
-    "empty surfaces": (change("surfaces", []), "surfaces: wanted at least one surface"),
+    "empty surfaces": (change("surfaces", []), "surfaces: the list is empty"),
     "surface is null": (change("surfaces.0", None), r"surfaces\[0\]: wrong type"),
     "no kind": (change("surfaces.0.kind", ...), S + "kind: missing"),
     "kind is 3": (change("surfaces.0.kind", 3), S + "kind: wrong type"),
@@ -101,7 +101,7 @@ LENSES: dict[str, tuple[Any, str]] = {
     ),
     "glass table doubled": (
         change("surfaces.0.glass", {"table": [[500, 1.5], [500, 1.6]]}),
-        S + r"glass\.table: wanted each wavelength once, got two indices",
+        S + r"glass\.table: wavelengths must differ, got two indices",
     ),
     "glass table of 0": (
         change("surfaces.0.glass", {"table": [[500, 0], [600, 1]]}),

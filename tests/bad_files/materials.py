@@ -279,9 +279,9 @@ ODD: dict[str, tuple[Change, str]] = {
     ),
     "texture set 2^40": (
         put("materials.0.normalTexture", {"index": 0, "texCoord": 2**40}),
-        "coordinates beyond set 1 is left out",
+        "other than sets 0 and 1 is left out",
     ),
-    "unknown extension": (put(E + "VENDOR_glow", {"a": 1}), "VENDOR_glow.* is not understood"),
+    "unknown extension": (put(E + "VENDOR_glow", {"a": 1}), "VENDOR_glow.* is not supported"),
 }
 CASES: list[Case] = [
     *scenes("material", BAD, full),

@@ -134,7 +134,10 @@ def test_a_decoder_that_lies_is_refused(tmp_path: Path, monkeypatch: pytest.Monk
     )
     lie = f"import shutil, sys\nshutil.copy({str(other)!r}, sys.argv[2])"
     path = other_program(tmp_path, monkeypatch, lie)
-    with ExrReader(path) as reader, pytest.raises(InputError, match="its copy has other pixels"):
+    with (
+        ExrReader(path) as reader,
+        pytest.raises(InputError, match="the decoded copy differs from the file"),
+    ):
         reader.rows(0, 4)
 
 
@@ -145,7 +148,7 @@ def test_more_than_the_free_memory_is_refused(
     monkeypatch.setattr(parts, "_SMALL", 0)
     monkeypatch.setattr(parts, "free_bytes", lambda: 4000)
     with ExrReader(tmp_path / "a.exr") as reader:
-        with pytest.raises(InputError, match="wanted at most the 4 kB of memory that are free"):
+        with pytest.raises(InputError, match="wanted at most the free memory, 4 kB"):
             reader.rows(0, SIZE[0])
         reader.rows(0, 1)
 

@@ -116,7 +116,7 @@ def test_upward_light(tmp_path: Path) -> None:
 
 FACTS = "1 1 1 {v} {h} 1 2 0 0 0"
 BROKEN: dict[str, tuple[Any, str]] = {
-    "no tilt": ("IESNA:LM-63-1995\n1 2 3\n", "wanted a line TILT=NONE, as IES LM-63 has it"),
+    "no tilt": ("IESNA:LM-63-1995\n1 2 3\n", "no line TILT=NONE, which IES LM-63 requires"),
     "a tilt of a file": (text(tilt="TILT=../a.tlt"), "line 3: TILT: wanted NONE or INCLUDE, got"),
     "type B": (text(facts=FACTS.replace("1 2 0", "2 2 0")), "line 4: photometric type: wanted 1 "
                "(type C), got 2 (type B)"),
@@ -139,8 +139,8 @@ BROKEN: dict[str, tuple[Any, str]] = {
     "no range": (text("0 45", "1 2 3 4 5 6"), "line 7: horizontal angles: wanted a range of 0, "),
     "huge": (text(candelas="1e30 1 1", facts=FACTS.replace("1 1 1 ", "1 1 1e30 ")),
              "line 8: candelas: wanted finite numbers"),
-    "nothing": ("", "wanted a line TILT=NONE"),
-    "bytes": (bytes(range(256)) * 20, "wanted a line TILT=NONE"),
+    "nothing": ("", "no line TILT=NONE"),
+    "bytes": (bytes(range(256)) * 20, "no line TILT=NONE"),
 }  # fmt: skip
 
 

@@ -119,7 +119,7 @@ def test_bad_environments(tmp_path):
     with pytest.raises(InputError, match="wanted a file, got a folder"):
         read_environment(tmp_path)
     (tmp_path / "text.hdr").write_text("hello")
-    with pytest.raises(InputError, match=r"text\.hdr: .*cannot be decoded"):
+    with pytest.raises(InputError, match=r"text\.hdr: cannot be decoded"):
         read_environment(tmp_path / "text.hdr")
     whole = rgbe(tmp_path / "cut.hdr", width=64, height=64)
     whole.write_bytes(whole.read_bytes()[:500])

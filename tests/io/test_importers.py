@@ -77,7 +77,7 @@ def _gltf_with(accessor: dict[str, Any]) -> bytes:
 GLTF = Samples(
     _gltf_card,
     {
-        "empty.gltf": (b"", "header"),
+        "empty.gltf": (b"", "empty file"),
         "cut_off.gltf": (_gltf()[:-4], "JSON"),
         "no_number.gltf": (_gltf(nodes=[{"translation": [1, "x", 3]}]), r"nodes\[0\].translation"),
         "no_mesh.gltf": (_gltf(nodes=[{"mesh": 7}]), r"nodes\[0\].mesh"),
@@ -208,15 +208,15 @@ _DEEP = b"WorldBegin\n" + b"AttributeBegin\n" * 20_000
 PBRT = Samples(
     _pbrt_card,
     {
-        "empty.pbrt": (b"", "line 1, column 1: wanted WorldBegin"),
+        "empty.pbrt": (b"", "line 1, column 1: the file ends without WorldBegin"),
         "string.pbrt": (_pbrt('Shape "sphere'), "line 2, column 7: .*unterminated string"),
         "list.pbrt": (
             _pbrt('Shape "sphere" "float radius" [1'),
             "line 2, column 31: Shape: unterm",
         ),
         "block.pbrt": (_pbrt("AttributeBegin"), "line 2, column 1: AttributeBegin: unterminated"),
-        "deep.pbrt": (_DEEP, "line 10002, column 1: AttributeBegin: wanted at most"),
-        "unmatched.pbrt": (_pbrt("AttributeEnd"), "column 1: AttributeEnd: wanted Attr"),
+        "deep.pbrt": (_DEEP, "line 10002, column 1: AttributeBegin: too many nested blocks"),
+        "unmatched.pbrt": (_pbrt("AttributeEnd"), "column 1: AttributeEnd: no matching Attr"),
         "no_number.pbrt": (
             _pbrt("Translate 1 two 3"),
             "line 2, column 13: Translate: wanted a num",
@@ -236,7 +236,7 @@ PBRT = Samples(
         "texture.pbrt": (
             _pbrt('Texture "a" "spectrum" "scale" "texture tex" "a"')
             + b'Material "diffuse" "texture reflectance" "a" Shape "disk"',
-            "Texture: tex: wanted at most",
+            "Texture: tex: too many nested textures",
         ),
         "material.pbrt": (
             _pbrt('NamedMaterial "a"', 'Shape "disk"'),
@@ -288,7 +288,7 @@ MITSUBA = Samples(
         ),
         "outside.xml": (_mitsuba('<include filename="../../x.xml"/>'), "leaves the scene's folder"),
         "missing.xml": (_mitsuba('<include filename="x.xml"/>'), "no such file"),
-        "circle.xml": (_mitsuba('<include filename="circle.xml"/>'), "files that include"),
+        "circle.xml": (_mitsuba('<include filename="circle.xml"/>'), "too many nested includes"),
     },
 )
 SAMPLES = {"glTF 2.0": GLTF, "Wavefront OBJ": OBJ, "OpenUSD": USD, "pbrt": PBRT, "Mitsuba": MITSUBA}
@@ -565,7 +565,7 @@ def test_that_test_sees_what_it_is_for(line: str) -> None:
 
 def test_a_strict_reader_refuses_what_it_would_leave_out(samples: Samples, tmp_path: Path) -> None:
     path = samples.card(tmp_path)
-    with pytest.raises(dg.InputError, match=r"card\.\w+: strict: wanted no notes, got: .*1 use"):
+    with pytest.raises(dg.InputError, match=r"card\.\w+: strict: the file has notes: .*1 use"):
         dg.load(path, strict=True)
 
 

@@ -42,7 +42,7 @@ def export_camera(
     else:
         cameras = camera.cameras if isinstance(camera, Scene) else camera
     if not cameras:
-        raise UsageError("export_camera: camera: wanted at least one, got none")
+        raise UsageError("export_camera: camera: no camera given")
     for name, one in cameras.items():
         if not isinstance(name, str) or not isinstance(one, Camera):
             got = f"{short(name)}: {short(one)}"

@@ -45,7 +45,7 @@ def read(path: str | os.PathLike[str]) -> LightProfile:
         (i for i, line in enumerate(lines) if line.lstrip().upper().startswith("TILT=")), None
     )
     if tilt is None:
-        raise InputError(f"{file}: wanted a line TILT=NONE, as IES LM-63 has it, got none")
+        raise InputError(f"{file}: no line TILT=NONE, which IES LM-63 requires")
     numbers = _Numbers(file, lines, tilt + 1)
     factor = _tilt_factor(lines[tilt], numbers)
     return _luminaire(numbers, factor, _year(lines))
@@ -101,7 +101,7 @@ def _luminaire(numbers: _Numbers, tilt_factor: float, year: int) -> LightProfile
     with np.errstate(over="ignore"):
         absolute = candelas * multiplier
     if not (absolute <= np.finfo(np.float32).max).all():
-        numbers.fail("candelas", "finite numbers", "larger ones, with their multipliers")
+        numbers.fail("candelas", "finite numbers", "numbers that overflow with their multipliers")
     phi, values = whole_circle(phi, absolute, f"{place}: horizontal angles")
     return LightProfile.table(theta, values, phi if len(phi) > 1 else [0.0])
 

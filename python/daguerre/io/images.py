@@ -144,7 +144,7 @@ def read_file(path: Path, *, floats: bool = False) -> tuple[NDArray[Any], Any]:
     with path.open("rb") as stream:
         start = stream.read(8)
     if is_exr(path):
-        raise InputError(f"{path}: wanted another format, got OpenEXR (by its first bytes)")
+        raise InputError(f"{path}: OpenEXR is not supported here")
     if start.startswith(_PNG_MAGIC):
         _check_png(path.read_bytes(), str(path))
     elif start.startswith(b"\xff\xd8\xff"):
@@ -156,7 +156,7 @@ def read_file(path: Path, *, floats: bool = False) -> tuple[NDArray[Any], Any]:
 def _check_jpeg(data: bytes, where: str) -> None:
     """Checks for an end marker, as libjpeg fills missing pixels with grey."""
     if data.rfind(b"\xff\xd9") < data.rfind(b"\xff\xda"):
-        raise InputError(f"{where}: truncated JPEG: wanted an end marker, got none")
+        raise InputError(f"{where}: truncated JPEG: the end marker is missing")
 
 
 def _read(
@@ -173,10 +173,7 @@ def _read(
     config.attribute("oiio:UnassociatedAlpha", int(not floats))
     source = oiio.ImageInput.open(name, config)
     if source is None:
-        raise InputError(
-            f"{where}: wanted an image, got a file that cannot be decoded: "
-            f"{_reason(oiio.geterror(), name)}"
-        )
+        raise InputError(f"{where}: cannot be decoded: {_reason(oiio.geterror(), name)}")
     try:
         spec = source.spec()
         format = oiio.TypeDesc(oiio.FLOAT) if floats else spec.format
@@ -213,7 +210,7 @@ def _check_png(data: bytes, where: str) -> None:
     offset, packed, header, start = len(_PNG_MAGIC), 0, b"", b""
     while True:
         if offset + 12 > len(data):
-            raise InputError(f"{where}: truncated PNG: wanted an IEND chunk, got none")
+            raise InputError(f"{where}: truncated PNG: the IEND chunk is missing")
         length, kind = struct.unpack_from(">I4s", data, offset)
         end = offset + 12 + length
         if end > len(data):
@@ -293,7 +290,7 @@ def _radiance_exposure(file: Path) -> float:
             except ValueError:
                 exposure = -1.0
     if not 1e-30 < exposure < 1e30:
-        raise InputError(f"{file}: EXPOSURE: wanted a positive number, 1e-30 to 1e30, got another")
+        raise InputError(f"{file}: EXPOSURE: wanted a positive number, 1e-30 to 1e30")
     return exposure
 
 

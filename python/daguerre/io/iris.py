@@ -23,7 +23,7 @@ def read_grey(path: Path) -> NDArray[np.float32]:
     pixels = _read(path)[:, :, :3]
     grey = np.ascontiguousarray(pixels.mean(axis=2), np.float32)
     if not (np.isfinite(grey).all() and grey.min() >= 0 and grey.max() > 0):
-        raise InputError(f"{path}: iris picture: wanted values of at least 0 and some above 0")
+        raise InputError(f"{path}: iris picture: values must be at least 0, and some above 0")
     return grey
 
 

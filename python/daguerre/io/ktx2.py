@@ -64,10 +64,7 @@ def decode(data: bytes, where: str) -> NDArray[np.uint8]:
     """
     package = extras.missing_for("KHR_texture_basisu")
     if package:
-        raise InputError(
-            f"{where}: wanted the package {package} for KTX2, got none; install it: "
-            f"{extras.hint(package)}"
-        )
+        raise InputError(f"{where}: KTX2 {extras.lack(package)}")
     basisu = import_module(extras.EXTENSIONS["KHR_texture_basisu"])
     try:
         texture = basisu.open(data)

@@ -53,8 +53,8 @@ def load(
     scene: Scene = formats.read("scene", path, time=time, **given)
     if strict and scene.warnings:
         more = f", and {len(scene.warnings) - 1} more" if len(scene.warnings) > 1 else ""
-        raise InputError(f"{path}: strict: wanted no notes, got: {scene.warnings[0]}{more}")
+        raise InputError(f"{path}: strict: the file has notes: {scene.warnings[0]}{more}")
     if not scene.cameras and (camera := frame_everything(scene)) is not None:
         scene.add_camera("framing", camera)
-        scene.note("the file has no camera that can be used; 'framing' has everything in view")
+        scene.note("the file has no usable camera; the camera 'framing' shows everything")
     return scene

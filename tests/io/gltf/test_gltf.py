@@ -97,9 +97,9 @@ def test_other_modes_are_counted(tmp_path):
     scene = gltf.read(b.glb(tmp_path / "a.glb"))
     assert len(scene.meshes) == 1
     assert scene.warnings == [
-        "a mesh primitive that is points is left out (1 use)",
-        "a mesh primitive that is lines is left out (2 uses)",
-        "a mesh primitive that is a line strip is left out (1 use)",
+        "a mesh primitive of points is left out (1 use)",
+        "a mesh primitive of lines is left out (2 uses)",
+        "a mesh primitive of a line strip is left out (1 use)",
     ]
 
 
@@ -344,7 +344,7 @@ def test_no_scenes_shows_all_roots(tmp_path):
     del b.json["scenes"], b.json["scene"]
     scene = gltf.read(b.glb(tmp_path / "a.glb"))
     assert len(scene.instances) == 1
-    assert scene.warnings == ["the file names no scene: all its nodes are shown (1 use)"]
+    assert scene.warnings == ["the file has no scene: all nodes are shown (1 use)"]
 
 
 def test_scaled_to_nothing_is_hidden_and_flat_is_kept(tmp_path):
@@ -356,7 +356,7 @@ def test_scaled_to_nothing_is_hidden_and_flat_is_kept(tmp_path):
     flat = scene.instances[1]
     assert np.array_equal(flat.transform, np.eye(4))
     assert scene.meshes[flat.mesh].positions.tolist() == [[0, 5, 0], [2, 5, 0], [0, 5, 0]]
-    assert scene.warnings == ["a mesh that its node scales to nothing is left out (1 use)"]
+    assert scene.warnings == ["a mesh that its node scales to zero is left out (1 use)"]
 
 
 def test_mirrored_transform_is_kept(tmp_path):
@@ -372,9 +372,9 @@ def test_optional_unknown_extensions_are_counted(tmp_path):
     felt = {"extensions": {"VENDOR_materials_felt": {}, "KHR_materials_ior": {}}}
     b.json["materials"] = [felt, felt, {"extensions": {"NOT_listed": {}}}]
     assert gltf.read(b.glb(tmp_path / "a.glb")).warnings == [
-        "extension 'VENDOR_materials_felt' is not understood (2 uses)",
-        "extension 'VENDOR_x' is not understood (0 uses)",
-        "extension 'NOT_listed' is not understood (1 use)",
+        "extension 'VENDOR_materials_felt' is not supported (2 uses)",
+        "extension 'VENDOR_x' is not supported (0 uses)",
+        "extension 'NOT_listed' is not supported (1 use)",
     ]
 
 

@@ -84,7 +84,7 @@ def test_extras_win_over_the_extension(tmp_path):
     assert (camera.shutter_time, camera.blades, camera.blade_rotation) == (0.02, 7, 12.5)
     assert (camera.lens, camera.sensor_fit) == ("double-gauss-50mm-f2", "vertical")
     assert (camera.shift, camera.focus_breathing, camera.focus_on) == ((1, -2), True, "tri")
-    assert scene.warnings == ["camera parameter 'colour' of extras.daguerre is not known (1 use)"]
+    assert scene.warnings == ["unknown camera parameter 'colour' in extras.daguerre (1 use)"]
 
 
 def test_every_extra_is_a_parameter_of_camera():

@@ -87,7 +87,7 @@ def test_without_the_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     path = tmp_path / "a.glb"
     read = gltf.read(scene("KHR_texture_basisu", KTX2["uastc"], plain=True).glb(path))
     np.testing.assert_array_equal(read.textures[0].pixels, PLAIN)
-    assert any("plain image" in w and "2 uses" in w for w in read.warnings), read.warnings
+    assert any("fallback image" in w and "2 uses" in w for w in read.warnings), read.warnings
     read = gltf.read(scene("KHR_texture_basisu", KTX2["uastc"], plain=False).glb(path))
     assert not read.textures
     assert any("is left out" in w and extras.hint("opengl_basisu") in w for w in read.warnings)

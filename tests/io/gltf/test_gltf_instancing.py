@@ -85,7 +85,7 @@ def test_hidden_and_flat_instances_among_others(tmp_path):
     assert [i.transform[0, 0] for i in scene.instances] == [1, 1, 2]
     assert scene.meshes[scene.instances[1].mesh].positions[:, 1].tolist() == [0, 0, 0]
     assert scene.nodes == {"tri": [0, 1, 2]}
-    assert "scales to nothing is left out (1 use)" in scene.warnings[0]
+    assert "scales to zero is left out (1 use)" in scene.warnings[0]
 
 
 def test_other_attributes_and_empty_ones(tmp_path):
@@ -131,11 +131,11 @@ BAD = {
     "accessor": ({"SCALE": 99}, E + r"\.SCALE: index out of range"),
     "counts": (
         {"TRANSLATION": [[0, 0, 0]] * 2, "SCALE": [[1, 1, 1]] * 3},
-        E + r"\.SCALE: wrong count: wanted 2 like its neighbours, got 3",
+        E + r"\.SCALE: wrong count: wanted 2 like the other attributes, got 3",
     ),
     "count of custom": (
         {"TRANSLATION": [[0, 0, 0]] * 2, "_ID": [1, 2, 3]},
-        E + r"\._ID: wrong count: wanted 2 like its neighbours, got 3",
+        E + r"\._ID: wrong count: wanted 2 like the other attributes, got 3",
     ),
     "type": ({"ROTATION": [[0, 0, 0]]}, E + r"\.ROTATION: wrong accessor type: wanted VEC4"),
     "turn": (
@@ -168,7 +168,9 @@ def test_a_column_of_zeros_without_bytes_has_an_end(tmp_path, monkeypatch):
     b = triangle()
     instanced(b, TRANSLATION=b.add("accessors", zeros | {"count": 300}))
     b.json["meshes"][0]["primitives"] *= 4
-    with pytest.raises(InputError, match=r"nodes\[0\]: wanted at most 1000 instances in a scene"):
+    with pytest.raises(
+        InputError, match=r"nodes\[0\]: too many instances in a scene: the limit is 1000"
+    ):
         load(b, tmp_path)
 
 

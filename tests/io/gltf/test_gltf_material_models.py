@@ -55,7 +55,7 @@ def test_specular_glossiness_takes_the_place_of_metallic_roughness(tmp_path):
     wanted = Gltf(specular_glossiness=True, glossiness=0.5, emissive=(1, 0, 0))
     assert scene.materials[0].kind == wanted
     assert scene.warnings == [
-        "'KHR_materials_transmission' beside specular-glossiness is not used (1 use)"
+        "'KHR_materials_transmission' is ignored beside specular-glossiness (1 use)"
     ]
 
 

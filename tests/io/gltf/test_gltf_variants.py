@@ -60,7 +60,10 @@ def test_unknown_names_are_refused(tmp_path):
         ([{"material": 1, "variants": [3]}], WHERE + r"\[0\]\.variants\[0\]: index out of range"),
         ([{"material": 1}], WHERE + r"\[0\]\.variants: missing"),
         ([{"variants": [0]}], WHERE + r"\[0\]\.material: missing"),
-        ([TWO[0], {"material": 2, "variants": [2, 0]}], r"\[1\]\.variants\[1\]: wanted each varia"),
+        (
+            [TWO[0], {"material": 2, "variants": [2, 0]}],
+            r"\[1\]\.variants\[1\]: variant 0 appears twice",
+        ),
         ({}, WHERE + r": wrong type: wanted a list"),
     ],
 )

@@ -275,7 +275,7 @@ def test_quaternions_are_made_units_and_counted(tmp_path):
     Film(b).node(0, "rotation", [0, 1], [[0, 0, 0, 2], [0, 0, HALF, HALF]])
     scene = gltf.read(b.glb(tmp_path / "a.glb"))
     assert np.linalg.det(scene.instances[0].transform) == pytest.approx(1)
-    wanted = "a key quaternion whose length is not 1 is scaled to it (1 use)"
+    wanted = "a key quaternion whose length is not 1 is normalized (1 use)"
     assert scene.warnings == [wanted]
 
 

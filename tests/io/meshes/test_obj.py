@@ -68,9 +68,7 @@ def test_negative_indices_count_back_from_their_line(tmp_path: Path) -> None:
     assert points.tolist()[:3] == [[0, 0, 0], [1, 0, 0], [1, 1, 0]]
     assert points.tolist()[3:] == [[5, 5, 5], [1, 0, 0], [1, 1, 0]]
     assert mesh.uv is None  # the first face has none
-    assert notes.sentences() == [
-        "texture coordinates that not all corners have are not used (1 use)"
-    ]
+    assert notes.sentences() == ["texture coordinates that some corners lack are left out (1 use)"]
 
 
 def test_odd_lines(tmp_path: Path) -> None:
@@ -87,7 +85,7 @@ def test_odd_lines(tmp_path: Path) -> None:
     assert notes.sentences() == [
         "the statement 'l' of an OBJ file is not used (2 uses)",
         "the statement 'vp' of an OBJ file is not used (1 use)",
-        "faces with fewer than 3 corners are not used (1 use)",
+        "faces with fewer than 3 corners are left out (1 use)",
     ]
     again = read(tmp_path, text.replace("\r\n", "\r").replace("\\\r", "  "))
     np.testing.assert_array_equal(again.positions, mesh.positions)
@@ -136,19 +134,19 @@ def test_files_without_faces_or_vertices(tmp_path: Path) -> None:
         ("vt\n", "line 1: vt: wanted 2 numbers, got 0"),
         ("\nvn 1 2\n", "line 2: vn: wanted 3 numbers, got 2"),
         (_SQUARE + "f 1 2 5\n", "line 5: f: wanted a vertex of 1 .. 4, got '5'"),
-        (_SQUARE + "f 1 2 0\n", "line 5: f: wanted indices from 1 on, got '0'"),
+        (_SQUARE + "f 1 2 0\n", "line 5: f: wanted indices of at least 1, got '0'"),
         (_SQUARE + "f 1 2 -5\n", "line 5: f: wanted a vertex of 1 .. 4, got '-5'"),
         ("f -1 -1 -1\n" + _SQUARE, "line 1: f: wanted a vertex of 1 .. 4, got '-1'"),
         (_SQUARE + "f 1/1 2 3\n", "line 5: f: wanted a texture coordinate of 1 .. 0, got '1/1'"),
         (_SQUARE + _UV + "f 1//1 2 3\n", "line 9: f: wanted a normal of 1 .. 0, got '1//1'"),
         (_SQUARE + "f 1 2 3\nf 1 /2 3\n", "line 6: f: wanted a vertex, got '/2'"),
         (_SQUARE + "f 1 2 3/1/1/1\n",
-         "line 5: f: wanted at most 3 numbers of a corner, got '3/1/1/1'"),
+         "line 5: f: wanted at most 3 numbers per corner, got '3/1/1/1'"),
         (_SQUARE + "f 1 2 3.5\n", "line 5: f: wanted a whole number, got '3.5'"),
         (_SQUARE + "f 1 2 99999999999999999999\n", "line 5: f: wanted a whole number, got '9999"),
         (_SQUARE + "f 1 2 a/b\n", "line 5: f: wanted a whole number, got 'a'"),
         (b"v 1 2 \xff\n", "line 1: v: wanted a number, got"),
-        (b"v 1 2 3\n\x7fELF\0\0\n", "line 2: wanted text, got a byte of 0"),
+        (b"v 1 2 3\n\x7fELF\0\0\n", "line 2: wanted text, got a zero byte"),
     ],
 )  # fmt: skip
 def test_errors_name_their_line(tmp_path: Path, text: str | bytes, told: str) -> None:

@@ -18,7 +18,7 @@ def test_flags_set_parameters_and_the_unit(tmp_path: Path) -> None:
     path = written(tmp_path, ball)
     scene = SceneFileFlags(define=["r=3"], scene_unit="cm").read(path)
     assert np.allclose(np.diag(scene.instances[0].transform), (0.03, 0.03, 0.03, 1))
-    with pytest.raises(dg.InputError, match=r"\$r, got none"):
+    with pytest.raises(dg.InputError, match=r"\$r has no value"):
         SceneFileFlags().read(path)
     with pytest.raises(dg.UsageError, match="wanted name=value"):
         SceneFileFlags(define=["r"]).read(path)

@@ -182,7 +182,7 @@ def test_a_panorama_stays_sharp_toward_its_poles() -> None:
 
 
 def test_what_is_around_a_scene_is_one(tmp_path: Path) -> None:
-    with pytest.raises(dg.InputError, match=r"line 3, column \d+: .*one emitter around the scene"):
+    with pytest.raises(dg.InputError, match=r"line 3, column \d+: .*a second environment"):
         loaded(tmp_path, _emitter("constant"), '<emitter type="constant"/>')
 
 
@@ -191,10 +191,13 @@ def test_what_is_around_a_scene_is_one(tmp_path: Path) -> None:
     [
         (_emitter("spot", '<float name="cutoff_angle" value="95"/>'), "cutoff_angle < 90"),
         (_emitter("spot", '<float name="beam_width" value="25"/>'), "beam_width <= cutoff_angle"),
-        (_emitter("directional", '<vector name="direction" value="0"/>'), "a direction"),
+        (
+            _emitter("directional", '<vector name="direction" value="0"/>'),
+            "the direction must not have zero length",
+        ),
         (_emitter("point", '<point name="position" value="0"/>' + LOOK), "either position or"),
         (_emitter("point", '<rgb name="intensity" value="-1"/>'), "values of at least 0, got -1"),
-        (_emitter("envmap", ""), "wanted a property 'filename'"),
+        (_emitter("envmap", ""), "the property 'filename' is missing"),
     ],
 )
 def test_wrong_lights(part: str, wrong: str, tmp_path: Path) -> None:

@@ -325,4 +325,4 @@ def test_shares_of_light_above_1_count_as_1(
     for tag, value, wanted in (("rgb", "1.5 0.2 3", (1, 0.2, 1)), ("spectrum", "50", (1, 1, 1))):
         scene = loaded(tmp_path, body.format(plugin, tag, name, value))
         assert getattr(scene.materials[-1].kind, field) == pytest.approx(wanted, abs=1e-6)
-        assert any("a share of light above 1 counts as 1" in note for note in scene.warnings)
+        assert any("values above 1 are read as 1" in note for note in scene.warnings)

@@ -104,7 +104,8 @@ def test_clipping_and_shutter(tmp_path: Path) -> None:
     assert not any("far_clip" in note for note in scene.warnings)
     far = '<shape type="sphere"><point name="center" value="0 0 950"/></shape>'
     assert any(
-        "beyond the far_clip" in note for note in loaded(tmp_path, _sensor(inner), far).warnings
+        "far_clip of a sensor is ignored" in note
+        for note in loaded(tmp_path, _sensor(inner), far).warnings
     )
 
 
@@ -119,19 +120,23 @@ def test_clipping_and_shutter(tmp_path: Path) -> None:
         ),
         ('<string name="focal_length" value="x"/>', "perspective", "a length such as 50mm"),
         ('<float name="fov" value="9"/><string name="fov_axis" value="z"/>', "perspective", "one"),
-        ("", "thinlens", "wanted a property 'aperture_radius'"),
+        ("", "thinlens", "the property 'aperture_radius' is missing"),
         ('<float name="aperture_radius" value="0"/>', "thinlens", "a number above 0"),
         ('<float name="near_clip" value="0"/>', "perspective", "a number above 0"),
-        ('<float name="shutter_open" value="1"/>', "perspective", "a shutter that closes after 1"),
+        (
+            '<float name="shutter_open" value="1"/>',
+            "perspective",
+            "the shutter must close after it opens at 1",
+        ),
         (
             '<transform name="to_world"><matrix value="1 1 0 0 1 0 0 0 1"/></transform>',
             "perspective",
-            "one that shears",
+            "but it shears",
         ),
         (
             '<transform name="to_world"><scale x="0"/></transform>',
             "perspective",
-            "one that flattens",
+            "but it flattens",
         ),
     ],
 )
@@ -142,7 +147,7 @@ def test_wrong_cameras(inner: str, plugin: str, wrong: str, tmp_path: Path) -> N
 
 def test_sensors_without_a_lens_are_left_out_by_name(tmp_path: Path) -> None:
     scene = loaded(tmp_path, _sensor("", "radiancemeter"), '<shape type="cube"/>')
-    assert "a sensor 'radiancemeter' is left out: no lens takes its picture (1 use)" in (
+    assert "a sensor 'radiancemeter' is left out: no lens has its projection (1 use)" in (
         scene.warnings
     )
     assert scene.default_camera == "framing"
@@ -189,7 +194,7 @@ def test_filters_are_those_of_the_file(tmp_path: Path, rfilter: str, wanted: str
     film = f'<sensor type="perspective" id="eye"><film type="hdrfilm">{rfilter}</film></sensor>'
     scene, settings, ledger = read_all(written(tmp_path, film))
     assert settings["eye"].filter == wanted
-    nearest = "a filter 'lanczos' counts as 'mitchell' (1 use)"
+    nearest = "a filter 'lanczos' is read as 'mitchell' (1 use)"
     assert (nearest in scene.warnings) == ("lanczos" in rfilter)
     assert check_filter(wanted) == wanted
     assert ledger.counts()[2] == 0

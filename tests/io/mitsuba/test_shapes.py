@@ -173,12 +173,14 @@ def test_curves(tmp_path: Path) -> None:
     with pytest.raises(dg.InputError, match="curves of at least 4 points, got 2"):
         loaded(tmp_path, body.format("bsplinecurve", ""))
     (tmp_path / "hair.txt").write_text("0 0 0 1\n1 0 x 1\n")
-    with pytest.raises(dg.InputError, match=r"hair\.txt: line 2: wanted x y z radius"):
+    with pytest.raises(
+        dg.InputError, match=r"hair\.txt: line 2: wanted four numbers: x y z radius"
+    ):
         loaded(tmp_path, body.format("linearcurve", ""))
 
 
 def test_a_cylinder_needs_a_length_and_an_unknown_shape_is_noted(tmp_path: Path) -> None:
-    with pytest.raises(dg.InputError, match="wanted two points apart"):
+    with pytest.raises(dg.InputError, match="the two points must differ"):
         loaded(tmp_path, '<shape type="cylinder"><point name="p1" value="0 0 0"/></shape>')
     notes = loaded(tmp_path, '<shape type="sdfgrid"/>').warnings
     assert "a shape 'sdfgrid' is left out (1 use)" in notes

@@ -112,18 +112,24 @@ def test_names_of_indices_and_of_metals(tmp_path: Path) -> None:
     assert mirror == dg.Conductor((1, 1, 1), 0.0)
     unknown = loaded(tmp_path, metal.format('<string name="material" value="Unobtainium"/>'))
     assert unknown.materials[0].kind == mirror
-    assert "the metal 'Unobtainium' is not known: it is a mirror (1 use)" in unknown.warnings
+    assert "the metal 'Unobtainium' is unknown: it is read as a mirror (1 use)" in unknown.warnings
 
 
 @pytest.mark.parametrize(
     ("element", "wrong"),
     [
-        ('<spectrum name="reflectance" value="400:0.1, 300:0.2"/>', "rising numbers"),
+        (
+            '<spectrum name="reflectance" value="400:0.1, 300:0.2"/>',
+            "wavelengths_nm: must increase",
+        ),
         ('<spectrum name="reflectance" value="400:0.1, 500"/>', "wanted 2 numbers, got 1"),
         ('<spectrum name="reflectance" value="400:-1"/>', "at least 0"),
         ('<spectrum name="reflectance" filename="none.spd"/>', "no such file"),
         ('<boolean name="reflectance" value="true"/>', "wanted a colour or spectrum, got True"),
-        ('<spectrum name="reflectance" type="blackbody"/>', "a property 'temperature'"),
+        (
+            '<spectrum name="reflectance" type="blackbody"/>',
+            "the property 'temperature' is missing",
+        ),
     ],
 )
 def test_wrong_spectra(element: str, wrong: str, tmp_path: Path) -> None:

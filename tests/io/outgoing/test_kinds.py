@@ -99,7 +99,7 @@ def test_pbrt_has_each_of_them(tmp_path: Path) -> None:
         "several lobes",
         "energy compensation",
         "colour of glass",
-        "black from behind",
+        "single-sided surface is visible",
         "distribution of facets",
     ):
         assert words in notes

@@ -363,7 +363,7 @@ def test_mixtures_and_masks(tmp_path: Path) -> None:
     kind = _kind(old)
     assert isinstance(kind, Mix)
     assert old.materials[kind.second].kind == Diffuse((1, 0, 0))  # pbrt-v3: of the first
-    with pytest.raises(dg.InputError, match="MakeNamedMaterial: mixes in a circle"):
+    with pytest.raises(dg.InputError, match="MakeNamedMaterial: mixes form a cycle"):
         read(
             tmp_path,
             'MakeNamedMaterial "a" "string type" "mix" "string materials" ["a" "a"] '
@@ -446,7 +446,7 @@ def test_a_grid_of_nanovdb_stands_where_its_file_says(tmp_path: Path) -> None:
     missing = read(tmp_path, medium.format('"string filename" "other.nvdb"'))
     assert any("a medium whose file is missing is left out" in note for note in missing.warnings)
     for wrong, error in (
-        ("", "filename: wanted a .nvdb file"),
+        ("", "filename: missing, wanted a .nvdb file"),
         ('"string filename" "smoke.nvdb" "string gridname" "heat"', "wanted a grid 'heat'"),
     ):
         with pytest.raises(

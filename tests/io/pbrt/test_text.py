@@ -79,7 +79,9 @@ def test_a_directive_that_is_dropped_is_seen(
     monkeypatch.setattr(interpreter.Interpreter, "_on_Identity", lambda self, directive: None)
     _, ledger = counted(path)
     assert ledger.used + ledger.noted == sum(count(text) for text in texts)
-    assert any("Identity: one that nothing" in note for note in ledger.notes.sentences())
+    assert any(
+        "Identity: one that the scene does not use" in note for note in ledger.notes.sentences()
+    )
 
 
 def test_parameters_that_nothing_reads_are_told(tmp_path: Path) -> None:
@@ -111,11 +113,11 @@ def test_places_are_those_of_the_included_file(tmp_path: Path) -> None:
 def test_files_within_files_have_limits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for i in range(40):
         (tmp_path / f"f{i}.pbrt").write_text(f'Include "f{i + 1}.pbrt"\n' * 2)
-    with pytest.raises(dg.InputError, match="wanted at most 32 files within files"):
+    with pytest.raises(dg.InputError, match="too many nested files: the limit is 32"):
         read(tmp_path, 'Include "f0.pbrt"')
     (tmp_path / "f30.pbrt").write_text("")
     monkeypatch.setattr("daguerre.io.pbrt.files.MAX_FILES", 500)
-    with pytest.raises(dg.InputError, match="wanted at most 500 files"):
+    with pytest.raises(dg.InputError, match="too many files: the limit is 500"):
         read(tmp_path, 'Include "f10.pbrt"')
     monkeypatch.setattr("daguerre.io.pbrt.files.MAX_BYTES", 100)
     with pytest.raises(dg.InputError, match="wanted at most"):
@@ -168,7 +170,9 @@ def test_small_files_do_not_ask_for_much(tmp_path: Path, monkeypatch: pytest.Mon
     assert len(read(tmp_path, many).meshes) == 1
     cut = " ".join(f'Shape "sphere" "float zmax" {i / 50}' for i in range(50))
     monkeypatch.setattr("daguerre.io.pbrt.meshes.MAX_TRIANGLES", 300_000)
-    with pytest.raises(dg.InputError, match="Shape: wanted at most 300000 triangles of shapes"):
+    with pytest.raises(
+        dg.InputError, match="Shape: too many triangles of shapes: the limit is 300000"
+    ):
         read(tmp_path, cut)
     tetrahedron = (
         'Shape "loopsubdiv" "point3 P" [0 0 0 1 0 0 0 1 0 0 0 1] '
@@ -177,7 +181,7 @@ def test_small_files_do_not_ask_for_much(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr("daguerre.io.pbrt.shapes._MOST_FACES", 1000)
     scene = read(tmp_path, tetrahedron)
     assert len(scene.meshes[0].indices) == 256
-    assert any("subdivided less often (7 uses)" in note for note in scene.warnings)
+    assert any("gets fewer levels (7 uses)" in note for note in scene.warnings)
 
 
 def test_the_folder_of_names_is_that_of_the_first_file(tmp_path: Path) -> None:
@@ -197,9 +201,21 @@ def test_a_mark_of_byte_order_is_no_text(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "world", "wrong"),
     [
-        ("", "Scale 1e30 1e30 1e30\n" * 20 + SQUARE, "line 6, column 1: Scale: wanted a matrix"),
-        ("", 'LightSource "point" "rgb I" [-1 0 0]', "line 3, column 21: LightSource: I: wanted"),
-        ("", 'AreaLightSource "diffuse" "rgb L" [0 -1 0]\n' + SQUARE, "AreaLightSource: L: wanted"),
+        (
+            "",
+            "Scale 1e30 1e30 1e30\n" * 20 + SQUARE,
+            "line 6, column 1: Scale: numbers of the matrix",
+        ),
+        (
+            "",
+            'LightSource "point" "rgb I" [-1 0 0]',
+            "line 3, column 21: LightSource: I: numbers must be at least 0",
+        ),
+        (
+            "",
+            'AreaLightSource "diffuse" "rgb L" [0 -1 0]\n' + SQUARE,
+            "AreaLightSource: L: numbers must be at least 0",
+        ),
         ("", 'Shape "disk" "float height" 1e38', "line 3, column 1: Shape: disk: height: wanted"),
         ("", 'Shape "cylinder" "float zmax" 1e38', "line 3, column 1: Shape: cylinder: high: wan"),
         ('Camera "perspective" "float lensradius" 1e30', SQUARE, "line 1, column 1: Camera: "),

@@ -353,7 +353,7 @@ def test_sensors_are_named(tmp_path: Path) -> None:
 
 
 def test_bad_arguments(tmp_path: Path) -> None:
-    with pytest.raises(dg.UsageError, match="at least one"):
+    with pytest.raises(dg.UsageError, match="camera: no camera given"):
         dg.export_camera({}, tmp_path / "a.usda")
     with pytest.raises(dg.UsageError, match="begin before end"):
         dg.export_camera(dg.Camera(), tmp_path / "a.usda", times=(1, 0))

@@ -111,9 +111,7 @@ def test_shutters_are_in_frames(opens: float, closes: float, time: float, offset
 def test_a_shutter_that_never_opens_and_parallel_rays_make_no_camera() -> None:
     camera, notes = noted(camera_prim("double shutter:open = 0.5\ndouble shutter:close = 0.25"))
     assert camera is None
-    assert notes == [
-        "a camera whose shutter closes before it opens is left out: it sees nothing (1 use)"
-    ]
+    assert notes == ["a camera with a shutter that closes before it opens is left out (1 use)"]
     camera, notes = noted(camera_prim('token projection = "orthographic"'))
     assert camera is None
     assert notes == ["an orthographic camera is left out: no lens makes parallel rays (1 use)"]

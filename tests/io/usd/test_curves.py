@@ -101,7 +101,7 @@ def test_varying_widths_stand_at_the_ends_of_segments(stage: Usd.Stage) -> None:
     assert np.allclose(scene.meshes[0].radii, [0.1, 0.2, 0.3, 0.4, 0.3, 0.2, 0.1])
 
 
-_CUT = "a curve whose number of points does not fit its basis loses the last ones, or is left out"
+_CUT = "a curve with a number of points that does not fit its basis is shortened or left out"
 
 
 @pytest.mark.parametrize(

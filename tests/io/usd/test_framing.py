@@ -13,7 +13,7 @@ import daguerre as dg
 from daguerre.cli import main
 from tests.support import stages
 
-_FRAMED = "the file has no camera that can be used; 'framing' has everything in view"
+_FRAMED = "the file has no usable camera; the camera 'framing' shows everything"
 
 
 @pytest.fixture
@@ -60,17 +60,17 @@ def test_a_stage_with_nothing_to_see_is_one_error(
 ) -> None:
     write(stage)
     path = stages.save(stage)
-    with pytest.raises(dg.InputError, match="wanted visible geometry or a camera, got neither"):
+    with pytest.raises(dg.InputError, match="no camera and nothing visible"):
         dg.load(path).camera()
     assert main(["render", str(path), "--quiet", "-o", str(tmp_path / "x.exr")]) == 3
     told = [line for line in capsys.readouterr().err.splitlines() if "error" in line]
     assert len(told) == 1
-    assert told[0].startswith(f"daguerre: error: {path}: wanted visible geometry or a camera")
+    assert told[0].startswith(f"daguerre: error: {path}: no camera and nothing visible")
 
 
 def test_geometry_without_a_camera_still_asks_for_one() -> None:
     scene = dg.Scene()
     card = scene.add_mesh(np.array(stages.SQUARE, float), np.array([(0, 1, 2), (0, 2, 3)]))
     scene.add_instance(card, dg.Material(dg.Diffuse((1, 1, 1))))
-    with pytest.raises(dg.InputError, match="cameras: wanted one, in the file, by add_camera"):
+    with pytest.raises(dg.InputError, match="no camera: the file has none; use add_camera"):
         scene.camera()

@@ -462,7 +462,7 @@ def test_copies_that_are_scaled_to_nothing_are_left_out(stage: Usd.Stage, kind: 
     instancer.CreateScalesAttr([Gf.Vec3f(0), Gf.Vec3f(1)])
     scene = stages.read(stage)
     assert len(scene.lights) + len(scene.instances) == 1
-    assert any("scaled to nothing is left out (1 use)" in note for note in scene.warnings)
+    assert any("scaled to zero is left out (1 use)" in note for note in scene.warnings)
 
 
 def test_a_moving_instancer_moves_its_lights(stage: Usd.Stage) -> None:
@@ -517,13 +517,16 @@ def _unroot(light: Any) -> None:
         (_link, "linked to some prims"),
         (_unroot, "linked to some prims"),
         (lambda light: UsdLux.LightAPI(light).CreateFiltersRel().AddTarget("/x"), "light filter"),
-        (lambda light: _set(light, "diffuse", 0.5), "own factor for diffuse"),
-        (lambda light: UsdLux.ShadowAPI.Apply(light).CreateShadowEnableAttr(False), "shadows"),
+        (lambda light: _set(light, "diffuse", 0.5), "the diffuse and specular factors"),
+        (
+            lambda light: UsdLux.ShadowAPI.Apply(light).CreateShadowEnableAttr(False),
+            "shadow settings",
+        ),
         (lambda light: _set(light, "radius", {0: 1.0, 9: 2.0}), "size or shaping changes"),
         (lambda light: _set(light, "intensity", -1.0), "negative intensity"),
         (lambda light: _set(light, "color", Gf.Vec3f(1, -1, 1)), "negative part"),
         (lambda light: _set(light, "exposure", 1e38), "brighter than 1e+30"),
-        (lambda light: stages.place(light, scale=(0, 0, 0)), "scaled to nothing"),
+        (lambda light: stages.place(light, scale=(0, 0, 0)), "scaled to zero"),
     ],
 )
 def test_what_is_left_out_is_one_note(stage: Usd.Stage, spoil: Any, note: str) -> None:

@@ -133,7 +133,7 @@ def test_a_primvar_of_a_wrong_length_is_noted(tmp_path: Path) -> None:
         stages.primvar(stages.mesh(stage, "/card"), "displayColor", np.ones((3, 3)), "vertex")
 
     scene = _load(tmp_path, write)
-    assert any("'displayColor' has another number of values" in w for w in scene.warnings)
+    assert any("'displayColor' does not fit its mesh in number" in w for w in scene.warnings)
 
 
 def test_texture_coordinates_have_their_origin_at_the_top_left(tmp_path: Path) -> None:
@@ -215,13 +215,16 @@ def _material(stage: Usd.Stage, name: str, color: Any) -> UsdShade.Material:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda m: m.CreateFaceVertexCountsAttr([5]), "wanted 5, the sum of the counts, got 4"),
+        (
+            lambda m: m.CreateFaceVertexCountsAttr([5]),
+            "wanted 5, the sum of faceVertexCounts, got 4",
+        ),
         (lambda m: m.CreateFaceVertexCountsAttr([-4]), "faceVertexCounts: wanted at least 0"),
         (lambda m: m.CreateFaceVertexIndicesAttr([0, 1, 2, 9]), r"wanted 0 \.\. 3, got 9"),
         (lambda m: m.CreateFaceVertexIndicesAttr([0, 1, 2, -1]), r"wanted 0 \.\. 3, got -1"),
         (
             lambda m: m.CreatePointsAttr([(0, 0, 0), (1, 0, 0), (0, float("inf"), 0), (0, 0, 0)]),
-            "wanted finite points",
+            "points must be finite",
         ),
         (lambda m: m.CreatePointsAttr([(0, 0, 0)]), r"wanted 0 \.\. 0, got 3"),
     ],

@@ -81,7 +81,7 @@ def test_points_that_are_not_finite_are_refused() -> None:
     stage = _moving(4, points=(0, 4))
     points = stage.GetPrimAtPath("/p").GetAttribute("points")
     points.Set(stages.vectors(np.full((6, 3), np.nan)), 4)
-    with pytest.raises(dg.InputError, match=r"f\.usda: /p\.points: wanted finite points"):
+    with pytest.raises(dg.InputError, match=r"f\.usda: /p\.points: points must be finite"):
         _read(stage)
 
 

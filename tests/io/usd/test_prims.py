@@ -157,5 +157,5 @@ def test_prims_too_many_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     stage = stages.new_stage(tmp_path / "x.usda")
     for i in range(21):
         UsdGeom.Xform.Define(stage, f"/n{i}")
-    with pytest.raises(dg.InputError, match="wanted at most 20 prims"):
+    with pytest.raises(dg.InputError, match="too many prims and instances: the limit is 20"):
         dg.load(stages.save(stage))

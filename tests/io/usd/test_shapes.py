@@ -243,4 +243,6 @@ def test_a_solid_that_changes_its_size_is_a_note(tmp_path: Path) -> None:
     size.Set(2.0, 9)
     UsdGeom.Cube.Define(stage, "/b").CreateDisplayColorAttr([Gf.Vec3f(1)])
     notes = [note for note in stages.read(stage).warnings if "size changes" in note]
-    assert notes == ["a solid whose size changes over time keeps that of one moment (1 use)"]
+    assert notes == [
+        "a solid whose size changes over time keeps its size at the scene's time (1 use)"
+    ]

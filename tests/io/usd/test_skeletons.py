@@ -227,12 +227,12 @@ _FAULTS = {
     ),
     "flat bind": (
         lambda s, b, a: s.GetBindTransformsAttr().Set([Gf.Matrix4d(0)] * 5),
-        "bindTransforms: wanted matrices with an inverse",
+        "bindTransforms: every matrix needs an inverse",
     ),
     "no rest": (lambda s, b, a: s.GetRestTransformsAttr().Clear(), "restTransforms: wanted 5"),
     "nan rest": (
         lambda s, b, a: s.GetRestTransformsAttr().Set([Gf.Matrix4d(float("nan"))] * 5),
-        "wanted finite transforms",
+        "transforms must be finite",
     ),
     "far joint": (
         lambda s, b, a: b.GetJointIndicesPrimvar().Set([99] * 120),
@@ -245,24 +245,24 @@ _FAULTS = {
     "few weights": (lambda s, b, a: b.GetJointWeightsPrimvar().Set([1.0] * 7), "jointWeights"),
     "nan weights": (
         lambda s, b, a: b.GetJointWeightsPrimvar().Set([float("nan")] * 120),
-        "jointWeights: wanted finite",
+        "jointWeights: numbers must be finite",
     ),
     "unknown own joint": (lambda s, b, a: b.CreateJointsAttr(["q"] * 5), "skel:joints"),
     "few turns": (
         lambda s, b, a: a.GetRotationsAttr().Set([Gf.Quatf(1)], 5),
-        "rotations: wanted 3 finite ones, one for each joint, got 1",
+        "rotations: wanted 3 finite values, one for each joint, got 1",
     ),
     "no scales": (
         lambda s, b, a: a.GetScalesAttr().Clear(),
-        "scales: wanted 3 finite ones, .* got 0",
+        "scales: wanted 3 finite values, .* got 0",
     ),
     "nan translations": (
         lambda s, b, a: a.GetTranslationsAttr().Set([Gf.Vec3f(float("nan"))] * 3, 5),
-        "translations: wanted 3 finite ones",
+        "translations: wanted 3 finite values",
     ),
     "joints without parents": (
         lambda s, b, a: s.GetJointsAttr().Set(["a/b", "a", "a/b", "c", "d"]),
-        "skeleton.joints: wanted joints, each once",
+        "skeleton.joints: each must appear once",
     ),
 }
 

@@ -35,7 +35,7 @@ def test_grids_of_nanovdb_go_by_name(tmp_path: Path) -> None:
     ("name", "values", "wrong"),
     [
         ("a.vol", np.concatenate([_VALUES] * 3, axis=3), "wanted one number per cell, got 3"),
-        ("a.vol", -_VALUES, "wanted finite numbers of at least 0"),
+        ("a.vol", -_VALUES, "numbers must be finite and at least 0"),
         ("a.vdb", _VALUES, r"wanted \.nvdb or \.vol, got \.vdb"),
         ("missing/a.vol", None, "no such file"),
     ],

@@ -108,7 +108,7 @@ def test_a_missing_blosc_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(nanovdb.extras, "missing", lambda name: name == "blosc")
     path = put(tmp_path, segment([("density", Writer(CELLS).bytes())], 2))
     hint = re.escape(nanovdb.extras.hint("blosc"))
-    told = rf"packed by BLOSC: wanted the package blosc \({hint}.* nanovdb_convert"
+    told = rf"compressed by BLOSC: needs the package blosc, .*{hint}.* nanovdb_convert"
     with pytest.raises(dg.InputError, match=told):
         nanovdb.read(path)
 
@@ -133,12 +133,12 @@ def _with(at: int, form: str, *values: Any) -> bytes:
         (b"NanoVDB2", "byte 0: wanted a segment of NanoVDB, got b'NanoVDB2'"),
         (b"OpenVDB0" + bytes(100), "byte 0: wanted a segment of NanoVDB, got b'OpenVDB0'"),
         (b"NanoVDB1" + bytes(100), "wanted 736 bytes at 0, got 108 in all"),
-        (segment([("a", _GOOD)])[:100], "wanted facts about a grid at byte 16, got the end"),
-        (segment([("a", _GOOD)])[:193], "wanted the name of a grid at byte 192, got the end"),
+        (segment([("a", _GOOD)])[:100], "truncated: the header of a grid at byte 16"),
+        (segment([("a", _GOOD)])[:193], "truncated: the name of a grid at byte 192"),
         (segment([("a", _GOOD)])[:-1], "grid 'a': wanted .* bytes, got"),
         (segment([("a", _GOOD)], 7), "wanted plain, ZIP or BLOSC data"),
         (segment([("a", _GOOD)], 1)[:-9] + b"nonsense!",
-         "grid 'a': wanted a zlib stream|more bytes of unpacked"),
+         "grid 'a': damaged zlib stream|more unpacked bytes"),
         (segment([("a", b"x" * 800)], 0), "wanted a grid of NanoVDB, got b'xxxxxxxx'"),
         (_with(16, "<I", 28 << 21), "wanted a grid of NanoVDB 32, got version 28"),
         (_with(636, "<I", 15), "wanted a grid of single-precision numbers .type 1., got type 15"),
@@ -148,11 +148,14 @@ def _with(at: int, form: str, *values: Any) -> bytes:
         (_with(_ROOT + 24, "<I", 1 << 31), "wanted 68719476736 bytes at"),
         (_with(_ROOT + ROOT + 8, "<q", 1 << 62), "wanted 270400 bytes at"),
         (_with(_UPPER + 8256, "<q", -(1 << 62)), "wanted 33856 bytes at"),
-        (_with(_LOWER + 1088, "<q", 1 << 62), "wanted leaves inside of the grid"),
-        (_with(_LEAF + 96, "<f", float("nan")), "wanted finite numbers"),
-        (_with(384, "<d", float("inf")), "wanted a transform of finite numbers"),
-        (_with(_UPPER + 32 + 4096, "<4096B", *[255] * 4096), "wanted each node once"),
-        (_with(_LOWER + 32 + 512, "<512B", *[255] * 512), "wanted each node once|wanted leaves"),
+        (_with(_LOWER + 1088, "<q", 1 << 62), "leaves are outside of the grid"),
+        (_with(_LEAF + 96, "<f", float("nan")), "numbers must be finite"),
+        (_with(384, "<d", float("inf")), "numbers of the transform must be finite"),
+        (_with(_UPPER + 32 + 4096, "<4096B", *[255] * 4096), "a node appears twice"),
+        (
+            _with(_LOWER + 32 + 512, "<512B", *[255] * 512),
+            "a node appears twice|leaves are outside",
+        ),
         (Writer({}, {((0, 0, 0), 4096): 1.0}).bytes(), "wanted at most 16777216 cells"),
         (Writer({(0, 0, 0): 1.0, (9000, 9000, 9000): 1.0}).bytes(), "9003 x 9003 x 9003"),
     ],

@@ -41,8 +41,8 @@ _HEAD = b"VOL" + struct.pack("<B5i6f", 3, 1, 2, 1, 1, 1, 0, 0, 0, 1, 1, 1)
 @pytest.mark.parametrize(
     ("data", "told"),
     [
-        (b"", "wanted a grid of Mitsuba .VOL., got b''"),
-        (b"VOL\3", "wanted a grid of Mitsuba"),
+        (b"", "not a grid of Mitsuba: wanted VOL, got b''"),
+        (b"VOL\3", "not a grid of Mitsuba"),
         (b"LOV" + _HEAD[3:], "got b'LOV'"),
         (b"VOL\2" + _HEAD[4:], "wanted version 3, got 2"),
         (_HEAD[:4] + b"\4" + _HEAD[5:] + bytes(8), "wanted values of type 1 .single., .* got 4"),
@@ -51,8 +51,8 @@ _HEAD = b"VOL" + struct.pack("<B5i6f", 3, 1, 2, 1, 1, 1, 0, 0, 0, 1, 1, 1)
         (_HEAD[:20] + b"\xff\xff\0\0" + _HEAD[24:] + bytes(8), "1 .. 64 channels"),
         (_HEAD[:8] + b"\0\x10\0\0" * 3 + _HEAD[20:], "wanted at most 536870912 values"),
         (_HEAD + bytes(7), "wanted 8 bytes of values for 2 x 1 x 1 cells, got 7"),
-        (_HEAD + b"\0\0\xc0\x7f" * 2, "wanted finite numbers"),
-        (_HEAD[:-4] + b"\0\0\x80\x7f" + bytes(8), "wanted finite numbers"),
+        (_HEAD + b"\0\0\xc0\x7f" * 2, "numbers must be finite"),
+        (_HEAD[:-4] + b"\0\0\x80\x7f" + bytes(8), "numbers must be finite"),
     ],
 )
 def test_lies_are_one_error(tmp_path: Path, data: bytes, told: str) -> None:

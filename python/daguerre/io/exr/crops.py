@@ -50,7 +50,7 @@ def join_crops(paths: Sequence[str | os.PathLike[str]], out: str | os.PathLike[s
         OutputError: The file cannot be written.
     """
     if not paths:
-        raise InputError("merge: wanted at least one crop, got none")
+        raise InputError("merge: no crops given")
     with ExitStack() as stack:
         crops = [stack.enter_context(ExrReader(path)) for path in paths]
         for other in crops[1:]:
@@ -75,7 +75,7 @@ def _check_alike(first: ExrReader, other: ExrReader) -> None:
     names = sorted(n for n in {*a, *b} - free if a.get(n) != b.get(n))
     if names:
         raise MismatchError(
-            f"{other.path}: is no crop of the picture of {first.path}; they differ in: "
+            f"{other.path}: not a crop of the same picture as {first.path}; they differ in: "
             + ", ".join(_difference(name, first, other) for name in names)
         )
 
@@ -93,10 +93,7 @@ def _window(crops: list[ExrReader]) -> Box:
     for i, a in enumerate(boxes):
         for k, b in enumerate(boxes[:i]):
             if max(a[0], b[0]) < min(a[2], b[2]) and max(a[1], b[1]) < min(a[3], b[3]):
-                raise MismatchError(
-                    f"{crops[i].path}: wanted pixels that no other crop has, got some of "
-                    f"{crops[k].path}"
-                )
+                raise MismatchError(f"{crops[i].path}: overlaps {crops[k].path}")
     lefts, tops, rights, bottoms = zip(*boxes, strict=True)
     x0, y0, x1, y1 = min(lefts), min(tops), max(rights), max(bottoms)
     area, filled = (x1 - x0) * (y1 - y0), sum((b[2] - b[0]) * (b[3] - b[1]) for b in boxes)

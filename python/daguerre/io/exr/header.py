@@ -105,12 +105,8 @@ def read_headers(path: Path) -> ExrHeaders:
                 return ExrHeaders(parts, end, size)
             except _CutError:
                 if len(data) < wanted or wanted >= MAX_HEADER:
-                    raise InputError(_broken(path, "a header without an end")) from None
+                    raise InputError(f"{path}: header: truncated or too long") from None
             wanted *= 8
-
-
-def _broken(path: Path, got: str) -> str:
-    return f"{path}: header: wanted an OpenEXR header, got {got}"
 
 
 def _headers(data: bytes, path: Path) -> tuple[list[ExrHeader], int]:
@@ -119,7 +115,7 @@ def _headers(data: bytes, path: Path) -> tuple[list[ExrHeader], int]:
         raise InputError(f"{path}: format: wanted an OpenEXR file, got {got}")
     flags = struct.unpack_from("<I", data, 4)[0]
     if flags & 0xFF != 2 or (flags & ~0xFF) & ~KNOWN_FLAGS:
-        raise InputError(f"{path}: format: wanted OpenEXR 2, got version and flags {flags:#x}")
+        raise InputError(f"{path}: format: wanted OpenEXR 2, got version bits {flags:#x}")
     found: list[dict[str, tuple[str, bytes]]] = []
     at = 8
     try:
@@ -136,7 +132,7 @@ def _headers(data: bytes, path: Path) -> tuple[list[ExrHeader], int]:
     except (ValueError, struct.error) as error:
         if isinstance(error, _CutError):
             raise
-        raise InputError(_broken(path, "a broken one")) from error
+        raise InputError(f"{path}: header: damaged") from error
     return [ExrHeader(attributes, flags, len(found)) for attributes in found], at
 
 

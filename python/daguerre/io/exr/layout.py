@@ -131,7 +131,7 @@ def read_layouts(path: Path, wanted: int | None = None) -> list[Layout]:
 def _layout(path: Path, headers: ExrHeaders, index: int, table: int, data: int) -> Layout:
     header = headers.parts[index]
     if _is_deep(header):
-        raise InputError(f"{path}: format: wanted flat pixels, got deep ones")
+        raise InputError(f"{path}: format: deep pixels are not supported")
     return Layout(
         path, header, index, _channels(path, header), _compression(path, header),
         _box(path, header), _tile(path, header), table, data,
@@ -186,11 +186,9 @@ def _channels(path: Path, header: ExrHeader) -> dict[str, str]:
     try:
         channels = header.channels
     except (ValueError, IndexError, struct.error) as error:
-        raise InputError(f"{path}: channels: wanted a list of channels, got a broken one") from (
-            error
-        )
+        raise InputError(f"{path}: channels: damaged list of channels") from (error)
     if not channels:
-        raise InputError(f"{path}: channels: wanted at least one, got none")
+        raise InputError(f"{path}: channels: none")
     found: dict[str, str] = {}
     for channel in channels:
         if any("\ud800" <= letter <= "\udfff" for letter in channel.name):
@@ -199,11 +197,10 @@ def _channels(path: Path, header: ExrHeader) -> dict[str, str]:
             )
         if channel.subsampled:
             raise InputError(
-                f"{path}: channel {short(channel.name)}: wanted a value for every pixel, "
-                "got a subsampled one"
+                f"{path}: channel {short(channel.name)}: subsampled channels are not supported"
             )
         if channel.name in found:
-            raise InputError(f"{path}: channel {short(channel.name)}: wanted it once, got it twice")
+            raise InputError(f"{path}: channel {short(channel.name)} appears twice")
         found[channel.name] = channel.dtype
     return found
 
@@ -238,7 +235,7 @@ def _chunk_count(path: Path, header: ExrHeader) -> int:
     told: int | None = struct.unpack("<i", data)[0] if kind == "int" and len(data) == 4 else None
     if _is_deep(header):
         if told is None or told < 1:
-            raise InputError(f"{path}: format: wanted flat pixels, got deep ones")
+            raise InputError(f"{path}: format: deep pixels are not supported")
         return told
     x0, y0, x1, y1 = _box(path, header)
     width, height = x1 - x0 + 1, y1 - y0 + 1

@@ -108,8 +108,8 @@ class PartReader:
         free = free_bytes()
         if free is not None and size > free:
             raise InputError(
-                f"{self.path}: pixels: wanted at most the {shown(free)} of memory that are free, "
-                f"got {shown(size)}"
+                f"{self.path}: pixels: wanted at most the free memory, {shown(free)}, got "
+                f"{shown(size)}"
             )
 
     def close(self) -> None:
@@ -174,6 +174,8 @@ class PartReader:
             layout = read_layouts(path, 0)[0]
             same = (layout.channels, layout.box) == (self.channels, self.layout.box)
             if not (same and layout.compression == NONE):
-                raise InputError(f"{self.path}: cannot be decoded: its copy has other pixels")
+                raise InputError(
+                    f"{self.path}: cannot be decoded: the decoded copy differs from the file"
+                )
             self._copy = PartReader(layout)
         return self._copy

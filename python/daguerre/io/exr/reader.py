@@ -45,7 +45,7 @@ class ExrReader(PartReader):
     def _window(self, name: str) -> tuple[int, int, int, int]:
         box = self.facts.get(name)
         if not (isinstance(box, tuple) and self.header.attributes[name][0] == "box2i"):
-            raise InputError(f"{self.path}: header: {name}: wanted a box2i, got another or none")
+            raise InputError(f"{self.path}: header: {name}: missing, or not a box2i")
         x0, y0, x1, y1 = box
         width, height = x1 - x0 + 1, y1 - y0 + 1
         if not (1 <= width <= MAX_RESOLUTION and 1 <= height <= MAX_RESOLUTION):

@@ -176,7 +176,7 @@ class Accessors:
         """
         index = self.index(use)
         if self._sources.setdefault(index, source) != source:
-            use.fail("wanted an accessor of one compressed primitive, got one of several")
+            use.fail("an accessor of compressed data can belong to only one primitive")
         kind, component, _ = self.kind(use)
         dtype, count = np.dtype(_COMPONENTS[component]), self.count(use)
         wanted = (len(array) if any_count else count, _WIDTHS[kind])
@@ -247,7 +247,7 @@ class Accessors:
             places_item.need("bufferView"), places_item, np.dtype(_COMPONENTS[component]), 1, count
         )[:, 0].astype(np.int64)
         if (np.diff(places) <= 0).any():
-            places_item.fail("wanted indices that rise strictly, got some that do not")
+            places_item.fail("indices must increase")
         if places[-1] >= length:
             places_item.fail(f"index out of range: wanted 0 .. {length - 1}, got {places[-1]}")
         values_view = values_item.need("bufferView")
@@ -261,7 +261,7 @@ def _decoded(array: NDArray[Any], normalized: bool, use: Item, what: str) -> NDA
         if bad.size:
             use.fail(
                 f"{what} {bad[0]}: wanted finite numbers, got {array[bad[0]].tolist()} "
-                f"({bad.size} such)"
+                f"({bad.size} such elements)"
             )
     values = np.array(array, np.float32)
     if normalized and array.dtype.kind != "f":

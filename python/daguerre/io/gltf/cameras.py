@@ -53,7 +53,8 @@ def _f_stop(item: Item) -> float:
     value = item.number()
     if value <= 0:
         item.fail(
-            f"out of range: wanted a number above 0 (a pinhole is a lens of its own), got {value:g}"
+            f"out of range: wanted a number above 0 (for a pinhole set lens to pinhole), got "
+            f"{value:g}"
         )
     return item.number(*LIMITS["f_stop"])
 
@@ -155,7 +156,7 @@ def _known(item: Item, readers: dict[str, _Reader], notes: Notes, of: str) -> di
         if key in readers and member.value is not None:
             values[_snake(key)] = readers[key](member)
         elif key not in readers and key not in ("extras", "extensions"):
-            notes.add(f"camera parameter {clean(key)[:40]!r} of {of} is not known")
+            notes.add(f"unknown camera parameter {clean(key)[:40]!r} in {of}")
     return values
 
 

@@ -47,10 +47,8 @@ def supply(
     package = extras.missing_for(NAME)
     if package:
         if not accessors.has_bytes(attributes["POSITION"]):
-            extension.fail(
-                f"wanted the package {package}, got none; install it: {extras.hint(package)}"
-            )
-        notes.add(f"{NAME} needs {package} ({extras.hint(package)}): uncompressed data are used")
+            extension.fail(extras.lack(package))
+        notes.add(f"uncompressed data are used: {NAME} {extras.lack(package)}")
         return False
     if mode < 4 or mode > 5:
         primitive.need("mode").fail(f"wanted 4 or 5 with {NAME}, got {mode}")
@@ -88,5 +86,5 @@ def _decode(data: bytes, extension: Item) -> Any:
             f"{extension.file}: {extension.path}: cannot be decoded: {error}"
         ) from None
     if not hasattr(mesh, "faces"):
-        extension.fail("wanted triangles in the stream, got a point cloud")
+        extension.fail("the stream is a point cloud, wanted triangles")
     return mesh

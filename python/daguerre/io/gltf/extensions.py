@@ -53,16 +53,13 @@ def check_extensions(root: Item, notes: Notes) -> None:
                 f"got {short(item.text())}"
             )
         if package := extras.missing_for(item.text()):
-            item.fail(
-                f"wanted the package {package} for {item.text()}, got none; "
-                f"install it: {extras.hint(package)}"
-            )
+            item.fail(f"{item.text()} {extras.lack(package)}")
     listed = [item.text() for item in root.list_of("extensionsUsed")]
     counts = _count_uses(root.value)
     for name in dict.fromkeys([*listed, *counts]):
         if name not in KNOWN:
             # Listed but unused extensions are noted too, with a count of 0.
-            notes.add(f"extension {short(clean(name))} is not understood", counts.get(name, 0))
+            notes.add(f"extension {short(clean(name))} is not supported", counts.get(name, 0))
 
 
 def _count_uses(document: Any) -> dict[str, int]:

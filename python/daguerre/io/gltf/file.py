@@ -56,6 +56,8 @@ def open_document(path: Path, folder: Folder) -> Document:
     """
     data, trailing = _read(path)
     packed = None
+    if not data:
+        raise InputError(f"{path}: empty file")
     if data[:4] == b"glTF":
         text, binary, packed = _split_chunks(path, data)
     elif path.suffix.lower() == ".glb" or data.lstrip()[:1] not in (b"{", b"\xef"):
@@ -155,7 +157,7 @@ def _load_buffer(document: Document, item: Item, budget: Budget) -> memoryview:
     uri = item.get("uri")
     if uri is None:
         if item.key != 0 or document.binary is None:
-            Item(None, "uri", item).fail("missing: wanted a URI, as there is no binary chunk")
+            Item(None, "uri", item).fail("missing (the file has no binary chunk)")
         data, source = document.binary, "the binary chunk"
     elif is_data(uri):
         data, source = memoryview(data_bytes(uri)), "the data URI"

@@ -138,5 +138,5 @@ def _budget() -> Budget:
     free = memory.left_bytes()
     if free is None or _SHARE * free >= _MAX_TOTAL_BYTES:
         return Budget(_MAX_TOTAL_BYTES, "bytes of decoded images")
-    what = f"bytes of decoded images ({_SHARE:.0%} of the {memory.shown(free)} that are left)"
+    what = f"bytes of decoded images ({_SHARE:.0%} of the {memory.shown(free)} that are free)"
     return Budget(int(_SHARE * free), what)

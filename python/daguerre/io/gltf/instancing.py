@@ -57,5 +57,5 @@ def _common_count(uses: dict[str, Item], accessors: Accessors) -> int:
         next(iter(uses.values())).fail(f"wanted at most {MAX_INSTANCES} instances, got {count}")
     for name, use in uses.items():
         if counts[name] != count and not uses.keys().isdisjoint(_COLUMNS):
-            use.fail(f"wrong count: wanted {count} like its neighbours, got {counts[name]}")
+            use.fail(f"wrong count: wanted {count} like the other attributes, got {counts[name]}")
     return count

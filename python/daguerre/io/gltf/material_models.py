@@ -56,7 +56,7 @@ def read_specular_glossiness(
     )
     for name in _EXCLUDED:
         if item.extension(f"KHR_materials_{name}") is not None:
-            notes.add(f"'KHR_materials_{name}' beside specular-glossiness is not used")
+            notes.add(f"'KHR_materials_{name}' is ignored beside specular-glossiness")
     return True
 
 

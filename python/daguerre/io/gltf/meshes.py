@@ -173,7 +173,7 @@ class Meshes:
         mode = 4 if mode_item is None else mode_item.choice(range(7))
         attributes = {str(item.key): item for item in primitive.need("attributes").members()}
         if mode < 4:
-            self._notes.add(f"a mesh primitive that is {_MODES[mode]} is left out")
+            self._notes.add(f"a mesh primitive of {_MODES[mode]} is left out")
             return None
         if "POSITION" not in attributes:
             self._notes.add("a mesh primitive without POSITION is left out")
@@ -183,7 +183,7 @@ class Meshes:
             chosen = None
         if chosen is not None and self._is_nothing(chosen):
             # Scale 0 hides an object, like that of a node (3.5.3).
-            self._notes.add("a mesh that its skin scales to nothing is left out")
+            self._notes.add("a mesh that its skin scales to zero is left out")
             return None
         if gltf_draco.supply(primitive, mode, attributes, self._accessors, self._notes):
             mode = 4
@@ -207,7 +207,7 @@ class Meshes:
             source.primitive, source.indices, source.mode, count, self._accessors
         )
         if not len(triangles):
-            self._notes.add("a mesh primitive without a triangle that has an area is left out")
+            self._notes.add("a mesh primitive whose triangles all have zero area is left out")
             return None
         base = dict(arrays)
         triangles, influences = self._deform(source, arrays, triangles)

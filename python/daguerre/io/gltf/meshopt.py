@@ -52,7 +52,7 @@ def check(view: Item, extension: Item) -> tuple[str, str, int, int]:
         wanted = ", ".join(map(str, strides)) if len(strides) < 3 else "a multiple of 4"
         stride_item.fail(f"does not fit mode and filter: wanted {wanted}, got {stride}")
     if mode != "ATTRIBUTES" and filter_name != "NONE" and filter_item is not None:
-        filter_item.fail(f"wanted no filter with mode {mode}, got {filter_name}")
+        filter_item.fail(f"no filter is allowed with mode {mode}, got {filter_name}")
     if mode == "TRIANGLES" and count % 3:
         count_item.fail(f"wanted a multiple of 3, got {short(count)}")
     length = view.need("byteLength")

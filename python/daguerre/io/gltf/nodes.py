@@ -63,8 +63,8 @@ class Tree(Value):
                 if self.parents[child] >= 0 or child == node:
                     other = node if child == node else self.parents[child]
                     child_item.fail(
-                        f"wanted a tree of nodes, got node {child} that is already "
-                        f"a child of node {other}"
+                        f"node {child} is already a child of node {other}: a node has at most "
+                        f"one parent"
                     )
                 self.parents[child] = node
                 self.children[node].append(child)
@@ -80,7 +80,7 @@ class Tree(Value):
             stack.extend(self.children[node])
         if not all(reached):
             node = reached.index(False)
-            self.items[node].fail("wanted a tree of nodes, got a node that is its own ancestor")
+            self.items[node].fail("the node is its own ancestor")
 
     def roots(self, scene: Item | None) -> list[int]:
         """Root nodes of a scene, or of the whole file."""
@@ -90,10 +90,10 @@ class Tree(Value):
         for item in scene.list_of("nodes"):
             node = item.index(len(self.items), "nodes")
             if node in roots:
-                item.fail(f"wanted each node once, got node {node} again")
+                item.fail(f"node {node} appears twice")
             if self.parents[node] >= 0:
                 item.fail(
-                    f"wanted a root node, got node {node}, a child of node {self.parents[node]}"
+                    f"wanted a root node, but node {node} is a child of node {self.parents[node]}"
                 )
             roots[node] = None
         return list(roots)

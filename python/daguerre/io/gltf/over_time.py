@@ -102,10 +102,7 @@ class RigidOverTime(Value):
         """The transform at a time, s, (4, 4)."""
         rigid = without_scale(self.node.at(time_s))
         if rigid is None:
-            self.item.fail(
-                "wanted a transform that leaves its camera a direction, "
-                f"got a scale of 0 at {time_s:g} s"
-            )
+            self.item.fail(f"the node scales its camera by 0 at {time_s:g} s")
         return rigid
 
     def breaks(self, begin: float, end: float) -> FloatArray:

@@ -79,15 +79,16 @@ class Placing:
         """
         scene = self._scene
         self._instances.spend(len(worlds), node)
-        if not np.abs(worlds).max() < MAX_SIZE:  # NaN is not smaller than anything
-            node.fail(f"world transform: wanted numbers below {MAX_SIZE:g}, got larger ones")
+        size = np.abs(worlds).max()
+        if not size < MAX_SIZE:  # NaN is not smaller than anything
+            node.fail(f"world transform: wanted numbers below {MAX_SIZE:g}, got {size:g}")
         if material is None:
             material = self._default()
         self._note_missing_uv(mesh, material)
         dimensions = ranks(worlds[:, :3, :3])
         hidden = int((dimensions < 2).sum()) if moves is None else 0
         if hidden:  # scale 0 is how files hide things
-            self._notes.add("a mesh that its node scales to nothing is left out", hidden)
+            self._notes.add("a mesh that its node scales to zero is left out", hidden)
         if moves is not None:
             for world, motion in zip(worlds, moves, strict=True):
                 self._add_moving(node, mesh, material, world, name, motion)

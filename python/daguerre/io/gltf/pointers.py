@@ -156,6 +156,6 @@ def _step(holder: Any, token: str, use: Item) -> Any:
 
 def _index(token: str, holder: list[Any], use: Item) -> int:
     if not _INDEX.fullmatch(token) or int(token) >= len(holder):
-        wanted = f"0 .. {len(holder) - 1}" if holder else "no index, as the list is empty"
+        wanted = f"0 .. {len(holder) - 1}" if holder else "no index: the list is empty"
         use.fail(f"index out of range: wanted {wanted}, got {short(token)}")
     return int(token)

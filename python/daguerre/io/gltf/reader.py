@@ -96,14 +96,16 @@ def read(
 def _packed(chunk: memoryview, path: Path, notes: Notes, *, other: bool) -> Scene | None:
     """Reads a scene as it is; None, with a note, if it is another version's, or not asked for."""
     if other:
-        notes.add("the exact scene holds the moment of its export alone: plain glTF is read")
+        notes.add(
+            "the exact scene is stored for the time of its export only: plain glTF is read instead"
+        )
         return None
     from daguerre.scene.packed.chunk import scene_of
 
     try:
         return scene_of(chunk, path)
     except MismatchError as error:
-        notes.add(f"exact scene: {error}: plain glTF is read")
+        notes.add(f"exact scene: {error}: plain glTF is read instead")
         return None
 
 
@@ -174,7 +176,7 @@ class _Reader:
         if chosen is not None:
             return scenes[chosen.index(len(scenes), "scenes")]
         if not scenes:
-            self.notes.add("the file names no scene: all its nodes are shown")
+            self.notes.add("the file has no scene: all nodes are shown")
             return None
         return scenes[0]
 
@@ -210,7 +212,7 @@ class _Reader:
     def _camera(self, item: Item, placed: Placed, name: str) -> None:
         node, rigid = self.tree.items[placed.index], without_scale(placed.world)
         if rigid is None:
-            node.fail("wanted a transform that leaves its camera a direction, got a scale of 0")
+            node.fail("the node scales its camera by 0")
         camera = read_camera(item, rigid, self.notes)
         if camera is not None:
             camera = self.moving.camera(camera, item, node)
@@ -223,7 +225,7 @@ class _Reader:
         if motion is not None:
             self.scene.add_light(*motion.at(self.scene.time), motion=motion)
         elif rigid is None:
-            self.notes.add("a light whose node is scaled to nothing is left out")
+            self.notes.add("a light whose node is scaled to zero is left out")
         else:
             self.scene.add_light(light, rigid)
 

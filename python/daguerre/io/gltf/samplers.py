@@ -161,7 +161,7 @@ class Samplers:
             use.fail(f"key value {empty[0]}: wanted a quaternion of length 1, got length 0")
         odd = int((np.abs(lengths - 1) > _SLACK).sum())
         if odd:
-            self._notes.add("a key quaternion whose length is not 1 is scaled to it", odd)
+            self._notes.add("a key quaternion whose length is not 1 is normalized", odd)
 
 
 def _keys(use: Item, accessors: Accessors) -> FloatArray:
@@ -171,10 +171,7 @@ def _keys(use: Item, accessors: Accessors) -> FloatArray:
     falls = np.flatnonzero(np.diff(keys) <= 0)
     if falls.size:
         i = int(falls[0])
-        use.fail(
-            f"key time {i + 1}: wanted times that rise strictly, got {keys[i]:g} then "
-            f"{keys[i + 1]:g}"
-        )
+        use.fail(f"key time {i + 1}: times must increase, got {keys[i]:g} then {keys[i + 1]:g}")
     return keys
 
 

@@ -23,10 +23,10 @@ def _curve(item: Item) -> rolling_shutter.ShutterCurve:
     for point in points:
         time, opening = point.numbers(2, 0)
         if time > 1 or (curve and time < curve[-1][0]):
-            point.fail(f"out of order: wanted times that do not fall, 0 .. 1, got {time:g}")
+            point.fail(f"out of order: times must not decrease, and lie in 0 .. 1, got {time:g}")
         curve.append((time, opening))
     if not any(opening > 0 for _, opening in curve):
-        item.fail("never open: wanted an opening above 0, got none")
+        item.fail("never open: one opening must be above 0")
     return curve
 
 
@@ -39,7 +39,7 @@ def _rolling(item: Item) -> rolling_shutter.RollingShutter:
         for member in (item.get(name),)
     }
     if (times["lineTime"] is None) == (times["readoutTime"] is None):
-        item.fail("ambiguous: wanted either lineTime or readoutTime")
+        item.fail("set either lineTime or readoutTime, not both")
     return rolling_shutter.RollingShutter(
         "top" if order is None else order.choice(shutter.SCAN_ORDERS),
         times["lineTime"],

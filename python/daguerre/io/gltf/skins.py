@@ -112,10 +112,10 @@ class Skins:
             skeleton.index(len(tree.items), "nodes")
         joints = [use.index(len(tree.items), "nodes") for use in item.need("joints")]
         if not joints:
-            item.need("joints").fail("wanted at least one joint, got none")
+            item.need("joints").fail("the list is empty, wanted at least one joint")
         outside = sum(not tree.is_placed(joint) for joint in joints)
         if outside:
-            self._notes.add("a joint of a skin is outside of the scene", outside)
+            self._notes.add("a joint of a skin is not in the scene", outside)
         bind = item.get("inverseBindMatrices")
         self._joint_nodes[index] = joints
         still = np.eye(4)[None]
@@ -137,7 +137,7 @@ class Skins:
         while (joints := attributes.get(f"JOINTS_{len(found.joints)}")) is not None:
             weights = attributes.get(f"WEIGHTS_{len(found.joints)}")
             if weights is None:
-                joints.fail(f"wanted WEIGHTS_{len(found.joints)} beside it, got none")
+                joints.fail(f"WEIGHTS_{len(found.joints)} is missing")
             assert weights is not None
             for use in (joints, weights):
                 if self._accessors.count(use) != count:
@@ -181,7 +181,7 @@ def _share(found: Influences, notes: Notes) -> None:
     total = np.sum([w.sum(axis=1, dtype=np.float64) for w in found.weights], axis=0)
     odd = int((np.abs(total - 1) > _SLACK).sum())
     if odd:
-        notes.add("a vertex whose joint weights do not add to 1 has them scaled", odd)
+        notes.add("joint weights of a vertex that do not add up to 1 are scaled", odd)
     lost = total == 0
     found.weights[0][lost, 0] = total[lost] = 1
     for weights in found.weights:

@@ -97,7 +97,7 @@ class Textures(Value):
             return None
         uv_set, transform = _coordinates(info)
         if uv_set > 1:
-            self._notes.add("a texture that needs texture coordinates beyond set 1 is left out")
+            self._notes.add("a texture on texture coordinates other than sets 0 and 1 is left out")
             return None
         plan = Plan(self._same[image], srgb, seen_through)
         return TextureSlot(self.plans.setdefault(plan, len(self.plans)), uv_set, transform)
@@ -112,10 +112,8 @@ class Textures(Value):
             package = extras.missing_for(name)
             if not package:
                 return self._checked(extension.need("source"))
-            self._notes.add(
-                f"{name} needs {package} ({extras.hint(package)}): a texture "
-                + ("is left out" if plain is None else "is shown by the plain image beside it")
-            )
+            done = "is left out" if plain is None else "is replaced by its fallback image"
+            self._notes.add(f"a texture {done}: {name} {extras.lack(package)}")
         return None if plain is None else self._checked(plain)
 
     def _checked(self, source: Item) -> int:

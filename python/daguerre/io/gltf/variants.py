@@ -45,7 +45,7 @@ class Variants:
             for item in mapping.need("variants"):
                 variant = item.index(len(self.names), "variants")
                 if variant in seen:
-                    item.fail(f"wanted each variant once, got {variant} again")
+                    item.fail(f"variant {variant} appears twice")
                 seen.add(variant)
                 if variant == self._chosen:
                     used = material

@@ -78,7 +78,7 @@ class Document:
         self._root = _Scope("", root)
         self._names: dict[int, dict[str, Element]] = {}
         if any(child.tag.endswith(":include") for child in root.children):
-            notes.add("a MaterialX document that includes another is read without it")
+            notes.add("a MaterialX document is read without the documents that it includes")
         self._definitions = {
             child.get("name"): child for child in root.children if child.tag == "nodedef"
         }
@@ -185,7 +185,7 @@ class _Walk:
                     return step
                 return self._chosen(step, channels, first.element)
             source = step
-        fail(source.element, self._document.file, "wanted connections that end, got a circle")
+        fail(source.element, self._document.file, "connections form a cycle")
         return None
 
     def _chosen(self, link: Link, channels: str, user: Element) -> Link:
@@ -231,7 +231,7 @@ class _Walk:
         for output in outputs:
             if output.get("name") == name or (not name and len(outputs) == 1):
                 return _Source(output, scope)
-        fail(source.element, self._document.file, f"output: wanted one that exists, got {name!r}")
+        fail(source.element, self._document.file, f"output: there is no output {name!r}")
         return None
 
     def _target(self, source: _Source, name: str, output: str) -> _Source | Link | None:
@@ -265,7 +265,7 @@ class _Walk:
         """Element of this name in the scope; a note if there is none."""
         element = self._document._named(source.scope).get(name)
         if element is None:
-            self._document._notes.add("MaterialX: a connection to no node is left out")
+            self._document._notes.add("MaterialX: a connection to a missing node is left out")
         return element
 
 

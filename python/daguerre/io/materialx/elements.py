@@ -78,9 +78,9 @@ class _Reader:
         element = Element(tag, attributes, *self._place(), parent)
         self.count += 1
         if len(self.open) >= MAX_DEPTH:
-            self._fail(f"wanted at most {MAX_DEPTH} elements inside each other, got more")
+            self._fail(f"nested too deeply: the limit is {MAX_DEPTH} elements")
         if self.count > MAX_ELEMENTS:
-            self._fail(f"wanted at most {MAX_ELEMENTS} elements, got more")
+            self._fail(f"too many elements: the limit is {MAX_ELEMENTS}")
         if parent is None:
             self.root = element
         else:
@@ -91,7 +91,7 @@ class _Reader:
         self.open.pop()
 
     def _refuse_type(self, *about: object) -> None:
-        self._fail("wanted no document type and no entities, got <!DOCTYPE>")
+        self._fail("document types and entities are not supported, got <!DOCTYPE>")
 
     def _place(self) -> tuple[int, int]:
         return self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1

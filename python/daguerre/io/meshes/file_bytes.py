@@ -54,8 +54,8 @@ def check_room(size: int, where: str, most: int = MAX_BYTES) -> None:
     left = memory.left_bytes()
     if left is not None and size > left:
         raise InputError(
-            f"{where}: wanted at most {memory.shown(left)}, the memory that is left, "
-            f"got {memory.shown(size)}"
+            f"{where}: wanted at most the free memory, {memory.shown(left)}, got "
+            f"{memory.shown(size)}"
         )
 
 
@@ -89,8 +89,8 @@ class Inflated:
         self._taken += size
         if self._taken > limit:
             raise InputError(
-                f"{self._where}: wanted data that unpack to at most {limit} bytes, "
-                f"got {self._taken} of {len(self._data)} packed ones"
+                f"{self._where}: wanted at most {limit} bytes of unpacked data, got "
+                f"{self._taken} from {len(self._data)} packed bytes"
             )
         check_room(size, self._where)
         parts, left = [], size
@@ -110,15 +110,13 @@ class Inflated:
             try:
                 piece = self._stream.decompress(self._tail, most)
             except zlib.error as error:
-                raise InputError(
-                    f"{self._where}: wanted a zlib stream, got damaged data ({error})"
-                ) from None
+                raise InputError(f"{self._where}: damaged zlib stream ({error})") from None
             self._tail = self._stream.unconsumed_tail
             if piece:
                 return piece
             if ended:
                 raise InputError(
-                    f"{self._where}: wanted {most} more bytes of unpacked data, got the end"
+                    f"{self._where}: the data end too early: {most} more unpacked bytes are missing"
                 )
 
 
@@ -130,12 +128,10 @@ def _gunzipped(data: Bytes, where: str, most: int) -> Iterator[bytes]:
             try:
                 piece = stream.read(_PIECE)
             except (OSError, EOFError, zlib.error) as error:
-                raise InputError(f"{where}: wanted gzip data, got damaged ones ({error})") from None
+                raise InputError(f"{where}: damaged gzip data ({error})") from None
             total += len(piece)
             if total > limit:
-                raise InputError(
-                    f"{where}: wanted data that unpack to at most {limit} bytes, got more"
-                )
+                raise InputError(f"{where}: too much unpacked data: the limit is {limit} bytes")
             if not piece:
                 return
             yield piece

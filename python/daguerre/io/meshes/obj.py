@@ -49,7 +49,7 @@ def read(path: str | os.PathLike[str], notes: Notes) -> FileMesh:
     faces = read_faces(lines, [len(points), len(uv), len(normals)], str(file))
     _note_others(lines, notes)
     if faces.small:
-        notes.add("faces with fewer than 3 corners are not used", faces.small)
+        notes.add("faces with fewer than 3 corners are left out", faces.small)
     kept_uv = _kept(uv, faces.uv, "texture coordinates", notes)
     kept_normals = _kept(normals, faces.normals, "normals", notes)
     return _mesh(faces, points, kept_uv, kept_normals)
@@ -59,7 +59,7 @@ def _check_text(data: Bytes, where: str) -> None:
     if data.all():
         return
     line = 1 + np.count_nonzero(data[: int(np.argmin(data))] == ord("\n"))
-    raise InputError(f"{where}: line {line}: wanted text, got a byte of 0")
+    raise InputError(f"{where}: line {line}: wanted text, got a zero byte")
 
 
 def _table(lines: Lines, word: str, where: str) -> Floats:
@@ -109,7 +109,7 @@ def _kept(table: Floats, index: NDArray[np.int64], what: str, notes: Notes) -> F
     if with_one.all() and len(index):
         return table
     if with_one.any():
-        notes.add(f"{what} that not all corners have are not used")
+        notes.add(f"{what} that some corners lack are left out")
     return None
 
 

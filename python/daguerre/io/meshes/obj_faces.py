@@ -94,10 +94,10 @@ class _Reader:
         # A slash before the first number counts, too: such a corner has no vertex.
         field = slashes[places] - (slashes[begins] - slash[begins])[corner]
         if len(field) and field.max() > 2:
-            self._fail(int(corner[int(np.argmax(field))]), begins, "at most 3 numbers of a corner")
+            self._fail(int(corner[int(np.argmax(field))]), begins, "at most 3 numbers per corner")
         values = self._numbers(np.where(slash, np.uint8(ord(" ")), self._text).tobytes())
         if (values == 0).any():
-            self._fail(int(corner[int(np.argmin(values != 0))]), begins, "indices from 1 on")
+            self._fail(int(corner[int(np.argmin(values != 0))]), begins, "indices of at least 1")
         found = np.zeros((len(begins), 3), np.int64)
         found[corner, field] = values
         if len(found) and (found[:, 0] == 0).any():

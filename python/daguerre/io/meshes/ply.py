@@ -52,10 +52,10 @@ def read(path: str | os.PathLike[str], notes: Notes) -> FileMesh:
     header = read_header(data, str(file))
     tables = _tables(header, data, str(file), notes)
     if "vertex" not in tables:
-        raise InputError(f"{file}: wanted an element vertex, got none")
+        raise InputError(f"{file}: the element vertex is missing")
     mesh = _vertices(*tables["vertex"], f"{file}: vertex", notes)
     if "face" not in tables:
-        raise InputError(f"{file}: wanted an element face, got none")
+        raise InputError(f"{file}: the element face is missing")
     return _with_faces(mesh, *tables["face"], f"{file}: face", notes)
 
 
@@ -101,7 +101,7 @@ def _vertices(element: Element, rows: Rows, where: str, notes: Notes) -> FileMes
     """Vertices with their values, without faces."""
     positions = _values(element, rows, _POSITION, where)
     if positions is None:
-        raise InputError(f"{where}: wanted the properties x, y and z, got others")
+        raise InputError(f"{where}: the properties x, y and z are missing")
     uv = next((names for names in _UV if _has(element, names)), ())
     colored = next((names for names in _COLORS if _has(element, names)), ())
     used = {*_POSITION, *_NORMAL, *uv, *colored}
@@ -145,7 +145,7 @@ def _with_faces(mesh: FileMesh, element: Element, rows: Rows, where: str, notes:
     """The mesh with its faces."""
     name = next((n for n in _CORNERS if (p := element.find(n)) is not None and p.counted), None)
     if name is None:
-        raise InputError(f"{where}: wanted a list vertex_indices or vertex_index, got none")
+        raise InputError(f"{where}: the list vertex_indices (or vertex_index) is missing")
     faces = rows.lists(name)
     uv, used = _corner_uv(element, rows, faces, notes), {name}
     if uv is not None:
@@ -159,7 +159,7 @@ def _with_faces(mesh: FileMesh, element: Element, rows: Rows, where: str, notes:
     kept = None if uv is None else uv[0]
     if len(sizes) and sizes.min() < 3:
         whole = sizes >= 3
-        notes.add("faces with fewer than 3 corners are not used", int((~whole).sum()))
+        notes.add("faces with fewer than 3 corners are left out", int((~whole).sum()))
         inside = np.repeat(whole, sizes)
         corners, sizes = corners[inside], sizes[whole]
         kept = None if kept is None else kept[inside]
@@ -185,7 +185,7 @@ def _corner_uv(
             if (lists.sizes == 2 * faces.sizes).all():
                 with np.errstate(over="ignore", invalid="ignore"):
                     return lists.values.astype(np.float32).reshape(-1, 2), name
-            notes.add("texture coordinates that not all corners of faces have are not used")
+            notes.add("texture coordinates that some corners of faces lack are left out")
     return None
 
 

@@ -101,7 +101,7 @@ def read_header(data: Bytes, where: str) -> Header:
     while not reader.ended:
         end = text.find(b"\n", begin)
         if end < 0:
-            raise InputError(f"{where}: line {reader.line + 1}: wanted end_header, got the end")
+            raise InputError(f"{where}: line {reader.line + 1}: end_header is missing")
         reader.read(text[begin:end].decode("latin-1"))
         begin = end + 1
     return reader.header(begin)

@@ -65,9 +65,7 @@ class Rows:
         except CoreError as error:
             raise InputError(f"{where}: {error}") from None
         if rows < element.count:
-            raise InputError(
-                f"{where}: wanted {element.count} rows, got the end of the file before"
-            )
+            raise InputError(f"{where}: truncated: wanted {element.count} rows")
 
     def numbers(self, names: Sequence[str]) -> Floats:
         """Columns of numbers in single precision, shape (F, K)."""

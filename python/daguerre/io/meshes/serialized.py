@@ -75,7 +75,9 @@ def _version(data: Bytes, begin: int, where: str) -> int:
     head = data[begin : begin + _HEAD]
     form, version = head.view("<u2").tolist() if len(head) == _HEAD else (0, 0)
     if form != _FORMAT:
-        raise InputError(f"{where}: wanted a serialized mesh of Mitsuba (0x041C), got {form:#06x}")
+        raise InputError(
+            f"{where}: not a serialized mesh of Mitsuba: wanted 0x041C, got {form:#06x}"
+        )
     if version not in _VERSIONS:
         raise InputError(f"{where}: wanted version 3 or 4, got {version}")
     return int(version)

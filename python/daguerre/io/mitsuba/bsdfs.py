@@ -80,7 +80,7 @@ class Surfaces:
         try:
             return Conductor.of_metal(material, **made)
         except UsageError:
-            self.notes.add(f"the metal {material[:40]!r} is not known: it is a mirror")
+            self.notes.add(f"the metal {material[:40]!r} is unknown: it is read as a mirror")
             return Conductor(**made)
 
     def _by_index(self, node: Node, made: dict[str, Any]) -> Conductor:

@@ -57,7 +57,7 @@ def _rows(data: bytes, where: str) -> tuple[NDArray[np.float64], list[int]]:
         except ValueError:
             found = []
         if len(found) != 4 or not np.isfinite(found).all() or found[3] < 0:
-            raise InputError(f"{where}: line {line}: wanted x y z radius, got another line")
+            raise InputError(f"{where}: line {line}: wanted four numbers: x y z radius")
         numbers += found
         count += 1
     counts += [count] if count else []

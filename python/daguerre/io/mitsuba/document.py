@@ -73,7 +73,7 @@ class Document:
         self._files: dict[int, Files] = {}
         self.root = _Reader(self, files, str(file), 0, 0).root(read_bytes(file, MAX_BYTES))
         if self.root.kind != "scene":
-            self.root.fail("wanted <scene> at the top")
+            self.root.fail("the root element must be <scene>")
         self._resolve()
         self.parameters.check_used()
 
@@ -95,13 +95,13 @@ class Document:
     def name(self, name: str, node: Node, entry: Entry) -> None:
         """Gives an object an id."""
         if name in self._ids:
-            entry.fail(f"wanted an id that no other object has, got {short(name)} again")
+            entry.fail(f"the id {short(name)} appears twice")
         self._ids[name] = node
 
     def named(self, name: str, entry: Entry) -> Node:
         """Object of an id."""
         if name not in self._ids:
-            entry.fail(f"wanted the id of an object, got {short(name)}")
+            entry.fail(f"no object has the id {short(name)}")
         return self._ids[name]
 
     def _resolve(self) -> None:
@@ -127,15 +127,15 @@ def _check_depth(root: Node) -> None:
             inside.discard(id(node))
             height[id(node)] = 1 + max((height[id(child)] for child in below), default=0)
             if height[id(node)] > MAX_DEPTH:
-                node.fail(f"wanted at most {MAX_DEPTH} objects inside each other, got more")
+                node.fail(f"nested too deeply: the limit is {MAX_DEPTH} objects")
         elif id(node) in inside:
-            node.fail("wanted no object inside itself, got a reference in a circle")
+            node.fail("references form a cycle: the object contains itself")
         elif id(node) not in height:
             inside.add(id(node))
             waiting.append((node, True))
             for child in below:
                 if id(child) in inside:
-                    child.fail("wanted no object inside itself, got a reference in a circle")
+                    child.fail("references form a cycle: the object contains itself")
                 waiting.append((child, False))
 
 
@@ -162,7 +162,7 @@ class _Reader:
         root = parse(data, self._name)
         entry = self._document.entry(self._name, root)
         if root.tag not in OBJECTS:
-            entry.fail("wanted an object of Mitsuba, such as <scene>")
+            entry.fail("not an object of Mitsuba's scene format")
         self._version = _version(root, entry)
         entry.used = True
         return self._object(root, entry, top=True)
@@ -173,12 +173,12 @@ class _Reader:
         kind = OBJECTS.get(element.tag, "texture")  # or a <spectrum> with a type
         plugin = element.get("type") or ("scene" if kind == "scene" else "")
         if not plugin:
-            entry.fail("wanted an attribute 'type', got none")
+            entry.fail("the attribute 'type' is missing")
         node = Node(kind, plugin, entry, element.get("id"))
         self._document.add(node, self._files)
         self._depth += 1
         if self._depth > MAX_DEPTH:
-            entry.fail(f"wanted at most {MAX_DEPTH} objects inside each other, got more")
+            entry.fail(f"nested too deeply: the limit is {MAX_DEPTH} objects")
         for child in element.children:
             self._child(node, child)
         self._depth -= 1
@@ -202,10 +202,10 @@ class _Reader:
             _leaf(element, entry)
             value = VALUES[tag](element, entry)
             if not element.get("name"):
-                entry.fail("wanted an attribute 'name', got none")
+                entry.fail("the attribute 'name' is missing")
             node.properties.append(Property(element.get("name"), tag, value, entry))
         else:
-            entry.fail("wanted an element of Mitsuba's scene format")
+            entry.fail("not an element of Mitsuba's scene format")
 
     def _begun(self, element: Element) -> Entry:
         """Adds an element to the accounts, and puts the values of parameters into it."""
@@ -219,16 +219,16 @@ class _Reader:
     def _default(self, node: Node, element: Element, entry: Entry) -> None:
         name, value = needed(element, entry, "name", "value")
         if not name:
-            entry.fail("wanted a name, got none")
+            entry.fail("the name is empty")
         if len(name) > MAX_NAME:
-            entry.fail(f"wanted a name of at most {MAX_NAME} characters, got more")
+            entry.fail(f"the name is too long: the limit is {MAX_NAME} characters")
         self._document.parameters.default(name, value)
         entry.used = True
 
     def _include(self, node: Node, element: Element, entry: Entry) -> None:
         known(element, entry, "filename", "name")
         if self._includes >= MAX_INCLUDES:
-            entry.fail(f"wanted at most {MAX_INCLUDES} files that include each other, got more")
+            entry.fail(f"too many nested includes: the limit is {MAX_INCLUDES}")
         path = self._files.find(element.get("filename"), entry)
         inside = self._files.within(path.parent)
         reader = _Reader(self._document, inside, str(path), self._includes + 1, self._depth)
@@ -244,7 +244,7 @@ class _Reader:
     def _path(self, node: Node, element: Element, entry: Entry) -> None:
         (value,) = needed(element, entry, "value")
         if node.kind != "scene":
-            entry.fail(f"wanted a path at the top of a scene, got one in {node.entry.label}")
+            entry.fail(f"allowed only at the top of a scene, not in {node.entry.label}")
         self._files.prepend(value, entry)
         entry.used = True
 
@@ -291,7 +291,7 @@ def _version(root: Element, entry: Entry) -> Version:
 def _leaf(element: Element, entry: Entry) -> None:
     """Checks that an element has no elements inside."""
     if element.children:
-        entry.fail(f"wanted no element inside, got {label_of(element.children[0])}")
+        entry.fail(f"no element is allowed inside, got {label_of(element.children[0])}")
 
 
 def _check_once(node: Node) -> None:
@@ -299,5 +299,5 @@ def _check_once(node: Node) -> None:
     seen: set[str] = set()
     for one in node.properties:
         if one.name and one.name in seen:
-            one.entry.fail(f"wanted each property once, got {short(one.name)} again")
+            one.entry.fail(f"the property {short(one.name)} appears twice")
         seen.add(one.name)

@@ -63,7 +63,7 @@ class Emitters:
         place = self._world @ node.transform()
         if node.has("position"):
             if node.has("to_world"):
-                node.fail("wanted either position or to_world, got both")
+                node.fail("set either position or to_world, not both")
             place = self._world.copy()
             place[:3, 3] = self._world[:3, :3] @ node.vector("position", (0, 0, 0))
         pose = np.eye(4)
@@ -114,14 +114,14 @@ class Emitters:
         for intensity, profile in lamps(seen, widest):
             light = PointLight(intensity, name=node.id, profile=profile)
             self._scene.add_light(light, pose)
-        self._notes.add("a projected picture has edges as soft as a step of 1 / 640 of its angle")
+        self._notes.add("edges of a projected picture are softened by 1/640 of its angle")
 
     def _directional(self, node: Node) -> None:
         if node.has("direction"):
             direction = node.vector("direction", (0, 0, 1))
             length = float(np.linalg.norm(direction))
             if not 0 < length < math.inf:
-                node.fail("wanted a direction, got one of length 0")
+                node.fail("the direction must not have zero length")
             pose = np.eye(4)
             pose[:3, :3] = frame(-self._axes() @ direction / length)
         else:
@@ -161,7 +161,7 @@ class Emitters:
 
     def _check_only(self, node: Node) -> None:
         if self._scene.environment is not None:
-            node.fail("wanted one emitter around the scene, got another")
+            node.fail("a second environment: only one is allowed")
 
 
 def _mirror_image(shine: Shine) -> Shine:

@@ -85,7 +85,7 @@ class Files:
         if not any(found.is_relative_to(folder) for folder in self._allowed):
             entry.fail(
                 f"leaves the scene's folder: wanted a file under {str(self._allowed[0])!r} "
-                f"(--allow-dir widens), got {name[:200]!r}"
+                f"(--allow-dir allows more folders), got {name[:200]!r}"
             )
 
 

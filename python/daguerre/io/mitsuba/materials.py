@@ -130,7 +130,7 @@ class Materials:
         """The only material inside of another."""
         found = node.nested_one("bsdf")
         if found is None:
-            node.fail("wanted a material inside, got none")
+            node.fail("needs a material inside")
         return self.look(found)
 
     def _two_sided(self, node: Node) -> Look:
@@ -138,7 +138,7 @@ class Materials:
         if not 1 <= len(found) <= 2:
             node.fail(f"wanted one or two materials inside, got {len(found)}")
         if len(found) == 2:
-            sentence = "a material with another one behind has that of the front on both sides"
+            sentence = "a material with another on its back has its front on both sides"
             leave_out(found[1], self._notes, sentence)
         return replace(self.look(found[0]), two_sided=True)
 
@@ -146,7 +146,7 @@ class Materials:
         look = self._inner(node)
         opacity, slot = self._textures.scalar(node, "opacity", 0.5)
         if look.opacity_texture is not None and slot is not None:
-            self._notes.add("a mask in a mask has the picture of the outer one")
+            self._notes.add("of a mask in a mask only the outer one is used")
         return replace(
             look, opacity=opacity * look.opacity, opacity_texture=slot or look.opacity_texture
         )
@@ -156,7 +156,7 @@ class Materials:
         value = None if texture is None else fit(texture, 3)
         if node.flag("use_shadowing_function", False):
             self._notes.add(
-                "a normal map's shadowing function is left out: its terminator is sharp"
+                "the shadowing function of a normal map is left out: its terminator is sharp"
             )
         return self._with(look, Relief(normals=value))
 
@@ -170,12 +170,12 @@ class Materials:
     def _texture(self, node: Node) -> Any:
         found = node.nested_one("texture")
         if found is None:
-            node.fail("wanted a texture inside, got none")
+            node.fail("needs a texture inside")
         return self._textures.texture_of(found)
 
     def _with(self, look: Look, relief: Relief) -> Look:
         if look.reliefs:
-            self._notes.add("a relief on a relief replaces it")
+            self._notes.add("of a bump or normal map on another only the outer one is used")
         return look.with_relief(relief)
 
     def _blend(self, node: Node) -> Look:

@@ -53,7 +53,7 @@ class Media:
             return None
         placed = node.plugin == "heterogeneous"
         if placed and not abs(np.linalg.det(local)) > 0:
-            node.fail("wanted a mesh whose transform has an inverse around it, got another")
+            node.fail("the transform of the mesh around it has no inverse")
         key = (id(node), local.tobytes() if placed else b"")
         if key not in self._known:
             self._known[key] = self._read(node, local)
@@ -83,7 +83,7 @@ class Media:
             absorbed, scattered = (self._color(node, name, 0.0) for name in ("sigma_a", "sigma_s"))
             return _scaled(absorbed, scale), _scaled(scattered, scale)
         if node.has("material"):
-            node.fail("material: wanted sigma_t and albedo, got the name of a measured material")
+            node.fail("material: measured materials are not supported; set sigma_t and albedo")
         extinction = self._color(node, "sigma_t", 1.0, hue)
         albedo = self._color(node, "albedo", 0.75)
         return (
@@ -105,7 +105,7 @@ class Media:
             return self._textures.color(volume, "value", 1.0)
         if volume.plugin in _GRIDS and name == "sigma_t":
             return hue
-        sentence = f"{name} that changes from place to place is replaced by {default:g}"
+        sentence = f"{name} that varies in space is replaced by {default:g}"
         leave_out(volume, self._notes, sentence)
         return default, default, default
 
@@ -136,7 +136,7 @@ class Media:
         values = read.values.mean(axis=3)
         color = (1.0, 1.0, 1.0)
         if read.values.shape[3] == 3:
-            self._notes.add("a grid of colours in a medium has one hue, that of its mean")
+            self._notes.add("a grid of colours in a medium takes the hue of its mean")
             r, g, b = read.values.mean(axis=(0, 1, 2), dtype=np.float64) / max(values.mean(), 1e-30)
             color = (float(r), float(g), float(b))
         try:
@@ -164,7 +164,7 @@ class Media:
             node.use()
             return ((min(max(node.number("g", 0.8), -MAX_COSINE), MAX_COSINE), 1.0),)
         name = node.plugin[:40]
-        leave_out(node, self._notes, f"a phase function {name!r} is replaced by an even one")
+        leave_out(node, self._notes, f"a phase function {name!r} is replaced by an isotropic one")
         return ((0.0, 1.0),)
 
     def _blended(self, node: Node) -> Lobes:

@@ -143,7 +143,7 @@ class Node:
         found = self.find(name)
         if found is None:
             if default is None:
-                self.fail(f"wanted a property {name!r}, got none")
+                self.fail(f"the property {name!r} is missing")
             return default
         if found.tag != "string":
             found.wrong("a text")
@@ -247,7 +247,7 @@ def unread(root: Node, notes: Notes) -> None:
                 _settle(one)
                 waiting.append(value)
             elif isinstance(value, Node) and not value.entry.noted:
-                leave_out(value, notes, f"{_named(value)} that nothing uses is left out")
+                leave_out(value, notes, f"{_named(value)} is unused and left out")
                 _settle(one)
             elif isinstance(value, Node):
                 _settle(one)

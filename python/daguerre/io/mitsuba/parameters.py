@@ -71,7 +71,7 @@ class Parameters:
             made.append(self._part(sign, after, entry))
             total += len(made[-1])
             if total > MAX_LENGTH:
-                entry.fail(f"wanted at most {MAX_LENGTH} characters, got more")
+                entry.fail(f"too long: the limit is {MAX_LENGTH} characters")
         return "".join(made)
 
     def _part(self, sign: str, after: str, entry: Entry) -> str:
@@ -84,7 +84,7 @@ class Parameters:
                 self._unused.discard(name)
                 return self._values[name] + after[length:]
         name = re.split(r"\W", after, maxsplit=1)[0]
-        entry.fail(f"wanted a value of the parameter ${name[:40]}, got none")
+        entry.fail(f"the parameter ${name[:40]} has no value")
 
     def check_used(self) -> None:
         """Checks that the file has every parameter of the caller.

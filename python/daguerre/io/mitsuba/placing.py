@@ -67,7 +67,7 @@ class Placing:
         """Places all shapes of a group."""
         group = node.nested_one("shape")
         if group is None:
-            node.fail("wanted a reference to a shape group, got none")
+            node.fail("needs a reference to a shape group")
         if group.plugin != "shapegroup":
             node.fail(f"wanted a shape group, got a shape {group.plugin[:40]!r}")
         node.use()
@@ -97,7 +97,7 @@ class Placing:
         mesh, inner = made
         placed = pose @ local @ inner
         if ranks(placed[None, :3, :3])[0] < 3:
-            self._notes.add("a shape that is scaled to nothing is left out")
+            self._notes.add("a shape that is scaled to zero is left out")
             return
         name = name or self._named(node, placed)
         chart = Chart()

@@ -33,7 +33,8 @@ _SAMPLING = (
 )
 #: Range of the coat's GGX width, dull to glossy.
 _DULL, _GLOSSY = 0.1, 0.001
-_ALIKE = "a principled material is drawn by glTF's layers: sheen, coat and metals are but alike"
+_ALIKE = "a principled material is drawn with glTF's layers: sheen, coat and metals look "
+"slightly different"
 
 
 def principled(node: Node, textures: Textures, notes: Notes) -> Look:
@@ -97,7 +98,7 @@ def _made(surface: Surface, textures: Textures, notes: Notes, *, two_sided: bool
 def _specular(node: Node, surface: Surface) -> None:
     """Index of refraction, by itself or by the reflectance 0.08 x ``specular``."""
     if node.has("eta") and node.has("specular"):
-        node.fail("wanted either eta or specular, got both")
+        node.fail("set either eta or specular, not both")
     if node.has("eta"):
         surface.ior = max(node.number("eta", 1.5, above=0), 1.0)
         return

@@ -127,7 +127,7 @@ class _Reader:
         made: dict[str, Settings] = {}
         for i, (_, node) in enumerate(root.objects("sensor")):
             if node.plugin not in PERSPECTIVE:
-                what = f"a sensor {node.plugin[:40]!r} is left out: no lens takes its picture"
+                what = f"a sensor {node.plugin[:40]!r} is left out: no lens has its projection"
                 leave_out(node, self._notes, what)
                 continue
             name = node.id or (f"sensor.{i + 1}" if i else "sensor")
@@ -145,7 +145,7 @@ class _Reader:
         self._scene.add_camera(name, camera, film_size=settings.resolution)
         far = node.number("far_clip", 1e4, above=0) * context.unit_m
         if node.has("far_clip") and farthest(self._scene, camera.transform[:3, 3]) > far:
-            self._notes.add("what lies beyond the far_clip of a sensor is drawn, too")
+            self._notes.add("far_clip of a sensor is ignored")
         medium = node.nested_one("medium")
         fog = None if medium is None else self._media.medium(medium, context.world)
         if fog is not None:

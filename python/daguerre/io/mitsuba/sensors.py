@@ -90,7 +90,7 @@ def field_of_view(node: Node, aspect: float) -> float:
         axis = "diagonal"
     else:
         if node.has("focal_length"):
-            node.fail("wanted either fov or focal_length, got both")
+            node.fail("set either fov or focal_length, not both")
         fov = node.number("fov", 0.0)
         if not 0 < fov < 180:
             node.fail(f"fov: wanted an angle between 0 and 180 degrees, got {fov:g}")
@@ -123,7 +123,7 @@ def _shutter(node: Node) -> dict[str, Any]:
         return {}
     begin, end = node.number("shutter_open", 0.0), node.number("shutter_close", 0.0)
     if end < begin:
-        node.fail(f"wanted a shutter that closes after {begin:g}, got {end:g}")
+        node.fail(f"the shutter must close after it opens at {begin:g}, got {end:g}")
     fps = 24.0
     return {"shutter_time": end - begin, "shutter_offset": begin * fps, "fps": fps}
 
@@ -131,7 +131,7 @@ def _shutter(node: Node) -> dict[str, Any]:
 def _lens(node: Node, metres: float) -> dict[str, Any]:
     """Aperture and focus of a thin lens, which is at its far clip unless it says otherwise."""
     if not node.has("aperture_radius"):
-        node.fail("wanted a property 'aperture_radius', got none")
+        node.fail("the property 'aperture_radius' is missing")
     radius = node.number("aperture_radius", 0.0, above=0)
     focus = node.number("focus_distance", node.number("far_clip", 1e4, above=0), above=0)
     return {"aperture_diameter": 2000 * radius * metres, "focus_distance": focus * metres}

@@ -115,7 +115,7 @@ def _filter(node: Node, notes: Notes) -> str:
         return f"{found}:{node.number('radius', usual, above=0):g}"
     node.skip("B", "C", "b", "c", "lobes")
     if node.plugin != found:
-        notes.add(f"a filter {node.plugin!r} counts as {found!r}")
+        notes.add(f"a filter {node.plugin!r} is read as {found!r}")
     return found
 
 
@@ -142,5 +142,5 @@ def depth_of(scene: Node, notes: Notes) -> int | None:
         return None
     depth = integrator.whole("max_depth", -1, -1, 1 << 30)
     if depth in (0, 1):
-        notes.add("lights alone, without the surfaces that they light, cannot be drawn")
+        notes.add("max_depth of 0 or 1 (emitters alone) is read as 2")
     return None if depth < 0 else max(depth - 1, 1)

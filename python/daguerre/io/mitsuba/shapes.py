@@ -81,7 +81,7 @@ def _cylinder(node: Node) -> Solid:
     radius = node.number("radius", 1.0, above=0)
     length = float(np.linalg.norm(end - begin))
     if not length > 0:
-        node.fail("wanted two points apart, got the same twice")
+        node.fail("the two points must differ")
     inner = np.eye(4)
     inner[:3, :3] = frame((end - begin) / length) * (radius, radius, length)
     inner[:3, 3] = begin

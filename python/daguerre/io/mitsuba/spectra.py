@@ -110,7 +110,7 @@ class Spectra:
             return r, g, b
         if node.plugin == "blackbody":
             if not node.has("temperature"):
-                node.fail("wanted a property 'temperature', got none")
+                node.fail("the property 'temperature' is missing")
             node.skip("wavelength_min", "wavelength_max", "lambda_min", "lambda_max")
             temperature = node.number("temperature", 0.0, above=0)
             return glowing(temperature, node.number("scale", 1.0), node.entry)
@@ -119,7 +119,7 @@ class Spectra:
     def _color(self, node: Node) -> Color:
         found = node.find("color") or node.find("value")
         if found is None:
-            node.fail("wanted a property 'value', got none")
+            node.fail("the property 'value' is missing")
         if found.tag not in ("rgb", "srgb", "float", "integer"):
             found.wrong("a colour")
         made = self._plain(found)
@@ -197,7 +197,7 @@ def _lines(data: bytes, entry: Entry) -> list[str]:
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError:
-        entry.fail("wanted a text of samples, got other bytes")
+        entry.fail("wanted a text file of samples")
     return [line.split("#")[0] for line in text.splitlines()]
 
 

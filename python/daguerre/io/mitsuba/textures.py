@@ -141,7 +141,7 @@ class Textures:
         values = np.asarray(color.values if isinstance(color, Spectrum) else color)
         if values.max() <= 1:
             return color
-        self._notes.add(f"{node.kind} {node.plugin!r}: a share of light above 1 counts as 1")
+        self._notes.add(f"{node.kind} {node.plugin!r}: values above 1 are read as 1")
         return _capped(color)
 
     def painted(self, node: Node, name: str) -> Painted | None:
@@ -240,7 +240,7 @@ class Textures:
         """Texture times a colour (Mitsuba 0.6)."""
         nested = node.nested_one("texture")
         if nested is None:
-            node.fail("wanted a texture inside, got none")
+            node.fail("needs a texture inside")
         value = self.texture_of(nested)
         factors = reflected_rgb(self.color(node, "scale", 1.0))
         if value is None:

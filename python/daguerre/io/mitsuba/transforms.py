@@ -34,7 +34,7 @@ def step(tag: str, attributes: Attributes, entry: Entry) -> Matrix:
         entry.fail(f"wanted one of {', '.join(STEPS)} in a transform, got <{tag[:40]}>")
     made = make(attributes, entry)
     if not np.isfinite(made).all():
-        entry.fail("wanted a transform of finite numbers, got others")
+        entry.fail("numbers of a transform must be finite")
     return made
 
 
@@ -42,7 +42,7 @@ def axes(attributes: Attributes, entry: Entry, default: float) -> NDArray[np.flo
     """Three numbers by ``x``, ``y`` and ``z``, or by ``value``, of one or three numbers."""
     if "value" in attributes:
         if {"x", "y", "z"} & attributes.keys():
-            entry.fail("wanted either value or x, y and z, got both")
+            entry.fail("set either value or x, y and z, not both")
         found = numbers(attributes["value"], entry, 1, 3)
         return np.array(found * 3 if len(found) == 1 else found)
     given = [numbers(attributes.get(axis, str(default)), entry, 1)[0] for axis in "xyz"]
@@ -74,7 +74,7 @@ def _rotate(attributes: Attributes, entry: Entry) -> Matrix:
     axis = axes(attributes, entry, 0.0)
     length = float(np.linalg.norm(axis))
     if not 0 < length < math.inf:
-        entry.fail("wanted an axis, got one of length 0")
+        entry.fail("the axis must not have zero length")
     x, y, z = axis / length
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     turn = math.radians(math.remainder(angle, 360))
@@ -91,10 +91,10 @@ def _look_at(attributes: Attributes, entry: Entry) -> Matrix:
         for name in ("origin", "target")
     )
     up = np.array(numbers(attributes.get("up", "0 0 0"), entry, 3))
-    forward = _unit(target - origin, entry, "a target apart from the origin")
+    forward = _unit(target - origin, entry, "the target must differ from the origin")
     if not up.any():
         up = frame(forward)[:, 0]
-    left = _unit(np.cross(up, forward), entry, "an up that is not along the view")
+    left = _unit(np.cross(up, forward), entry, "up must not be parallel to the view direction")
     made = np.eye(4)
     made[:3, 0], made[:3, 1], made[:3, 2] = left, np.cross(forward, left), forward
     made[:3, 3] = origin
@@ -115,10 +115,10 @@ def frame(axis: NDArray[np.float64]) -> Matrix:
     return np.stack([first, second, axis], axis=1)
 
 
-def _unit(vector: NDArray[np.float64], entry: Entry, wanted: str) -> NDArray[np.float64]:
+def _unit(vector: NDArray[np.float64], entry: Entry, rule: str) -> NDArray[np.float64]:
     length = float(np.linalg.norm(vector))
     if not 1e-12 < length < math.inf:
-        entry.fail(f"wanted {wanted}, got another")
+        entry.fail(rule)
     return vector / length
 
 
@@ -134,7 +134,7 @@ def _matrix(attributes: Attributes, entry: Entry) -> Matrix:
 
 def _needed(attributes: Attributes, entry: Entry, name: str) -> str:
     if name not in attributes:
-        entry.fail(f"wanted an attribute {name!r}, got none")
+        entry.fail(f"the attribute {name!r} is missing")
     return attributes[name]
 
 
@@ -165,7 +165,7 @@ def product(steps: Sequence[tuple[str, Attributes]], entries: Sequence[Entry]) -
         with np.errstate(all="ignore"):
             made = step(tag, attributes, entry) @ made
         if not np.isfinite(made).all():
-            entry.fail("wanted a transform of finite numbers, got others")
+            entry.fail("numbers of a transform must be finite")
     return made
 
 
@@ -178,7 +178,7 @@ def rigid(matrix: Matrix, node: Node, notes: Notes) -> Matrix:
     made = orthogonal(matrix, node)
     if mirrors(made):
         made[:3, 0] *= -1
-        notes.add(f"a {node.kind} that is mirrored is drawn as it was before")
+        notes.add(f"a {node.kind} that is mirrored is drawn without the mirroring")
     return made
 
 
@@ -196,10 +196,10 @@ def orthogonal(matrix: Matrix, node: Node) -> Matrix:
     axes_, place = matrix[:3, :3], matrix[:3, 3]
     lengths = np.linalg.norm(axes_, axis=0)
     if not (lengths > 1e-12).all():
-        node.fail("wanted a transform that turns and moves, got one that flattens")
+        node.fail("the transform must only rotate and translate, but it flattens")
     turned = axes_ / lengths
     if np.abs(turned.T @ turned - np.eye(3)).max() > 1e-3:
-        node.fail("wanted a transform that turns and moves, got one that shears")
+        node.fail("the transform must only rotate and translate, but it shears")
     u, _, v = np.linalg.svd(turned)  # exactly orthogonal
     made = np.eye(4)
     made[:3, :3], made[:3, 3] = u @ v, place

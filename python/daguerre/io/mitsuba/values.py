@@ -48,7 +48,7 @@ def needed(element: Element, entry: Entry, *names: str) -> list[str]:
     known(element, entry, *names)
     for name in names:
         if name not in element.attributes:
-            entry.fail(f"wanted an attribute {name!r}, got none")
+            entry.fail(f"the attribute {name!r} is missing")
     return [element.get(name) for name in names]
 
 

@@ -141,8 +141,8 @@ class Bsdfs:
         self, parent: Element, surface: Plastic, alpha: Picture, name: str
     ) -> None:
         self._notes.add(
-            "texture of roughness on a coat is written with Mitsuba's principled, whose diffuse "
-            "part is another"
+            "texture of roughness on a coat is written with Mitsuba's principled, which has a "
+            "different diffuse part"
         )
         bsdf = self._principled(parent, alpha, name)
         passed = scaled(surface.color, 1 - head_on(surface.ior))
@@ -177,7 +177,7 @@ class Bsdfs:
     def _add_round(self, parent: Element, surface: Plastic) -> None:
         """Adds the roughness of a coat, which is round in Mitsuba."""
         if surface.rough.v is not None:
-            self._notes.add("anisotropy of a coat is left out: its roughness is round")
+            self._notes.add("anisotropy of a coat is left out: its roughness is isotropic")
         self._add_roughness(parent, replace(surface.rough, v=None))
 
     def _plastic(self, parent: Element, kind: str, surface: Plastic, name: str) -> Element:
@@ -204,7 +204,7 @@ class Bsdfs:
         if not surface.rough.smooth:
             self._notes.add("roughness of a thin sheet of glass is left out")
         if surface.pane == "single":
-            self._notes.add("thin sheet of glass reflects as ours at normal incidence alone")
+            self._notes.add("thin sheet of glass reflects as here at normal incidence only")
             ior = sheet_ior(ior)
         bsdf = add(parent, "bsdf", type="thindielectric", id=name)
         self._add_ior(bsdf, ior)

@@ -62,7 +62,9 @@ def add_sensor(root: Element, outgoing: Outgoing) -> Element:
     else:
         _add_shift(sensor, view)
     if view.lens is not None:
-        outgoing.notes.add("lens with a prescription is written as a thin lens of its framing")
+        outgoing.notes.add(
+            "lens with a prescription is written as a thin lens with the same framing"
+        )
     _add_film(sensor, outgoing, window)
     return sensor
 

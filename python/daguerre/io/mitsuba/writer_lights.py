@@ -79,7 +79,7 @@ def _add_point_lamp(
             beam = _Beam(light.intensity, max(outer, _NARROWEST), transform)
             beam.add(root, light.profile.factors(beam.directions().reshape(-1, 3)), folder)
             return
-        notes.add("light profile of a point lamp is left out: it shines evenly")
+        notes.add("light profile of a point light is left out: it emits equally in all directions")
     emitter = add(root, "emitter", type="point")
     add_point(emitter, "point", "position", transform[:3, 3])
     add_rgb(emitter, "intensity", light.intensity)

@@ -66,6 +66,6 @@ class Shapes:
 
     def _add_emission(self, shape: Element, emission: Emission) -> None:
         if emission.both_sides:
-            self._meshes.notes.add("mesh that shines to both sides shines from its front alone")
+            self._meshes.notes.add("mesh that emits on both sides emits on its front only")
         emitter = add(shape, "emitter", type="area")
         self._bsdfs.values.color(emitter, "radiance", emission.color)

@@ -94,7 +94,7 @@ class Values:
             picture = picture.without_mirrors()
         wrap = picture.wrap[0]
         if picture.wrap[1] != wrap:
-            self._notes.add(f"texture with two ways to go on beyond its edges has {wrap} for both")
+            self._notes.add(f"texture with two wrap modes has {wrap} for both")
         texture = add(parent, "texture", type="bitmap", name=name)
         add_value(
             texture,

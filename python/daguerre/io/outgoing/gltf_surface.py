@@ -27,7 +27,7 @@ _LEFT_OUT = {
     "clearcoat": "clear coat of a glTF material is left out",
     "sheen_color": "sheen of a glTF material is left out",
     "iridescence": "iridescence of a glTF material is left out",
-    "anisotropy": "anisotropy of a glTF material is left out: its roughness is round",
+    "anisotropy": "anisotropy of a glTF material is left out: its roughness is isotropic",
     "diffuse_transmission": "diffuse transmission of a glTF material is left out",
     "dispersion": "dispersion of a glTF material is left out: it has one index of refraction",
 }
@@ -109,7 +109,7 @@ def _of_f0(f0: Color, baker: Baker) -> _Interface:
     if top <= 0:
         return _Interface(1.0, BLACK)
     if top > MOST_F0:
-        baker.notes.add(f"reflectance above {MOST_F0} of a glTF dielectric is written as that")
+        baker.notes.add(f"reflectance above {MOST_F0} of a glTF dielectric is limited to that")
     if min(f0) < top:
         baker.notes.add("coloured specular of a glTF material is coloured at grazing angles, too")
     root = math.sqrt(min(top, MOST_F0))

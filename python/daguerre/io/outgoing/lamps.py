@@ -47,14 +47,14 @@ def reach_of(profile: LightProfile) -> float:
 def plain(light: Light, notes: Notes) -> Light:
     """Returns a light without what neither pbrt nor Mitsuba has; balls become sphere lights."""
     if isinstance(light, PointLight | SpotLight) and not math.isinf(light.range):
-        notes.add("range of a lamp is left out: its light falls off by distance alone")
+        notes.add("range of a light is left out: it falls off with distance only")
         light = replace(light, range=math.inf)
     if isinstance(light, PointLight) and light.radius > 0:
         area = math.pi * light.radius**2
         red, green, blue = (c / area for c in light.intensity)
         light = SphereLight((red, green, blue), light.radius, light.name, light.profile)
     if isinstance(light, SphereLight) and light.profile is not None:
-        notes.add("light profile of a ball is left out: it shines evenly")
+        notes.add("light profile of a sphere light is left out: it emits equally in all directions")
         light = replace(light, profile=None)
     if isinstance(light, DirectionalLight) and light.angle > 0:
         notes.add("angle of a directional light is left out: its shadows are sharp")

@@ -58,7 +58,10 @@ class Looks:
                 self._notes.add("second texture of opacity is written as its mean")
             look = replace(look, opacity=_product(look.opacity, own))
         if material.profile is not None:
-            self._notes.add("light profile of an emissive material is left out: it shines evenly")
+            self._notes.add(
+                "light profile of an emissive material is left out: it shines in "
+                "all directions alike"
+            )
         inside = material.interior or look.inside
         look = replace(look, inside=inside, outside=material.exterior, two_sided=material.two_sided)
         return self._with_emission(look, material)
@@ -118,7 +121,7 @@ class Looks:
         if kind.dispersion > 0:
             self._notes.add("dispersion of a dielectric is left out: its index is at 587.6 nm")
         if kind.energy_compensation and kind.alpha > 0:
-            self._notes.add("energy compensation of rough glass is left out: it is darker")
+            self._notes.add("energy compensation of rough glass is left out: the glass is darker")
         pane = "double" if kind.thin else ""
         return Glass(kind.ior, self._rough(kind), kind.tint, kind.reflection_tint, pane)
 
@@ -145,7 +148,9 @@ class Looks:
         if not own.present:
             return replace(look, emission=Emission(more, material.two_sided_emission))
         if own.both_sides != material.two_sided_emission:
-            self._notes.add("two emissions of a material, one to both sides, are written to both")
+            self._notes.add(
+                "of two emissions of a material, one on both sides, both are written on both sides"
+            )
         both = material.two_sided_emission or own.both_sides
         return replace(look, emission=Emission(self._sum(own.color, more), both))
 

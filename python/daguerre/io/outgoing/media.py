@@ -32,7 +32,7 @@ def plain_medium(medium: Medium | None, notes: Notes) -> PlainMedium | None:
     if medium is None:
         return None
     if medium.density is not None:
-        notes.add("density grid of a medium is left out: it is even, with density 1")
+        notes.add("density grid of a medium is left out: the medium is homogeneous, with density 1")
     values = []
     for value in (medium.absorption, medium.scattering, medium.emission):
         if isinstance(value, Spectrum):

@@ -35,7 +35,7 @@ def placements(scene: Scene, notes: Notes) -> Iterator[Placed]:
         if not instance.shown:
             continue
         if instance.catcher is not None:
-            notes.add("catcher is left out: it stands for a photograph")
+            notes.add("catcher is left out")
         elif isinstance(scene.meshes[instance.mesh], Curves):
             notes.add("curves are left out")
         elif not len(scene.meshes[instance.mesh].indices):

@@ -15,8 +15,8 @@ def uv_set_of(slots: Sequence[TextureSlot], notes: Notes) -> int:
     others = sum(slot.uv_set != slots[0].uv_set for slot in slots)
     if others:
         notes.add(
-            "texture on another set of coordinates than the first one of its material is written "
-            "on that one's",
+            "texture on a second set of texture coordinates in its material is written on the "
+            "first set",
             others,
         )
     return slots[0].uv_set

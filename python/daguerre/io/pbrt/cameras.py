@@ -95,7 +95,7 @@ def read_camera(
         made.place.fail(f"kind: wanted {', '.join(_KINDS)}, got {made.kind[:40]!r}")
     pose, size = _pose(made, axes, ledger)
     if pose is None:
-        ledger.note(made.place, "a camera that is scaled to nothing is left out")
+        ledger.note(made.place, "a camera that is scaled to zero is left out")
         return None
     eye = Eye(made, film, size, unit_of(axes), described.version, files, ledger)
     fields = {"transform": pose, **_shutter(eye), **film.exposure}
@@ -149,7 +149,7 @@ def _shutter(eye: Eye) -> dict[str, Any]:
     if eye.version == 3:
         fields["exposure_time"] = 1.0
     elif end == begin:
-        eye.made.place.fail("shutteropen, shutterclose: wanted two moments, got the same twice")
+        eye.made.place.fail("shutteropen, shutterclose: the two times must differ")
     return fields
 
 
@@ -191,7 +191,7 @@ def _window(eye: Eye) -> tuple[float, float, float, float]:
     if given is not None:
         left, right, low, top = given.tolist()
         if not (left < right and low < top):
-            eye.made.place.fail("screenwindow: wanted left < right and bottom < top, got others")
+            eye.made.place.fail("screenwindow: left must be below right, and bottom below top")
         window = (left, right, low, top)
     shape = (window[1] - window[0]) / (window[3] - window[2])
     if not math.isclose(shape, eye.film.aspect, rel_tol=5e-3):

@@ -42,7 +42,7 @@ class Names(Generic[Key]):
         if key in self.now:
             self._left -= 1
             if self._left < 0:
-                made.place.fail(f"wanted at most {MAX_REDEFINED} {self.what} defined anew")
+                made.place.fail(f"too many redefined {self.what}: the limit is {MAX_REDEFINED}")
             self.now = dict(self.now)
         self.now[key] = made
 

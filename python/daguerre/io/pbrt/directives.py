@@ -109,7 +109,7 @@ def _more_strings(lexer: Lexer, place: Place, name: str) -> tuple[str, ...]:
     if name in ("ActiveTransform", "Option"):
         token = lexer.token()
         if token is None:
-            place.fail("wanted a word after it, got the end of the file")
+            place.fail("the file ends where a word must follow")
         return (text_of(token) if token[:1] == b'"' else token.decode("utf-8", "replace"),)
     return ()
 
@@ -120,5 +120,5 @@ def _numbers(lexer: Lexer, place: Place, count: int) -> NDArray[np.float64]:
         lexer.token()
     found = np.array([lexer.number(place) for _ in range(count)], np.float64)
     if bracketed and lexer.token() != b"]":
-        place.at(lexer.offset).fail(f"wanted ] after {count} numbers, got another token")
+        place.at(lexer.offset).fail(f"wanted ] after {count} numbers")
     return found

@@ -108,7 +108,9 @@ class Emissions:
         rounded = np.round(np.log(np.maximum(areas, 1e-30)) / 1e-3)
         sizes, groups = np.unique(rounded, return_inverse=True)
         if len(sizes) > _MOST_GROUPS:
-            self._ledger.notes.add("a mesh of many sizes of triangles spreads its power evenly")
+            self._ledger.notes.add(
+                "a mesh with triangles of many sizes spreads its power evenly over them"
+            )
             return [(_with(emission, per_area * count / total), None)]
         found: list[tuple[Emission, NDArray[np.bool_] | None]] = []
         for group in range(len(sizes)):

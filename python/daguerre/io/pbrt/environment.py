@@ -96,7 +96,7 @@ class Skies:
             return None
         self._left -= 1
         if self._left < 0:
-            made.place.fail(f"wanted at most {_MOST_PICTURES} skies of pictures, got more")
+            made.place.fail(f"too many environment pictures: the limit is {_MOST_PICTURES}")
         self._ledger.use(made.place)
         turn = _orthogonal(self._axes @ made.state.transform.start)
         return self._pictured(made, path, color, illuminance, turn, bool(old))

@@ -75,12 +75,12 @@ class Files:
         """
         path = self._folder.resolve(place.item("name", name))
         if path in self._open:
-            place.fail(f"includes in a circle: wanted another file, got {path.name} within itself")
+            place.fail(f"includes form a cycle: {path.name} includes itself")
         if len(self._open) >= MAX_DEPTH:
-            place.fail(f"wanted at most {MAX_DEPTH} files within files, got more")
+            place.fail(f"too many nested files: the limit is {MAX_DEPTH}")
         self._files -= 1
         if self._files < 0:
-            place.fail(f"wanted at most {MAX_FILES} files, got more")
+            place.fail(f"too many files: the limit is {MAX_FILES}")
         self._open.append(path)
         self._included(place)
         with asked_by(place):

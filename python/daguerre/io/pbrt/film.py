@@ -74,7 +74,7 @@ def film_of(made: Made | None, version: int, ledger: Ledger) -> FilmSize:
     else:
         exposure = _exposure(made, ledger)
     if made.kind not in ("rgb", "image", "gbuffer", "spectral"):
-        ledger.notes.add(f"a Film of kind {made.kind[:40]!r} counts as 'rgb'")
+        ledger.notes.add(f"a Film of kind {made.kind[:40]!r} is read as 'rgb'")
     ledger.use(made.place)
     ledger.tell_unread(parameters, made.place, made.kind)
     return _sized(resolution, diagonal, exposure)

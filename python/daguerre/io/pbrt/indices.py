@@ -47,13 +47,13 @@ class Indices:
         if found is None:
             return default
         if found.type == "texture":
-            self._notes.add(f"a texture of {name!r} counts as {default:g}")
+            self._notes.add(f"a texture of {name!r} is read as {default:g}")
             return default
         if found.type in ("float", "integer"):
             return made.parameters.number(name, default, 0.1, 10.0) or default
         if isinstance(found.values, np.ndarray):
             if found.type == "rgb":
-                self._notes.add(f"{name!r} of a glass counts by its green")
+                self._notes.add(f"{name!r} of a glass is read from its green channel")
                 return float(min(max(self._spectra.coefficient(found)[1], 1.0), 10.0))
             return _spectrum(found, self._spectra.samples(found), default)
         title = str(found.values[0]).removeprefix("glass-")
@@ -80,7 +80,7 @@ class Indices:
         if found is None:
             return default
         if found.type == "texture":
-            self._notes.add(f"a texture of {name!r} of a metal counts as that of copper")
+            self._notes.add(f"a texture of {name!r} of a metal is replaced by copper")
             return default
         if found.type == "float":
             value = made.parameters.number(name, 1.0, 0.0)
@@ -98,7 +98,7 @@ class Indices:
         try:
             return metals.load(title)[part]
         except UsageError:
-            self._notes.add(f"the metal {title[:40]!r} is not known and counts as copper")
+            self._notes.add(f"the metal {title[:40]!r} is unknown and read as copper")
             return default
 
 
@@ -106,13 +106,13 @@ def _spectrum(found: Parameter, samples: Samples | None, default: float) -> floa
     if samples is None:
         return default
     if not (samples.values >= 0.1).all():
-        found.fail("wanted indices of at least 0.1, got others")
+        found.fail("indices must be at least 0.1")
     return _sampled(found, samples)
 
 
 def _sampled(found: Parameter, samples: Samples) -> Spectrum:
     if (samples.values < 0).any() or not samples.nm[0] > 0:
-        found.fail("wanted wavelengths above 0 and values of at least 0, got others")
+        found.fail("wavelengths must be above 0 and values at least 0")
     nm, values = samples.nm, samples.values
     if len(nm) > 4096:
         at = np.linspace(360.0, 830.0, 941)

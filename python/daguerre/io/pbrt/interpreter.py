@@ -41,7 +41,7 @@ _ENDS = {"AttributeBegin": "AttributeEnd", "ObjectBegin": "ObjectEnd"}
 _ENDS["TransformBegin"] = "TransformEnd"
 #: Directives that choose how pbrt computes; Daguerre's own settings take their place.
 _COMPUTING = {
-    "Accelerator": "pbrt's accelerator is left out: there is only one here",
+    "Accelerator": "pbrt's accelerator is ignored",
     "Integrator": "pbrt's integrator is left out: Daguerre follows paths",
     "SurfaceIntegrator": "pbrt's integrator is left out: Daguerre follows paths",
     "VolumeIntegrator": "pbrt's integrator is left out: Daguerre follows paths",
@@ -81,7 +81,7 @@ class Interpreter:
         self._run(lexer)
         self._check_blocks()
         if not self._in_world:
-            lexer.place().fail("wanted WorldBegin, got the end of the file")
+            lexer.place().fail("the file ends without WorldBegin")
         return self.made
 
     def _check_blocks(self) -> None:
@@ -96,9 +96,9 @@ class Interpreter:
             if name in OF_V3:
                 self.made.version = 3
             if name in _OPTIONS and self._in_world:
-                directive.place.fail("wanted it before WorldBegin, got it after")
+                directive.place.fail("allowed only before WorldBegin")
             if name in _WORLD and not self._in_world:
-                directive.place.fail("wanted it after WorldBegin, got it before")
+                directive.place.fail("allowed only after WorldBegin")
             if name in _COMPUTING:
                 self._ledger.note(directive.place, _COMPUTING[name])
             else:
@@ -121,13 +121,13 @@ class Interpreter:
 
     def _push(self, directive: Directive) -> None:
         if len(self._blocks) >= MAX_DEPTH:
-            directive.place.fail(f"wanted at most {MAX_DEPTH} blocks within blocks, got more")
+            directive.place.fail(f"too many nested blocks: the limit is {MAX_DEPTH}")
         self._blocks.append((directive.name, directive.place, self._state))
         self._ledger.use(directive.place)
 
     def _pop(self, directive: Directive, begin: str) -> State:
         if not self._blocks:
-            directive.place.fail(f"wanted {begin} before it, got none")
+            directive.place.fail(f"no matching {begin}")
         name, place, state = self._blocks[-1]
         if name != begin:
             directive.place.fail(f"wanted {_ENDS[name]}, as {place} is open, got {directive.name}")
@@ -137,7 +137,7 @@ class Interpreter:
 
     def _on_WorldBegin(self, directive: Directive) -> None:
         if self._in_world:
-            directive.place.fail("wanted one, got a second one")
+            directive.place.fail("appears twice")
         self._in_world = True
         self._set(directive.place, transform=Moving(), active=(True, True))
         self._systems["world"] = self._state.transform
@@ -178,7 +178,7 @@ class Interpreter:
         made = self._now().times_matrix(matrix, *self._state.active)
         for one in (made.start, made.end):
             if not (abs(one) <= MAX_ENTRY).all():
-                directive.place.fail(f"wanted a matrix of numbers up to {MAX_ENTRY:g}, got larger")
+                directive.place.fail(f"numbers of the matrix must be at most {MAX_ENTRY:g}")
         self._set(directive.place, transform=made)
 
     def _replace(self, directive: Directive, matrix: Matrix) -> None:
@@ -302,9 +302,9 @@ class Interpreter:
     def _on_ObjectBegin(self, directive: Directive) -> None:
         name = directive.strings[0]
         if self._object is not None:
-            directive.place.fail("wanted no object within an object, got one")
+            directive.place.fail("objects cannot be nested")
         if name in self.made.objects:
-            directive.place.fail(f"wanted another name, got {name[:60]!r} again")
+            directive.place.fail(f"the name {name[:60]!r} appears twice")
         self._push(directive)
         self._object = self.made.objects[name] = []
 
@@ -314,7 +314,7 @@ class Interpreter:
 
     def _on_ObjectInstance(self, directive: Directive) -> None:
         if self._object is not None:
-            directive.place.fail("wanted no instance within an object, got one")
+            directive.place.fail("an object cannot contain instances")
         name = directive.strings[0]
         self.made.instances.append(self._made(directive, "", name))
 

@@ -54,7 +54,7 @@ class Ledger:
     def close(self) -> None:
         """Notes the directives that still wait: definitions that nothing names."""
         for place in list(self._waiting.values()):
-            self.note(place, f"{place.directive}: one that nothing in the scene uses is left out")
+            self.note(place, f"{place.directive}: one that the scene does not use is left out")
 
     @property
     def used(self) -> int:

@@ -77,7 +77,7 @@ class Lexer:
             return None
         found = _TOKEN.match(self._data, start)
         if found is None:
-            self.place().fail('unterminated string: wanted a closing " on the same line, got none')
+            self.place().fail('unterminated string: no closing " on the same line')
         self._next = found.end()
         return found.group()
 
@@ -133,7 +133,7 @@ class Lexer:
         while True:
             token = self.token()
             if token is None:
-                place.at(opened).fail("unterminated list: wanted a closing ], got the end of file")
+                place.at(opened).fail("unterminated list: no closing ]")
             if token == b"]":
                 return tokens
             tokens.append((self.offset, token))

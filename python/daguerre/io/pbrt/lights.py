@@ -64,7 +64,7 @@ class Lights:
         """Counts a light with a picture, and stops at too many."""
         self._left -= 1
         if self._left < 0:
-            made.place.fail(f"wanted at most {_MOST_PICTURES} lights of pictures, got more")
+            made.place.fail(f"too many lights with pictures: the limit is {_MOST_PICTURES}")
 
     def read(self, made: Made) -> list[Placed]:
         """Reads a light; none, and a note: its kind is not supported.
@@ -78,7 +78,7 @@ class Lights:
             self.ledger.note(made.place, sentence)
             return []
         if made.state.transform.moves:
-            self.ledger.notes.add("a light that moves stays where it is at first, as in pbrt")
+            self.ledger.notes.add("a moving light stays at its first place, as in pbrt")
         found = reader(self, made)
         self.ledger.use(made.place)
         self.ledger.tell_unread(made.parameters, made.place, made.kind)
@@ -255,7 +255,7 @@ def _picture(lights: Lights, made: Made, name: str) -> Array:
     lights.count(made)
     picture = lights.images.picture(str(made.place), name) if name else None
     if picture is None:
-        lights.ledger.notes.add("a light without its picture shines evenly")
+        lights.ledger.notes.add("a light without its picture emits equally in all directions")
         return np.ones((1, 1, 3))
     red, green, blue, _ = picture.planes(srgb=picture.pixels.dtype == np.uint8)
     values = np.stack([plane.linear() for plane in (red, green, blue)], axis=2)
@@ -277,7 +277,7 @@ def _aimed(made: Made, world: Array, origin: Array, ahead: Array) -> Array:
     way = world[:3, :3] @ ahead
     length = float(np.linalg.norm(way))
     if not length > 0:
-        made.place.fail("from, to: wanted two points, got the same twice")
+        made.place.fail("from, to: the two points must differ")
     z = -way / length
     other = np.eye(3)[int(np.argmin(np.abs(z)))]
     x = np.cross(other, z)

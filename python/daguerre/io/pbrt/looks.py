@@ -106,7 +106,7 @@ class Looks:
     ) -> Material:
         opacity = min(max(mask.number, 0.0), 1.0) * look.opacity
         if mask.slot is not None and look.opacity_slot is not None:
-            self._ledger.notes.add("of two masks of one surface, that of its material is left out")
+            self._ledger.notes.add("of two masks of a surface the one of its material is left out")
         return Material(
             kind,
             opacity=opacity,
@@ -126,9 +126,9 @@ class Looks:
     def _look(self, made: Made) -> Look:
         if made not in self._looks:
             if made in self._open:
-                made.place.fail("mixes in a circle: wanted other materials, got itself")
+                made.place.fail("mixes form a cycle: the material contains itself")
             if len(self._open) >= _DEEPEST:
-                made.place.fail(f"wanted at most {_DEEPEST} mixtures within mixtures, got more")
+                made.place.fail(f"too many nested mixtures: the limit is {_DEEPEST}")
             self._open.append(made)
             self._looks[made] = self._read(made)
             self._open.pop()
@@ -138,7 +138,7 @@ class Looks:
         is_named = made.place.directive == "MakeNamedMaterial"
         kind = made.parameters.text("type") if is_named else made.kind
         if is_named and not kind:
-            made.place.fail("type: wanted a kind of material, got none")
+            made.place.fail("type: missing, wanted a kind of material")
         reader = self._readers.get(kind)
         if reader is None:
             known = ", ".join(name for name in OF_V4 if name)

@@ -87,11 +87,11 @@ class Media:
     def _read(self, name: str) -> Medium | None:
         made = self._made.get(name)
         if made is None:
-            self._ledger.notes.add(f"the medium {name[:40]!r} is not defined and counts as none")
+            self._ledger.notes.add(f"the medium {name[:40]!r} is not defined and left out")
             return None
         kind = made.parameters.text("type")
         if not kind:
-            made.place.fail("type: wanted a kind of medium, got none")
+            made.place.fail("type: missing, wanted a kind of medium")
         if kind not in _KINDS:
             self._ledger.note(made.place, f"a medium of kind {kind[:40]!r} is left out")
             return None
@@ -111,7 +111,7 @@ class Media:
     def _coefficients(self, made: Made, usual: tuple[Color, Color]) -> tuple[Color, Color]:
         preset = made.parameters.text("preset")
         if preset and preset not in MEASURED:
-            self._ledger.notes.add(f"the liquid {preset[:40]!r} is not known")
+            self._ledger.notes.add(f"the liquid {preset[:40]!r} is unknown")
         absorbed, scattered = usual
         if preset in MEASURED:
             scattered, absorbed = MEASURED[preset]
@@ -146,7 +146,7 @@ class Media:
             made.place.fail(f"nx, ny, nz: wanted at most {_MOST_CELLS} cells, got {count}")
         values = parameters.numbers("density", count)
         if values is None:
-            made.place.fail("density: wanted numbers, got none")
+            made.place.fail("density: missing")
         if (values < 0).any():
             made.place.fail(f"density: wanted at least 0, got {values.min():g}")
         if parameters.find("temperature") is not None:
@@ -163,7 +163,7 @@ class Media:
         parameters = made.parameters
         name = parameters.text("filename")
         if not name:
-            made.place.fail("filename: wanted a .nvdb file, got none")
+            made.place.fail("filename: missing, wanted a .nvdb file")
         path = self._files.find(name, made.place, "filename")
         if path is None:
             return None

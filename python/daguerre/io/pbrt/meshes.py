@@ -139,7 +139,7 @@ class Meshes:
             return
         self._left -= len(surface.triangles) << 2 * surface.level
         if self._left < 0:
-            made.place.fail(f"wanted at most {MAX_TRIANGLES} triangles of shapes, got more")
+            made.place.fail(f"too many triangles of shapes: the limit is {MAX_TRIANGLES}")
 
     def _add(self, surface: Surface, uv1: NDArray[np.float32] | None) -> int:
         positions = freeze_in_place(np.ascontiguousarray(surface.positions, np.float32))
@@ -177,7 +177,7 @@ class Meshes:
         self._placing.add(mesh, material, Moving(), self._spots(made, outer, name, "curves"))
         for one in strands.all:
             if one.state.transform.moves:
-                self._ledger.notes.add("a curve that moves stays where it is at first")
+                self._ledger.notes.add("a moving curve stays at its first place")
             self._ledger.use(one.place)
             self._ledger.tell_unread(one.parameters, one.place, one.kind)
 

@@ -23,7 +23,7 @@ def matte(made: Made, tools: Tools) -> Kind:
     """Reads ``matte``."""
     shade = tools.textures.color(made, "Kd", _HALF)
     if tools.textures.mean(made, "sigma", 0.0) != 0:
-        tools.note("'sigma' of a matte material is left out: it is Lambert's")
+        tools.note("'sigma' of a matte material is left out: the material is Lambertian")
     return Diffuse(shade.color, shade.slot)
 
 
@@ -127,7 +127,7 @@ def mix(made: Made, tools: Tools) -> Kind | Look:
         return OF_V4["mix"](made, tools)
     names = [made.parameters.text(name) for name in ("namedmaterial1", "namedmaterial2")]
     if not all(names):
-        made.place.fail("namedmaterial1, namedmaterial2: wanted two names, got fewer")
+        made.place.fail("namedmaterial1, namedmaterial2: both are needed")
     return mixed(made, tools, names[1], names[0])
 
 

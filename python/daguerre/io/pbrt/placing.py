@@ -71,13 +71,13 @@ class Placing:
         """
         self._left -= len(spots.outer)
         if self._left < 0:
-            spots.place.fail(f"wanted at most {MAX_INSTANCES} instances in all, got more")
+            spots.place.fail(f"too many instances: the limit is {MAX_INSTANCES}")
         values = [self._in_scene(inner.after(outer)).value() for outer in spots.outer]
         still = np.array([self._now(value) for value in values], np.float64).reshape(-1, 4, 4)
         moving = any(isinstance(value, Keys) for value in values)
         flat = ranks(still[:, :3, :3]) < 3
         if flat.any() and not moving:
-            self._ledger.notes.add("a shape that is scaled to nothing is left out", int(flat.sum()))
+            self._ledger.notes.add("a shape that is scaled to zero is left out", int(flat.sum()))
             still = still[~flat]
         if not len(still):
             return

@@ -151,7 +151,7 @@ class _Builder:
         objects = self._described.objects
         for made in self._described.instances:
             if made.name not in objects:
-                made.place.fail(f"wanted an object that is defined, got {made.name[:60]!r}")
+                made.place.fail(f"no object named {made.name[:60]!r} is defined")
             found.setdefault(made.name, []).append(made.state.transform)
             self._ledger.use(made.place)
         for name, outer in found.items():
@@ -182,4 +182,4 @@ class _Builder:
 
 
 def _no_part(made: Made, name: str) -> tuple[int, Kind]:
-    raise InputError(f"{made.place}: {name}: wanted no mixture here, got one")
+    raise InputError(f"{made.place}: {name}: a mixture is not allowed here")

@@ -51,7 +51,7 @@ def lens_of(
     parameters = made.parameters
     name = parameters.text("lensfile")
     if not name:
-        made.place.fail("lensfile: wanted a lens file, got none")
+        made.place.fail("lensfile: missing")
     path = files.find(name, made.place, "lensfile")
     if path is None:
         made.place.fail(f"lensfile: {name[:200]!r}: {MISSING}")
@@ -80,9 +80,9 @@ def _f_stop(made: Made, lens: Lens, diameter: float, ledger: Ledger) -> float:
     order = lens.first_order()
     widest = 2 * order.stop_semi_diameter
     if diameter > widest * (1 + 1e-9):
-        ledger.notes.add("an iris that is larger than that of its lens file is as large as that")
+        ledger.notes.add("an iris is limited to the size in its lens file")
     if not widest > 0:
-        made.place.fail("lensfile: wanted a lens whose iris opens, got one that is closed")
+        made.place.fail("lensfile: the iris is closed")
     return float(order.f_number * max(widest / diameter, 1.0))
 
 

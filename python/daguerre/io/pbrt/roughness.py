@@ -61,7 +61,7 @@ def roughness_of(
     (u, slot), (v, other) = read("u"), read("v")
     made.parameters.find(f"{prefix}roughness")
     if other != slot:
-        ledger.notes.add("roughness that only one direction has a texture of counts for both")
+        ledger.notes.add("a texture of roughness along one direction is used for both")
         slot = slot or other
         u = v = 1.0
     return Roughness(u, None if u == v else v, slot)

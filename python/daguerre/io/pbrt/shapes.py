@@ -118,7 +118,7 @@ def _triangles(made: Made, files: Files, notes: Notes) -> Surface | str | None:
     indices = made.parameters.integers("indices", 0, _MOST_INDEX)
     if indices is None:
         if len(positions) != 3:
-            made.place.fail("indices: wanted them, got none")
+            made.place.fail("indices: missing")
         indices = np.arange(3)
     rows = _indices(made, indices, 3, len(positions))
     if made.parameters.find("S") is not None or made.parameters.find("faceIndices") is not None:
@@ -133,14 +133,14 @@ def _loop(made: Made, files: Files, notes: Notes) -> Surface | str | None:
     positions = _positions(made)
     indices = made.parameters.integers("indices", 0, _MOST_INDEX)
     if indices is None:
-        made.place.fail("indices: wanted them, got none")
+        made.place.fail("indices: missing")
     name = "levels" if made.parameters.has("levels") else "nlevels"
     level = made.parameters.integer(name, 3, 0, _MOST_LEVELS)
     made.parameters.find("scheme")
     rows = _indices(made, indices, 3, len(positions))
     while level > 1 and len(rows) << 2 * level > _MOST_FACES:
         level -= 1
-        notes.add("a loopsubdiv surface of very many faces is subdivided less often")
+        notes.add("a loopsubdiv surface with very many faces gets fewer levels")
     return Surface(positions, rows, level=level)
 
 
@@ -150,7 +150,7 @@ def _patches(made: Made, files: Files, notes: Notes) -> Surface | str | None:
     indices = made.parameters.integers("indices", 0, _MOST_INDEX)
     if indices is None:
         if len(positions) != 4:
-            made.place.fail("indices: wanted them, got none")
+            made.place.fail("indices: missing")
         indices = np.arange(4)
     rows = _indices(made, indices, 4, len(positions))
     normals, uv = _values(made, "N", positions, notes), _uv(made, positions, notes)
@@ -169,7 +169,7 @@ def _patches(made: Made, files: Files, notes: Notes) -> Surface | str | None:
 
 
 def _plymesh(made: Made, files: Files, notes: Notes) -> Surface | str | None:
-    name = made.parameters.text("filename") or made.place.fail("filename: wanted one, got none")
+    name = made.parameters.text("filename") or made.place.fail("filename: missing")
     path = files.find(name, made.place, "filename")
     for unused in ("displacement", "displacement.uvscale", "edgelength"):
         if made.parameters.find(unused) is not None:
@@ -260,7 +260,7 @@ def _down(uv: Array) -> Array:
 def _positions(made: Made) -> Array:
     found = made.parameters.points("P", "point3", "vector3")
     if found is None or not len(found):
-        made.place.fail("P: wanted positions, got none")
+        made.place.fail("P: missing")
     return found
 
 
@@ -270,7 +270,7 @@ def _indices(made: Made, indices: IntArray, each: int, count: int) -> IntArray:
     if len(indices) % each:
         fail(f"wanted a multiple of {each} indices, got {len(indices)}")
     if not len(indices):
-        fail("wanted indices, got none")
+        fail("empty")
     if indices.max() >= count:
         fail(f"wanted indices of 0 .. {count - 1}, got {indices.max()}")
     return indices.reshape(-1, each)
@@ -280,7 +280,7 @@ def _values(made: Made, name: str, positions: Array, notes: Notes) -> Array | No
     """Normals at the vertices; None: there are none that can be used."""
     found = made.parameters.points(name, "normal", "vector3", "point3")
     if found is not None and len(found) != len(positions):
-        notes.add(f"{name!r} of a {made.kind} of another length than 'P' is not used")
+        notes.add(f"{name!r} of a {made.kind} without the length of 'P' is left out")
         return None
     return found
 
@@ -295,7 +295,7 @@ def _uv(made: Made, positions: Array, notes: Notes) -> Array | None:
             values = found.numbers
             if len(values) == 2 * len(positions):
                 return values.reshape(-1, 2)
-            notes.add(f"{name!r} of a {made.kind} of another length than 'P' is not used")
+            notes.add(f"{name!r} of a {made.kind} without the length of 'P' is left out")
         else:
             found.fail(f"wanted type point2 or float, got {found.type}")
     return None

@@ -91,7 +91,7 @@ class Spectra:
             return WHITE
         if parameter.type in ("rgb", "xyz"):
             if (parameter.numbers < 0).any():
-                parameter.fail("wanted numbers of at least 0, got another")
+                parameter.fail("numbers must be at least 0")
             return _clipped(self._triple(parameter), np.inf)
         if parameter.type == "blackbody":
             return self._blackbody(parameter)
@@ -128,12 +128,14 @@ class Spectra:
                 return _samples(parameter.numbers, parameter.name)
         name = _name(parameter)
         if not name:
-            parameter.fail("wanted one name, got others")
+            parameter.fail("wanted one name")
         path = self._files.find(name, parameter.place, parameter.name)
         if path is None:
             is_file = "/" in name or "." in name
             what = (
-                "whose file is missing is left out" if is_file else "of no known name is left out"
+                "whose file is missing is left out"
+                if is_file
+                else "with an unknown name is left out"
             )
             self._notes.add(f"a spectrum {what}", name=name)
             return None
@@ -151,7 +153,7 @@ class Spectra:
         try:
             numbers = np.array([float(word) for word in words], np.float64)
         except ValueError:
-            raise InputError(f"{path}: wanted numbers, got something else") from None
+            raise InputError(f"{path}: wanted numbers only") from None
         return _samples(numbers, str(path))
 
     def _triple(self, parameter: Parameter) -> Color:
@@ -210,9 +212,9 @@ def _samples(numbers: FloatArray, where: str) -> Samples:
         )
     nm, values = numbers.reshape(-1, 2).T
     if not (np.diff(nm) > 0).all():
-        raise InputError(f"{where}: wanted wavelengths that rise, got others")
+        raise InputError(f"{where}: wavelengths must increase")
     if not np.isfinite(numbers).all():
-        raise InputError(f"{where}: wanted finite numbers, got others")
+        raise InputError(f"{where}: numbers must be finite")
     return Samples(nm.copy(), values.copy())
 
 

@@ -78,7 +78,7 @@ def scattering_of(made: Made, spectra: Spectra, notes: Notes) -> tuple[Color, Co
     """Absorption and scattering of a subsurface material; pbrt's default is milk."""
     name = made.parameters.text("name") or made.parameters.text("preset")
     if name and name not in MEASURED:
-        notes.add(f"the liquid {name[:40]!r} is not known and counts as milk")
+        notes.add(f"the liquid {name[:40]!r} is unknown and read as milk")
     scattered, absorbed = MEASURED.get(name, MEASURED[_USUAL])
     for parameter, which in (("sigma_a", 0), ("sigma_s", 1), ("sigma_prime_s", 1)):
         found = made.parameters.find(parameter)

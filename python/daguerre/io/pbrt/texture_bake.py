@@ -70,7 +70,7 @@ def baked(node: Node, curve: Curve | None, notes: Notes) -> Baked:
     images = [leaf for leaf in leaves if isinstance(leaf, Image)]
     clamped = bool(images) and all(image.wrap != "repeat" for image in images)
     if any(image.wrap == "black" for image in images):
-        notes.add("a texture that is black beyond its edges repeats its edges there")
+        notes.add("a texture with wrap mode black is clamped when combined")
     return Baked(
         made, mapping, period, "nearest" if nearest else "linear", "clamp" if clamped else "repeat"
     )
@@ -106,10 +106,10 @@ def _common(node: Node, notes: Notes) -> Mapping | None:
     if all(mapping is first or mapping == first for mapping in found):
         return first
     if any(isinstance(mapping, SpaceMapping) for mapping in found):
-        notes.add("textures with different mappings that are combined share that of one of them")
+        notes.add("combined textures with different mappings share one mapping")
         return first
     if not all(isinstance(mapping, UvMapping) and mapping.repeats for mapping in found):
-        notes.add("textures with different scales that are combined repeat as one of scale 1 does")
+        notes.add("combined textures with different scales repeat with scale 1")
     return None
 
 

@@ -88,7 +88,7 @@ class TextureReader:
         known = {title: made for (of, title), made in owner.textures.items() if of == kind}
         made = owner.textures.get(key) or named(known, name, found.place, f"{kind} texture")
         if depth >= _DEEPEST:
-            found.fail(f"wanted at most {_DEEPEST} textures within textures, got more")
+            found.fail(f"too many nested textures: the limit is {_DEEPEST}")
         if made not in self._nodes:
             self._left -= 1
             self._nodes[made] = self._read(made, key[0], depth + 1)
@@ -123,7 +123,9 @@ class TextureReader:
         return _blend(first, second, self.node(made, "amount", "float", _grey(0.5), depth))
 
     def _direction_mix(self, made: Made, kind: str, depth: int) -> Node:
-        self._ledger.notes.add("a texture of class 'directionmix' mixes both halves everywhere")
+        self._ledger.notes.add(
+            "a texture of class 'directionmix' mixes its two textures equally everywhere"
+        )
         made.parameters.find("dir")
         return self._mix(made, kind, depth)
 
@@ -132,7 +134,7 @@ class TextureReader:
         second = self.node(made, "tex2", kind, _grey(0.0), depth)
         made.parameters.find("aamode")
         if made.parameters.integer("dimension", 2, 2, 3) == 3:
-            self._ledger.notes.add("a checkerboard in space shows its mean value")
+            self._ledger.notes.add("a 3D checkerboard shows its mean value")
             return _blend(first, second, _grey(0.5))
         return Checkerboard(mapping_of(made, self._version), first, second)
 
@@ -161,7 +163,7 @@ class TextureReader:
         del depth
         name = made.parameters.text("filename")
         if not name:
-            made.place.fail("filename: wanted a picture, got none")
+            made.place.fail("filename: missing")
         picture = self._images.picture(str(made.place), name)
         image = self._pictured(made, kind, name, picture)
         return _grey(0.5) if picture is None else image

@@ -124,10 +124,10 @@ class Textures:
         return TextureSlot(index, 0, found.mapping.transform(found.period))
 
     def mean(self, made: Made, name: str, default: float) -> float:
-        """Reads a number whose texture, if any, counts by its mean."""
+        """Reads a number whose texture, if any, is replaced by its mean."""
         node = self._reader.node(made, name, "float", Constant((default, default, default)))
         if not isinstance(node, Constant):
-            self._ledger.notes.add(f"a texture of {name!r} counts by its mean")
+            self._ledger.notes.add(f"a texture of {name!r} is replaced by its mean")
         return mean(node)[0]
 
     def _slotted(self, made: Made, node: Node, curve: Curve | None, key: object = None) -> Shade:
@@ -143,7 +143,7 @@ class Textures:
             return Shade(factor, TextureSlot(index, *self._placed(image.mapping, 1.0)))
         found = self._once(made, node, curve, key)
         if not self._slots_in(found.mapping):
-            self._ledger.notes.add("a second mapping in space of one material shows its mean value")
+            self._ledger.notes.add("a second 3D mapping in one material shows its mean value")
             red, green, blue = found.pixels.reshape(-1, 3).mean(axis=0).tolist()
             return Shade((red, green, blue))
         index = self._images.texture(

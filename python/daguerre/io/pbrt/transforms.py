@@ -42,7 +42,7 @@ def rotation(degrees: float, axis: NDArray[np.float64], place: Place) -> Matrix:
     """Rotation about an axis (3,), counter-clockwise as its tip sees it (Rodrigues' formula)."""
     length = float(np.linalg.norm(axis))
     if not length > 0:
-        place.fail("wanted an axis of a length above 0, got 0 0 0")
+        place.fail("the axis must not have zero length")
     x, y, z = (axis / length).tolist()
     cross = np.array([(0, -z, y), (z, 0, -x), (-y, x, 0)])
     angle = math.radians(degrees)
@@ -57,7 +57,7 @@ def look_at(numbers: NDArray[np.float64], place: Place) -> Matrix:
     ahead = target - eye
     right = np.cross(up, ahead)
     if not np.linalg.norm(right) > 0:
-        place.fail("wanted an up vector that is not along the view, got one that is")
+        place.fail("the up vector must not be parallel to the view direction")
     ahead, right = ahead / np.linalg.norm(ahead), right / np.linalg.norm(right)
     world = np.eye(4)
     world[:3, 0], world[:3, 1], world[:3, 2] = right, np.cross(ahead, right), ahead
@@ -76,7 +76,7 @@ def inverse(matrix: Matrix, place: Place) -> Matrix:
     except np.linalg.LinAlgError:
         made = np.full((4, 4), np.nan)
     if not np.isfinite(made).all():
-        place.fail("wanted a transform that has an inverse, got one without")
+        place.fail("the transform has no inverse")
     return np.asarray(made, np.float64)
 
 

@@ -40,7 +40,7 @@ class Materials:
         """Name of the material of a look, which is added before its first use."""
         if index not in self._known:
             if not look.two_sided:
-                self.notes.add("surface that is black from behind is seen from there, too")
+                self.notes.add("single-sided surface is visible from behind, too")
             self._known[index] = f"material-{index}"
             self._add(self._known[index], look.surface, self._normals(look))
         return self._known[index]
@@ -116,7 +116,7 @@ class Materials:
         self.notes.add(
             "metal of a glTF material has the Fresnel term of a conductor of that colour"
             if surface.schlick
-            else "metal of one colour at all angles is brighter at grazing angles in pbrt"
+            else "metal of one colour is brighter at grazing angles in pbrt"
         )
         return [self.color("reflectance", surface.color)]
 
@@ -125,8 +125,8 @@ class Materials:
         color = surface.color
         if not surface.saturates:
             self.notes.add(
-                "diffuse base below a coat is written darker, as light between both saturates it "
-                "in pbrt"
+                "diffuse base below a coat is written darker, because interreflections saturate "
+                "it in pbrt"
             )
             color = base_below(color, surface.ior)
         return "coateddiffuse", [
@@ -155,7 +155,7 @@ class Materials:
             self.notes.add("roughness of a thin sheet of glass is left out")
         if surface.pane == "double" or isinstance(surface.ior, Spectrum):
             return "thindielectric", [self._index(surface.ior)]
-        self.notes.add("thin sheet of glass reflects as ours at normal incidence alone")
+        self.notes.add("thin sheet of glass reflects as here at normal incidence only")
         return "thindielectric", [floats("eta", sheet_ior(surface.ior))]
 
     def _index(self, ior: float | Spectrum) -> Parameter:
@@ -188,7 +188,7 @@ class Materials:
             )
         wrap = made.wrap[0]
         if made.wrap[1] != wrap:
-            self.notes.add(f"texture with two ways to go on beyond its edges has {wrap} for both")
+            self.notes.add(f"texture with two wrap modes has {wrap} for both")
         parameters = [
             string("filename", write_pixels(self.folder, "texture", made.pixels)),
             string("encoding", "sRGB" if made.srgb else "linear"),

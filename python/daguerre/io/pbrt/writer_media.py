@@ -53,7 +53,9 @@ class Media:
     def _make(self, name: str, medium: PlainMedium) -> None:
         g = medium.lobes[0][0]
         if len(medium.lobes) > 1:
-            self._notes.add("phase function of several lobes is written as one of their mean")
+            self._notes.add(
+                "phase function of several lobes is written as one lobe with the mean g"
+            )
             weights = sum(weight for _, weight in medium.lobes)
             g = sum(g * weight for g, weight in medium.lobes) / weights
         parameters: list[Parameter] = [

@@ -29,9 +29,7 @@ from .channels import (
 
 #: Limit on the bytes of all computed pictures of a stage, as a small graph could ask for many.
 MAX_BYTES = 2 << 30
-_OTHER_MAPPING = (
-    "pictures that lie on a surface in different ways are combined by the mean of the second"
-)
+_OTHER_MAPPING = "combined pictures with different mappings use the mean of the second"
 _TOO_LARGE = "a picture computed from others is too large: their means are combined"
 
 

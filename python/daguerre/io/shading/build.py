@@ -182,7 +182,7 @@ def over_time(
             if moves and name not in _FIXED:
                 changed[name] = keys(zip(ordered, row, strict=True))
             elif any(one != row[0] for one in row):
-                context.notes.add(f"a material's '{name}' stays as it is at the scene's time")
+                context.notes.add(f"a material's '{name}' keeps its value at the scene's time")
     return replace(rest, kind=replace(rest.kind, **changed))
 
 

@@ -150,7 +150,7 @@ def known_encoding(space: str, notes: Notes) -> Encoding:
     """Encoding of a named colour space; a note, and linear Rec.709, if the name is unknown."""
     encoding = encoding_of(space)
     if encoding is None:
-        notes.add(f"colour space {short(space)} is not known: read as linear Rec.709")
+        notes.add(f"colour space {short(space)} is unknown: read as linear Rec.709")
         return Encoding()
     return encoding
 
@@ -221,7 +221,7 @@ class Evaluator:
                 entered.add(top)
                 waiting += missing
                 if any(one in entered for one in missing):
-                    raise InputError(f"{node.place}: wanted connections without a circle, got one")
+                    raise InputError(f"{node.place}: connections form a cycle")
                 continue
             waiting.pop()
             self._done[top] = self._applied(node)

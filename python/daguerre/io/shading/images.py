@@ -34,7 +34,7 @@ _SHARE = 0.6
 _PACKAGED = re.compile(r"(?P<package>[^\[\]]*)\[(?P<name>[^\[\]]+)\]\Z")
 #: Most pictures that are decoded before anything asks for them.
 _MOST_BEGUN = 64
-_UNKNOWN = "a texture in a format that cannot be read shows its fallback value"
+_UNKNOWN = "a texture in an unknown format shows its fallback value"
 _MISSING = "a texture whose file is missing shows its fallback value"
 
 
@@ -228,7 +228,7 @@ class Images(Textures):
             return None
         pixels, grid, halved = udim.stitched({n: one.pixels for n, one in tiles.items()})
         if halved:
-            self._notes.add("UDIM tiles are halved, as all of them are too large")
+            self._notes.add("UDIM tiles are halved in size, because together they are too large")
         name = path.rsplit("/", 1)[-1]
         return _picture(pixels, name, grid.transform)
 
@@ -237,7 +237,7 @@ class Images(Textures):
         self._left -= 0 if picture is None else picture.pixels.nbytes
         if self._left < 0:
             most = memory.shown(_most_bytes())
-            raise InputError(f"{place}: wanted at most {most} of decoded pictures, got more")
+            raise InputError(f"{place}: decoded pictures are too large: the limit is {most}")
         return picture
 
 

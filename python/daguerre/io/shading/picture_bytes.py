@@ -81,7 +81,7 @@ def _exr(file: Path) -> NDArray[np.float32]:
         size = reader.width * reader.height * 16
         if size > images.MAX_BYTES:
             most = memory.shown(images.MAX_BYTES)
-            raise InputError(f"{file}: image size: wanted at most {most}, got more")
+            raise InputError(f"{file}: image size: the limit is {most}")
         names = light_names(list(reader.channels), str(file))
         names += [name for name in reader.channels if name == "A"]
         planes = reader.rows(0, reader.height, list(dict.fromkeys(names)))
@@ -124,5 +124,5 @@ def member(archive: zipfile.ZipFile, name: str, where: str) -> bytes:
     """Bytes of a file in a package, which stores them without compression (usdz specification)."""
     info = archive.getinfo(name)
     if info.compress_type != zipfile.ZIP_STORED or info.file_size > images.MAX_BYTES:
-        raise InputError(f"{where}: wanted a stored file in the package, got another")
+        raise InputError(f"{where}: the file in the package is compressed or too large")
     return archive.read(name)

@@ -50,7 +50,7 @@ def _opacity(given: Arguments, surface: Surface) -> None:
         surface.alpha_mode, surface.alpha_cutoff = "mask", threshold
     elif found is None or _is_presence(given):
         if not _is_presence(given):
-            given.context.notes.add("highlights fade where a picture makes a surface transparent")
+            given.context.notes.add("highlights fade where an opacity texture is transparent")
         surface.alpha_mode = "blend"
     else:
         _sheet(given, surface, min(max(found[0], 0.0), 1.0))

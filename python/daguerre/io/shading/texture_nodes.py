@@ -61,7 +61,7 @@ def usd_texture(given: Arguments) -> Mapping[str, Value]:
     fallback = fit(given.value("fallback", (0.0, 0.0, 0.0, 1.0)), 4)
     st = given.given("st")
     if st is None and "st" not in given.node.inputs:
-        given.context.notes.add("a texture without coordinates is read by those named 'st'")
+        given.context.notes.add("a texture without texture coordinates uses the primvar 'st'")
     wraps = (given.text("wrapS", "useMetadata"), given.text("wrapT", "useMetadata"))
     encoding = _usd_encoding(given)
     found = sampled(given, st or coordinates("st"), wraps, "linear", encoding, (0.0,) * 4)

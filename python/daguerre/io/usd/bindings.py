@@ -130,7 +130,7 @@ class Bindings:
             return material.GetPath()
         path = self._materials.bound_path(prim)
         if path is not None and not self._materials.has(prim.GetStage(), path):
-            self._notes.add("a material that a prim names is missing: it has its displayColor")
+            self._notes.add("a bound material is missing: the prim has its displayColor")
             return None
         return path
 

@@ -96,10 +96,12 @@ def read_blend_shapes(
     weights = clock.value(source.GetBlendShapeWeightsAttr(), lambda v: np.asarray(v, np.float64))
     stated = weights.values[0] if is_dynamic(weights) else weights
     if weights is None or len(stated) != len(channels):
-        notes.add("weights of blend shapes of another number than their names are left out")
+        notes.add("weights of blend shapes that differ in number from their names are left out")
         return None
     if not np.isfinite(stated).all():
-        raise InputError(f"{clock.file}: {source.GetPath()}.blendShapeWeights: wanted finite ones")
+        raise InputError(
+            f"{clock.file}: {source.GetPath()}.blendShapeWeights: numbers must be finite"
+        )
     stage = animation.GetPrim().GetStage()
     names = [str(name) for name in query.GetBlendShapeOrder()]
     shapes = []

@@ -59,7 +59,7 @@ def read_camera(
         notes.add("an orthographic camera is left out: no lens makes parallel rays")
         return None
     if never_opens(read):
-        notes.add("a camera whose shutter closes before it opens is left out: it sees nothing")
+        notes.add("a camera with a shutter that closes before it opens is left out")
         return None
     values = _film(read) | _opening(read) | read_exposure(read) | read_shutter(read)
     values |= read_rolling(read, OMNI) | _near_clip(read)
@@ -129,7 +129,7 @@ def _stop(read: Checked) -> dict[str, Any]:
     if not any(values):
         return {"lens": "pinhole"}
     if not all(values):
-        read.notes.add("an f-stop of 0 among others of a camera is read as a pinhole's")
+        read.notes.add("an f-stop of 0 in an animation is read as a pinhole")
         stop = keys(
             zip(stop.times, (value or _SHARP for value in values), strict=True), stop.interpolation
         )
@@ -231,7 +231,7 @@ def _unread(read: Checked) -> None:
         read.notes.add("clipping planes of a camera are left out")
     role = read.text("stereoRole")
     if role not in (None, "mono"):
-        read.notes.add(f"stereoRole {role} of a camera is not read: it stands where its prim does")
+        read.notes.add(f"stereoRole {role} of a camera is ignored: the camera stays at its prim")
 
 
 def _near_clip(read: Checked) -> dict[str, Any]:

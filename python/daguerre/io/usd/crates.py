@@ -144,7 +144,7 @@ class _Crate:
         where = begin + 16 + packed
         (packed,) = self._numbers("Q", where)
         if where + 8 + packed > begin + size:
-            raise _DamageError("wanted fields inside of their section, got others")
+            raise _DamageError("fields are outside of their section")
         return np.frombuffer(
             _unpacked(self._data[where + 8 : where + 8 + packed], 8 * count), "<u8"
         )
@@ -182,7 +182,7 @@ class _Crate:
         if entries:
             block = self._data[offset + 8 : offset + 8 + size]
             if not all(0 <= index < entries for index in _extremes(block, count)):
-                raise _DamageError("wanted values of an array in its table, got others")
+                raise _DamageError("values of an array are outside of its table")
 
     def _samples(self, offset: int) -> NDArray[np.uint64]:
         """Values of time samples, and their times."""
@@ -208,7 +208,7 @@ def _extremes(data: memoryview, count: int) -> tuple[int, int]:
     widths = np.array([0, 1, 2, 4])[codes]
     starts = codes_end + np.cumsum(widths) - widths
     if len(codes) < count or codes_end + int(widths.sum()) > len(raw):
-        raise _DamageError("wanted packed numbers, got too few")
+        raise _DamageError("too few packed numbers")
     steps = np.full(count, int(raw[:4].view("<i4")[0]), np.int64)
     for code, kind in ((1, "<i1"), (2, "<i2"), (3, "<i4")):
         chosen = starts[codes == code]
@@ -229,7 +229,7 @@ def _unpacked(data: memoryview, size: int) -> bytes:
     for _ in range(blocks):
         (length,) = struct.unpack_from("<i", data, at)
         if length <= 0:
-            raise _DamageError("wanted blocks of more than 0 bytes, got another")
+            raise _DamageError("a block has 0 bytes")
         made += _lz4(data[at + 4 : at + 4 + length], size - len(made))
         at += 4 + length
     return bytes(made)
@@ -251,11 +251,11 @@ def _lz4(data: memoryview, most: int) -> bytes:
             length, at = _length(data, at + 2, token & 15)
             length += 4
             if not 0 < back <= len(made) or len(made) + length > most:
-                raise _DamageError("wanted packed bytes, got others")
+                raise _DamageError("packed bytes are damaged")
             piece = made[-back:] if back >= length else made[-back:] * (length // back + 1)
             made += piece[:length]
     if len(made) > most:
-        raise _DamageError(f"wanted {most} unpacked bytes, got more")
+        raise _DamageError(f"more than {most} unpacked bytes")
     return bytes(made)
 
 

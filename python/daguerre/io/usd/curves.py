@@ -23,9 +23,7 @@ from .spheres import read_widths
 from .values import Clock
 
 Counts = NDArray[np.int64]
-_TOO_FEW = (
-    "a curve whose number of points does not fit its basis loses the last ones, or is left out"
-)
+_TOO_FEW = "a curve with a number of points that does not fit its basis is shortened or left out"
 _BASES = {"bezier": "bezier", "bspline": "bspline", "catmullRom": "catmull-rom"}
 
 

@@ -187,7 +187,7 @@ def _picture(read: Checked, name: str) -> Any:
         read.fail(f"{PREFIX}{name}Size", "the width and height of its numbers", (width, height))
     pixels = np.array(value, np.float32).reshape(height, width)
     if not (np.isfinite(pixels).all() and pixels.min() >= 0 and pixels.max() > 0):
-        read.fail(PREFIX + name, "numbers of at least 0 and some above 0", "others")
+        read.fail(PREFIX + name, "numbers of at least 0, some of them above 0", "others")
     return pixels
 
 
@@ -262,5 +262,5 @@ def _curve(read: Checked) -> Any:
     if not 2 <= len(points) <= shutter_curve.MAX_POINTS or not rises:
         read.fail(PREFIX + CURVE, "points whose times rise from 0 to 1", short(points))
     if min(v for _, v in points) < 0 or not any(v > 0 for _, v in points):
-        read.fail(PREFIX + CURVE, "openings of at least 0 and one above", short(points))
+        read.fail(PREFIX + CURVE, "openings of at least 0, one of them above 0", short(points))
     return points

@@ -161,7 +161,7 @@ def set_environment(scene: Scene, domes: list[Dome], notes: Notes) -> None:
 def _still(dome: Dome, time: float, notes: Notes) -> Dome:
     if not is_dynamic(dome.emission):
         return dome
-    notes.add("one of several dome lights changes over time: it keeps the light of one moment")
+    notes.add("one of several dome lights changes over time: it stays as at the scene's time")
     return replace(dome, emission=value_at(dome.emission, time))
 
 
@@ -174,7 +174,9 @@ def _set_color(scene: Scene, emissions: list[Any]) -> None:
 
 def _set_picture(scene: Scene, dome: Dome, notes: Notes) -> None:
     if isinstance(dome.emission, Emission) and not dome.emission.keeps_hue:
-        notes.add("a dome light with a picture whose colour changes keeps that of one moment")
+        notes.add(
+            "a dome light with a picture and a changing colour keeps its colour at the scene's time"
+        )
     image, (hue, scale), angle = dome.image, dome.picture(scene.time), dome.angle
     assert image is not None
     if angle is None:

@@ -64,7 +64,9 @@ def read_copies(prim: Usd.Prim, clock: Clock, notes: Notes) -> list[Copies]:
     now = crowd.at(clock.time)
     shown = np.asarray(instancer.ComputeMaskAtTime(clock.code) or [True] * len(kinds), bool)
     if clock.codes(instancer.GetInvisibleIdsAttr()):
-        notes.add("copies of a point instancer that come and go: those of one moment are shown")
+        notes.add(
+            "copies of a point instancer that appear and vanish are shown as at the scene's time"
+        )
     made = []
     for i, path in enumerate(targets):
         numbers = np.flatnonzero((kinds == i) & shown)
@@ -112,7 +114,10 @@ class _Reader:
             if not flies:
                 codes = [now]
             if not flies and len(rows) > 1:
-                self._notes.add("copies whose number changes over time: those of one moment rest")
+                self._notes.add(
+                    "copies whose number changes over time are shown at rest, as at "
+                    "the scene's time"
+                )
         return self._made(codes, starts if flies else [], turning if spins else [])
 
     def _made(self, codes: list[float], starts: list[float], turning: list[float]) -> Crowd:
@@ -174,7 +179,7 @@ class _Reader:
         rows = np.asarray(value, np.float64)
         if rows.ndim != 2 or rows.shape[1] != columns or not np.isfinite(rows).all():
             where = f"{self._clock.file}: {attribute.GetPath()}"
-            raise InputError(f"{where}: wanted finite numbers, got others")
+            raise InputError(f"{where}: numbers must be finite")
         return rows
 
     def _each(self, attribute: Usd.Attribute, code: float, columns: int, default: Any) -> Array:
@@ -182,8 +187,8 @@ class _Reader:
         rows = self._rows(attribute, code, columns)
         if rows is not None and len(rows) > self._count:
             self._notes.add(
-                f"{attribute.GetName()} of a point instancer are more than its copies: the first "
-                "ones count"
+                f"{attribute.GetName()} of a point instancer has more elements than copies: "
+                f"only the first ones are used"
             )
             rows = rows[: self._count]
         if rows is None and default is not None:
@@ -199,7 +204,7 @@ class _Reader:
         """A row for each copy; None if there are none, or another number."""
         rows = self._rows(self._attribute(name), code, 3)
         if rows is not None and len(rows) != self._count:
-            self._notes.add(f"{name} of a point instancer of another number than its copies")
+            self._notes.add(f"{name} of a point instancer does not have one element per copy")
             return None
         return rows
 

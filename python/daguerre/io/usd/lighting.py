@@ -81,9 +81,7 @@ class Lighting:
             return
         kept = np.array([without_scale(world) is not None for world in spots.still], bool)
         if not kept.all():
-            self._notes.add(
-                "a light whose prim is scaled to nothing is left out", int((~kept).sum())
-            )
+            self._notes.add("a light whose prim is scaled to zero is left out", int((~kept).sum()))
         if kept.any():
             lamp = Lamp(prim, self._opened.clock, self._notes)
             make(visit, _part(spots, np.flatnonzero(kept)), lamp)
@@ -99,11 +97,11 @@ class Lighting:
         """
         lamp = Lamp(visit.prim, self._opened.clock, self._notes)
         if lamp.normalized and len(list(_by_size(spots))) > 1:
-            self._notes.add("copies of a normalized mesh light shine as bright as the first one")
+            self._notes.add("copies of a normalized mesh light are as bright as the first one")
         size = sum(self._area(mesh, spots.still[0]) for mesh in meshes) if lamp.normalized else 1.0
         own = self._scene.materials[material]
         if glows(own):  # USD's default: the glow of the material tints the light
-            self._notes.add("a mesh light whose material glows shines by the light alone")
+            self._notes.add("a mesh light with an emissive material emits the light only")
             own = replace(own, kind=unlit(own.kind))
         emission: Any = lamp.emission(size, True)
         profile = self._profile(lamp)
@@ -115,14 +113,16 @@ class Lighting:
 
     def _dome(self, visit: Visit, spots: Spots, lamp: Lamp) -> None:
         if spots.moving is not None:
-            self._notes.add("a dome light that turns stays as at one moment")
+            self._notes.add("a dome light that turns stays as at the scene's time")
         if len(spots) > 1:
-            self._notes.add("a dome light of a point instancer shines once")
+            self._notes.add("a dome light of a point instancer is read once")
         if visit.prim.GetRelationship("portals").HasAuthoredTargets():
-            self._notes.add("portals of a dome light are left out: all of the dome shines")
+            self._notes.add("portals of a dome light are ignored")
         path = self._picture(lamp)
         if path is not None and not is_latlong(visit.prim):
-            self._notes.add("a dome light whose picture is no latlong panorama has one colour")
+            self._notes.add(
+                "a dome light with a picture that is not a latlong panorama has one colour"
+            )
             path = None
         image = None if path is None else self._panorama(path)
         emission = lamp.emission(1.0, visit.shown)
@@ -135,7 +135,7 @@ class Lighting:
         except InputError:
             if is_known(path.name.rstrip("]")):
                 raise
-            self._notes.add("a picture of a light in a format that cannot be read is left out")
+            self._notes.add("a picture of a light in an unknown format is left out")
             return None
 
     def _profile(self, lamp: Lamp) -> LightProfile | None:

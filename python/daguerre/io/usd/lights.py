@@ -156,7 +156,9 @@ class Lamp:
         """A number that does not change over time, or that of the scene's time, with a note."""
         attribute = self.prim.GetAttribute(name)
         if self._clock.codes(attribute):
-            self._notes.add("a light whose size or shaping changes keeps that of one moment")
+            self._notes.add(
+                "a light whose size or shaping changes keeps both as at the scene's time"
+            )
         return self._number(name, self._clock.now(attribute))
 
     def color(self, name: str, default: Color) -> Color:
@@ -183,7 +185,7 @@ class Lamp:
         factor = 1.0 / size if self.normalized and size > 0 else 1.0
         made = replace(self._bare, shown=shown, factor=factor)
         if max(replace(made, shown=True).at(self._clock.time)) >= MOST:
-            self._notes.add(f"a light brighter than {MOST:g} cd/m2 is as bright as that")
+            self._notes.add(f"a light brighter than {MOST:g} cd/m2 is limited to that")
         return made.now()
 
     @cached_property
@@ -227,14 +229,14 @@ def _note_the_rest(api: UsdLux.LightAPI, notes: Notes) -> None:
     """Notes what a light has that is left out."""
     prim = api.GetPrim()
     if any(map(_is_selective, (api.GetLightLinkCollectionAPI(), api.GetShadowLinkCollectionAPI()))):
-        notes.add("a light that is linked to some prims shines on all")
+        notes.add("light linking is ignored: a light that is linked to some prims lights all")
     if api.GetFiltersRel().HasAuthoredTargets():
         notes.add("a light filter is left out")
     for attribute in (api.GetDiffuseAttr(), api.GetSpecularAttr()):
         if authored(attribute) and attribute.Get() != 1:
-            notes.add("a light's own factor for diffuse or specular reflection is left out")
+            notes.add("the diffuse and specular factors of a light are ignored")
     if any(authored(prim.GetAttribute(f"inputs:shadow:{name}")) for name in _SHADOW):
-        notes.add("a light's own settings of its shadows are left out")
+        notes.add("the shadow settings of a light are ignored")
 
 
 def _is_selective(collection: Usd.CollectionAPI) -> bool:

@@ -169,5 +169,5 @@ class Materials:
             self._documents[file] = read(file, self._notes)
         graph = self._documents[file].graph(name)
         if graph is None:
-            raise InputError(f"{path}: wanted a material {short(name)} in {file}, got none")
+            raise InputError(f"{path}: no material {short(name)} in {file}")
         return f"{file}#{name}", graph

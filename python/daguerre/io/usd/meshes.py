@@ -147,7 +147,7 @@ class Meshes:
         flipped = mesh.GetOrientationAttr().Get(self._clock.code) == "leftHanded"
         for attribute in (mesh.GetFaceVertexIndicesAttr(), mesh.GetFaceVertexCountsAttr()):
             if attribute.ValueMightBeTimeVarying():
-                notes.add("a mesh whose faces change over time keeps those of one moment")
+                notes.add("a mesh whose faces change over time keeps them as at the scene's time")
                 break
         rest = None if before is points else np.asarray(_now(before, self._clock), np.float32)
         return Shape(prim, points, surface, flipped, self._begun(surface, here), rest)

@@ -34,8 +34,8 @@ class Totals:
         path = str(prim.GetPath())
         if path in self._open or len(self._open) >= _DEEPEST:
             raise InputError(
-                f"{self._clock.file}: {path}.prototypes: wanted at most {_DEEPEST} point "
-                "instancers inside of one another, and none inside of itself, got others"
+                f"{self._clock.file}: {path}.prototypes: point instancers are nested more than "
+                f"{_DEEPEST} deep, or contain themselves"
             )
         if path not in self._found:
             self._open.append(path)

@@ -79,7 +79,7 @@ class Networks:
             if name in nodes:
                 continue
             if len(nodes) >= MAX_NODES:
-                raise InputError(f"{name}: wanted at most {MAX_NODES} shading nodes, got more")
+                raise InputError(f"{name}: too many shading nodes: the limit is {MAX_NODES}")
             nodes[name] = self._node(shader)
             stage = shader.GetPrim().GetStage()
             for one in nodes[name].inputs.values():
@@ -155,10 +155,10 @@ class Networks:
                 return Link(str(prim.GetPath()), target.name[len("outputs:") :])
             following = stage.GetAttributeAtPath(target) if prim else None
             if not following:
-                self._notes.add("a connection of a material to nothing is left out")
+                self._notes.add("a connection of a material to a missing node is left out")
                 return self._constant(attribute)
             attribute = following
-        raise InputError(f"{first.GetPath()}: wanted connections without a circle, got one")
+        raise InputError(f"{first.GetPath()}: connections form a cycle")
 
     def _constant(self, attribute: Usd.Attribute) -> Constant | None:
         if not attribute or not attribute.HasValue():

@@ -75,7 +75,7 @@ def _model(read: Checked) -> OmniModel | None:
             return OLDER[str(name)]
     elif name in MODELS:
         return MODELS[name]
-    read.notes.add(f"the lens distortion {str(name)[:40]!r} of a camera is not known")
+    read.notes.add(f"the lens distortion {str(name)[:40]!r} of a camera is unknown")
     return None
 
 
@@ -163,17 +163,17 @@ def _trimmed(values: list[float]) -> tuple[float, ...]:
 def _notes(read: Checked, model: OmniModel, made: Projection) -> None:
     """Notes what of a lens distortion is not drawn, or has no definition."""
     if model.name == "ftheta" and read.now(model.terms[0]):
-        read.notes.add(f"{model.terms[0]} of a camera is left out: its axis is at one point")
+        read.notes.add(f"{model.terms[0]} of a camera is ignored")
     if model.name in ("kannalaBrandtK3", "radTanThinPrism"):
         read.notes.add(
-            f"the lens distortion {model.name} of a camera has no focal length of its own; that of "
-            "focalLength and horizontalAperture is used"
+            f"the lens distortion {model.name} of a camera has no focal length; focalLength and "
+            f"horizontalAperture are used"
         )
     if any(read.now(name) for name in model.terms[_ANGLES:]) and model.name == "radTanThinPrism":
         read.notes.add("radTanThinPrism of a camera: only k0 .. k3 are read")
     field = read.number(model.field) if model.field else None
     if field is not None and field > 0 and _widest(made) > field / 2 + _SLACK:
-        read.notes.add(f"{model.field} of a camera is left out: its picture has all corners")
+        read.notes.add(f"{model.field} of a camera is ignored: the picture keeps its corners")
 
 
 def _widest(made: Projection) -> float:

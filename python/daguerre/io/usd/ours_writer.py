@@ -90,8 +90,7 @@ def _named(output: Output, name: str, value: Any, known: Any, load: Any) -> tupl
     path = Path(value).resolve()
     if not path.is_relative_to(output.folder):
         raise UsageError(
-            f"camera: {name}: wanted a file in the folder of the stage, {output.folder}, as no "
-            f"stage reads others; got {path}"
+            f"camera: {name}: must be in the folder of the stage, {output.folder}, got {path}"
         )
     return f"{PREFIX}{name}:file", "asset", f"./{path.relative_to(output.folder).as_posix()}"
 

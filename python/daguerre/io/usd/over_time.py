@@ -52,7 +52,7 @@ def sample_times(value: Dynamic, span: tuple[float, float] | None, miss: Miss) -
         times += _between(value, a, last, miss, _DEEPEST)
         times += [last, b] if jumps else [b]
         if len(times) > _MOST:
-            raise UsageError(f"camera: motion: wanted at most {_MOST} time samples, got more")
+            raise UsageError(f"camera: motion: too many time samples: the limit is {_MOST}")
     return times
 
 
@@ -79,7 +79,7 @@ def _extent(value: Dynamic) -> tuple[float, float]:
     """First and last break of a value, s."""
     times = value.breaks(-MAX_TIME, MAX_TIME)
     if isinstance(value, Spin) or not len(times):
-        raise UsageError("camera: motion: wanted times=(begin, end), s, as it has no end; got none")
+        raise UsageError("camera: motion: it has no end; set times=(begin, end), s")
     return float(times[0]), float(times[-1])
 
 

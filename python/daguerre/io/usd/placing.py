@@ -100,7 +100,7 @@ class Placing:
         """
         if count > self._left:
             raise InputError(
-                f"{self._file}: {place}: wanted at most {MAX_INSTANCES} instances in all, got more"
+                f"{self._file}: {place}: too many instances: the limit is {MAX_INSTANCES}"
             )
 
     def add(self, mesh: int, material: int, spots: Spots, name: str, shown: Any) -> None:
@@ -123,6 +123,6 @@ class Placing:
         if moving is None:
             flat = ranks(still[:, :3, :3]) < 3
             if flat.any():
-                self._notes.add("a prim that is scaled to nothing is left out", int(flat.sum()))
+                self._notes.add("a prim that is scaled to zero is left out", int(flat.sum()))
             still = still[~flat]
         scene.add_instances(mesh, material, still, name=node, motions=moving)

@@ -78,7 +78,7 @@ def read_points(schema: Any, clock: Clock, notes: Notes) -> Array | Dynamic:
         return now
     samples = _samples(attribute, codes, clock)
     if any(len(sample) != len(now) for sample in samples):
-        notes.add("points whose number changes over time: those of one moment are shown, at rest")
+        notes.add("points whose number changes over time are shown at rest, as at the scene's time")
         return now
     if all(np.array_equal(sample, now) for sample in samples):
         return now
@@ -130,5 +130,5 @@ def _checked(attribute: Usd.Attribute, value: Any, clock: Clock) -> Array:
         return np.zeros((0, 3), np.float32)
     rows = as_rows(value, 3)
     if rows is None:
-        raise InputError(f"{clock.file}: {attribute.GetPath()}: wanted finite points, got others")
+        raise InputError(f"{clock.file}: {attribute.GetPath()}: points must be finite")
     return rows

@@ -133,7 +133,7 @@ class Walk:
         self._count += 1
         if self._count > _MAX_PRIMS:
             raise InputError(
-                f"{self._clock.file}: wanted at most {_MAX_PRIMS} prims and instances, got more"
+                f"{self._clock.file}: too many prims and instances: the limit is {_MAX_PRIMS}"
             )
         world, shown, purpose = parent.world, parent.shown, parent.purpose
         imageable = UsdGeom.Imageable(prim)

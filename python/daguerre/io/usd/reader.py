@@ -239,7 +239,9 @@ class _Reader:
             for name in SIZES
             if prim.HasAttribute(name)
         ):
-            self._notes.add("a solid whose size changes over time keeps that of one moment")
+            self._notes.add(
+                "a solid whose size changes over time keeps its size at the scene's time"
+            )
         return self.scene.add_mesh(
             *(solid.positions, solid.triangles, solid.normals, solid.uv), name=str(prim.GetPath())
         )
@@ -270,7 +272,7 @@ class _Reader:
         for visit in found:
             world = rigid(visit.world)
             if world is None:
-                self._notes.add("a camera that is scaled to nothing is left out")
+                self._notes.add("a camera that is scaled to zero is left out")
                 continue
             camera = read_camera(visit.prim, world, facts, self._notes)
             if camera is not None:

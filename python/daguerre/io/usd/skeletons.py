@@ -192,8 +192,8 @@ class Skeletons:
         query = self._cache.GetSkelQuery(UsdSkel.Skeleton(prim))
         if not query:
             raise InputError(
-                f"{self.clock.file}: {prim.GetPath()}.joints: wanted joints, each once and after "
-                "its parent, got others"
+                f"{self.clock.file}: {prim.GetPath()}.joints: each must appear once, after its "
+                f"parent"
             )
         return query
 
@@ -215,9 +215,9 @@ class Skeletons:
         try:
             inverse = np.asarray(np.linalg.inv(bind), np.float64)
         except np.linalg.LinAlgError:
-            raise InputError(f"{where}.bindTransforms: wanted matrices with an inverse") from None
+            raise InputError(f"{where}.bindTransforms: every matrix needs an inverse") from None
         if not (np.isfinite(inverse).all() and np.isfinite(rest).all()):
-            raise InputError(f"{where}: wanted finite transforms, got others")
+            raise InputError(f"{where}: transforms must be finite")
         parents = np.asarray(query.GetTopology().GetParentIndices(), np.int64)
         animated, parts = self._animation(query.GetAnimQuery(), order)
         return JointPoses(*parts, animated, rest, parents, inverse)
@@ -241,8 +241,8 @@ class Skeletons:
             if len(found) != len(names) or not np.isfinite(found).all():
                 got = len(found) if len(found) != len(names) else "others"
                 raise InputError(
-                    f"{self.clock.file}: {attribute.GetPath()}: wanted {len(names)} finite ones, "
-                    f"one for each joint, got {got}"
+                    f"{self.clock.file}: {attribute.GetPath()}: wanted {len(names)} finite "
+                    f"values, one for each joint, got {got}"
                 )
             return found[chosen]
 
@@ -264,11 +264,11 @@ class Skeletons:
         share = np.asarray(weights, np.float32).reshape(count, -1) if len(weights) else None
         if number is None or share is None or number.shape != share.shape:
             raise InputError(
-                f"{where}: primvars:skel:jointIndices and jointWeights: wanted as many for each of "
-                f"{count} points, got others"
+                f"{where}: primvars:skel:jointIndices and jointWeights: both need the same "
+                f"number of elements for each of {count} points"
             )
         if not np.isfinite(share).all():
-            raise InputError(f"{where}: primvars:skel:jointWeights: wanted finite ones, got others")
+            raise InputError(f"{where}: primvars:skel:jointWeights: numbers must be finite")
         names = [str(name) for name in query.GetJointOrder() or order]
         unknown = sorted({*names} - {*order})
         if unknown:

@@ -40,7 +40,7 @@ def read_widths(schema: Any, count: int, clock: Clock, notes: Notes) -> Primvar 
     if rows is None or not len(rows):
         return None
     if schema.GetWidthsAttr().ValueMightBeTimeVarying():
-        notes.add("widths that change over time keep those of one moment")
+        notes.add("widths that change over time stay as at the scene's time")
     if len(rows) == 1:
         kind = "constant"
     if kind == "vertex" and len(rows) != count:
@@ -76,7 +76,7 @@ def read_spheres(
     now = crowd.at(clock.time)
     moves = crowd.moves or spots.moving is not None
     if moves and len(now) * len(spots) > _MAX_MOVING:
-        notes.add("points that move are too many: they rest")
+        notes.add("too many moving points: they rest")
         moves = False
     for material, chosen in bindings.colors(visit.prim, len(now)):
         chosen = chosen[crowd.scales[0, chosen, 0] > 0]

@@ -90,7 +90,8 @@ class Assets:
         if not any(real.is_relative_to(folder) for folder in self._folders):
             raise InputError(
                 f"{self._file}: {place}: leaves the stage's folder: wanted a file under "
-                f"{str(self._folders[0])!r} (--allow-dir widens), got {short(name, 200)}"
+                f"{str(self._folders[0])!r} (--allow-dir allows more folders), got "
+                f"{short(name, 200)}"
             )
         return str(real) + name[len(package) :]
 
@@ -148,7 +149,7 @@ def typed(file: str, place: str) -> Iterator[None]:
         raise
     except (TypeError, ValueError, AttributeError) as error:
         raise InputError(
-            f"{file}: {place}: wanted values of its schema's types, got others ({short(error)})"
+            f"{file}: {place}: values do not have the types of the schema ({short(error)})"
         ) from None
 
 
@@ -221,7 +222,7 @@ def _layers(path: Path, assets: Assets) -> Sdf.Layer:
     check_crates(path, str(path))
     first = _whole(Sdf.Layer.FindOrOpen(os.path.realpath(path)))
     if first is None:
-        raise InputError(f"{path}: wanted a stage of USD, got a file that USD does not open")
+        raise InputError(f"{path}: not a stage that USD can open")
     seen, waiting = {first.identifier}, [first]
     while waiting:
         layer = waiting.pop()
@@ -232,7 +233,7 @@ def _layers(path: Path, assets: Assets) -> Sdf.Layer:
                 continue
             seen.add(absolute)
             if len(seen) > _MAX_LAYERS:
-                raise InputError(f"{path}: wanted at most {_MAX_LAYERS} layers, got more")
+                raise InputError(f"{path}: too many layers: the limit is {_MAX_LAYERS}")
             found = _opened(absolute, assets.check(place, absolute))
             if found is not None:
                 waiting.append(found)
@@ -263,9 +264,7 @@ def _whole(layer: Sdf.Layer | None) -> Sdf.Layer | None:
         layer.Traverse(Sdf.Path.absoluteRootPath, paths.append)
         for path in paths:
             if path.isEmpty or (path.IsPrimPath() and not layer.GetPrimAtPath(path)):
-                raise InputError(
-                    f"{layer.realPath}: damaged layer: a prim that it names is missing"
-                )
+                raise InputError(f"{layer.realPath}: damaged layer: it refers to a missing prim")
     return layer
 
 
@@ -279,9 +278,9 @@ def _select(stage: Usd.Stage, file: str, variants: list[str]) -> None:
             raise UsageError(f"variant: wanted /prim:set=name, got {text!r}")
         prim = stage.GetPrimAtPath(path)
         if not prim:
-            raise UsageError(f"{file}: variant: no prim {path}")
+            raise UsageError(f"{file}: variant: no prim named {path}")
         if prim.IsInstanceProxy():
-            raise UsageError(f"{file}: variant: {path} is inside of an instance, which is shared")
+            raise UsageError(f"{file}: variant: {path} is in an instance, which is shared")
         sets = prim.GetVariantSets()
         if name not in sets.GetNames():
             hint = suggest(name, sets.GetNames(), few=True)
@@ -299,10 +298,10 @@ def _note_missing(stage: Usd.Stage, notes: Notes) -> None:
         if kind.startswith("Invalid") and ("Asset" in kind or "Sublayer" in kind):
             if re.search(r"asset @[^@]*\.mtlx@", str(error)):
                 continue  # the reader of materials finds these by itself
-            notes.add("a layer that the stage names cannot be opened; what it holds is left out")
+            notes.add("a layer of the stage cannot be opened; its contents are left out")
         else:
             words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", kind).lower()
-            notes.add(f"a fault of composition, {words!r}: what it concerns is left out")
+            notes.add(f"a composition error, {words!r}: the part that it affects is left out")
 
 
 def _units(stage: Usd.Stage, file: str, notes: Notes) -> tuple[float, bool]:
@@ -346,5 +345,5 @@ def time_of_code(path: str | os.PathLike[str], code: float) -> float:
     with usd_errors(str(path)):
         layer = Sdf.Layer.FindOrOpen(os.path.realpath(path))
         if layer is None:
-            raise InputError(f"{path}: wanted a stage of USD, got a file that USD does not open")
+            raise InputError(f"{path}: not a stage that USD can open")
         return _clock(Usd.Stage.Open(layer, Usd.Stage.LoadNone), str(path), 0.0).seconds(code)

@@ -55,7 +55,7 @@ class Output:
         """Transform of a camera without scale."""
         made = without_scale(np.asarray(world, np.float64))
         if made is None:
-            raise UsageError("camera: transform: wanted axes of some length, got others")
+            raise UsageError("camera: transform: axes must not have zero length")
         return made
 
     def samples(self, *names: str) -> list[float]:

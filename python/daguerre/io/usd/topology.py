@@ -72,8 +72,8 @@ def read_faces(mesh: UsdGeom.Mesh, count: int, clock: Clock, notes: Notes) -> Fa
         raise InputError(f"{where}: faceVertexCounts: wanted at least 0, got {sizes.min()}")
     if int(sizes.sum()) != len(vertices):
         raise InputError(
-            f"{where}: faceVertexIndices: wanted {int(sizes.sum())}, the sum of the counts, "
-            f"got {len(vertices)}"
+            f"{where}: faceVertexIndices: wanted {int(sizes.sum())}, the sum of "
+            f"faceVertexCounts, got {len(vertices)}"
         )
     if vertices.size and not (vertices.min() >= 0 and vertices.max() < count):
         worst = vertices.max() if vertices.min() >= 0 else vertices.min()
@@ -186,10 +186,12 @@ def surface_of(faces: Faces, mesh: UsdGeom.Mesh, level: int, clock: Clock, notes
     scheme = scheme_of(mesh, clock)
     if scheme not in _SCHEMES or not len(faces.sizes):
         if scheme not in (*_SCHEMES, "none"):
-            notes.add(f"subdivision scheme {scheme[:40]!r} is not known: the mesh is not smooth")
+            notes.add(f"subdivision scheme {scheme[:40]!r} is unknown: the mesh is not subdivided")
         return Surface(faces)
     if scheme == "loop" and (faces.sizes != 3).any():
-        notes.add("a mesh for Loop's subdivision has faces other than triangles: it is not smooth")
+        notes.add(
+            "a mesh for Loop's subdivision has faces other than triangles: it is not subdivided"
+        )
         return Surface(faces)
     return Subdivided(faces, mesh, level, clock)
 

@@ -184,13 +184,13 @@ def _operation(op: UsdGeom.XformOp, clock: Clock, notes: Notes) -> Operation | N
 def _check(made: Operation, where: str, time: float) -> None:
     stated = made.value.values if is_dynamic(made.value) else made.value
     if not np.isfinite(np.asarray(stated, np.float64)).all():
-        raise InputError(f"{where}: wanted finite numbers, got others")
+        raise InputError(f"{where}: wanted finite numbers, got NaN or infinity")
     try:
         matrix = made.at(time)
     except np.linalg.LinAlgError:
-        raise InputError(f"{where}: wanted an operation with an inverse, got none") from None
+        raise InputError(f"{where}: the inverted operation has no inverse") from None
     if not np.isfinite(matrix).all():
-        raise InputError(f"{where}: wanted finite numbers, got others")
+        raise InputError(f"{where}: wanted finite numbers, got NaN or infinity")
 
 
 class _Affine:
@@ -217,9 +217,9 @@ class _Affine:
         """
         made: Matrix = plain(value)
         if not np.isfinite(made).all():
-            raise InputError(f"{self._where}: wanted finite numbers, got others")
+            raise InputError(f"{self._where}: wanted finite numbers, got NaN or infinity")
         if not made[3, 3]:
-            raise InputError(f"{self._where}: wanted a last number other than 0, got 0")
+            raise InputError(f"{self._where}: the last number must not be 0")
         self.changed |= bool(np.abs(made[3] - (0, 0, 0, 1)).max() > _EXACT)
         made = made / made[3, 3]
         made[3] = 0, 0, 0, 1

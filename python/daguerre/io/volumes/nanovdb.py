@@ -109,11 +109,11 @@ def _meta(data: Bytes, at: int, where: str) -> tuple[np.void, str, int]:
     """Facts about a grid, its name, and where they end."""
     begin = at + _META.itemsize
     if begin > len(data):
-        raise InputError(f"{where}: wanted facts about a grid at byte {at}, got the end")
+        raise InputError(f"{where}: truncated: the header of a grid at byte {at} is missing")
     meta = data[at:begin].view(_META)[0]
     end = begin + int(meta["name_size"])
     if end > len(data):
-        raise InputError(f"{where}: wanted the name of a grid at byte {begin}, got the end")
+        raise InputError(f"{where}: truncated: the name of a grid at byte {begin} is missing")
     return meta, data[begin:end].tobytes().split(b"\0")[0].decode("utf-8", "replace"), end
 
 
@@ -144,8 +144,8 @@ def _unblosced(packed: Bytes, size: int, where: str) -> Bytes:
     """Unpacks by Blosc, of whose chunks each says how large it is."""
     if extras.missing("blosc"):
         raise InputError(
-            f"{where}: packed by BLOSC: wanted the package blosc ({extras.hint('blosc')}), or the "
-            "file as nanovdb_convert writes it with --zip"
+            f"{where}: compressed by BLOSC: {extras.lack('blosc')} (or convert the file with "
+            "nanovdb_convert --zip)"
         )
     blosc = import_module("blosc")
     check_room(size, where)

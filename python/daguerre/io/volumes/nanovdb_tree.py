@@ -107,7 +107,7 @@ def dense(data: Bytes, where: str) -> FileGrid:
         )
     values = tree.filled(low - 1, high + 1, float(head["background"]))
     if not np.isfinite(values).all():
-        raise InputError(f"{where}: wanted finite numbers, got others")
+        raise InputError(f"{where}: numbers must be finite")
     return FileGrid(
         freeze_in_place(values[..., None]),
         freeze_in_place(_transform(grid, low - 1, size, where)),
@@ -126,7 +126,7 @@ def _check_kind(grid: np.void, where: str) -> None:
             f"got type {grid['type']}"
         )
     if grid["kind"] == _LEVEL_SET:
-        raise InputError(f"{where}: wanted a grid of densities, got a level set: its distances")
+        raise InputError(f"{where}: wanted a grid of densities, got a level set")
 
 
 def _transform(grid: np.void, low: Integers, size: Integers, where: str) -> NDArray[np.float64]:
@@ -137,7 +137,7 @@ def _transform(grid: np.void, low: Integers, size: Integers, where: str) -> NDAr
     with np.errstate(over="ignore", invalid="ignore"):
         found = np.asarray(world @ cells)
     if not np.isfinite(found).all():
-        raise InputError(f"{where}: wanted a transform of finite numbers, got others")
+        raise InputError(f"{where}: numbers of the transform must be finite")
     return found
 
 
@@ -185,7 +185,7 @@ class _Tree:
         self._leaves, self._corners = np.concatenate(leaves), np.concatenate(corners)
         last = len(data) - _LEAF.itemsize
         if len(self._leaves) and not (self._leaves.min() >= 0 and self._leaves.max() <= last):
-            raise InputError(f"{where}: wanted leaves inside of the grid, got others")
+            raise InputError(f"{where}: leaves are outside of the grid")
 
     def box(self) -> tuple[Integers, Integers]:
         """First active cell along each axis, and one past the last; 0 and 0 if there is none."""
@@ -254,7 +254,7 @@ class _Tree:
         size = layout.itemsize
         self._left[size] = self._left.get(size, len(self._data) // size) - count
         if self._left[size] < 0:
-            raise InputError(f"{self._where}: wanted each node once, got one several times")
+            raise InputError(f"{self._where}: a node appears twice")
 
     def _some_leaves(self) -> Iterator[tuple[NDArray[np.void], Integers]]:
         """Leaves and their first cells, some at a time."""

@@ -40,7 +40,7 @@ def read(path: str | os.PathLike[str]) -> FileGrid:
     file = Path(path)
     data = read_bytes(file)
     if len(data) < _HEAD.itemsize or data[:3].tobytes() != b"VOL":
-        raise InputError(f"{file}: wanted a grid of Mitsuba (VOL), got {data[:3].tobytes()!r}")
+        raise InputError(f"{file}: not a grid of Mitsuba: wanted VOL, got {data[:3].tobytes()!r}")
     head = data[: _HEAD.itemsize].view(_HEAD)[0]
     if head["version"] != 3:
         raise InputError(f"{file}: wanted version 3, got {head['version']}")
@@ -69,7 +69,7 @@ def read(path: str | os.PathLike[str]) -> FileGrid:
     with np.errstate(invalid="ignore"):
         values = raw.astype(np.float32) * np.float32(factor)
     if not (np.isfinite(values).all() and np.isfinite(head["box"]).all()):
-        raise InputError(f"{file}: wanted finite numbers, got others")
+        raise InputError(f"{file}: numbers must be finite")
     return FileGrid(freeze_in_place(values), _of_box(*head["box"].astype(np.float64)))
 
 
