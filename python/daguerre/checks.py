@@ -253,6 +253,7 @@ def plain_light(pixels: NDArray[Any], where: str, *, infinite: bool = False) -> 
         return
     y, x = (int(i) for i in places[0])
     raise InputError(
-        f"{where}: wanted finite numbers, got others in {len(places)} pixels, the first at "
+        f"{where}: wanted finite numbers, got NaN or infinity in {len(places)} pixels, the "
+        f"first at "
         f"({x}, {y})"
     )

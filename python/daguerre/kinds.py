@@ -172,7 +172,7 @@ def _words_of_parts(inner: list[Kind | None], fixed: bool) -> str:
     words = list(dict.fromkeys("values" if kind is None else kind.words for kind in inner))
     if len(words) != 1:
         return f"{len(inner)} values" if fixed else "values"
-    plural = {"a number": "numbers", "a whole number": "whole numbers", "a text": "texts"}
+    plural = {"a number": "numbers", "a whole number": "whole numbers", "a string": "strings"}
     one = plural.get(words[0], f"values, each {words[0]}")
     return f"{len(inner)} {one}" if fixed else f"a list of {one}"
 
@@ -249,7 +249,7 @@ def _array(value: Any) -> Any:
 
 
 NUMBER = Kind("a number", _number)
-TEXT = Kind("a text", _text)
+TEXT = Kind("a string", _text)
 PATH = Kind("a path", _path)
 ARRAY = Kind("numbers", _array, arrays=True)
 _PLAIN: dict[Any, Kind] = {

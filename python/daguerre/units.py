@@ -184,7 +184,7 @@ def edges(flag: str, text: str) -> tuple[int | None, ...]:
         if name not in EDGES:
             raise UsageError(f"{flag}: wanted {wanted}; got {name!r}{suggest(name, EDGES)}")
         if name in found:
-            raise UsageError(f"{flag}: wanted each edge once, got {name} twice")
+            raise UsageError(f"{flag}: {name} appears twice")
         try:
             (found[name],) = integers(flag, value, 1, "100")
         except UsageError:

@@ -73,7 +73,7 @@ def test_first_calls_of_many_threads_at_once(monkeypatch: pytest.MonkeyPatch) ->
         start.wait()
         if n % 2:
             return twice(n, "b")
-        with pytest.raises(dg.UsageError, match="twice: name: wanted a text, got 3"):
+        with pytest.raises(dg.UsageError, match="twice: name: wanted a string, got 3"):
             twice(n, 3)  # type: ignore[arg-type]
         return ""
 

@@ -279,7 +279,7 @@ def test_unknown_color_space_is_noted():
     image = picture("p", some_bytes(), "Filmic sRGB", floats=False)
     tree.shine(tree.texture(image).outputs["Color"])
     assert Read(tree.material).sentences == [
-        "colour space 'Filmic sRGB' is not known: read as linear Rec.709 (1 use)"
+        "colour space 'Filmic sRGB' is unknown: read as linear Rec.709 (1 use)"
     ]
 
 

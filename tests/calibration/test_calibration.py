@@ -261,9 +261,9 @@ def test_samples_of_opentrackio_make_keys() -> None:
         dg.Camera.from_opentrackio(rated)
     rated[1]["timing"] = rated[0]["timing"]
     assert dg.Camera.from_opentrackio(rated).frozen_at(0.02).f_stop == pytest.approx(3.4)
-    with pytest.raises(InputError, match="times that rise"):
+    with pytest.raises(InputError, match="times must increase"):
         dg.Camera.from_opentrackio([last | {"static": first["static"]}, first])
-    with pytest.raises(InputError, match="at least one"):
+    with pytest.raises(InputError, match="samples: no samples"):
         dg.Camera.from_opentrackio([])
 
 
@@ -402,7 +402,7 @@ def test_a_size_beside_the_files_own_is_the_same(
     made = read(given)
     told = (next(iter(made.values())) if isinstance(made, dict) else made).projection.size
     read(given, size=told)
-    with pytest.raises(InputError, match=f"{told[0]} x {told[1]} px, or none; got 641 x 7"):
+    with pytest.raises(InputError, match=f"{told[0]} x {told[1]} px, got 641 x 7"):
         read(given, size=(641, 7))
 
 
@@ -443,11 +443,11 @@ def test_a_chain_with_a_model_outside_its_field(chain: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("a: &x [1]\nb: *x", "line 1, column 4: wanted no anchors"),
-        ("a: !!python/object:os.system x", "no tags"),
+        ("a: &x [1]\nb: *x", "line 1, column 4: anchors and aliases are not supported"),
+        ("a: !!python/object:os.system x", "the only supported tag is"),
         ("a: !!opencv-matrix [1]", "opencv-matrix"),
-        ("a: 1\na: 2", "got 'a' twice"),
-        ("? [a]\n: 1", "text as a name"),
+        ("a: 1\na: 2", "'a' appears twice"),
+        ("? [a]\n: 1", "names must be text"),
         ("a: [1", "line 1"),
         ("a: 1\n---\nb: 1\n", "another document"),
         ("[" * 5000, "nested too deeply"),
@@ -487,14 +487,14 @@ def test_broken_files_are_errors_of_ours(tmp_path: Path, chain: Path) -> None:
 
 
 def test_a_take_is_no_calibration(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="wanted one calibration, got a file for several"):
+    with pytest.raises(InputError, match=r"wanted one calibration; a \.jsonl file holds several"):
         calibration.read(tmp_path / "take.jsonl", format="ros")
 
 
 def test_formats_that_always_say_the_size_take_none(chain: Path) -> None:
-    with pytest.raises(UsageError, match="wanted none for kalibr"):
+    with pytest.raises(UsageError, match="size: kalibr takes none"):
         calibration.read(chain, size=(640, 480))
-    with pytest.raises(UsageError, match="wanted none for ros"):
+    with pytest.raises(UsageError, match="size: ros takes none"):
         calibration.read(ros("plumb_bob", BROWN), size=(640, 480))
 
 

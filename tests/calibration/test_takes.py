@@ -150,8 +150,8 @@ def test_numbers_of_pictures_hold_whenever_the_scene_begins(tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("way", "flags", "code", "message"),
     [
-        ("COLMAP", ("--frames", "2-5"), 3, "model: frame 4: wanted the pose of IMG_0004.jpg"),
-        ("Nerfstudio", ("--frames", "-1"), 3, "wanted the pose of ./images/frame_-0001.png"),
+        ("COLMAP", ("--frames", "2-5"), 3, "model: frame 4: no pose for IMG_0004.jpg"),
+        ("Nerfstudio", ("--frames", "-1"), 3, "no pose for ./images/frame_-0001.png"),
         ("OpenTrackIO", ("--frames", "0-4"), 3, "frame 4 is at 0.166667 s: wanted a time of the"),
         ("OpenTrackIO", ("--frames", "1", "--time", "1"), 3, "0 .. 0.125 s (--time moves frames)"),
     ],
@@ -174,7 +174,7 @@ def test_a_number_needs_frames(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert render(tmp_path, file, "--frames", "1") == 0
     shown = ["--calibration", file, "-o", str(tmp_path / "one.exr"), "--lens", "pinhole"]
     assert main(["render", str(tmp_path / "set.gltf"), *shown]) == 2
-    assert "wanted --frames for # in the name, got none" in capsys.readouterr().err
+    assert "# in the name needs --frames" in capsys.readouterr().err
 
 
 def test_a_hole_in_a_take_of_pictures_is_named(tmp_path: Path) -> None:
@@ -185,10 +185,10 @@ def test_a_hole_in_a_take_of_pictures_is_named(tmp_path: Path) -> None:
     take = calibration.read(tmp_path / "model", "IMG_####.jpg")
     take.check(1, 1 / 24, 24)
     with pytest.raises(
-        dg.InputError, match=r"frame 2: .*IMG_0002.jpg, got none; the take has 3 frames"
+        dg.InputError, match=r"frame 2: .*no pose for IMG_0002.jpg; the take has 3 frames"
     ):
         take.check(2, 2 / 24, 24)
-    with pytest.raises(dg.UsageError, match="wanted --frames"):
+    with pytest.raises(dg.UsageError, match="# in the name needs --frames"):
         take.check(None, 0, 24)
     assert render(tmp_path, file, "--frames", "2") == 3
 
@@ -197,10 +197,10 @@ def test_faults_of_takes_have_a_place(tmp_path: Path) -> None:
     path = tmp_path / "take.jsonl"
     first, last = (json.dumps(tracked.sample(MOMENTS[n], n / 24)) for n in (0, 1))
     for text, message in [
-        (f"{last}\n\n{first}\n", "line 3: timing: wanted times that rise strictly"),
+        (f"{last}\n\n{first}\n", "line 3: timing: times must increase"),
         (f"{first}\n{last[:-1]}\n", "line 2: JSON"),
         (f"{first}\n[1]\n", "line 2"),
-        ("\n", "wanted at least one sample, got none"),
+        ("\n", "no samples"),
     ]:
         path.write_text(text)
         with pytest.raises(dg.InputError, match=message) as error:

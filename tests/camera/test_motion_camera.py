@@ -53,5 +53,5 @@ def test_a_change_replaces_the_motion():
 
 @pytest.mark.parametrize("name", ["lens", "fps", "focus_on", "shutter_type", "aperture_image"])
 def test_what_stays(name):
-    with pytest.raises(UsageError, match=f"camera: {name}: wanted a constant value"):
+    with pytest.raises(UsageError, match=f"camera: {name}: cannot change over time"):
         dg.Camera(**{name: dg.keys([(0, 1), (1, 2)])})

@@ -270,5 +270,5 @@ def test_bad_distances_are_refused(value: Any) -> None:
 
 
 def test_it_is_constant() -> None:
-    with pytest.raises(UsageError, match="camera: near_clip: wanted a constant value"):
+    with pytest.raises(UsageError, match="camera: near_clip: cannot change over time"):
         dg.Camera(near_clip=dg.keys([(0.0, 1.0), (1.0, 2.0)]))

@@ -80,7 +80,7 @@ def test_a_placed_camera_stands_still() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (((0, 0, 0), (0, 0, 0)), "look_at: target: wanted another point than the position"),
+        (((0, 0, 0), (0, 0, 0)), "look_at: target: must differ from the position"),
         (((0, 0), (0, 0, 1)), "look_at: position: wanted"),
         (((0, 0, float("nan")), (0, 0, 1)), "look_at: position: wanted"),
         (((0, 0, 0), (0, 0, 1), float("inf")), "look_at: roll: wanted a number"),
@@ -131,7 +131,7 @@ def test_a_placed_camera_needs_none_in_the_scene(
     ("flags", "message"),
     [
         (["--position=1,2"], "--position: wanted 3 numbers such as 0,1.6,4; got '1,2'"),
-        (["--look-at=0,0,5"], "look_at: target: wanted another point than the position"),
+        (["--look-at=0,0,5"], "look_at: target: must differ from the position"),
         (["--roll=much"], "--roll: wanted"),
         (["--camera=a,b", "--position=0,0,1"], "wanted one --camera, got several"),
     ],

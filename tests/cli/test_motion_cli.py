@@ -113,7 +113,7 @@ def test_what_no_shutter_does(flags, message, capsys):
     ("table", "message"),
     [
         ("/dev/zero", "wanted a file, got a device or a pipe"),
-        ("0,0\n0.5,1\n0.2,1\n", "line 3: wanted times that do not fall"),
+        ("0,0\n0.5,1\n0.2,1\n", "line 3: times must not decrease"),
         ("0,0\n1\n", "line 2: wanted time and opening"),
         ("", "wanted at least two points"),
         ("\n".join(f"{i},1" for i in range(5000)), "wanted at most 4096 points"),

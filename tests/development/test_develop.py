@@ -251,7 +251,9 @@ def test_light_that_is_no_number_is_refused_and_infinite_light_is_white():
     light.rgb[0, 1, 2] = np.nan
     if light.xyz is not None:
         light.xyz[0, 1, 2] = np.nan
-    with pytest.raises(dg.InputError, match=r"got others in 1 pixels, the first at \(1, 0\)"):
+    with pytest.raises(
+        dg.InputError, match=r"got NaN or infinity in 1 pixels, the first at \(1, 0\)"
+    ):
         develop(light)
 
 

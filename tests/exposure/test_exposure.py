@@ -96,8 +96,8 @@ def test_notes_tell_of_a_split() -> None:
 
     assert not notes()
     assert not notes(exposure_time=0.02, exposure_f_stop=4.0)
-    assert "exposure_time sets the brightness to that of 0.5 s" in notes(exposure_time=0.5)
-    assert "brightness to that of f/8; the blur is that of f/4" in notes(exposure_f_stop=8.0)
+    assert "exposure_time sets the brightness (as for 0.5 s)" in notes(exposure_time=0.5)
+    assert "brightness (as for f/8); the lens at f/4 sets the blur" in notes(exposure_f_stop=8.0)
 
 
 def test_a_pinhole_says_at_which_stop_it_is_exposed() -> None:

@@ -357,16 +357,16 @@ def test_a_parent_is_one_thing_with_what_hangs_below_it(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("{}", "wanted patterns of names and their categories, got none"),
+        ("{}", "empty, wanted patterns of names with their categories"),
         ("[1]", "wanted an object"),
         ('{"a": 3}', "a: wrong type: wanted an object"),
         ('{"a": {"id": 1}}', "a.name"),
         ('{"a": {"name": "x", "id": 0}}', "a.id: out of range: wanted 1"),
-        ('{"a": {"name": "x", "idd": 1}}', "a.idd: not known"),
+        ('{"a": {"name": "x", "idd": 1}}', "a.idd: unknown member"),
         ('{"a": {"name": "x", "id": 1}, "b": {"name": "y", "id": 1}}', "an id for each category"),
         ('{"a": {"name": "x", "id": 1}, "b": {"name": "x", "id": 2}}', "one id for 'x'"),
         ('{"a": "x", "a": "y"}', "twice"),
-        ('{"Chiar": "x"}', "'Chiar': wanted a pattern that matches the name of a node"),
+        ('{"Chiar": "x"}', "'Chiar': no node has a name that matches"),
     ],
 )
 def test_bad_files_of_categories(text: str, message: str, tmp_path: Path) -> None:

@@ -129,7 +129,7 @@ def test_formulas_in_a_file() -> None:
         ({"table": []}, r"glass\.table: wanted"),
         (
             {"table": [[500, 1.5], [500, 1.6]]},
-            r"glass\.table: wanted each wavelength once, got two indices",
+            r"glass\.table: wavelengths must differ, got two indices",
         ),
         ({"table": [[500, 0.2]]}, r"glass\.table\[0\]\[1\]: out of range"),
         ({"sellmeier": {"b": [1], "c": []}}, r"glass\.sellmeier: wanted as many c as b"),

@@ -177,7 +177,8 @@ def test_a_clear_diameter_beyond_the_sphere_is_the_spheres(tmp_path: Path) -> No
     data["surfaces"][1] = row("spherical", -310.0, 1.5, 13.0)
     lens = imported(write.zmx(data), tmp_path, ".zmx")
     assert any(
-        n.startswith("a clear diameter is cut to that of the sphere (surface 1") for n in lens.notes
+        n.startswith("a clear diameter is reduced to the diameter of the sphere (surface 1")
+        for n in lens.notes
     )
     semi = lens.surfaces[0].semi_diameter
     assert semi is not None

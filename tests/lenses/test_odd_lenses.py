@@ -99,7 +99,9 @@ def test_equal_positions_are_one(
 
 def test_without_a_position_at_infinity_there_is_no_zoom(tmp_path: Path) -> None:
     lens = lenses.load(str(written(tmp_path, "near alone, twice")))
-    with pytest.raises(LensError, match="zoom: wanted a lens with a configuration at infinity"):
+    with pytest.raises(
+        LensError, match="zoom: the lens has no configuration that is focused at infinity"
+    ):
         lens.at_zoom(47.0)
 
 

@@ -118,8 +118,8 @@ def test_a_dynamic_value_may_be_of_any_class():
 @pytest.mark.parametrize(
     ("pairs", "options", "message"),
     [
-        ([(0, 1), (0, 2)], {}, r"keys\[1\]: time: wanted times that rise strictly, got 0 s then"),
-        ([(1, 1), (0.5, 2)], {}, "rise strictly, got 1 s then 0.5 s"),
+        ([(0, 1), (0, 2)], {}, r"keys\[1\]: time: times must increase, got 0 s then"),
+        ([(1, 1), (0.5, 2)], {}, "times must increase, got 1 s then 0.5 s"),
         ([(math.nan, 1)], {}, r"keys\[0\]: time: wanted a number .*, got nan"),
         ([(0, math.inf)], {}, r"keys\[0\]: wanted a number, got inf"),
         ([(0, (0, math.nan))], {}, r"keys\[0\]: wanted finite numbers"),
@@ -128,10 +128,10 @@ def test_a_dynamic_value_may_be_of_any_class():
         ([], {}, "keys: wanted 1 .. 1000000 keys, got 0"),
         (3, {}, "keys: wanted .*, got 3"),
         ([(0, 1, 2)], {}, r"keys\[0\]: wanted \(time in s, value\)"),
-        ([(0, 1)], {"interpolation": "twist"}, "wanted linear, step for such values, got 'twist'"),
-        ([(0, "a")], {"interpolation": "linear"}, "wanted step for such values"),
+        ([(0, 1)], {"interpolation": "twist"}, "wanted linear, step for these values, got 'twist'"),
+        ([(0, "a")], {"interpolation": "linear"}, "wanted step for these values"),
         ([(0, np.eye(4))], {"interpolation": "twisted"}, r"did you mean 'twist'"),
-        ([(0, 1)], {"pivot": (0, 0, 0)}, "pivot: wanted one with matrices"),
+        ([(0, 1)], {"pivot": (0, 0, 0)}, "pivot: only keys of matrices"),
         ([(0, np.eye(4))], {"pivot": (0, 0)}, "pivot: wanted three finite numbers"),
         (
             [(0, np.eye(4)), (1, np.diag((2.0, 1, 1, 1)))],
@@ -161,7 +161,7 @@ def test_bad_spins(arguments, message):
 
 
 def test_a_spin_of_keys_that_are_no_matrices():
-    with pytest.raises(InputError, match="wanted keys of matrices"):
+    with pytest.raises(InputError, match="keys must be matrices"):
         dg.spin((0, 1, 0), 1, transform=dg.keys([(0, 1)]))
 
 

@@ -112,7 +112,7 @@ def test_a_matte_is_the_alpha_of_its_object(name: str) -> None:
     np.testing.assert_allclose(mattes.mask("front"), front.alpha, atol=EXACT)
     np.testing.assert_allclose(mattes.mask("back"), both.alpha - front.alpha, atol=2 * EXACT)
     np.testing.assert_allclose(mattes.mask("front", "back"), both.alpha, atol=EXACT)
-    with pytest.raises(dg.UsageError, match=r"no name 'frnt' \(did you mean 'front'\?\)"):
+    with pytest.raises(dg.UsageError, match=r"no object named 'frnt' \(did you mean 'front'\?\)"):
         mattes.mask("frnt")
 
 

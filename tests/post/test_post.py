@@ -255,11 +255,11 @@ def test_units_of_parameters():
         (["vignetting:sensor=36x24"], 2, "focal_length: the file has none"),
         (["vignetting:model=lens,sensor=36x24"], 2, "lens: wanted a name"),
         (["vignetting:model=lens,lens=nothing,sensor=36x24"], 3, "no lens of the library"),
-        (["film"], 2, "gain: wanted a number of stops of at least -10, got nothing"),
+        (["film"], 2, "gain: wanted a number of stops of at least -10, got no value"),
         (
             ["diffraction"],
             2,
-            "f_number: wanted an f-stop such as 2.8, f/2.8 or f2.8, at least 0.3, got nothing",
+            "f_number: wanted an f-stop such as 2.8, f/2.8 or f2.8, at least 0.3, got no value",
         ),
         (["deep"], 3, "channel for motion.u: wanted motion.U or"),
     ],
@@ -316,7 +316,7 @@ def bad_files(tmp_path: Path) -> dict[str, tuple[bytes, str]]:
     return {
         "empty": (b"", "wanted an OpenEXR file"),
         "text": (b"#?RADIANCE\n\n", "wanted an OpenEXR file"),
-        "header cut off": (whole[:60], "a header without an end"),
+        "header cut off": (whole[:60], "header: truncated or too long"),
         "rows cut off": (whole[: len(whole) // 2], ""),
         "deep": (whole[:4] + struct.pack("<i", 2 | 0x800) + whole[8:], "got deep ones"),
         "huge": (huge, "dataWindow: wanted corners in order"),

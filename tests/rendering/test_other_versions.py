@@ -127,7 +127,7 @@ def test_a_crop_is_not_joined_to_those_of_another_version(
     by_another_version(files[1])
     assert main(["merge", *map(str, files), "-o", str(tmp_path / "out.exr")]) == 4
     said = " ".join(capsys.readouterr().err.split())
-    assert f"{files[1]}: is no crop of the picture of {files[0]}" in said
+    assert f"{files[1]}: not a crop of the same picture as {files[0]}" in said
     assert OTHER in said
     assert NOW in said
 

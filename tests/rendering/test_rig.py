@@ -108,7 +108,7 @@ def test_bad_rigs_are_errors() -> None:
         dg.render_rig(scene, {})
     with pytest.raises(UsageError, match="wanted a Camera, got 'left'"):
         dg.stereo_pair("left", 0.1)  # type: ignore[arg-type]
-    with pytest.raises(UsageError, match="camera: name: wanted a text or None, got 1"):
+    with pytest.raises(UsageError, match="camera: name: wanted a string or None, got 1"):
         dg.render_rig(dg.Scene(), {"a": 1})  # type: ignore[dict-item]
     numbers = {"image_size": (96, 54), "camera_matrix": [90, 0, 46, 0, 90, 27, 0, 0, 1]}
     with pytest.raises(UsageError, match="wanted a Camera or None, got 'left'"):

@@ -39,8 +39,8 @@ def test_a_spectrum_is_linear_between_samples_and_constant_beyond() -> None:
     [
         ((), (), "wavelengths_nm: wanted 1 to 4096"),
         ((400,), (1, 2), "values: wanted 1 numbers, got 2"),
-        ((500, 400), (1, 2), "wavelengths_nm: wanted rising"),
-        ((0, 400), (1, 2), "wavelengths_nm: wanted rising"),
+        ((500, 400), (1, 2), "wavelengths_nm: must increase"),
+        ((0, 400), (1, 2), "wavelengths_nm: must increase"),
         ((400, 500), (1, -2), "values: wanted at least 0, got -2"),
         ((400, 500), (1, float("nan")), "values: wanted a row of finite"),
         (((400, 500),), (1, 2), "wavelengths_nm: wanted a row"),
@@ -57,14 +57,14 @@ def test_a_spectrum_that_is_none_is_refused(nm: Any, values: Any, place: str) ->
     ("kind", "message"),
     [
         (dg.Diffuse(0.5), "reflectance: wanted three numbers, got 0.5"),  # type: ignore[arg-type]
-        (dg.Conductor(eta=(1, 1, 1)), "k: wanted it too with eta, got None"),
+        (dg.Conductor(eta=(1, 1, 1)), "k: missing, eta needs it"),
         (dg.Conductor(alpha_v="x"), "alpha_v: wanted a number"),  # type: ignore[arg-type]
         (dg.Dielectric(distribution="GGX"), "distribution: wanted ggx or beckmann, got 'GGX'"),  # type: ignore[arg-type]
         (dg.Coated(distribution=1), "distribution: wanted ggx or beckmann, got 1"),  # type: ignore[arg-type]
         (dg.Dielectric(ior=(1, 1, 1)), "ior: wanted a number"),  # type: ignore[arg-type]
         (dg.Dielectric(thin=2), "thin: wanted True or False, got 2"),  # type: ignore[arg-type]
         (dg.Coated(dg.Gltf()), "base: wanted Diffuse or Conductor"),  # type: ignore[arg-type]
-        (dg.Coated(dg.Conductor(k=(1, 1, 1))), "base: eta: wanted it too with k"),
+        (dg.Coated(dg.Conductor(k=(1, 1, 1))), "base: eta: missing, k needs it"),
         (dg.Mix(0, 5), "second: wanted one of the 2 materials before it, got 5"),
         (dg.Mix(2, 0), "first: wanted one of the 2 materials before it, got 2"),
     ],
@@ -77,11 +77,18 @@ def test_a_wrong_field_is_one_error_that_names_it(kind: Any, message: str) -> No
         scene.add_material(dg.Material(kind))
 
 
-@pytest.mark.parametrize("kind", [dg.Gltf(), dg.Mix(0, 0), dg.Boundary()])
-def test_a_normal_map_belongs_to_kinds_that_scatter_by_it(kind: Any) -> None:
+@pytest.mark.parametrize(
+    ("kind", "says"),
+    [
+        (dg.Gltf(), "set it on Gltf instead"),
+        (dg.Mix(0, 0), "set it on the parts instead"),
+        (dg.Boundary(), "a boundary has none"),
+    ],
+)
+def test_a_normal_map_belongs_to_kinds_that_scatter_by_it(kind: Any, says: str) -> None:
     scene = dg.Scene()
     scene.add_material(dg.Diffuse())
-    with pytest.raises(dg.InputError, match="normal_texture: wanted"):
+    with pytest.raises(dg.InputError, match=f"normal_texture: {says}"):
         scene.add_material(dg.Material(kind, normal_texture=SLOT))
 
 
@@ -101,7 +108,7 @@ def test_metals_have_a_source_and_cover_the_visible_range() -> None:
     assert {"Au", "Ag", "Al", "Cu", "Cr", "Fe", "Ti", "W", "Ni", "Pt", "a-C"} <= set(metals.names())
     with pytest.raises(dg.UsageError, match=r"metal: wanted .*, got 'Unobtainium'"):
         dg.Conductor.of_metal("Unobtainium")
-    with pytest.raises(dg.UsageError, match="eta: wanted it from the table"):
+    with pytest.raises(dg.UsageError, match="eta: comes from the table of metals"):
         dg.Conductor.of_metal("Au", eta=(1, 1, 1))
 
 

@@ -156,7 +156,7 @@ BAD = {
     ),
     "times fall": (
         lambda s: s.add_mesh(CORNERS, FACES, steps=([1, 0], np.stack([CORNERS] * 2))),
-        "steps: .* rise strictly",
+        "steps: .* times must increase",
     ),
     "NaN in a step": (
         lambda s: s.add_mesh(CORNERS, FACES, steps=([0], CORNERS[None] * np.nan)),

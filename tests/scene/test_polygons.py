@@ -95,7 +95,7 @@ def test_endless_work_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     comb[:, 1] = np.where(np.arange(count) % 2, 0.1, 5)
     comb[-1], comb[0] = [count, -10, 0], [0, -10, 0]
     before = time.process_time()
-    with pytest.raises(dg.InputError, match="polygons: wanted fewer or simpler concave ones"):
+    with pytest.raises(dg.InputError, match="polygons: concave polygons have too many corners"):
         triangulate([count], np.arange(count), comb)
     assert time.process_time() - before < 20
     turn = 2 * np.pi * np.arange(count) / count
@@ -236,13 +236,13 @@ BAD: list[tuple[str, dict[str, Any], str]] = [
     ("kind", {"subdivision": 3, "indices": FACES}, "subdivision: wanted"),
     ("loop", {"subdivision": "loop", "indices": FACES}, "wanted triangles for loop"),
     ("uv", {"sizes": [4] * 6, "uv": UV[:9]}, "uv: wanted 8 elements"),
-    ("uv, other", {"sizes": [4] * 6, "uv": UV, "uv1": UV[:9]}, r"uv1: wanted 8 elements \(one a"),
+    ("uv, other", {"sizes": [4] * 6, "uv": UV, "uv1": UV[:9]}, r"uv1: wanted 8 elements \(one per"),
     ("uv rows", {"sizes": [4] * 6, "uv": [[0], [1, 2]]}, "uv: wanted .* unequal length"),
     ("color rows", {"sizes": [4] * 6, "colors": [[0], [1, 2]]}, "colors: .* unequal length"),
     ("NaN", {"subdivision": "bilinear", "sizes": [4] * 6, "uv": UV * np.nan}, r"uv\[0\]: wanted f"),
     ("rules", {"subdivision": Subdivision(rules=3), "indices": FACES}, "rules: wanted Rules"),
     ("level", {"subdivision": Subdivision(level=0), "indices": FACES}, "level: wanted 1 .. 10"),
-    ("normals", {"subdivision": "loop", "indices": FACES, "normals": CUBE}, "normals: wanted"),
+    ("normals", {"subdivision": "loop", "indices": FACES, "normals": CUBE}, "normals: not allowed"),
     ("ragged", {"subdivision": "bilinear", "indices": CORNERS[:22]}, r"indices: wanted shape \(F"),
     ("motion", {"sizes": [4] * 6, "motion": dg.keys([(0, 1)])}, "motion: wanted positions over"),
     ("colors", {"sizes": [4] * 6, "colors": CUBE[1:]}, "colors: wanted 8 elements"),

@@ -168,7 +168,7 @@ def test_a_lamp_has_a_red_halo_on_film_without_backing() -> None:
         ({"name": "a" * 201}, "name: too long: wanted at most 200 characters, got 201"),
         ({"iso": -5}, "iso"),
         ({"granularity": -1}, "granularity"),
-        ({"grain": 1}, "grain: not known"),
+        ({"grain": 1}, "grain: unknown member"),
         ({"paper": None}, "paper"),
         ({"paper": {"least": 0.1, "gamma": -2, "toe": -1, "shoulder": 0}}, "paper: gamma"),
         ({"layers": {"R": {}}}, "sensitivity"),
@@ -179,7 +179,7 @@ def test_a_lamp_has_a_red_halo_on_film_without_backing() -> None:
         ({"balance_k": 20}, "balance"),
         (
             {"wavelengths_nm": list(range(800, 980, 10))},
-            "wanted layers sensitive between 380 and 780 nm",
+            "layers must be sensitive between 380 and 780 nm",
         ),
     ],
 )
@@ -207,7 +207,7 @@ def test_wrong_numbers_in_layers_are_named(tmp_path: Path) -> None:
         stocks.load(path)
     data["layers"]["G"] = data["layers"]["R"]
     path.write_text(json.dumps(data))
-    with pytest.raises(InputError, match="with linearly independent curves"):
+    with pytest.raises(InputError, match="their curves linearly independent"):
         stocks.load(path)
     data["layers"]["G"] = data["layers"]["R"] | {"sensitivity": [0.1]}
     path.write_text(json.dumps(data))
@@ -228,7 +228,9 @@ def test_unknown_stocks_and_frames_without_exposure_are_one_line() -> None:
     with pytest.raises(UsageError, match="seed"):
         stock.expose(even(stock, 1.0), seed=-1)
     for light in (np.nan, np.inf):
-        with pytest.raises(InputError, match=r"got others in 1 pixels, the first at \(1, 0\)"):
+        with pytest.raises(
+            InputError, match=r"got NaN or infinity in 1 pixels, the first at \(1, 0\)"
+        ):
             stock.expose(even(stock, [1.0, light]))
 
 

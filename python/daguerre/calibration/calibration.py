@@ -140,8 +140,8 @@ def check_field(made: Projection, where: str) -> None:
     if made.model in WHOLE and dark.any() and not math.isfinite(fold):
         u, v = border[dark][0]
         raise InputError(
-            f"{where}: {made.model}: pixel ({u:.4g}, {v:.4g}) sees nothing, because the distortion "
-            "folds before it; wanted a distortion without folds in the picture"
+            f"{where}: {made.model}: pixel ({u:.4g}, {v:.4g}) sees nothing: the distortion "
+            f"folds over within the picture"
         )
     if made.model in WHOLE and dark.any():
         reach = max(math.hypot(a - x, b - y) for a in (0, width - 1) for b in (0, height - 1))
@@ -156,7 +156,7 @@ def check_field(made: Projection, where: str) -> None:
         return
     raise InputError(
         f"{where}: {made.model}: the radial polynomial folds at {fold:.4g} px from the principal "
-        f"point ({angle:.4g} degrees); wanted no fold up to the {what} of the picture, at "
+        f"point ({angle:.4g} degrees); it must not fold up to the {what} of the picture, at "
         f"{reach:.4g} px"
     )
 

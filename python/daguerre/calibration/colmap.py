@@ -65,10 +65,10 @@ def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[
     for where, words in _lines(folder / "cameras.txt"):
         name, made = _camera(where, words)
         if name in cameras:
-            raise InputError(f"{where}: wanted each camera once, got {name} twice")
+            raise InputError(f"{where}: camera {name} appears twice")
         cameras[name] = made
     if not cameras:
-        raise InputError(f"{folder / 'cameras.txt'}: wanted a camera, got none")
+        raise InputError(f"{folder / 'cameras.txt'}: no cameras")
     images = folder / "images.txt"
     if not images.exists():
         return {f"camera{name}": Calibration(made) for name, made in cameras.items()}
@@ -76,10 +76,10 @@ def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[
     for where, words in _lines(images, every=2):
         one = _image(where, words, cameras, unit_m)
         if one.name in found:
-            raise InputError(f"{where}: wanted each picture once, got {short(one.name)} twice")
+            raise InputError(f"{where}: picture {short(one.name)} appears twice")
         found[one.name] = one
     if not found:
-        raise InputError(f"{images}: wanted a picture, got none")
+        raise InputError(f"{images}: no pictures")
     return found
 
 

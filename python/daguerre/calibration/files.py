@@ -103,9 +103,9 @@ def read_all(
             f"{where}: unit: wanted COLMAP, transforms.json or an OpenCV stereo pair, got {kind}"
         )
     if model is not None and kind != "opencv":
-        raise UsageError(f"{where}: model: wanted none for {kind}, got {model!r}")
+        raise UsageError(f"{where}: model: {kind} takes none, got {model!r}")
     if size is not None and kind in ("kalibr", "ros", "colmap"):
-        raise UsageError(f"{where}: size: wanted none for {kind}, got {short(size)}")
+        raise UsageError(f"{where}: size: {kind} takes none, got {short(size)}")
     if kind == "kalibr":
         return kalibr.read_kalibr(source)
     if kind == "colmap":

@@ -118,8 +118,7 @@ def write_kalibr(calibrations: Sequence[Calibration]) -> str:
         now = np.asarray(np.linalg.inv(FLIP @ one.rig_from_camera @ FLIP), np.float64)
         if i == 0 and not np.allclose(now, np.eye(4), atol=1e-12):
             raise InputError(
-                "calibration: Kalibr: wanted a first camera whose rig_from_camera is the identity, "
-                "got another pose"
+                "calibration: Kalibr: the rig_from_camera of the first camera must be the identity"
             )
         if i > 0:
             lines += ["  T_cn_cnm1:", *_rows(now @ np.linalg.inv(before))]
@@ -149,6 +148,6 @@ def _named(made: Projection) -> tuple[str, str, list[float], list[float]]:
     if made.model in ("fov", "rectilinear"):
         return "pinhole", "fov" if values else "none", tail, values
     raise InputError(
-        "calibration: Kalibr: wanted rectilinear, opencv with k1 k2 p1 p2 alone, kannala_brandt, "
+        "calibration: Kalibr: wanted rectilinear, opencv with only k1 k2 p1 p2, kannala_brandt, "
         f"omni, double_sphere, eucm or fov; got {made.model} with {len(values)} parameters"
     )

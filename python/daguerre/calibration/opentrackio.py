@@ -61,7 +61,7 @@ def read_opentrackio(source: Source, *, size: tuple[int, int] | None = None) -> 
     offset = _offset(lens, "projectionOffset")
     moved = lens.get("distortionOffset")
     if moved is not None and any(_offset(lens, "distortionOffset")):
-        moved.fail("wanted (0, 0), the centre of the projection, got another offset")
+        moved.fail("must be (0, 0), the centre of the projection")
     model, values = _distortion(lens, focal)
     made = projection(
         root.file,
@@ -168,9 +168,7 @@ def write_opentrackio(calibration: Calibration) -> str:
     """
     made, pitch = calibration.projection, calibration.pixel_pitch
     if pitch is None:
-        raise InputError(
-            "calibration: OpenTrackIO: wanted a pixel pitch for lengths in mm, got none"
-        )
+        raise InputError("calibration: OpenTrackIO: lengths in mm need a pixel pitch")
     values = (*made.parameters, *[0.0] * 14)[:14]
     named = next((name for name, model in MODELS.items() if model == made.model), None)
     if (named is None and made.model != "rectilinear") or any(values[8:]):

@@ -93,14 +93,14 @@ def _read_out(
             ends = " and ".join(f"{c} .. {c + a}" for c, a in zip(corner, size, strict=True))
             roi.fail(f"wanted a region within {sides[0]} x {sides[1]}, got columns and rows {ends}")
         if whole and size != sides:
-            roi.fail("wanted the whole picture for a rectified camera, got a region")
+            roi.fail("a rectified camera must not have a region of interest")
     bins = [max(_or_0(root, name, 1024), 1) for name in ("binning_x", "binning_y")]
     pixels = [a // b for a, b in zip(size, bins, strict=True)]
     if min(pixels) < 1:
         root.fail(f"binning: wanted at most the size of the picture, got {bins[0]} x {bins[1]}")
     notes: tuple[str, ...] = ()
     if bins != [1, 1]:
-        notes = (f"{bins[0]} x {bins[1]} pixels are binned: a pixel pitch is that after binning",)
+        notes = (f"{bins[0]} x {bins[1]} pixels are binned: give the pixel pitch after binning",)
     zoomed = [f / b for f, b in zip(focal, bins, strict=True)]
     moved = [(p - c - (b - 1) / 2) / b for p, c, b in zip(principal, corner, bins, strict=True)]
     return (pixels[0], pixels[1]), (zoomed[0], zoomed[1]), (moved[0], moved[1]), notes
@@ -131,9 +131,7 @@ def write_ros(calibration: Calibration) -> str:
     """Formats YAML for ``camera_info_manager``, for a single camera: R is the identity."""
     made = calibration.projection
     if not np.array_equal(calibration.rig_from_camera, np.eye(4)):
-        raise InputError(
-            "calibration: ROS: wanted a camera whose rig_from_camera is the identity, got another"
-        )
+        raise InputError("calibration: ROS: the rig_from_camera of the camera must be the identity")
     values = coefficients(made, (4,) if made.model == "kannala_brandt" else (5, 8, 12, 14))
     name = "plumb_bob" if len(values) == 5 else "rational_polynomial"
     if made.model == "kannala_brandt":

@@ -34,7 +34,8 @@ def load(source: Source) -> Item:
     path = Path(source)
     if path.suffix.lower() == ".jsonl":
         raise InputError(
-            f"{path}: wanted one calibration, got a file for several, such as an OpenTrackIO take"
+            f"{path}: wanted one calibration; a .jsonl file holds several, such as an "
+            f"OpenTrackIO take"
         )
     data = read_bytes(path)
     if data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<"):
@@ -79,7 +80,7 @@ def needed(root: Item, wanted: str, *names: str) -> Item:
     """Finds a member like :func:`first`, but requires it."""
     found = first(root, *names)
     if found is None:
-        root.fail(f"missing: wanted {wanted} ({' or '.join(names)}), got none")
+        root.fail(f"missing: {wanted} ({' or '.join(names)})")
     return found
 
 
@@ -141,13 +142,11 @@ def agreed(
     size = told or given
     if size is None:
         item.fail(
-            f"missing: wanted the size of the picture ({names}), got none; set size=(W, H) or "
-            "--calibration-size"
+            f"missing: the size of the picture ({names}); set size=(W, H) or --calibration-size"
         )
     if given is not None and size != tuple(given):
         item.fail(
-            f"wanted the size of its pictures, {size[0]} x {size[1]} px, or none; got "
-            f"{given[0]} x {given[1]}"
+            f"wanted the size in the file, {size[0]} x {size[1]} px, got {given[0]} x {given[1]}"
         )
     return size
 
@@ -156,7 +155,7 @@ def camera_matrix(item: Item) -> tuple[tuple[float, float], tuple[float, float]]
     """Reads focal lengths and principal point from a camera matrix, px."""
     k = matrix(item, 3, 3)
     if k[0, 1] != 0:
-        item.fail(f"wanted no skew (0 at row 1, column 2), got {k[0, 1]:g}")
+        item.fail(f"skew is not supported: row 1, column 2 must be 0, got {k[0, 1]:g}")
     if k[1, 0] != 0 or (k[2] != (0, 0, 1)).any():
         item.fail(f"wanted [fx 0 cx; 0 fy cy; 0 0 1], got {k.tolist()}")
     if min(k[0, 0], k[1, 1]) <= 0:

@@ -104,7 +104,7 @@ def _with_pose(root: Item, source: Source, *, rectified: bool) -> Item:
         beside = Path(source).with_name("extrinsics" + Path(source).suffix)
     if beside is None or not beside.exists():
         where = "" if beside is None else f", here or in {beside}"
-        root.fail(f"missing: wanted {', '.join(wanted)}{where}; got none")
+        root.fail(f"missing: {', '.join(wanted)}{where}")
     return load(beside)
 
 
@@ -155,6 +155,6 @@ def _too_far(stands: FloatArray) -> tuple[str, ...]:
     if baseline <= LONGEST_M:
         return ()
     return (
-        f"the cameras are {baseline:.4g} m apart: the file's lengths are probably in the unit of "
-        "the calibration board (--calibration-unit, unit_m)",
+        f"the cameras are {baseline:.4g} m apart: lengths are probably in units of the "
+        f"calibration board (--calibration-unit, unit_m)",
     )

@@ -68,13 +68,12 @@ class Take(Calibration):
         first, last = self.samples[0][0], self.samples[-1][0]
         if self.pattern and frame is None:
             raise UsageError(
-                f"--calibration {self.file}:{self.pattern}: wanted --frames for # in the name, "
-                "got none"
+                f"--calibration {self.file}:{self.pattern}: # in the name needs --frames"
             )
         if self.pattern and frame not in {moment for moment, _ in self.samples}:
             raise InputError(
-                f"{self.file}: frame {frame}: wanted the pose of "
-                f"{with_number(self.pattern, frame or 0)}, got none; the take has "
+                f"{self.file}: frame {frame}: no pose for "
+                f"{with_number(self.pattern, frame or 0)}; the take has "
                 f"{len(self.samples)} frames of {first:g} .. {last:g}"
             )
         number(fps, f"{self.file}: fps", above=0)

@@ -51,7 +51,7 @@ def read_take(samples: Samples, *, size: tuple[int, int] | None = None) -> Take:
     """
     file, listed = _listed(samples)
     if not listed:
-        raise InputError(f"{file}: wanted at least one sample, got none")
+        raise InputError(f"{file}: no samples")
     still: dict[str, Any] = {}
     found: list[tuple[float, Calibration]] = []
     begin = (0.0, 0.0)
@@ -70,8 +70,7 @@ def read_take(samples: Samples, *, size: tuple[int, int] | None = None) -> Take:
         time = (clock[0] - begin[0]) + (clock[1] - begin[1])
         if found and time <= found[-1][0]:
             raise InputError(
-                f"{where}: timing: wanted times that rise strictly, "
-                f"got {found[-1][0]:g} s then {time:g} s"
+                f"{where}: timing: times must increase, got {found[-1][0]:g} s then {time:g} s"
             )
         found.append((time, one))
     first = found[0][1]
@@ -127,7 +126,7 @@ def _time(root: Item, index: int) -> tuple[float, float]:
         return stamp.need("seconds").number(), 1e-9 * stamp.number_of("nanoseconds", 0.0)
     rate = None if timing is None else timing.get("sampleRate")
     if rate is None:
-        root.fail("missing: wanted timing.sampleTimestamp or timing.sampleRate, got neither")
+        root.fail("missing: timing.sampleTimestamp or timing.sampleRate")
     return 0.0, index * rate.number_of("denom", 1.0) / rate.need("num").number(above=0)
 
 

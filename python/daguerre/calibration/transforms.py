@@ -50,13 +50,13 @@ def read_transforms(
     root = load(source)
     listed = root.list_of("frames")
     if not listed:
-        root.fail("frames: wanted pictures, got none")
+        root.fail("frames: no pictures")
     found: dict[str, Calibration] = {}
     for item in listed:
         named = item.need("file_path")
         name = named.text()
         if name in found:
-            named.fail(f"wanted each picture once, got {short(name)} twice")
+            named.fail(f"picture {short(name)} appears twice")
         pose = rigid(item.need("transform_matrix"))
         pose[:3, 3] *= unit_m
         settings = {"transform": pose}
@@ -113,5 +113,5 @@ def _focal(told: Any, axis: str, side: int, root: Item) -> float:
     if focal is not None:
         return float(focal.number(above=0))
     if angle is None:
-        root.fail(f"missing: wanted a focal length (fl_{axis} or camera_angle_{axis}), got none")
+        root.fail(f"missing: a focal length (fl_{axis} or camera_angle_{axis})")
     return float(side / 2 / math.tan(angle.number(1e-6, 3.14) / 2))

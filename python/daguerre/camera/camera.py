@@ -208,7 +208,7 @@ class Camera(Value):
             raise UsageError(f"camera: motion: wanted a dict, got {shown(self.motion)}")
         for name in {**self.motion, **found}:
             if name not in MOVABLE:
-                raise UsageError(f"camera: {name}: wanted a constant value, got one over time")
+                raise UsageError(f"camera: {name}: cannot change over time")
         for name, value in found.items():
             object.__setattr__(self, name, value.at(0.0))
         object.__setattr__(self, "motion", {**self.motion, **found})

@@ -85,12 +85,12 @@ def exposure_notes(camera: Camera, f_stop: float | None, shutter_s: float) -> li
     time, stop, own = camera.exposure_time, camera.exposure_f_stop, f_stop
     if time is not None and not math.isclose(time, shutter_s, rel_tol=_SINGLE):
         notes.append(
-            f"exposure_time sets the brightness to that of {time:g} s; the shutter sets the blur"
+            f"exposure_time sets the brightness (as for {time:g} s); the shutter sets the blur"
         )
     if stop is not None and own is not None and not math.isclose(stop, own, rel_tol=_SINGLE):
         notes.append(
-            f"exposure_f_stop sets the brightness to that of f/{stop:g}; the blur is that of "
-            f"f/{own:.3g}"
+            f"exposure_f_stop sets the brightness (as for f/{stop:g}); the lens at f/{own:.3g} "
+            f"sets the blur"
         )
     return notes
 

@@ -41,7 +41,7 @@ def look_at(
     origin = np.array(numbers(position, "look_at: position", 3, _POINT))
     aim = np.array(numbers(target, "look_at: target", 3, _POINT)) - origin
     if not np.any(aim):
-        raise UsageError("look_at: target: wanted another point than the position")
+        raise UsageError("look_at: target: must differ from the position")
     return _placed(origin, aim, number(roll, "look_at: roll"))
 
 

@@ -246,8 +246,9 @@ def check_resolution(projection: Projection, resolution: tuple[int, int]) -> Non
     (width, height), (columns, rows) = projection.size, resolution
     if abs(rows - columns * height / width) > 0.5:
         raise UsageError(
-            f"projection: its picture is {width} x {height}: wanted a resolution of that shape, "
-            f"such as {columns} x {round(columns * height / width)}, got {columns} x {rows}"
+            f"projection: its picture is {width} x {height}: wanted a resolution with its "
+            f"aspect ratio, such as {columns} x {round(columns * height / width)}, got "
+            f"{columns} x {rows}"
         )
 
 

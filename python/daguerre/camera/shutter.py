@@ -73,8 +73,8 @@ def interval(camera: Camera, time: float, resolution: tuple[int, int]) -> tuple[
     end = begin + duration
     if abs(end - begin - duration) > 0.01 * duration:
         raise UsageError(
-            f"scene: time: wanted a time to which {duration:g} s can be added without loss, got "
-            f"{time:g} s"
+            f"scene: time: {time:g} s is too large for an exposure of {duration:g} s in double "
+            f"precision"
         )
     return begin, end
 

@@ -43,7 +43,7 @@ def read_curve(path: Path) -> list[tuple[float, float]]:
             continue
         if points and numbers[0] < points[-1][0]:
             raise InputError(
-                f"{path}: line {i}: wanted times that do not fall, got {numbers[0]:g} "
+                f"{path}: line {i}: times must not decrease, got {numbers[0]:g} "
                 f"after {points[-1][0]:g}"
             )
         points.append(numbers)
@@ -54,7 +54,7 @@ def read_curve(path: Path) -> list[tuple[float, float]]:
 
 def _over_the_exposure(path: Path, points: list[tuple[float, float]]) -> list[tuple[float, float]]:
     if len(points) < 2 or not points[-1][0] > points[0][0]:
-        raise InputError(f"{path}: wanted at least two points of different times")
+        raise InputError(f"{path}: wanted at least two points at different times")
     begin, end = points[0][0], points[-1][0]
     return [(min(1.0, (t - begin) / (end - begin)), opening) for t, opening in points]
 

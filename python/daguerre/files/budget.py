@@ -22,4 +22,4 @@ class Budget:
         """Adds ``count``; raises an error at ``item`` if the total exceeds the limit."""
         self._left -= count
         if self._left < 0:
-            item.fail(f"wanted at most {self._limit} {self._what}, got more")
+            item.fail(f"too many {self._what}: the limit is {self._limit}")

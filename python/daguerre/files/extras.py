@@ -70,6 +70,12 @@ def _clone() -> Path | None:
     return None
 
 
+def lack(module: str) -> str:
+    """Says which package is needed, for messages, and how to install it."""
+    name = EXTRAS[module][0]
+    return f"needs the package {name}, which is not installed; install it with: {hint(module)}"
+
+
 def need(module: str, use: str) -> None:
     """Checks that an optional package is installed.
 
@@ -81,8 +87,4 @@ def need(module: str, use: str) -> None:
         UsageError: It is not installed; the message says how to install it.
     """
     if missing(module):
-        name = EXTRAS[module][0]
-        raise UsageError(
-            f"{use}: wanted the package {name}, which is not installed; install it with: "
-            f"{hint(module)}"
-        )
+        raise UsageError(f"{use}: {lack(module)}")

@@ -38,7 +38,7 @@ def read_json_file(
         named.fail(f"wanted {schema!r}, got {short(named.value)}")
     for member in root.members():
         if member.key not in members:
-            member.fail(f"not known{suggest(str(member.key), members, few=True)}")
+            member.fail(f"unknown member{suggest(str(member.key), members, few=True)}")
     try:
         return make(root)
     except DaguerreError as error:

@@ -99,7 +99,7 @@ class Item:
         """Returns the member of this name, which must exist."""
         member = self.get(key)
         if member is None:
-            Item(None, key, self).fail("missing: wanted a value, got none")
+            Item(None, key, self).fail("missing")
         return member
 
     def members(self) -> list[Item]:
@@ -153,7 +153,7 @@ class Item:
     def index(self, count: int, of: str) -> int:
         """Returns an index into a list of the file with ``count`` elements."""
         if count == 0 and isinstance(self.value, int) and not isinstance(self.value, bool):
-            self.fail(f"index out of range: wanted none, as there are no {of}, got {self.value}")
+            self.fail(f"index out of range: there are no {of}, got {self.value}")
         number = self.integer(-(2**63))
         if not 0 <= number < count:
             self.fail(f"index out of range: wanted 0 .. {count - 1} ({of}), got {short(number)}")

@@ -61,8 +61,8 @@ def _value(text: str, file: str) -> Any:
         ) from None
     except RecursionError:
         raise InputError(f"{file}: JSON: nested too deeply") from None
-    except ValueError as error:  # an integer of thousands of digits
-        raise InputError(f"{file}: JSON: {error}") from None
+    except ValueError:  # Python's limit
+        raise InputError(f"{file}: JSON: a whole number has too many digits") from None
     if doubled:
         _complain(Item(value, file))
     return value
@@ -87,7 +87,7 @@ def _complain(root: Item) -> None:
     while stack:
         item = stack.pop()
         if isinstance(item.value, _Twice):
-            item.fail("wanted each member of an object once, got this one twice")
+            item.fail("this member appears twice")
         if isinstance(item.value, dict):
             stack.extend(reversed(item.members()))
         elif isinstance(item.value, list):

@@ -99,8 +99,8 @@ def large_of(data: bytes) -> list[str]:
         head = json.loads(data[: data.index(b"\n")])
         if head["version"] != __version__:
             raise MismatchError(
-                f"packed value: wanted one of daguerre {__version__}, got one of "
-                f"{short(head['version'])}"
+                f"packed value: made by daguerre {short(head['version'])}, but this is daguerre "
+                f"{__version__}"
             )
         return [str(one) for one in head["large"]]
 
@@ -206,7 +206,7 @@ class _Writer:
 
     def _array(self, array: NDArray[Any]) -> int:
         if array.dtype.kind not in _KINDS:
-            raise UsageError(f"packing: wanted an array of numbers, got one of {array.dtype}")
+            raise UsageError(f"packing: wanted an array of numbers, got an array of {array.dtype}")
         plain, name = np.ascontiguousarray(array).reshape(array.shape), None
         if plain.nbytes < self._least:
             self.small += [plain.tobytes(), bytes(-plain.nbytes % _ALIGNED)]

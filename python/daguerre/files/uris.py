@@ -42,7 +42,7 @@ class Folder:
         if not any(path.is_relative_to(directory) for directory in self.allowed):
             uri.fail(
                 f"leaves the scene's folder: wanted a file under {str(self.base)!r} "
-                f"(--allow-dir widens), got {short(uri.text())}"
+                f"(--allow-dir allows more folders), got {short(uri.text())}"
             )
         # Only regular files: a pipe or a device would never end.
         if fault := fault_of(path):

@@ -42,8 +42,8 @@ class Value:
     def __setstate__(self, state: dict[str, Any]) -> None:
         if state.get(MADE_BY) != __version__:
             raise InputError(
-                f"pickle of a {type(self).__name__}: wanted one of daguerre {__version__}, "
-                f"got one of {state.get(MADE_BY, 'an older version')}"
+                f"pickle of a {type(self).__name__}: made by daguerre "
+                f"{state.get(MADE_BY, '(an older version)')}, but this is daguerre {__version__}"
             )
         vars(self).update((name, part) for name, part in state.items() if name != MADE_BY)
 

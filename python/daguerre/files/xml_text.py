@@ -103,7 +103,7 @@ class _Reader:
         else:
             parent = self.open[-1]
             if name != "_" and name in parent.names:
-                self._fail(f"wanted each name once, got <{name}> twice")
+                self._fail(f"<{name}> appears twice")
             parent.members.append(element)
             parent.names.add(name)
         self.open.append(element)
@@ -115,7 +115,7 @@ class _Reader:
         self.open[-1].text.append(text)
 
     def _refuse_type(self, *about: object) -> None:
-        self._fail("wanted no document type and no entities, got <!DOCTYPE>")
+        self._fail("document types and entities are not supported, got <!DOCTYPE>")
 
     def _fail(self, what: str) -> None:
         line, column = self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1

@@ -43,8 +43,10 @@ def parse(data: bytes, file: str) -> Item:
         raise InputError(f"{file}: YAML: {' '.join(str(error).split())}") from None
     except RecursionError:
         raise InputError(f"{file}: YAML: nested too deeply") from None
-    except ValueError as error:  # such as an integer of thousands of digits
-        raise InputError(f"{file}: YAML: {error}") from None
+    except ValueError as error:
+        long = "digits" in str(error)  # Python's limit, and its advice for programs
+        reason = "a whole number has too many digits" if long else error
+        raise InputError(f"{file}: YAML: {reason}") from None
 
 
 class _Plain(yaml.SafeLoader):
@@ -56,9 +58,13 @@ class _Plain(yaml.SafeLoader):
         event: Any = self.peek_event()  # type: ignore[no-untyped-call]
         if isinstance(event, yaml.AliasEvent) or event.anchor is not None:
             kind = "alias" if isinstance(event, yaml.AliasEvent) else "anchor"
-            self._refuse(f"wanted no anchors and aliases, got {kind} {short(event.anchor)}", event)
+            self._refuse(
+                f"anchors and aliases are not supported, got {kind} {short(event.anchor)}", event
+            )
         if event.tag not in (None, OPENCV_MATRIX):
-            self._refuse(f"wanted no tags but !!opencv-matrix, got {short(event.tag)}", event)
+            self._refuse(
+                f"the only supported tag is !!opencv-matrix, got {short(event.tag)}", event
+            )
         if event.tag and not isinstance(event, yaml.MappingStartEvent):
             self._refuse("!!opencv-matrix: wanted rows, cols, dt and data", event)
         return super().compose_node(parent, index)
@@ -68,9 +74,9 @@ class _Plain(yaml.SafeLoader):
         found: dict[str, Any] = {}
         for key, value in node.value:
             if not isinstance(key, yaml.ScalarNode):
-                self._refuse("wanted text as a name", key)
+                self._refuse("names must be text", key)
             if key.value in found:
-                self._refuse(f"wanted each name once, got {short(key.value)} twice", key)
+                self._refuse(f"{short(key.value)} appears twice", key)
             found[key.value] = self.construct_object(value, deep=deep)
         return found
 

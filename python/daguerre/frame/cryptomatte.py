@@ -63,7 +63,7 @@ class Cryptomatte(Value):
         for name in dict.fromkeys(names):
             if name not in self.manifest:
                 raise UsageError(
-                    f"cryptomatte: no name {name!r}{suggest(name, self.manifest, few=True)}"
+                    f"cryptomatte: no object named {name!r}{suggest(name, self.manifest, few=True)}"
                 )
             found += np.where(self.ids == self.manifest[name], self.coverage, 0).sum(axis=2)
         return found

@@ -164,7 +164,7 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
         if (x0, y0, x1, y1) == (left, top, left + self.width, top + self.height):
             return self
         if x0 >= x1 or y0 >= y1:
-            raise UsageError("frame: wanted some pixel of the picture, got overscan alone")
+            raise UsageError("frame: it holds only overscan, no pixel of the picture")
         rows, columns = slice(y0 - top, y1 - top), slice(x0 - left, x1 - left)
         cut: dict[str, Any] = {
             f.name: value[rows, columns]
@@ -205,7 +205,7 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
     def _stripes(self, tone: str) -> Iterator[tuple[slice, NDArray[np.float32]]]:
         """Encodes the picture in strips of rows, which needs little memory."""
         if tone not in TONES:
-            raise UsageError(f"frame: no tone {short(tone)}{suggest(tone, TONES, few=True)}")
+            raise UsageError(f"frame: unknown tone {short(tone)}{suggest(tone, TONES, few=True)}")
         for row in range(0, self.height, _STRIPE):
             rows = slice(row, row + _STRIPE)
             linear = np.nan_to_num(self.rgb[rows], nan=0.0, posinf=3e38)

@@ -115,8 +115,8 @@ class Categories:
         for rule in self.rules or ():
             if not any(fnmatchcase(name, rule.pattern) for name in names):
                 raise UsageError(
-                    f"{self.where}: {rule.pattern!r}: wanted a pattern that matches the name of a "
-                    f"node, got no match{suggest(rule.pattern, names)}"
+                    f"{self.where}: {rule.pattern!r}: no node has a name that "
+                    f"matches{suggest(rule.pattern, names)}"
                 )
 
 
@@ -144,7 +144,7 @@ def _by_name(scene: Scene) -> dict[str, Category]:
 def _rules(root: Item) -> list[Rule]:
     members = root.members()
     if not members:
-        root.fail("wanted patterns of names and their categories, got none")
+        root.fail("empty, wanted patterns of names with their categories")
     given = [(str(member.key), _category(member)) for member in members]
     known: dict[str, Category] = {}
     for member, (_, category) in zip(members, given, strict=True):
@@ -170,7 +170,7 @@ def _category(item: Item) -> Category | None:
     members = ("name", "id", "supercategory")
     for member in item.members():
         if member.key not in members:
-            member.fail(f"not known{suggest(str(member.key), members, few=True)}")
+            member.fail(f"unknown member{suggest(str(member.key), members, few=True)}")
     number, above = item.get("id"), item.get("supercategory")
     return Category(
         item.need("name").text(),

@@ -39,7 +39,7 @@ def checked(lens: Lens) -> Lens:
     order = lens.first_order()
     if not all(map(math.isfinite, (order.efl, order.bfl))):
         raise LensError(
-            f"{lens.source}: focal length: wanted a finite one, got {order.efl}", "lens-afocal"
+            f"{lens.source}: the focal length must be finite, got {order.efl}", "lens-afocal"
         )
     beam = _beam(lens)
     surfaces, notes = list(lens.surfaces), list(lens.notes)
@@ -51,8 +51,8 @@ def checked(lens: Lens) -> Lens:
         where = f"surfaces {i} and {j}{_numbers(lens, i, j)}"
         if crossing < ROUNDING * inner:
             raise LensError(
-                f"{lens.source}: {where}: edge: wanted surfaces that do not cross within the axial "
-                f"beam (radius {inner:.4g} mm), got a crossing {crossing:.4g} mm off the axis",
+                f"{lens.source}: {where}: edge: surfaces cross {crossing:.4g} mm off the axis, "
+                f"within the axial beam (radius {inner:.4g} mm)",
                 "lens-edge",
                 i,
             )
@@ -195,8 +195,8 @@ def frame_notes(
     frame = f"{frame_mm[0]:g} x {frame_mm[1]:g} mm"
     if not lit.any():
         raise LensError(
-            f"{lens.source}: frame: wanted {frame} at least partly within the image circle, "
-            "got all of it outside (is the shift too large?)",
+            f"{lens.source}: frame: all of {frame} is outside the image circle (is the shift "
+            f"too large?)",
             "lens-no-light",
         )
     if lit.all():

@@ -237,6 +237,6 @@ def _done(lens: Lens, film_z: float) -> Focused:
     order = lens.first_order()
     if not math.isfinite(film_z):
         raise LensError(
-            f"{lens.source}: focus: wanted an image behind the lens, got none", "lens-focus-near"
+            f"{lens.source}: focus: the lens forms no image behind itself", "lens-focus-near"
         )
     return Focused(lens, film_z, order.efl, order.entrance_pupil.z)

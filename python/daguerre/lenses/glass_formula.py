@@ -89,5 +89,5 @@ def _nodes(
     nodes.sort()
     if any(a[0] == b[0] for a, b in itertools.pairwise(nodes)):
         values = "indices" if what == "n" else "values"
-        table.fail(f"wanted each wavelength once, got two {values} for one wavelength")
+        table.fail(f"wavelengths must differ, got two {values} for one wavelength")
     return nodes

@@ -41,7 +41,7 @@ def lens_from(root: Item, path: Path, name: str | None) -> Lens:
     items = root.list_of("surfaces")
     if not items:
         root.need("surfaces")
-        root.fail("surfaces: wanted at least one surface, got none")
+        root.fail("surfaces: the list is empty, wanted at least one")
     configurations = read_configurations(root, len(items))
     configuration = chosen(root, configurations, name)
     surfaces = read_surfaces(items, configuration.gaps)
@@ -106,8 +106,8 @@ def _group(item: Item, count: int, configurations: Sequence[Configuration]) -> G
     for i in inside:
         if len({c.gaps.get(i) for c in configurations}) > 1:
             span.fail(
-                f"wanted a rigid group, got one whose gap after surface {i} changes between "
-                "configurations"
+                f"the group must be rigid, but the gap after surface {i} changes between "
+                f"configurations"
             )
     return Group(
         first,

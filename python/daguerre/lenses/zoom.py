@@ -85,7 +85,7 @@ def bracket(lens: Lens, zoom_mm: float) -> tuple[Position, Position, float]:
     found = positions(lens)
     if not found:
         raise LensError(
-            f"{lens.source}: zoom: wanted a lens with a configuration at infinity, got none",
+            f"{lens.source}: zoom: the lens has no configuration that is focused at infinity",
             "lens-zoom",
         )
     short, long = found[0].efl, found[-1].efl
@@ -156,8 +156,8 @@ def _between(lens: Lens, low: Position, high: Position, zoom_mm: float) -> dict[
         gaps = np.maximum(gaps, 0.0)
     else:
         raise LensError(
-            f"{lens.source}: zoom: wanted a path from {low.efl:.4g} to {high.efl:.4g} mm that "
-            f"keeps the focus, got none at {zoom_mm:g} mm",
+            f"{lens.source}: zoom: no path from {low.efl:.4g} to {high.efl:.4g} mm keeps the "
+            f"focus at {zoom_mm:g} mm",
             "lens-zoom",
         )
     return {**low.gaps, **dict(zip(moving, (float(g) for g in gaps), strict=True))}

@@ -189,8 +189,7 @@ def keys(
     if late.size:
         i = int(late[0])
         raise InputError(
-            f"keys[{i + 1}]: time: wanted times that rise strictly, "
-            f"got {times[i]:g} s then {times[i + 1]:g} s"
+            f"keys[{i + 1}]: time: times must increase, got {times[i]:g} s then {times[i + 1]:g} s"
         )
     values = [_value(value, f"keys[{i}]", interpolation) for i, (_, value) in listed]
     shapes = [_shape(value) for value in values]
@@ -201,8 +200,8 @@ def keys(
     allowed = OF_MATRICES if shapes[0] == (4, 4) else OF_NUMBERS[steps:]
     if interpolation is not None and interpolation not in allowed:
         raise InputError(
-            f"keys: interpolation: wanted {', '.join(allowed)} for such values, "
-            f"got {interpolation!r}{suggest(str(interpolation), allowed)}"
+            f"keys: interpolation: wanted {', '.join(allowed)} for these values, got "
+            f"{interpolation!r}{suggest(str(interpolation), allowed)}"
         )
     made = Keys(times, tuple(values), interpolation or allowed[0], _pivot(pivot, shapes[0]))
     if made.moves_matrices:
@@ -235,7 +234,7 @@ def spin(
         raise InputError(f"spin: axis: wanted a length above 0, got {short(axis)}")
     base = transform if isinstance(transform, Keys) else matrix(transform, "spin")
     if isinstance(base, Keys) and not base.moves_matrices:
-        raise InputError("spin: transform: wanted keys of matrices (4, 4), got keys of others")
+        raise InputError("spin: transform: keys must be matrices (4, 4)")
     rate = number(
         revolutions_per_second,
         "spin: revolutions_per_second",
@@ -374,7 +373,7 @@ def _pivot(pivot: ArrayLike | None, shape: tuple[int, ...]) -> tuple[float, floa
     if pivot is None:
         return None
     if shape != (4, 4):
-        raise InputError("keys: pivot: wanted one with matrices (4, 4) only, got other values")
+        raise InputError("keys: pivot: only keys of matrices (4, 4) take one")
     return _point(pivot, "keys: pivot")
 
 

@@ -69,7 +69,7 @@ class Table:
             if name in given:
                 values[name] = row.read(given[name], f"{where}: {name}", error)
             elif row.required:
-                raise error(f"{where}: {name}: wanted {row.wanted}, got nothing")
+                raise error(f"{where}: {name}: wanted {row.wanted}, got no value")
             else:
                 values[name] = row.default
         return values

@@ -227,7 +227,7 @@ class LensFit:
         core = _core.LensFit.from_bytes(data)
         if core is None:
             raise InputError(
-                "lens fit: wanted bytes of this version's to_bytes, got others or damaged ones"
+                "lens fit: the bytes are damaged, or not from to_bytes of this version"
             )
         return cls(core)
 

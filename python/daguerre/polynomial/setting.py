@@ -46,7 +46,10 @@ class FitSetting:
             return cls(**{**data, "focus_m": focus})
         except (KeyError, TypeError, ValueError) as error:
             text = f"{type(error).__name__}: {error}"
-            raise InputError(f"lens fit: setting: wanted f_stop, focus_m ..., got {text}") from None
+            raise InputError(
+                f"lens fit: setting: wanted the numbers of a lens setting (f_stop, "
+                f"focus_m ...), got {text}"
+            ) from None
 
 
 def iris_shape(iris: _core.Iris) -> dict[str, Any] | str | None:

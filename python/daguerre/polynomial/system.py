@@ -144,7 +144,7 @@ class System:
         endless = isinstance(given, float) and math.isinf(given)
         if not endless and not number(object_distance, "seidel: object_distance"):
             raise UsageError(
-                "seidel: object_distance: wanted a distance from the pupil other than 0 mm, got 0"
+                "seidel: object_distance: the distance from the pupil must not be 0 mm"
             )
         terms = self._terms(wavelength, pupil, object_distance)
         if terms is None:

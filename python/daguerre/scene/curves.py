@@ -56,7 +56,7 @@ CURVES = Table(
     ),
     Parameter(
         "steps", "Points over time: (times (S,) in s, points (S, N, 3)) or a value over time; "
-        "``points`` then are those of one moment", kind="value",
+        "``points`` then are those at one time", kind="value",
     ),
     Parameter("name", "For messages", default="", kind="text"),
 )

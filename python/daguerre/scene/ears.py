@@ -33,7 +33,10 @@ class Effort:
         """
         self._spent += comparisons + _STEP
         if self._spent > MAX_WORK:
-            raise InputError("polygons: wanted fewer or simpler concave ones, got too many corners")
+            raise InputError(
+                "polygons: concave polygons have too many corners in all: divide "
+                "them into triangles"
+            )
 
 
 def plane_of(near: FloatArray) -> FloatArray:

@@ -46,5 +46,5 @@ def scale_for(environment: Environment, lux: float, where: str = "environment: l
     number(lux, where, 0)
     now = illuminance(environment)
     if not now > 0:
-        raise InputError(f"{where}: wanted light from above the horizon, got none")
+        raise InputError(f"{where}: no light comes from above the horizon")
     return environment.scale * lux / now

@@ -242,7 +242,7 @@ def _line(values: ArrayLike, where: str) -> NDArray[np.float64]:
     if numbers.ndim != 1 or not numbers.size or not np.isfinite(numbers).all():
         raise InputError(f"{where}: wanted finite angles of shape (N,), got {short(values)}")
     if not (np.diff(numbers) > 0).all():
-        raise InputError(f"{where}: wanted rising angles, got {short(values)}")
+        raise InputError(f"{where}: wanted increasing angles, got {short(values)}")
     return numbers
 
 

@@ -79,7 +79,7 @@ def check_light(light: Light) -> None:
             f"light: wanted a point, spot, directional or sphere light, got {short(light)}"
         )
     if not isinstance(light.name, str):
-        raise InputError(f"light: name: wanted a text, got {shown(light.name)}")
+        raise InputError(f"light: name: wanted a string, got {shown(light.name)}")
     where = f"light {light.name!r}"
     for name, value in vars(light).items():
         if name in ("intensity", "illuminance", "luminance"):

@@ -93,18 +93,22 @@ def check_material(material: Material, where: str) -> None:
     if not isinstance(kind, Kind):
         raise InputError(f"{where}: kind: wanted {KINDS}, got {short(kind)}")
     if not isinstance(material.name, str):
-        raise InputError(f"material: name: wanted a text, got {shown(material.name)}")
+        raise InputError(f"material: name: wanted a string, got {shown(material.name)}")
     check_fields(material, where)
     check_profile(material.profile, where)
     check_surface(kind, where)
     check_media(material.interior, material.exterior, where)
     if isinstance(kind, Boundary) and any(material.emission):
         raise InputError(
-            f"{where}: emission: wanted none of a boundary, got {short(material.emission)}"
+            f"{where}: emission: a boundary cannot emit light, got {short(material.emission)}"
         )
     if isinstance(kind, Gltf | Mix | Boundary) and material.normal_texture is not None:
-        owner = {Gltf: "that of Gltf", Mix: "those of the parts", Boundary: "none"}[type(kind)]
-        raise InputError(f"{where}: normal_texture: wanted {owner}, got one of the material")
+        owner = {
+            Gltf: "set it on Gltf instead",
+            Mix: "set it on the parts instead",
+            Boundary: "a boundary has none",
+        }[type(kind)]
+        raise InputError(f"{where}: normal_texture: {owner}")
 
 
 def bounds_media(material: Material) -> bool:

@@ -64,7 +64,7 @@ class DensityGrid(FixedArrays, ArrayValue, array="values"):
         with np.errstate(over="ignore"):
             values = as_readonly(given, np.float32)
         if not 0 <= values.min() <= values.max() < np.inf:  # false for NaN
-            raise InputError(f"{where}: values: wanted finite numbers of at least 0, got others")
+            raise InputError(f"{where}: values: numbers must be finite and at least 0")
         transform = as_readonly(given_matrix(self.transform, where), np.float64)
         if not abs(np.linalg.det(transform[:3, :3])) > 0 or (transform[3] != (0, 0, 0, 1)).any():
             raise InputError(
@@ -173,8 +173,7 @@ def check_fog(medium: Any, where: str) -> None:
         return
     if not (_any(medium.absorption) or _any(medium.scattering)):
         raise InputError(
-            f"{where}: emission: wanted absorption or scattering with it, as the medium has no "
-            "end, got neither"
+            f"{where}: emission: a medium without bounds that emits must also absorb or scatter"
         )
 
 
@@ -204,5 +203,5 @@ def _lobes(given: Any) -> tuple[tuple[float, float], ...]:
         mean_cosine = number(g, f"{where}: g", -MAX_COSINE, MAX_COSINE, error=InputError)
         lobes.append((mean_cosine, number(weight, f"{where}: weight", 0, error=InputError)))
     if not 0 < sum(weight for _, weight in lobes) < np.inf:
-        raise InputError("medium: lobes: wanted a weight above 0, got none")
+        raise InputError("medium: lobes: all weights are 0")
     return tuple(lobes)

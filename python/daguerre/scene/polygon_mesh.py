@@ -97,8 +97,8 @@ def _checked(
     found = array(given, where, key, COLUMNS[key])
     if len(found) not in counts:
         raise InputError(
-            f"{where}: {key}: wanted {counts[0]} elements (one a vertex) or {counts[1]} (one a "
-            f"corner), got {len(found)}"
+            f"{where}: {key}: wanted {counts[0]} elements (one per vertex) or {counts[1]} (one "
+            f"per corner), got {len(found)}"
         )
     return found
 
@@ -238,7 +238,7 @@ def _surface_of(
     where = polygons.where
     for key in ("normals", "tangents"):
         if polygons.values[key] is not None:
-            raise InputError(f"{where}: {key}: wanted none, as a subdivision surface has its own")
+            raise InputError(f"{where}: {key}: not allowed, a subdivision surface has its own")
     refiner = Refiner(
         len(polygons.positions), polygons.sizes, polygons.vertices,
         subdivision.scheme, subdivision.level, subdivision.rules, where,

@@ -187,7 +187,7 @@ class Scene(Value):
         node = named
         found = check_effects(effects, f"catcher {node!r}: effects")
         if not self.nodes[node]:
-            raise UsageError(f"catcher: wanted a node with a mesh, got {node!r} without any")
+            raise UsageError(f"catcher: the node {node!r} has no mesh")
         for i in self.nodes[node]:
             self.instances[i] = replace(self.instances[i], catcher=found)
 
@@ -212,7 +212,9 @@ class Scene(Value):
             raise InputError(f"plate: pixels: wanted shape (H, W, 3), got {array.shape}")
         bad = int((~np.isfinite(array)).any(axis=2).sum())
         if bad:
-            raise InputError(f"plate: pixels: wanted finite numbers, got others at {bad} pixels")
+            raise InputError(
+                f"plate: pixels: wanted finite numbers, got NaN or infinity in {bad} pixels"
+            )
         if camera is not None and not isinstance(camera, Camera):
             raise UsageError(f"plate: camera: wanted a Camera, got {short(camera)}")
         self.plate = Plate(array, camera)
@@ -284,7 +286,9 @@ class Scene(Value):
             unknown = sorted(set(fields) - set(Material.__dataclass_fields__))
             if unknown:
                 known = Material.__dataclass_fields__
-                raise UsageError(f"material: no field {unknown[0]!r}{suggest(unknown[0], known)}")
+                raise UsageError(
+                    f"material: unknown field {unknown[0]!r}{suggest(unknown[0], known)}"
+                )
             material = Material(**fields)
         elif isinstance(material, Kind):
             material = Material(material)
@@ -463,11 +467,10 @@ class Scene(Value):
         mesh = self._index(mesh, len(self.meshes), f"{where}: mesh")
         material = self._index(material, len(self.materials), f"{where}: material")
         worlds = to_numbers(transforms, where, "transforms", "shape (N, 4, 4)").astype(float)
-        if worlds.shape[1:] != (4, 4) or not np.isfinite(worlds).all():
-            raise InputError(
-                f"{where}: transforms: wanted finite numbers of shape (N, 4, 4), got others of "
-                f"shape {worlds.shape}"
-            )
+        if worlds.shape[1:] != (4, 4):
+            raise InputError(f"{where}: transforms: wanted shape (N, 4, 4), got {worlds.shape}")
+        if not np.isfinite(worlds).all():
+            raise InputError(f"{where}: transforms: wanted finite numbers, got NaN or infinity")
         over = _motions(motions, len(worlds), where)
         first = len(self.instances)
         self.instances.extend(Instance(mesh, material, world, name) for world in worlds)
@@ -574,8 +577,8 @@ class Scene(Value):
             raise InputError(f"{where}: wanted an index, got {short(value)}")
         index = operator.index(value)
         if not 0 <= index < count:
-            wanted = f"0 .. {count - 1}" if count else "one that was added before"
-            raise InputError(f"{where}: wanted {wanted}, got {index}")
+            wanted = f"wanted 0 .. {count - 1}" if count else "none was added yet"
+            raise InputError(f"{where}: {wanted}, got {index}")
         return index
 
     def camera(self, name: str | None = None) -> Camera:
@@ -611,11 +614,8 @@ class Scene(Value):
     def _lacking(self) -> str:
         """Tells what a scene without a camera needs."""
         if any(instance.shown for instance in self.instances):
-            return "cameras: wanted one, in the file, by add_camera, or by --position and --look-at"
-        return (
-            "wanted visible geometry or a camera, got neither "
-            "(--position and --look-at place a camera)"
-        )
+            return "no camera: the file has none; use add_camera, or --position and --look-at"
+        return "no camera and nothing visible (--position and --look-at place a camera)"
 
 
 def _counted(count: int, name: str) -> str:
@@ -669,7 +669,7 @@ def _panorama(image: ArrayLike) -> NDArray[np.float32]:
     pixels = np.ascontiguousarray(numbers[:, :, :3], np.float32)
     bad = int((~np.isfinite(pixels) | (pixels < 0)).sum())
     if bad:
-        raise InputError(f"environment: wanted finite pixels of at least 0, got {bad} others")
+        raise InputError(f"environment: pixels must be finite and at least 0, but {bad} are not")
     return pixels
 
 

@@ -38,7 +38,7 @@ class Spectrum:
         if len(values) != len(nm):
             raise InputError(f"spectrum: values: wanted {len(nm)} numbers, got {len(values)}")
         if not (nm[0] > 0 and (np.diff(nm) > 0).all()):
-            raise InputError("spectrum: wavelengths_nm: wanted rising numbers above 0, got others")
+            raise InputError("spectrum: wavelengths_nm: must increase and be above 0")
         if values.min() < 0:
             raise InputError(f"spectrum: values: wanted at least 0, got {values.min():g}")
         object.__setattr__(self, "wavelengths_nm", tuple(nm.tolist()))

@@ -54,8 +54,8 @@ def responses(sensor: Seeing) -> FloatArray:
     totals = np.array([np.interp(fine, nm, row) @ white for row in rows])
     if not (totals > 0).all():
         raise InputError(
-            f"sensor: channel {np.flatnonzero(~(totals > 0))[0]}: wanted sensitivity above 0 "
-            f"between {FIRST_NM:g} and {LAST_NM:g} nm, got none"
+            f"sensor: channel {np.flatnonzero(~(totals > 0))[0]}: no sensitivity "
+            f"between {FIRST_NM:g} and {LAST_NM:g} nm"
         )
     return np.ascontiguousarray(rows / totals[:, None])
 

@@ -47,9 +47,7 @@ def check(sensor: SensorData) -> None:
 
 def _light(sensor: SensorData, where: str) -> None:
     if not sensor.channels or len(set(sensor.channels)) != len(sensor.channels):
-        raise InputError(
-            f"{where}: channels: wanted names that differ, got {short(sensor.channels)}"
-        )
+        raise InputError(f"{where}: channels: names must differ, got {short(sensor.channels)}")
     nm = rising(f"{where}: wavelengths", sensor.wavelengths)
     rows = list(sensor.quantum_efficiency)
     if len(rows) != len(sensor.channels):
@@ -61,17 +59,16 @@ def _light(sensor: SensorData, where: str) -> None:
         curve = table(f"{where}: quantum_efficiency: {name}", nm, row)
         if not ((nm > 380) & (nm < 780) & (curve > 0)).any():
             raise InputError(
-                f"{where}: quantum_efficiency: {name}: wanted values above 0 between 380 and "
-                "780 nm, got only 0"
+                f"{where}: quantum_efficiency: {name}: no value above 0 between 380 and 780 nm"
             )
     object.__setattr__(sensor, "wavelengths", nm)
     all_rows = table(f"{where}: quantum_efficiency", nm, rows)
     object.__setattr__(sensor, "quantum_efficiency", all_rows)
     if not tells_colors(all_rows, nm):
         raise InputError(
-            f"{where}: quantum_efficiency: wanted linearly independent curves of "
-            f"{', '.join(sensor.channels)} between 380 and 780 nm, got one that is nearly a sum of "
-            "others"
+            f"{where}: quantum_efficiency: the curves of {', '.join(sensor.channels)} must be "
+            f"linearly independent between 380 and 780 nm, but one is nearly a combination of "
+            f"the others"
         )
     if sensor.pattern.cells.max() >= len(sensor.channels):
         raise InputError(
@@ -98,7 +95,7 @@ def _iso(sensor: SensorData, where: str) -> None:
     _within(where, "iso_range: highest", high, low, 1e7)
     _within(where, "base_iso", sensor.base_iso, low, high)
     if not sensor.read_noise:
-        raise InputError(f"{where}: read_noise: wanted at least one ISO with its noise, got none")
+        raise InputError(f"{where}: read_noise: empty, wanted the noise for at least one ISO")
     last = 0.0
     for iso, noise in sensor.read_noise:
         _within(where, "read_noise: iso", iso, last, 1e7, above=last)

@@ -42,7 +42,7 @@ def table(where: str, wavelengths: Any, values: Any, most: float = 1.0) -> Float
     try:
         numbers = np.array(values, np.float64)
     except (TypeError, ValueError):
-        raise InputError(f"{where}: wanted equally many numbers for each channel") from None
+        raise InputError(f"{where}: all channels must have the same number of values") from None
     count = len(wavelengths)
     if numbers.ndim == 0 or numbers.shape[-1] != count:
         got = numbers.shape[-1] if numbers.ndim else "one number"

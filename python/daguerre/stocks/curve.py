@@ -55,7 +55,7 @@ class CharacteristicCurve:
         for name in ("toe_bend", "shoulder_bend"):
             number(getattr(self, name), f"{where}: {name}", 0, 10, above=0, error=InputError)
         if self.gamma == 0:
-            raise InputError(f"{where}: gamma: wanted a number other than 0, got 0")
+            raise InputError(f"{where}: gamma: must not be 0")
         if not self.toe < self.shoulder:
             raise InputError(
                 f"{where}: shoulder: wanted more than the toe, {self.toe:g}, got {self.shoulder:g}"

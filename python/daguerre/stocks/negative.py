@@ -166,7 +166,7 @@ def _rgb_from_layers(stock: Stock) -> NDArray[np.float64]:
 def _pitch_um(frame: Frame) -> float:
     pitch = frame.metadata.get("sensorPhotositePitch")
     if pitch is None:
-        raise InputError("frame: sensorPhotositePitch: wanted the pitch in um, got none")
+        raise InputError("frame: sensorPhotositePitch (um) is missing from the metadata")
     return float(np.mean(pitch))
 
 

@@ -185,7 +185,7 @@ def _check(stock: Stock) -> None:
             )
         if not (np.isfinite(seen).all() and (seen >= 0).all() and seen.any()):
             raise InputError(
-                f"{here}: sensitivity: wanted numbers of at least 0, at least one of them above 0"
+                f"{here}: sensitivity: numbers must be at least 0, and one of them above 0"
             )
         layer.curve.check(here)
         if (layer.curve.gamma < 0) != (stock.kind == "reversal"):
@@ -196,13 +196,14 @@ def _check(stock: Stock) -> None:
             )
     if not tells_colors(np.array([layer.sensitivity for layer in stock.layers]), nm):
         raise InputError(
-            f"{where}: sensitivity: wanted layers sensitive between 380 and 780 nm, with linearly "
-            "independent curves"
+            f"{where}: sensitivity: layers must be sensitive between 380 and 780 nm, and their "
+            f"curves linearly independent"
         )
     if stock.kind == "negative":
         if stock.paper is None:
             raise InputError(
-                f"{where}: paper: wanted the curve of the paper to print a negative, got none"
+                f"{where}: paper: missing, a negative needs the curve of the paper that it is "
+                f"printed on"
             )
         stock.paper.check(f"{where}: paper")
         number(stock.paper.gamma, f"{where}: paper: gamma", above=0, error=InputError)

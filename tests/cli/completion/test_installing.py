@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -11,14 +10,14 @@ import pytest
 from daguerre.cli import main
 from daguerre.cli.completion import installing
 from daguerre.cli.completion.installing import SHELLS, install, remove, script
-from tests.support.shell_line import Shell, environment
+from tests.support.shell_line import Shell
 
 START = {"bash": ".bashrc", "zsh": ".zshrc"}
 
 
 @pytest.fixture(autouse=True)
 def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    made = tmp_path / "home"
+    made = tmp_path / "home of user"
     made.mkdir()
     for name in ("XDG_DATA_HOME", "XDG_CONFIG_HOME", "ZDOTDIR"):
         monkeypatch.delenv(name, raising=False)
@@ -169,14 +168,9 @@ def test_a_home_that_cannot_be_written_is_one_error(
 
 
 @pytest.mark.parametrize("name", ["bash", "zsh"])
-def test_a_new_shell_completes_after_installing(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_new_shell_completes_after_installing(home: Path, name: str) -> None:
     if not shutil.which(name):
         pytest.skip(f"there is no {name} here")
-    home = tmp_path / "home of a user"
-    home.mkdir()
-    monkeypatch.setenv("HOME", str(home))
     before = tree(home)
     install(name)
     shell = Shell(name, home, home, start=True)
@@ -185,35 +179,3 @@ def test_a_new_shell_completes_after_installing(
     remove(name)
     shutil.rmtree(home / ".bin")
     assert tree(home) == before
-
-
-@pytest.mark.parametrize(("name", "lines"), [("user", 1), ("the user", 2)])
-def test_bash_completion_finds_the_script(
-    name: str, lines: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    package = Path("/usr/share/bash-completion/bash_completion")
-    if not package.exists():
-        pytest.skip("there is no bash-completion here")
-    monkeypatch.setattr(installing, "_BASH_COMPLETION", (str(package),))
-    home = tmp_path / name
-    home.mkdir()
-    monkeypatch.setenv("HOME", str(home))
-    start = home / ".bashrc"
-    start.write_text(f". {package}\n")
-    install("bash")
-    assert len(start.read_text().splitlines()) == lines
-    shell = Shell("bash", home, home, start=True)
-    assert shell.completed("daguerre vers") == "daguerre version "
-    shell.close()
-
-
-def test_fish_finds_the_script(home: Path) -> None:
-    if not shutil.which("fish"):
-        pytest.skip("there is no fish here")
-    ask = ["fish", "-c", "complete -C 'daguerre render --den'"]
-    install("fish")
-    done = subprocess.run(ask, env=environment(home), capture_output=True, text=True, check=True)
-    assert done.stdout.startswith("--denoise\tDenoise the picture")
-    remove("fish")
-    done = subprocess.run(ask, env=environment(home), capture_output=True, text=True, check=True)
-    assert done.stdout == ""

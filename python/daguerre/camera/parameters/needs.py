@@ -12,7 +12,7 @@ TRACED = ("exact", "polynomial")
 MODELS = (*TRACED, "thick", *KINDS)
 
 #: It stands in the place of a lens: a projection takes no other (``setup/checks.py``).
-LENS_ITSELF = Need(MODELS, "wanted either it or a projection, got both")
+LENS_ITSELF = Need(MODELS, "cannot be combined with a projection")
 #: A projection leaves it aside: a flag that says it is refused, a scene file's value is not.
 OF_LENSES = Need(MODELS, "")
 #: An opening of some size: to make a lens a pinhole, and give it at once, is refused.
@@ -21,8 +21,8 @@ OPENING = Need((*TRACED, "thick", *WITH_IRIS, "projection"), "")
 _QUOTED = " or ".join(map(repr, KINDS))
 WITHOUT_PRESCRIPTION = Need(
     ("ideal",),
-    "a lens with a prescription has its own; "
-    f"wanted none (for a zoom lens: zoom), or an ideal lens (lens={_QUOTED})",
+    "a lens with a prescription has its own focal length; leave it out (zoom lenses take zoom) "
+    f"or choose an ideal lens (lens={_QUOTED})",
 )
 PRESCRIPTION = Need(("prescription",), "wanted a lens with a prescription, got {kind}")
 ZOOM = Need(PRESCRIPTION.kinds, PRESCRIPTION.refusal + "; its focal_length may be any")

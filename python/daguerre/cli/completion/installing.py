@@ -132,7 +132,7 @@ def _make_folders(folder: Path) -> int:
 def _add_line(shell: str, path: Path) -> list[str]:
     """Adds the line that reads the script to a start-up file, if the shell needs one."""
     start = _start(shell)
-    if shell == "fish" or (shell == "bash" and _bash_completion_finds(path, start)):
+    if shell == "fish" or (shell == "bash" and _loads_bash_completion(start)):
         return []
     text = _read(start) if start.exists() else b""
     if _LINE.search(text):
@@ -164,10 +164,8 @@ def _drop_line(shell: str) -> list[str]:
     return [f"removed a line from {start}"]
 
 
-def _bash_completion_finds(path: Path, start: Path) -> bool:
-    """Whether bash-completion is there, is switched on, and so finds the script by itself."""
-    if " " in str(path):  # up to 2.11 it finds nothing there
-        return False
+def _loads_bash_completion(start: Path) -> bool:
+    """Whether bash-completion, which finds the script by itself, is there and switched on."""
     there = [name for name in _BASH_COMPLETION if Path(name).exists()]
     lines = [
         line.split(b"#")[0]

@@ -53,7 +53,8 @@ def _format(text: str, path: Path) -> str:
     if path.suffix.lower() == ".dat" or looks_like(text):
         return "pbrt"
     raise LensError(
-        f"{path}: lens file: wanted a Zemax (SURF), CODE V (SO, S, SI), Optical Bench "
-        "([lens data]) or pbrt file (rows of four numbers), got none of them",
+        f"{path}: lens file: unknown format, wanted a Zemax (SURF), CODE V (SO, S, SI), Optical "
+        f"Bench "
+        "([lens data]) or pbrt file (rows of four numbers)",
         "lens-format",
     )

@@ -129,7 +129,10 @@ def _fit_apertures(surfaces: list[dict[str, Any]], unread: Unread) -> None:
         sphere = row["kind"] == "spherical" and radius is not None
         if sphere and semi is not None and semi > abs(radius):
             row["semi_diameter"] = abs(radius)
-            unread.add("a clear diameter is cut to that of the sphere", f"surface {row['from']}")
+            unread.add(
+                "a clear diameter is reduced to the diameter of the sphere",
+                f"surface {row['from']}",
+            )
 
 
 def _film_note(table: Table, unread: Unread) -> None:

@@ -144,7 +144,7 @@ def lay_out(drafts: list[Draft], file: str) -> Table:
                 draft.number,
             )
     if not kept:
-        raise LensError(f"{file}: surfaces: wanted at least one that refracts", "lens-afocal")
+        raise LensError(f"{file}: surfaces: none of them refracts", "lens-afocal")
     places = [_place(pose) for _, pose, _ in kept]
     return Table([d for d, _, _ in kept], gaps, places, ahead, _place(frame))
 

@@ -42,13 +42,13 @@ def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
         if name not in (*_KNOWN, *_REMARKS) and not name.startswith("!"):
             if name == "diffractive data":
                 Line(where, sections[name][0].number if sections[name] else 1, ()).fail(
-                    "diffractive data: wanted refracting surfaces, got a diffractive one",
+                    "diffractive data: diffractive surfaces are not supported",
                     "lens-surface",
                 )
             unread.add(f"section [{name[:40]}] is ignored")
     rows = sections.get("lens data", [])
     if not rows:
-        Line(where, 1, ()).fail("[lens data]: wanted rows of surfaces, got none")
+        Line(where, 1, ()).fail("[lens data]: no surfaces")
     variables = {row.words[0]: row for row in sections.get("variable distances", [])}
     constants = {row.words[0]: row for row in sections.get("constants", [])}
     for name in constants:
@@ -61,7 +61,7 @@ def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
     if len(ids) < len(rows):
         names = [row.words[0] for row in rows]
         twice = next(row for row in rows if names.count(row.words[0]) > 1)
-        twice.fail(f"wanted each surface once, got {twice.name!r} twice")
+        twice.fail(f"surface {twice.name!r} appears twice")
     for row in sections.get("aspherical data", []):
         _asphere(row, drafts, ids, constants, unread)
     drafts.append(Draft(len(rows) + 1))
@@ -85,7 +85,7 @@ def _sections(text: str, where: str) -> Sections:
         if stripped.startswith("[") and stripped.endswith("]"):
             name = stripped[1:-1].strip().lower()
             if name in _KNOWN and name in out:
-                Line(where, i, ()).fail(f"[{name}]: wanted once, got twice")
+                Line(where, i, ()).fail(f"[{name}]: appears twice")
             rows = out.setdefault(name, [])
         elif rows is None:
             Line(where, i, ()).fail("wanted a section such as [lens data] first")
@@ -156,7 +156,7 @@ class _Table:
     def _distance(self, row: Line, position: int) -> float:
         words = row.words[1:]
         if not any(words):
-            row.fail("wanted a distance, got none")
+            row.fail("a distance is missing")
         word = words[position] if position < len(words) and words[position] else words[0]
         if word.lower() == "undefined" and row.words[0].lower().startswith("bf"):
             return 0.0

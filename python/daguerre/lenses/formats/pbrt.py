@@ -74,7 +74,7 @@ def _rows(text: str, where: str) -> tuple[list[Line], list[str], float | None]:
                 )
             rows.append(line)
     if not rows:
-        Line(where, 1, ()).fail("wanted rows of radius, thickness, index, diameter, got none")
+        Line(where, 1, ()).fail("no surfaces: wanted rows of radius, thickness, index, diameter")
     return rows, comments, efl
 
 

@@ -92,7 +92,7 @@ class _Reader:
         if number == 0 and line.words[0] not in ("SO", "S0"):
             line.fail(f"wanted the object SO first, got {line.name}")
         if self.surfaces and self.surfaces[-1].is_image:
-            line.fail(f"wanted no surface behind the image SI, got {line.name}")
+            line.fail(f"no surface may follow the image SI, got {line.name}")
         self.surfaces.append(Surface(line, number, self.radius_mode, self.private, self.unread))
 
     def _system(self, line: Line) -> bool:
@@ -151,7 +151,7 @@ class _Reader:
             if not values or len(values) != len(self.private_nm):
                 line.fail(f"PRV: wanted {len(self.private_nm)} indices, got {len(values)}")
             if len(set(self.private_nm)) < len(values):
-                line.fail("PRV: PWL: wanted each wavelength once, got one twice")
+                line.fail("PRV: PWL: wavelengths must differ")
             nodes = sorted(zip(self.private_nm, values, strict=True))
             self.private[name] = {"table": [list(node) for node in nodes], "name": name}
 

@@ -77,7 +77,7 @@ class Surface:
         for word in words:
             if word.upper() in ("REFL", "REFO", "TIRO"):
                 line.fail(
-                    "wanted glass or air, got a mirror (the light turns back)",
+                    "mirrors are not supported (the light turns back)",
                     "lens-mirror",
                     self.number,
                 )
@@ -161,7 +161,7 @@ class Surface:
         kinds = {w.upper() for w in words if number(w) is None}
         sizes = [w for w in words if number(w) is not None]
         if not sizes:
-            line.fail("CIR: wanted a radius, got none", surface=self.number)
+            line.fail("CIR: the radius is missing", surface=self.number)
         size = line.to_number(sizes[0], "radius", 0)
         if "EDG" in kinds:
             self.edge = size
@@ -205,12 +205,12 @@ class Surface:
         if self.form == "AAS":
             extra = [name for name in _TERMS if v.get(name)]
             if extra or terms:
-                self._refuse("AAS: wanted no terms beyond KX and KY")
+                self._refuse("AAS: only the terms KX and KY are supported")
             draft.form, draft.curvature_x = "biconic", across
             draft.conic, draft.conic_x = v.get("KY", 0.0), v.get("KX", 0.0)
             return False
         if terms:
-            self._refuse(f"{self.form}: wanted no asphere terms")
+            self._refuse(f"{self.form}: asphere terms are not supported")
         draft.conic = v.get("K", 0.0)
         if self.form == "CYL" and across and draft.curvature:
             self._refuse("CYL: wanted one curvature, got two")

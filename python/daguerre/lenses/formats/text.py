@@ -42,7 +42,7 @@ class Line:
     def word(self, index: int, what: str) -> str:
         """The word at an index; it must be there."""
         if index >= len(self.words):
-            self.fail(f"{self.name}: {what}: missing: wanted a value, got none")
+            self.fail(f"{self.name}: {what}: missing")
         return self.words[index]
 
     @property
@@ -101,7 +101,7 @@ def decoded(data: bytes, file: str) -> str:
     """
     text = _decoded(data, file)
     if not text.strip("\x1a \t\r\n\f\v"):
-        raise LensError(f"{file}: lens file: wanted a lens, got an empty file", "lens-format")
+        raise LensError(f"{file}: empty file", "lens-format")
     binary = _BINARY.search(text)
     if binary is not None:
         raise LensError(

@@ -134,7 +134,7 @@ def _form(block: Block, draft: Draft, kind: str, unit: float) -> None:
         draft.curvature_x = 1 / radius if radius else 0.0
         if any(block.parameter(i) for i in range(2, 9)) or block.extra_value(1) > 0:
             block.line.fail(
-                "TOROIDAL: wanted terms in y (PARM 2-8, XDAT) of 0, got others",
+                "TOROIDAL: terms in y (PARM 2-8, XDAT) are not supported",
                 "lens-surface",
                 block.number,
             )
@@ -147,7 +147,7 @@ def _glass(block: Block, makers: tuple[str, ...], unread: Unread) -> Glass | Non
     name = line.word(1, "glass")
     if name.upper() == "MIRROR":
         line.fail(
-            "GLAS: wanted glass or air, got a mirror (the light turns back)",
+            "GLAS: mirrors are not supported (the light turns back)",
             "lens-mirror",
             block.number,
         )

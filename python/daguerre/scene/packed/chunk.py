@@ -38,7 +38,7 @@ def embed(path: str | Path, scene: Scene) -> None:
     file = Path(path)
     data = file.read_bytes()
     if data[:4] != b"glTF" or len(data) < _HEADER:
-        raise InputError(f"{path}: wanted a .glb file, got another one")
+        raise InputError(f"{path}: not a .glb file")
     length = len(data) + 8 + len(packed)
     if length > _MOST:
         raise InputError(f"{path}: wanted at most {_MOST} bytes, got {length}")

@@ -31,7 +31,7 @@ def parts_of(scene: Scene) -> dict[str, Any]:
         UsageError: Something moves in a way that cannot be packed, or there is a plate.
     """
     if scene.plate is not None:
-        raise UsageError("packed scene: plate: wanted none, got one")
+        raise UsageError("packed scene: a scene with a plate cannot be packed")
     motion = scene.motion
     return {
         "time": scene.time,

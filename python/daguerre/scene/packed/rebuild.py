@@ -70,7 +70,7 @@ class Rebuild:
             raise InputError(f"{where}: wanted an array, got {short(value)}")
         self._left -= value.nbytes
         if self._left < 0:
-            raise InputError(f"{where}: wanted arrays that fit the file, got far larger ones")
+            raise InputError(f"{where}: arrays are far larger than the file")
         return value
 
     def _path(self, value: Any, where: str) -> Keys:
@@ -146,7 +146,7 @@ class Rebuild:
         radii = self._array(given["radii"], f"{where}: radii")
         ends = self._array(given["ends"], f"{where}: ends").astype(np.int64)
         if ends.ndim != 1 or not (np.diff(ends, prepend=0) > 0).all():
-            raise InputError(f"{where}: ends: wanted whole numbers that rise, got others")
+            raise InputError(f"{where}: ends: whole numbers must increase")
         cubic, closed = given["cubic"] is True, given["closed"] is True
         counts = np.diff(ends, prepend=0) * (3 if cubic else 1) + 1
         last = np.cumsum(counts) - 1
@@ -180,13 +180,13 @@ class Rebuild:
         layout = layout_of(counts, stated["basis"], stated["wrap"], where)
         wanted = (int(layout.counts.sum()), 3)
         if wanted[0] > len(made.positions) + 3 * len(counts):  # before it is laid out
-            raise InputError(f"{where}: motion: wanted as many points as the curves, got more")
+            raise InputError(f"{where}: motion: more points than the curves have")
         same = all(
             np.array_equal(getattr(layout.form, key), getattr(made, key))
             for key in ("starts", "ends")
         )
         if not same or any(one.shape != wanted for one in path.values):
-            raise InputError(f"{where}: motion: wanted that of these curves, got another")
+            raise InputError(f"{where}: motion: does not fit these curves")
         index = len(self.scene.meshes) - 1
         self.scene.motion.meshes[index] = moving_curves(path, made, layout)
 
@@ -197,7 +197,7 @@ class Rebuild:
         transforms, names = self._array(given["transforms"], "instances"), given["names"]
         count = len(names)
         if not meshes.shape == materials.shape == (count,) or transforms.shape != (count, 4, 4):
-            raise InputError("instances: wanted lists of one length, got others")
+            raise InputError("instances: all lists must have the same length")
         rows = zip(meshes.tolist(), materials.tolist(), names, strict=True)
         begin = 0
         for (mesh, material, name), run in groupby(rows):
@@ -225,7 +225,7 @@ class Rebuild:
             i = self._index(k, "instances: shown")
             values = motion.values if isinstance(motion, Keys) else [None]
             if not all(isinstance(one, bool | int | float) for one in values):
-                raise InputError(f"instances[{i}]: shown: wanted keys of flags, got others")
+                raise InputError(f"instances[{i}]: shown: keys must be True or False")
             scene.motion.shown[i] = motion
 
     def _index(self, value: Any, where: str) -> int:
@@ -262,7 +262,7 @@ class Rebuild:
         if given is None and now is None:
             return
         if not isinstance(given, Environment):
-            raise InputError(f"environment: wanted one, got {short(given)}")
+            raise InputError(f"wanted an environment, got {short(given)}")
         image = None if given.image is None else self._array(given.image, "environment: image")
         self.scene.set_environment(
             image, color=given.color, scale=given.scale, rotation=given.rotation
@@ -277,7 +277,10 @@ class Rebuild:
             where = f"node {name!r}"
             mine = self._array(members, where).tolist()
             if mine and not 0 <= min(mine) <= max(mine) < len(scene.instances):
-                raise InputError(f"{where}: wanted its instances, got others")
+                raise InputError(
+                    f"{where}: wanted instances of the scene, 0 .. "
+                    f"{len(scene.instances) - 1}, got {min(mine)} .. {max(mine)}"
+                )
             if position is not None:
                 if motion is not None:
                     _point(np.asarray(motion.at(scene.time), np.float64), where)
@@ -299,7 +302,7 @@ class Rebuild:
 def text(value: Any, where: str) -> str:
     """Checks a text; control characters are replaced."""
     if not isinstance(value, str):
-        raise InputError(f"{where}: wanted a text, got {short(value)}")
+        raise InputError(f"{where}: wanted a string, got {short(value)}")
     return printable(value)
 
 

@@ -46,7 +46,7 @@ def make(name: Any, state: Any) -> Any:
     """
     maker = _MAKERS.get(name) if isinstance(name, str) else None
     if maker is None:
-        raise ValueError(f"no value of scenes is a {short(name)}")
+        raise ValueError(f"unknown kind of value {short(name)}")
     return maker(**{key: _safe(part) for key, part in state.items() if key != MADE_BY})
 
 
@@ -79,7 +79,7 @@ def _camera(**given: Any) -> Camera:
     )
     motion = given.get("motion", {})
     if not isinstance(motion, Mapping) or not all(map(is_dynamic, motion.values())):
-        raise InputError("camera: motion: wanted values over time, got others")
+        raise InputError("camera: motion: values must change over time")
     if given.get("sensor_size") is None:
         given.pop("sensor_size", None)  # nobody chose one
     return Camera(**given)

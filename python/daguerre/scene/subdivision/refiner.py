@@ -145,7 +145,7 @@ class Refiner(Value):
             chosen = integers(indices, self.where, "indices", len(numbers)).reshape(-1)
             if len(chosen) != corners:
                 raise InputError(
-                    f"{self.where}: indices: wanted {corners} (one a corner), got {len(chosen)}"
+                    f"{self.where}: indices: wanted {corners} (one per corner), got {len(chosen)}"
                 )
         if self.rules.face_varying == "all" or self.scheme == "bilinear":
             refined = linear_corners(self._faces, self._scheme.quads, self.level, numbers[chosen])

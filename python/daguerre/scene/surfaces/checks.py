@@ -64,7 +64,7 @@ def _index_of_refraction(value: Any, where: str) -> None:
 
 def _text(value: Any, where: str) -> None:
     if not isinstance(value, str):
-        raise InputError(f"{where}: wanted a text, got {shown(value)}")
+        raise InputError(f"{where}: wanted a string, got {shown(value)}")
 
 
 def _slot(value: Any, where: str) -> None:
@@ -119,4 +119,4 @@ def check_surface(surface: Any, where: str) -> None:
     check_fields(surface, where)
     if isinstance(surface, Conductor) and (surface.eta is None) != (surface.k is None):
         missing, given = ("eta", "k") if surface.eta is None else ("k", "eta")
-        raise InputError(f"{where}: {missing}: wanted it too with {given}, got None")
+        raise InputError(f"{where}: {missing}: missing, {given} needs it")

@@ -58,6 +58,9 @@ class Conductor(BriefRecord):
 
         twice = sorted(fields.keys() & {"eta", "k"})
         if twice:
-            raise UsageError(f"metal: {twice[0]}: wanted it from the table alone, got it too")
+            raise UsageError(
+                f"metal: {twice[0]}: comes from the table of metals; leave it out, "
+                f"or use dg.Conductor"
+            )
         eta, k = metals.load(name)
         return cls(**fields, eta=eta, k=k)
