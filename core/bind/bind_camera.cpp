@@ -88,10 +88,10 @@ using Column = nb::ndarray<const float, nb::ndim<1>, nb::c_contig, nb::device::c
 
 std::vector<float> rising(const Column& times, std::size_t wanted, const char* what) {
     if (times.shape(0) != wanted || wanted == 0)
-        throw dg::input_error("camera", what, "as many as times, one at least",
+        throw dg::input_error("camera", what, "one for each time, at least one",
                               std::to_string(wanted) + " and " + std::to_string(times.shape(0)));
     if (!std::is_sorted(times.data(), times.data() + wanted))
-        throw dg::Error(std::string("camera: ") + what + ": wanted times that do not fall");
+        throw dg::Error(std::string("camera: ") + what + ": times must not decrease");
     return {times.data(), times.data() + wanted};
 }
 
@@ -99,7 +99,7 @@ void change_lens(dg::Camera& camera, const Column& times, const std::vector<cons
     dg::LensMotion motion{rising(times, cameras.size(), "lenses"), {}};
     for (const dg::Camera* at : cameras) {
         if (!at || at->lens.index() != camera.lens.index())
-            throw dg::Error("camera: lenses: wanted all of one kind");
+            throw dg::Error("camera: lenses: all must be of the same kind");
         motion.lenses.push_back(std::visit(
             [&](const auto& kind) -> dg::LensKind {
                 using Kind = std::decay_t<decltype(kind)>;

@@ -76,7 +76,8 @@ WordsView objects(const dg::Film& film) {
 
 void set_objects(dg::Film& film, const Words& words) {
     if (words.shape(0) != std::size_t(film.layout().height) || words.shape(2) != dg::CoverLists::kEntryWords)
-        throw dg::input_error("film state", "objects", "entries of 4 words in each row of the film", "another shape");
+        throw dg::input_error("film state", "objects", "entries of 4 words in each row of the film",
+                              std::to_string(words.shape(0)) + " rows of entries of " + std::to_string(words.shape(2)) + " words");
     film.set_object_words(std::span(words.data(), words.size()));
 }
 

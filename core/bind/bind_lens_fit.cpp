@@ -264,7 +264,7 @@ dg::LensFit refitted(const dg::LensFit& fit, const Rows2d& film, const Rows2d& s
 Pair seconds_a_ray(const dg::LensFit& fit, const Rows2d& film, const Rows2d& slopes,
                    const Column& nm, int repeats) {
     const std::size_t n = equal_lengths(film, slopes, nm);
-    if (n == 0) throw dg::input_error("lens fit", "film points", "one at least", "none");
+    if (n == 0) throw dg::input_error("lens fit", "film points", "at least one", "none");
     checked(fit);
     dg::IrisTables iris;
     iris.radius = float(fit.iris_radius);

@@ -62,7 +62,7 @@ auto generate(const dg::ExactLens& lens, const dg::bind::Rows2f& film_mm,
 nb::bytes state_with_fit(const dg::ExactLens& lens, const dg::LensFit& fit) {
     const std::string bytes = lens.aim_state(), key = bytes.substr(0, 32);
     auto state = dg::aim_from_bytes(bytes, key);
-    if (!state || state->fit.empty()) throw dg::Error("exact lens: wanted a lens with a fit");
+    if (!state || state->fit.empty()) throw dg::Error("exact lens: the lens has no fit");
     state->fit = dg::to_bytes(fit);
     const std::string other = dg::to_bytes(*state, key);
     return nb::bytes(other.data(), other.size());

@@ -39,7 +39,7 @@ dg::IrisShape outline(const Corners& corners) {
 dg::SpreadRows rows_of(const Colours& image, std::pair<int, int> rows) {
     const auto [begin, end] = rows;
     if (!(0 <= begin && begin < end && std::size_t(end) <= image.shape(0)))
-        throw dg::input_error("post", "rows", "some of the picture's",
+        throw dg::input_error("post", "rows", "rows of the picture",
                               std::to_string(begin) + " to " + std::to_string(end));
     return {begin, end};
 }

@@ -95,7 +95,7 @@ void bind_post_warp(nb::module_& m) {
                 if (begin < m.map.top ||
                     end > m.map.top + m.map.rows * dg::SourceMap::kCell || begin >= end ||
                     width < 1 || width > m.map.columns * dg::SourceMap::kCell)
-                    throw dg::input_error("map", "pixels", "some of the map's", "others");
+                    throw dg::input_error("map", "pixels", "pixels of the map", "pixels outside of it");
                 return dg::bind::to_numpy(
                     m.map.displacements(width, begin, end),
                     {std::size_t(end - begin), std::size_t(width), 2});

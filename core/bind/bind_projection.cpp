@@ -26,7 +26,7 @@ constexpr const char* kNames[] = {"rectilinear", "equidistant",    "equisolid", 
 
 dg::ProjectionModel model_of(const std::string& name, const std::vector<double>& parameters) {
     const auto* found = std::find(std::begin(kNames), std::end(kNames), name);
-    if (found == std::end(kNames)) throw dg::input_error("projection", "model", "a known one", name);
+    if (found == std::end(kNames)) throw dg::Error("projection: unknown model '" + name + "'");
     if (parameters.size() > dg::ProjectionModel::kMost)
         throw dg::input_error("projection", "parameters", "at most 14", std::to_string(parameters.size()));
     std::array<double, dg::ProjectionModel::kMost> k{};

@@ -83,7 +83,7 @@ struct ExactLens::State {
         if (!std::isfinite(order.entrance_pupil_z))
             throw LensError(
                 lens.name +
-                    ": the entrance pupil lies at infinity: this lens has no place for"
+                    ": the entrance pupil is at infinity: this lens has no place for"
                     " the camera's origin",
                 "lens-pupil");
         if (settings.f_stop == 0) settings.f_stop = order.f_number;
@@ -95,7 +95,7 @@ struct ExactLens::State {
                           : film_position(lens, order, s.focus_distance_m, s.focus_from);
         if (!(film_z > tracer.vertices().back()))
             throw LensError(lens.name +
-                                ": the film would lie inside the lens (back focal length " +
+                                ": the film would be inside the lens (back focal length " +
                                 std::to_string(order.bfl) + " mm)",
                             "lens-film");
         tilted = s.tilt_deg != Vec2d{};

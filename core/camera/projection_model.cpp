@@ -124,7 +124,7 @@ ProjectionModel::ProjectionModel(Kind kind, std::array<double, kMost> parameters
     : kind_(kind), k_(parameters), largest_angle_(kPiD), largest_radius_(kInfinity),
       ideal_end_(kInfinity) {
     for (const double x : k_)
-        if (!std::isfinite(x)) throw input_error("projection", "parameters", "finite numbers", "others");
+        if (!std::isfinite(x)) throw input_error("projection", "parameters", "finite numbers", "NaN or infinity");
     const auto within = [&](int i, const char* name, double low, double high) {
         if (!(k_[i] >= low && k_[i] <= high))
             throw input_error("projection", name, std::to_string(low) + " .. " + std::to_string(high),
@@ -217,7 +217,7 @@ void ProjectionModel::find_fold() {
             before = r;
         }
         if (last < kInfinity && !(radial_factor(last) > 0))   // a pole before the first step, say
-            throw input_error("projection", "parameters", "a radius that grows from the middle on", "one that falls");
+            throw input_error("projection", "parameters", "a radius that increases from the centre", "a radius that decreases");
         ideal_end_ = last;
         largest_angle_ = kind_ == Kind::opencv ? atan(last) : kPiD;
         largest_radius_ = last < kInfinity ? last * radial_factor(last) : kInfinity;

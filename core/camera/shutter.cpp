@@ -37,7 +37,7 @@ OpeningCurve OpeningCurve::points(std::span<const double> u, std::span<const dou
     for (std::size_t i = 0; i < u.size(); ++i) {
         const std::string where = "curve, point " + std::to_string(i);
         if (!(u[i] >= 0 && u[i] <= 1 && (i == 0 || u[i] >= u[i - 1])))
-            throw input_error("shutter", where, "times within 0 .. 1 that do not fall",
+            throw input_error("shutter", where, "times within 0 .. 1 that do not decrease",
                               std::to_string(u[i]));
         if (!(s[i] >= 0 && std::isfinite(s[i])))
             throw input_error("shutter", where, "an opening of at least 0", std::to_string(s[i]));
@@ -47,7 +47,7 @@ OpeningCurve OpeningCurve::points(std::span<const double> u, std::span<const dou
     for (double& value : scaled) value /= largest;
     OpeningCurve curve({u.begin(), u.end()}, std::move(scaled));
     if (!(largest > 0 && curve.mean() > 0))
-        throw Error("shutter: curve: wanted some time at which it is open, got none");
+        throw Error("shutter: curve: never open");
     return curve;
 }
 
@@ -84,7 +84,7 @@ Shutter::Shutter(const ShutterSettings& settings, int width, int height) : setti
     if (width < 1 || height < 1)
         throw input_error("shutter", "resolution", "at least 1 x 1 px",
                           std::to_string(width) + " x " + std::to_string(height));
-    if (scans && settings.leaf) throw Error("shutter: a leaf opens all lines at once; wanted no scan");
+    if (scans && settings.leaf) throw Error("shutter: a leaf shutter exposes all lines at once, without a scan");
     lines_ = !scans ? 1 : scans_columns() ? width : height;
     backward_ = settings.scan == ScanOrder::bottom || settings.scan == ScanOrder::right;
     duration_s_ = settings.exposure_s + (lines_ - 1) * settings.line_time_s;

@@ -43,7 +43,7 @@ double axial_transmittance(const Prescription& lens) {
 
 void check_pupils(const Prescription& lens, const FirstOrder& order) {
     if (!std::isfinite(order.entrance_pupil_z) || !std::isfinite(order.exit_pupil_z))
-        throw Error(lens.name + ": a pupil lies at infinity: wanted the exact model of this lens");
+        throw Error(lens.name + ": a pupil is at infinity: use the exact model of this lens");
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ ThickLens::ThickLens(const Prescription& lens, const ThickLensSettings& s)
                             distance);
     unit_ = axial_;
     if (!(axial_ > 0) || !std::isfinite(axial_))
-        throw Error(lens.name + ": the film would lie in the exit pupil");
+        throw Error(lens.name + ": the film would be in the exit pupil");
     const auto ahead = film_hit({0, 0, -1});
     if (!ahead) throw Error(lens.name + ": tilt: the film would not see straight ahead");
     film_origin_ = *ahead;

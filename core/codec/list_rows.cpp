@@ -149,7 +149,7 @@ void copy_field(Bytes data, std::size_t begin, std::span<const RowField> fields,
                 from.take((is_list ? lengths[next++] : 1) * fields[i].size);
             if (i != field) continue;
             if (values.size() > out.size() - to)
-                throw input_error("rows", "room", "that of all values", "less");
+                throw input_error("rows", "room", "room for all values", "less");
             std::copy(values.begin(), values.end(), out.begin() + to);
             to += values.size();
         }

@@ -16,7 +16,7 @@ class Fifo {
     const T& operator[](unsigned ago) const {
         if (ago >= pushed_)
             throw input_error(
-                "meshopt triangles", "code", "something decoded before",
+                "meshopt triangles", "code", "an earlier vertex or edge",
                 "entry " + std::to_string(ago) + " of " + std::to_string(pushed_));
         return slots_[(pushed_ - 1 - ago) % 16];
     }

@@ -214,10 +214,10 @@ void check(const Planes& light, const Shot& shot) {
     const auto want = [](bool good, const char* what, const char* wanted, double got) {
         if (!good) throw input_error("exposure", what, wanted, std::to_string(got));
     };
-    want(light.width >= 1 && light.height >= 1, "light", "a pixel at least", 0);
+    want(light.width >= 1 && light.height >= 1, "light", "at least one pixel", 0);
     want(shot.electrons.size() == std::size_t(shot.channels) * light.count, "electrons",
          "a number for each channel and plane", double(shot.electrons.size()));
-    want(shot.cell_width >= 1 && shot.cell_height >= 1, "cells", "one at least", 0);
+    want(shot.cell_width >= 1 && shot.cell_height >= 1, "cells", "at least one", 0);
     for (const std::uint8_t cell : shot.cells) want(cell < shot.channels, "cells", "channels", cell);
     want(shot.low_pass_px >= 0 && shot.low_pass_px <= kMostLowPass, "low-pass filter", "0 to 1000 px",
          shot.low_pass_px);

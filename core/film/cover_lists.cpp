@@ -104,7 +104,7 @@ void CoverLists::set_words(std::span<const std::uint32_t> words, std::size_t wid
             const std::uint64_t at = std::uint64_t(e[0]) << 32 | e[1];
             if (e[0] == kNowhere && (last = ~std::uint64_t(0))) continue;
             if (e[0] >= width || at < last)
-                refuse("columns and objects that rise", std::to_string(e[0]) + ", " + std::to_string(e[1]));
+                refuse("columns and objects that increase", std::to_string(e[0]) + ", " + std::to_string(e[1]));
             last = at + 1;
             add(y * width + e[0], e[1], std::int64_t(std::uint64_t(e[3]) << 32 | e[2]));
         }

@@ -74,7 +74,7 @@ Film::Film(FilmLayout layout) : layout_(layout) {
     if (layout.catchers) make_room(catchers_, pixels);
     if (layout.splats || layout.flare) make_room(row_locks_, std::size_t(kLockStride) * layout.height);
     if (layout.objects && !layout.coverage)
-        throw input_error("film", "objects", "coverage, too", "objects alone");
+        throw Error("film: objects need coverage");
     if (layout.bands < 0 || layout.bands > kMostBands)
         throw input_error("film", "bands", "0 to " + std::to_string(kMostBands),
                           std::to_string(layout.bands));

@@ -19,7 +19,7 @@ void check_layout(const std::string& where, const Curves& c, std::size_t points)
     const std::size_t step = c.points_per_segment();
     for (std::size_t k = 0; k < c.ends.size(); ++k) {
         if (c.ends[k] <= segment || c.ends[k] > c.starts.size())
-            throw input_error(where, whole("end of curve", k), "more than that of the one before",
+            throw input_error(where, whole("end of curve", k), "more than the end before",
                               std::to_string(c.ends[k]));
         for (; segment < c.ends[k]; ++segment, point += step)
             if (c.starts[segment] != point)
@@ -45,7 +45,7 @@ float Curves::largest_radius() const {
 void Curves::validate(const Mesh& mesh) const {
     const std::string where = "curves '" + mesh.name + "'";
     if (!mesh.triangles.empty())
-        throw input_error(where, "triangles", "none", std::to_string(mesh.triangles.size()));
+        throw Error(where + ": curves cannot have triangles");
     const std::size_t n = mesh.vertex_count();
     if (radii.size() != n)
         throw input_error(where, "length of radii", std::to_string(n) + " (one per position)",

@@ -83,7 +83,7 @@ void LightSet::take_profiles() {
                               "less than " + std::to_string(profiles_.list.size()), std::to_string(lamp->profile));
         const float norm = dot(lamp->rotation, lamp->rotation);
         if (!(std::abs(norm - 1) < 1e-3f))
-            throw input_error("light " + std::to_string(index), "axes", "finite numbers", "others");
+            throw input_error("light " + std::to_string(index), "axes", "finite numbers", "NaN or infinity");
         lamp->spread = profiles_.list[std::size_t(lamp->profile)]->spread();
     };
     for (std::size_t i = 0; i < lights_.size(); ++i) take(lights_[i], i);

@@ -66,12 +66,12 @@ void check_keys(std::span<const Light> keys, const std::string& where) {
         const std::string key = where + ", key " + std::to_string(i);
         const Light& light = keys[i];
         if (light.index() != keys[0].index())
-            throw input_error(key, "kind", "that of the first key", "another");
+            throw Error(key + ": kind: all keys must be the same kind of light");
         if (std::holds_alternative<TriangleLight>(light))
-            throw input_error(key, "kind", "a light that is no triangle", "a triangle");
+            throw input_error(key, "kind", "a light other than a triangle", "a triangle");
         const LampShape *lamp = lamp_of(light), *first = lamp_of(keys[0]);
         if (lamp && (lamp->profile != first->profile || lamp->mirrored != first->mirrored))
-            throw input_error(key, "profile", "that of the first key, not mirrored", "another");
+            throw Error(key + ": profile: must be the profile of the first key, not mirrored");
         std::visit([&](const auto& l) { check_emitter(l, key); }, light);
     }
 }

@@ -152,9 +152,8 @@ void validate(std::span<const Material> keys, const std::vector<Texture>& textur
     for (std::size_t i = 0; i < keys.size(); ++i) {
         validate(keys[i], textures);
         if (same_but_numbers(keys[0], keys[i])) continue;
-        throw input_error("material '" + keys[0].name + "'", "key " + std::to_string(i),
-                          "the kind, textures and modes of key 0: numbers alone change over time",
-                          "others");
+        throw Error("material '" + keys[0].name + "': key " + std::to_string(i) +
+                    ": must have the kind, textures and modes of key 0: only numbers change over time");
     }
 }
 

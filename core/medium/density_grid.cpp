@@ -37,9 +37,9 @@ DensityGrid::DensityGrid(Size size, SharedArray<float> values, const Affine3d& s
     if (wanted == 0 || values_.size() != wanted)
         throw input_error("density grid", "values", std::to_string(wanted), std::to_string(values_.size()));
     if (!std::ranges::all_of(values_, [](float v) { return v >= 0 && v <= std::numeric_limits<float>::max(); }))
-        throw input_error("density grid", "values", "finite numbers of at least 0", "others");
+        throw Error("density grid: values: numbers must be finite and at least 0");
     if (!(std::abs(space_from_unit.determinant()) > 0) || !std::isfinite(unit_from_space_.determinant()))
-        throw input_error("density grid", "transform", "an invertible matrix", "another");
+        throw Error("density grid: transform: the matrix has no inverse");
     bounds_.reserve(std::size_t(blocks_.x) * blocks_.y * blocks_.z);
     for (std::uint32_t z = 0; z < blocks_.z; ++z)
         for (std::uint32_t y = 0; y < blocks_.y; ++y)

@@ -44,14 +44,14 @@ std::optional<RotationStretch> split(const Affine3d& m, Interpolation how, std::
             auto parts = scaled_rotation(m);
             if (!parts)
                 throw input_error(where(), "slerp", "columns at right angles, none of them 0",
-                                  "a matrix with shear or without inverse; 'decomposed' takes shear");
+                                  "a matrix with shear or without inverse (use 'decomposed' for shear)");
             return parts;
         }
         case Interpolation::twist: {
             auto parts = polar(m);
             if (!parts || !is_one(parts->stretch))
                 throw input_error(where(), "twist", "a rigid matrix",
-                                  "one that scales, shears or mirrors; 'decomposed' takes those");
+                                  "a matrix that scales, shears or mirrors (use 'decomposed')");
             parts->stretch = Affine3d{};
             return parts;
         }
@@ -162,10 +162,10 @@ Motion Motion::keys(std::span<const double> times, std::span<const Affine3d> key
     track.pivot = pivot;
     for (std::size_t i = 0; i < keys.size(); ++i) {
         if (!std::isfinite(times[i]) || !is_finite(keys[i]))
-            throw input_error("motion key " + std::to_string(i), "numbers", "finite ones",
+            throw input_error("motion key " + std::to_string(i), "numbers", "finite numbers",
                               "NaN or infinity");
         if (i > 0 && !(times[i] >= times[i - 1]))
-            throw input_error("motion key " + std::to_string(i), "time", "times that rise",
+            throw input_error("motion key " + std::to_string(i), "time", "times that do not decrease",
                               std::to_string(times[i - 1]) + " then " + std::to_string(times[i]));
         Segment& segment = track.segments[i];
         segment.first = keys[i];

@@ -104,10 +104,10 @@ class MotionKernel {
 
 void check(const ShutterTime& shutter) {
     if (!(std::isfinite(shutter.open) && std::isfinite(shutter.close) && shutter.open <= shutter.close))
-        throw input_error("motion blur", "shutter", "times that do not fall",
+        throw input_error("motion blur", "shutter", "times that do not decrease",
                           std::to_string(shutter.open) + " to " + std::to_string(shutter.close));
     if (shutter.arrived.size() < 2)
-        throw input_error("motion blur", "light that has arrived", "two shares at least",
+        throw input_error("motion blur", "light that has arrived", "at least two shares",
                           std::to_string(shutter.arrived.size()));
 }
 

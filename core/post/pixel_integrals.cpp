@@ -10,7 +10,7 @@ namespace {
 
 void check(const PixelWeights& w) {
     if (w.first.empty() || w.weights.size() % w.first.size() != 0)
-        throw Error("pixel_integrals: wanted as many weights for each pixel");
+        throw Error("pixel_integrals: all pixels must have the same number of weights");
 }
 
 /// One row of pixels before its columns are summed.

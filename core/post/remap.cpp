@@ -164,7 +164,7 @@ class Tile {
 void check(const SourceMap& m, int width, int begin, int end) {
     m.check();
     if (!(0 <= begin && begin <= end))
-        throw input_error("remap", "rows", "some of the picture's",
+        throw input_error("remap", "rows", "rows of the picture",
                           std::to_string(begin) + " to " + std::to_string(end));
     if (begin < m.top || end > m.top + m.rows * kCell || width < 1 || width > m.columns * kCell)
         throw input_error("remap", "map", "cells for all pixels", "fewer");
@@ -180,7 +180,7 @@ void check(const RemapSource& s, std::span<const SourceMap> maps,
                           std::to_string(maps.size()));
     for (int m : map_of)
         if (m < 0 || m >= int(maps.size()))
-            throw input_error("remap", "map of a channel", "one of the maps",
+            throw input_error("remap", "map of a channel", "the index of a map",
                               std::to_string(m));
     for (const SourceMap& m : maps) check(m, s.width, begin, end);
 }
@@ -237,7 +237,7 @@ std::vector<std::uint32_t> remap_nearest(std::span<const std::uint32_t> values, 
                     if (!(sx >= 0 && sy >= 0 && sx < width && sy < height)) continue;
                     const int line = int(sy) - first;
                     if (line < 0 || line >= rows)
-                        throw input_error("remap", "rows", "those that the map reads",
+                        throw input_error("remap", "rows", "all rows that the map reads",
                                           "fewer");
                     out[std::size_t(y - begin) * width + x] =
                         values[std::size_t(line) * width + int(sx)];

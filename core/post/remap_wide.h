@@ -28,7 +28,7 @@ struct WidePlace {
 inline const float* source_row(const RemapSource& s, int y) {
     const int row = std::clamp(y, 0, s.height - 1) - s.first;
     if (row < 0 || row >= s.rows())
-        throw input_error("remap", "rows", "those that the map reads",
+        throw input_error("remap", "rows", "all rows that the map reads",
                           "no row " + std::to_string(y));
     return s.values.data() + std::size_t(row) * s.width * s.channels;
 }

@@ -69,7 +69,7 @@ void SourceMap::check() const {
                               std::to_string(got));
     };
     if (columns < 1 || rows < 1 || top < 0 || top % kCell != 0)
-        throw input_error("map", "cells", "some, from a multiple of 16",
+        throw input_error("map", "cells", "at least one, from a row that is a multiple of 16",
                           std::to_string(top));
     want("nodes", std::size_t(rows + 3) * (columns + 3) * 2, nodes.size());
     want("exact", std::size_t(rows) * columns, exact.size());

@@ -11,7 +11,7 @@ namespace {
 
 void need_exact(const Camera& camera, const char* what) {
     if (!std::holds_alternative<ExactLens>(camera.lens))
-        throw input_error("render", what, "a lens that is traced", "an ideal one");
+        throw input_error("render", what, "the exact model of a lens", "an ideal lens");
 }
 
 std::shared_ptr<const FlareAim> aim_of(const Picture& p) {

@@ -216,9 +216,9 @@ class CameraPass {
 RenderCounters render(const Scene& scene, const Camera& camera, Film& film, const RenderSettings& settings,
                       const std::function<bool(double)>& progress) {
     if (film.responses().count() != film.layout().channels)
-        throw input_error("render", "film", "responses of its channels", "none");
+        throw input_error("render", "film", "the responses of its channels", "none");
     if (scene.has_catchers() && !(film.layout().catchers && settings.light.off()))
-        throw input_error("render", "film", "catchers, and no light paths, for a scene with catchers", "another");
+        throw Error("render: a scene with catchers needs a film with catchers, and no light paths");
     const DrawnSamples drawn(settings, film.layout());
     const FilmDensity density(settings.filter, drawn.region(), drawn.counts(), &settings.shutter);
     const Picture picture{scene, camera, film, settings, density};

@@ -35,13 +35,13 @@ template <typename T>
 void check_times(const std::string& where, const Keyed<T, double>& keys) {
     const auto& t = keys.times;
     if (t.empty() || t.size() != keys.values.size())
-        throw input_error(where, "keys", "as many values as times, at least one",
+        throw input_error(where, "keys", "one value for each time, at least one",
                           std::to_string(t.size()) + " times, " +
                               std::to_string(keys.values.size()) + " values");
     for (std::size_t i = 0; i < t.size(); ++i) {
         if (std::isfinite(t[i]) && (i == 0 || t[i] >= t[i - 1])) continue;
         throw input_error(where, "key " + std::to_string(i) + ": time",
-                          "finite times that do not fall", std::to_string(t[i]) + " s");
+                          "finite times that do not decrease", std::to_string(t[i]) + " s");
     }
 }
 

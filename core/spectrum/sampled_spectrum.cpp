@@ -11,11 +11,11 @@ namespace {
 
 void check(std::span<const double> nm, std::span<const double> values) {
     if (nm.empty() || nm.size() != values.size())
-        throw input_error("spectrum", "values", "as many as wavelengths, at least one",
+        throw input_error("spectrum", "values", "one for each wavelength, at least one",
                           std::to_string(values.size()) + " for " + std::to_string(nm.size()));
     for (std::size_t i = 0; i < nm.size(); ++i) {
         if (!std::isfinite(nm[i]) || (i > 0 && !(nm[i] > nm[i - 1])))
-            throw input_error("spectrum", "wavelengths", "finite ones that rise", std::to_string(nm[i]) + " nm");
+            throw input_error("spectrum", "wavelengths", "finite numbers that increase", std::to_string(nm[i]) + " nm");
         if (!(values[i] >= 0) || !std::isfinite(static_cast<float>(values[i])))
             throw input_error("spectrum", "values", "finite numbers of at least 0", std::to_string(values[i]));
     }

@@ -274,7 +274,7 @@ TEST_CASE("keys that cannot be used are refused with their place") {
     d.material_keys[0] = {{1, 0.5}, {floor, floor}};
     CHECK_THROWS_WITH(Scene::build(d), doctest::Contains("material 'floor': key 1: time: wanted finite"));
     d.material_keys[0] = {{1}, {floor, floor}};
-    CHECK_THROWS_WITH(Scene::build(d), doctest::Contains("as many values as times"));
+    CHECK_THROWS_WITH(Scene::build(d), doctest::Contains("one value for each time"));
     d.material_keys = {{5, {{1}, {floor}}}};
     CHECK_THROWS_WITH(Scene::build(d), doctest::Contains("keys of material 5"));
     d.material_keys.clear();

@@ -207,15 +207,15 @@ CASES = [
         Case(f"pass-{name}", make, error, command=MERGE)
         for name, make, error in (
             ("missing", lambda folder: folder / "none.exr", "^no such file"),
-            ("objects alone", _objects_alone, f"{D}: film: objects: wanted coverage, too"),
+            ("objects alone", _objects_alone, f"{D}: film: objects need coverage"),
             ("pipe", _pipe, "not a regular file"),
             ("empty", _bytes(b""), "wanted an OpenEXR file"),
             ("text", _bytes(b"hello"), "wanted an OpenEXR file"),
-            ("magic", _bytes(b"\x76\x2f\x31\x01\2\0\0\0"), "a header without an end"),
+            ("magic", _bytes(b"\x76\x2f\x31\x01\2\0\0\0"), "header: truncated or too long"),
             ("picture", _picture, "holds no sums, only a picture"),
             ("half", damaged(lambda d: d[: len(d) // 2]), "cut off or damaged"),
             ("cut end", damaged(lambda d: d[:-100]), "cut off or damaged"),
-            ("header alone", damaged(lambda d: d[:800]), "a header without an end"),
+            ("header alone", damaged(lambda d: d[:800]), "header: truncated or too long"),
             ("zeroed end", damaged(lambda d: d[:-300] + bytes(300)), "damaged pixels"),
             ("window 2^31", damaged(window), "dataWindow: wanted corners"),
             ("ranges text", text(b"[[0, 1]]", b"[[0,'1']"), f"{D}: daguerre:ranges"),

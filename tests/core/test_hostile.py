@@ -82,14 +82,14 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     ),
     (
         lambda: hostile.fit().seconds_a_ray(NOTHING, NOTHING, np.zeros(0), 1),
-        "film points: wanted one",
+        "film points: wanted at least one",
     ),
     (lambda: _core.LensFit().evaluate(NOTHING, NOTHING, np.zeros(0)), "segments: wanted 1 to 16"),
     (
         lambda: _core.polynomial_propagation(1.0, 3, [480, 550, 620], [[0] * 4] * 2),
         "wanted one entry, or one for each wavelength, got 2",
     ),
-    (lambda: _core.wavelength_nodes(400, 700, 0), "wavelengths: wanted one at least"),
+    (lambda: _core.wavelength_nodes(400, 700, 0), "wavelengths: wanted at least one"),
     (lambda: _core.grain_pattern(0, 0, -10, -10, 1.5, 0, 0), "size: wanted 0 to"),
     (
         lambda: _core.Shutter(0.01, _core.OpeningCurve(), "top", 0.001, False, (8, 0)),

@@ -160,7 +160,7 @@ def test_bad_cameras_are_refused(changes: dict[str, Any], message: str) -> None:
 
 
 def test_a_lens_whose_barrel_is_not_known_is_refused() -> None:
-    with pytest.raises(InputError, match="same all around its axis"):
+    with pytest.raises(InputError, match="wanted a lens with axial symmetry"):
         session(eye=camera(decenter=(((0, 1), (0.2, 0.0), (0.0, 0.0)),)))
 
 

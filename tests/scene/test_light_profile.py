@@ -172,7 +172,7 @@ def test_a_profile_that_changes_over_time_is_an_error() -> None:
     scene.add_light(dg.PointLight(profile=TABLE), motion=Other())
     scene.set_environment(color=(1, 1, 1))
     camera = dg.Camera(shutter_time=0.1)
-    with pytest.raises(InputError, match="profile: wanted that of the first key"):
+    with pytest.raises(InputError, match="profile: must be the profile of the first key"):
         dg.render(scene, camera, resolution=(4, 3), spp=1)
 
 

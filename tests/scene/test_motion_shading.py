@@ -130,7 +130,7 @@ class Odd:
         (dg.Material(dg.Gltf(roughness=2)), "roughness"),
         (dg.Material(dg.Gltf(base_color="red")), "base_color"),  # type: ignore[arg-type]
         (dg.Material(dg.Diffuse()), "kind: cannot change .*, from Gltf to Diffuse"),
-        (dg.Material(dg.Gltf(alpha_mode="mask")), "numbers alone change"),
+        (dg.Material(dg.Gltf(alpha_mode="mask")), "only numbers change"),
         ("paint", "wanted a Material"),
     ],
 )

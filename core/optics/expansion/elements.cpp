@@ -15,8 +15,8 @@ RayMap crossing(const SurfaceForm& form, const PathStep& step, double mu, int de
     SeriesRay ray = series_ray(ray_series(degree, about), 0, 1);
     if (!pass_series(alone, step, mu, "polynomial element", ray))
         throw lens_error("lens-no-light", -1, "polynomial element", "base ray",
-                         "one that meets the surface and is not totally reflected",
-                         "one that does not");
+                         "a ray that meets the surface and is not totally reflected",
+                         "a ray that misses it or is totally reflected");
     return {about, on_plane(ray, 0)};
 }
 
@@ -87,7 +87,7 @@ RayMap placement(const Vec3d& decenter, const Vec3d& tilt, bool back, int degree
     if (!(there.direction.z.value() > 1e-12))  // what rounding leaves of cos(90 degrees)
         throw input_error("polynomial element", "tilt",
                           "a frame in which the base ray goes forward",
-                          "one in which it goes along the plane or back");
+                          "a frame in which it goes along the plane or back");
     return {about, on_plane(there, 0)};
 }
 

@@ -50,7 +50,7 @@ void check_lens_fit(const LensFit& fit) {
     for (const FitSegment& s : fit.segments) {
         if (!(s.u_low < s.u_high))
             throw input_error(
-                "lens fit", "segment", "u that rises",
+                "lens fit", "segment", "u that increases",
                 std::to_string(s.u_low) + " to " + std::to_string(s.u_high));
         if (s.bend.x.count + s.bend.y.count > 0) check(s.bend, "bend", 1, axial);
         check(s.direction, "direction", 1, axial);

@@ -35,7 +35,7 @@ RayMap lens_map(const Tracer& tracer, const LensIndices& n, const LensWay& way,
             throw lens_error(
                 "lens-no-light", step.surface, where, "Taylor expansion",
                 "a base ray that meets the surface and is not totally reflected",
-                "one that does not");
+                "a ray that misses it or is totally reflected");
     }
     return {way.about, on_plane(ray, way.end_z)};
 }

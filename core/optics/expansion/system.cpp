@@ -59,7 +59,7 @@ RayMap PolynomialSystem::at(double wavelength_nm) const {
         throw input_error("polynomial system", "wavelength",
                           nm.size() == 1
                               ? listed(nm) + ", for which it was made"
-                              : "one between " + listed({nm.front(), nm.back()}),
+                              : "a wavelength between " + listed({nm.front(), nm.back()}),
                           listed({wavelength_nm}));
     const std::vector<double> w = weights(nm, wavelength_nm);
     RayMap sum;
@@ -73,7 +73,7 @@ RayMap PolynomialSystem::at(double wavelength_nm) const {
 
 std::vector<double> wavelength_nodes(double from_nm, double to_nm, int count) {
     if (count < 1)
-        throw input_error("polynomial system", "wavelengths", "one at least",
+        throw input_error("polynomial system", "wavelengths", "at least one",
                           std::to_string(count));
     if (count == 1) return {0.5 * (from_nm + to_nm)};
     const double a = inverse_square(from_nm), b = inverse_square(to_nm);

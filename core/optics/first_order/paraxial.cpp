@@ -53,8 +53,7 @@ FirstOrder first_order(const Prescription& lens, double nm, Section section) {
     const Matrix m = system(lens, nm, section, 0, last, true);
     const double power = -m.c, z1 = lens.last_vertex();
     if (!(std::abs(power) > 1e-9))
-        throw lens_error("lens-afocal", -1, lens.name, "power",
-                         "a lens that is not afocal", std::to_string(power) + " per mm");
+        throw LensError(lens.name + ": the lens is afocal: it has no focal length", "lens-afocal");
     FirstOrder f{};
     f.wavelength_nm = nm;
     f.efl = n1 / power;

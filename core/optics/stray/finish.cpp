@@ -47,7 +47,7 @@ FinishScatter::FinishScatter(const Finish& finish, const char* where) : finish_(
         albedo_.push_back(finish.diffuse + glossy_albedo(double(i) / kSteps));
     const double most = *std::ranges::max_element(albedo_);
     if (most > 1 + 1e-6)
-        throw input_error("scatter", where, "a finish that sends back no more light than arrives",
+        throw input_error("scatter", where, "a finish that reflects at most all light",
                           std::to_string(most) + " of it at one angle");
 }
 

@@ -91,6 +91,6 @@ TEST_CASE("black paint is black, and shines when light grazes it") {
 TEST_CASE("a finish that sends back more than arrives is refused") {
     CHECK_THROWS_WITH_AS(FinishScatter({.diffuse = 1.2}, "barrel"), doctest::Contains("barrel, diffuse"), Error);
     CHECK_THROWS_WITH_AS(FinishScatter({.diffuse = 0.9, .gloss = 0.1}, "blades"),
-                         doctest::Contains("no more light than arrives"), Error);
+                         doctest::Contains("at most all light"), Error);
     CHECK(FinishScatter({.diffuse = 1, .gloss = 0}, "barrel").albedo(0.3) == doctest::Approx(1));
 }

@@ -204,14 +204,14 @@ class Bench {
 
 std::vector<GhostSpot> ghost_spots(const GhostLens& lens, const GhostLight& light, bool with_points) {
     if (light.nm.empty() || light.weight.size() != light.nm.size())
-        throw input_error("ghosts", "wavelengths", "one at least, each with its weight",
+        throw input_error("ghosts", "wavelengths", "at least one, each with its weight",
                           std::to_string(light.nm.size()) + " and " + std::to_string(light.weight.size()));
     if (light.rays < 1 || light.rays > kMostRays)
         throw input_error("ghosts", "rays", "1 to " + std::to_string(kMostRays), std::to_string(light.rays));
     const Bench bench(lens, light);
     const double straight = bench.straight();
     if (!(straight > 0))
-        throw input_error(lens.tracer().prescription().name, "flare", "a lens that light passes", "none");
+        throw Error(lens.tracer().prescription().name + ": flare: no light passes the lens");
     std::vector<GhostSpot> spots;
     const std::vector<Mirrors> ghosts = lens.two_bounces();
     const std::vector<Window> windows = bench.windows(ghosts);

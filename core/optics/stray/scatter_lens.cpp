@@ -27,14 +27,13 @@ double radius_within(const SurfaceForm& form, double plane, int side, double rad
 
 void check(const Prescription& lens) {
     if (!is_axially_symmetric(lens))
-        throw LensError(lens.name + ": scatter: wanted a lens that is the same all around its axis, since its "
-                                    "barrel is not known otherwise; got one with elements that are turned, "
-                                    "shifted or not round",
+        throw LensError(lens.name + ": scatter: wanted a lens with axial symmetry, "
+                                    "got one with elements that are turned, shifted or not round",
                         "lens-scatter");
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
         if (!lens.surfaces[i].stop && !std::isfinite(clear_radius(lens.surfaces[i])))
             throw lens_error("lens-scatter", int(i), surface_name(lens, int(i)), "scatter",
-                             "a clear diameter, which is where the barrel begins", "none");
+                             "a clear diameter, where the barrel begins", "none");
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ LensPath ghost_path(int surfaces, std::span<const int> mirrors, bool toward_film
         throw input_error("ghost", "mirrors", "an even number", std::to_string(mirrors.size()));
     for (const int mirror : mirrors) {
         if (sign > 0 ? mirror < at : mirror > at)
-            throw input_error("ghost", "mirrors", "surfaces that lie ahead of the light, in turn",
+            throw input_error("ghost", "mirrors", "surfaces in the order in which the light meets them",
                               std::to_string(mirror));
         for (; at != mirror; at += sign) path.push_back({at, sign});
         path.push_back({mirror, sign, true});

@@ -217,7 +217,7 @@ def _read(text: str, options: dict[str, Any]) -> dict[str, Any]:
         return {first: known[first]}
     wanted = [names] if names in known else [name.strip() for name in names.split(",")]
     if twice := [name for name in wanted if wanted.count(name) > 1]:
-        raise UsageError(f"--calibration {text}: wanted each name once, got {twice[0]!r} twice")
+        raise UsageError(f"--calibration {text}: {twice[0]!r} appears twice")
     found: dict[str, Any] = {}
     for name in wanted:
         one = pick(known, name, file)

@@ -170,7 +170,7 @@ def _names(text: str) -> list[str]:
     if "" in names:
         raise UsageError(f"--camera: wanted names between commas, got {text!r}")
     if twice := [name for name in names if names.count(name) > 1]:
-        raise UsageError(f"--camera: wanted each name once, got {twice[0]!r} twice")
+        raise UsageError(f"--camera: {twice[0]!r} appears twice")
     return names
 
 

@@ -126,7 +126,7 @@ def _sensor(item: Item | None, file: Path, kind: str) -> Sensor | None:
     if not name or Path(name).name != name or not is_path(name):
         item.fail(f"wanted the name of a file in the same folder, got {short(name)}")
     if kind != "raw":
-        item.fail(f"wanted no sensor file for a plate of kind {kind}, got {short(name)}")
+        item.fail(f"a plate of kind {kind} takes no sensor file, got {short(name)}")
     return sensors.read(file.with_name(name))
 
 
