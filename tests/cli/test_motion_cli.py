@@ -112,7 +112,7 @@ def test_what_no_shutter_does(flags, message, capsys):
 @pytest.mark.parametrize(
     ("table", "message"),
     [
-        ("/dev/zero", "wanted a file, got a device or a pipe"),
+        ("/dev/zero", "not a regular file"),
         ("0,0\n0.5,1\n0.2,1\n", "line 3: times must not decrease"),
         ("0,0\n1\n", "line 2: wanted time and opening"),
         ("", "wanted at least two points"),

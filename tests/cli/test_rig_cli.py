@@ -224,7 +224,7 @@ def test_interrupted_rigs_go_on_with_the_camera_that_is_not_complete(tmp_path: P
     [
         (["-o", "{camera}.exr"], 2, "needs --camera"),
         (["-o", "{cameras}.exr", "-c", "A"], 2, "wanted {camera}, got {cameras}"),
-        (["-o", "x.exr", "-c", "A,A"], 2, "'A' twice"),
+        (["-o", "x.exr", "-c", "A,A"], 2, "'A' appears twice"),
         (["-o", "x.exr", "-c", "A,,B"], 2, "names between commas"),
         (["-o", "x.exr", "-c", "A,Bb"], 3, "'Bb'"),
         (["-o", "x.exr", "-c", "A,B", "--stereo", "1"], 2, "--camera and --stereo"),
@@ -237,7 +237,7 @@ def test_interrupted_rigs_go_on_with_the_camera_that_is_not_complete(tmp_path: P
         ),
         (["-o", "x.exr", "--calibration", "chain.yaml:cam2"], 2, "cam0, cam1"),
         (["-o", "x.exr", *["--calibration", "chain.yaml:cam0"] * 2], 2, "'cam0' twice"),
-        (["-o", "x.exr", "--calibration", "chain.yaml:cam1,cam1"], 2, "'cam1' twice"),
+        (["-o", "x.exr", "--calibration", "chain.yaml:cam1,cam1"], 2, "'cam1' appears twice"),
         (["-o", "x.exr", "--calibration", "chain.yaml", "--rectified"], 2, "rectified: wanted ROS"),
         (["-o", "x.exr", "--calibration", "chain.yaml", "--calibration-unit", "1kg"], 2, "a unit"),
         (["-o", "x.exr", "--calibration", "chain.yaml", "--calibration-unit", "kg"], 2, "got 'kg'"),
@@ -245,7 +245,7 @@ def test_interrupted_rigs_go_on_with_the_camera_that_is_not_complete(tmp_path: P
         (
             ["-o", "x.exr", "--calibration", "chain.yaml", "--calibration-size", "4x3"],
             2,
-            "none for kalibr",
+            "kalibr takes none",
         ),
         (
             ["-o", "x.exr", "--calibration-unit", "mm"],
