@@ -215,7 +215,11 @@ WRONG = {
     "aov": (["render", "s.glb", "-o", "a.exr", "--aov", "dept"], 2, "did you mean 'depth'"),
     "crop": (["render", "s.glb", "-o", "a.exr", "--crop", "left=5,right=5"], 2, "got left=5,"),
     "edge": (["render", "s.glb", "-o", "a.exr", "--crop", "lft=5"], 2, "got 'lft' (did you mean"),
-    "edge twice": (["render", "s.glb", "-o", "a.exr", "--crop", "top=5,top=6"], 2, "top appears twice"),
+    "edge twice": (
+        ["render", "s.glb", "-o", "a.exr", "--crop", "top=5,top=6"],
+        2,
+        "top appears twice",
+    ),
     "edge in words": (["render", "s.glb", "-o", "a.exr", "--crop", "top=a"], 2, "--crop: top: "),
     "three edges": (["render", "s.glb", "-o", "a.exr", "--crop", "1,2,3"], 2, "or 100,50,400,300"),
     "env and sky": (

@@ -250,7 +250,7 @@ def test_a_damaged_list_is_refused(tmp_path: Path) -> None:
     session.draw(0, 2)
     state = {name: words.copy() for name, words in session.state().items()}
     state["objects"][3, 0, 0] = SIZE[0]
-    with pytest.raises(dg.DaguerreError, match="objects: wanted columns and objects that rise"):
+    with pytest.raises(dg.DaguerreError, match="objects: wanted columns and objects that increase"):
         session.set_state(state, [(0, 2)])
     one, frame = passes.pass_of(session), session.frame()
     one = replace(one, metadata=copy.deepcopy(one.metadata))

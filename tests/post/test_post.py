@@ -318,7 +318,10 @@ def bad_files(tmp_path: Path) -> dict[str, tuple[bytes, str]]:
         "text": (b"#?RADIANCE\n\n", "wanted an OpenEXR file"),
         "header cut off": (whole[:60], "header: truncated or too long"),
         "rows cut off": (whole[: len(whole) // 2], ""),
-        "deep": (whole[:4] + struct.pack("<i", 2 | 0x800) + whole[8:], "got deep ones"),
+        "deep": (
+            whole[:4] + struct.pack("<i", 2 | 0x800) + whole[8:],
+            "deep pixels are not supported",
+        ),
         "huge": (huge, "dataWindow: wanted corners in order"),
         "no colour": (lacking, "wanted R, G, B or Y, got U"),
     }

@@ -148,7 +148,7 @@ def test_black_and_smooth_parts_scatter_nothing() -> None:
         ({"lens": "thin", "scatter": dg.LensScatter()}, "camera: scatter: wanted a lens with"),
         ({"scatter": 0.04}, "scatter: wanted a LensScatter, got 0.04"),
         ({"scatter": dg.LensScatter(barrel=1.5)}, "scatter: barrel: wanted"),
-        ({"scatter": dg.LensScatter(barrel=0.9, barrel_gloss=0.1)}, "no more light than arrives"),
+        ({"scatter": dg.LensScatter(barrel=0.9, barrel_gloss=0.1)}, "at most all light"),
         ({"scatter": dg.LensScatter(surface_rms_nm=-1)}, "surface_rms_nm: wanted"),
         ({"scatter": dg.LensScatter(surface_lobe=(0.0, -2.0))}, "surface, knee: wanted"),
         ({"scatter": dg.LensScatter(gloss_lobe=(0.1,))}, "gloss_lobe"),  # type: ignore[arg-type]
