@@ -149,7 +149,7 @@ def test_a_thick_lens_changes_while_the_shutter_is_open() -> None:
 @pytest.mark.parametrize(
     ("camera", "wanted"),
     [
-        (dg.Camera(lens_model="thick"), "wanted the name or file of a lens"),
+        (dg.Camera(lens_model="thick"), "lens_model: thick needs a lens with a prescription"),
         (dg.Camera(lens=LENS, lens_model="thick", natural_vignetting=True), "its own vignetting"),
         (dg.Camera(lens=LENS, lens_model="thick", aperture_diameter=3.0), "takes f_stop instead"),
         (dg.Camera(tilt=(70, 0)), "tilt"),

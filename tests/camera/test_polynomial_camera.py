@@ -129,7 +129,7 @@ def test_the_region_is_named_by_what_its_edge_still_sees() -> None:
         ({"lens_model": "thin", "fit_tolerance": 1.0}, "wanted lens_model polynomial, got"),
         ({"fit_tolerance": 0.0}, "fit_tolerance"),
         ({"ripple": (2.0, 100.0)}, "ripple: wanted lens_model exact"),
-        ({"lens": "thin"}, "lens_model polynomial: wanted the name or file of a lens"),
+        ({"lens": "thin"}, "lens_model: polynomial needs a lens with a prescription"),
     ],
 )
 def test_what_a_polynomial_lens_cannot_do(given: dict[str, Any], said: str) -> None:

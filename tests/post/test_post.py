@@ -253,7 +253,7 @@ def test_units_of_parameters():
         ),
         (["vignetting"], 2, "the file has none; give its size in mm, such as sensor=36x24"),
         (["vignetting:sensor=36x24"], 2, "focal_length: the file has none"),
-        (["vignetting:model=lens,sensor=36x24"], 2, "lens: wanted a name"),
+        (["vignetting:model=lens,sensor=36x24"], 2, "vignetting: model=lens needs a lens"),
         (["vignetting:model=lens,lens=nothing,sensor=36x24"], 3, "no lens of the library"),
         (["film"], 2, "gain: wanted a number of stops of at least -10, got no value"),
         (

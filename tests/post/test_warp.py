@@ -212,7 +212,7 @@ def test_a_lens_bends_each_colour_its_own_way():
         ("model=division,k3=1,fx=9", "wanted a coefficient of division (k1, k2), got k3"),
         ("model=equisolid,k1=1,fx=9", "wanted a coefficient of equisolid (it has none), got k1"),
         ("k4=1,fx=9", "wanted a coefficient of brown-conrady (k1, k2, k3, p1, p2), got k4"),
-        ("model=lens,sensor=36x24", "lens: wanted a name"),
+        ("model=lens,sensor=36x24", "distortion: model=lens needs a lens"),
         ("k1=0.1", "focal_length: the file has none"),
         ("k1=0.1,fx=0", "fx: wanted a number of px of at least 0.001"),
         ("k1=0.1,fx=9,filter=nearest", "filter: wanted one of cubic, linear"),

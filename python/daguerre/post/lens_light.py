@@ -59,7 +59,7 @@ def _relative(
     points = np.vstack([np.zeros((1, 2)), film_mm])
     light = spectral_illumination(lens, points, nm, grid=rays) @ white
     if not (light[0] > 0).all():
-        raise InputError(f"{lens.lens.name}: vignetting: wanted light on the axis, got none")
+        raise InputError(f"{lens.lens.name}: vignetting: no light reaches the film on the axis")
     return np.asarray(np.maximum(light[1:] / light[0], 0), np.float32)
 
 

@@ -115,7 +115,7 @@ def disparity(frame: Frame, baseline: float) -> NDArray[np.float32]:
     focal = straight_focal_px(frame.metadata, "disparity")
     depth = frame.aovs.get("depth.Z")
     if depth is None or "gt_time" not in frame.metadata:
-        raise InputError("disparity: wanted exact depth, got none; gt_time='mid' makes it")
+        raise InputError("disparity: wanted exact depth, got none; render with gt_time='mid'")
     if (lens := frame.metadata.get("gt_lens", "chief")) != "chief":
         raise InputError(f"disparity: wanted gt_lens='chief', got {lens!r}")
     apart = focal * baseline

@@ -46,7 +46,8 @@ def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
         kind = str(camera.lens or "thin")
         if model in (*TRACED, "thick"):
             raise UsageError(
-                f"camera: lens_model {model}: wanted the name or file of a lens, got none"
+                f"camera: lens_model: {model} needs a lens with a prescription: set lens to a name "
+                "of the library or a lens file"
             )
         return None, model or kind
     if not isinstance(camera.lens, lenses.Lens | str | Path):

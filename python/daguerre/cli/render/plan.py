@@ -129,4 +129,6 @@ def _check_distinct(plan: Plan) -> None:
         checks.check_writable(picture.output)
     paths = [path for picture in plan.pictures for path in picture.output.written]
     if twice := [path for path, count in Counter(paths).items() if count > 1]:
-        raise UsageError(f"-o {twice[0]}: wanted a file for each picture, got one for several")
+        raise UsageError(
+            f"-o {twice[0]}: several pictures would have this name; give their cameras other names"
+        )

@@ -102,7 +102,7 @@ def _check_files(shots: list[Shot]) -> None:
         if path.resolve() in read:
             raise UsageError(f"-o {path}: this is one of the inputs; choose another name")
     if twice := [path for path, count in Counter(written).items() if count > 1]:
-        raise UsageError(f"-o {twice[0]}: wanted one file for each frame, got one for several")
+        raise UsageError(f"-o {twice[0]}: several frames have this name; put #### into it")
     missing = [
         (shot, path) for shot in shots for path in (shot.plate, shot.objects) if fault_of(path)
     ]

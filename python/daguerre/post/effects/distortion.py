@@ -182,7 +182,7 @@ def lens_models(
     from daguerre.distortion.lens_map import LensMap
 
     if values["lens"] is None:
-        raise UsageError("lens: wanted a name or a file for model=lens, got none")
+        raise UsageError("distortion: model=lens needs a lens, such as lens=double-gauss-50mm-f2")
     film = film_plane(canvas, values)
     corners = np.array([(x, y) for x in (0, canvas.width) for y in (0, canvas.height)])
     reach = 1.02 * film.pitch_mm * np.abs(corners + canvas.corner - film.center).max(axis=0)

@@ -43,7 +43,7 @@ def _make(canvas: Canvas, values: Values) -> Step:
     found = [light for row in lights for light in row if light is not None]
     if not found:
         raise InputError(
-            f"{canvas.where}: lens-psf: wanted light on the film from {lens.lens.name}, got none"
+            f"{canvas.where}: lens-psf: no light passes through {lens.lens.name} to the film"
         )
     size = _size(canvas, found, film.pitch_mm)
     narrow = size <= WAVES and size * film.pitch_mm <= FRINGES * 0.55e-3 * lens.f_stop

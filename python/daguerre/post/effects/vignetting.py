@@ -97,7 +97,7 @@ def _make(canvas: Canvas, values: Values) -> Step:
         case _:
             if values["lens"] is None:
                 raise UsageError(
-                    "vignetting: lens: wanted a name or a file for model=lens, got none"
+                    "vignetting: model=lens needs a lens, such as lens=double-gauss-50mm-f2"
                 )
             film, lens = film_plane(canvas, values), bench(values)
             falloff = lens_light(canvas, film, lens, color=values["colour"])
