@@ -98,7 +98,7 @@ def test_each_frame_of_a_sequence_is_the_frame_of_its_time():
         (["--rolling", "top,-9ms"], "readout_time: wanted a number of at least 0"),
         (["--rolling", "diagonal,9ms"], "scan_order: wanted top, bottom, left, right"),
         (["--shutter-curve", "trapezoid:0.2"], "efficiency: wanted"),
-        (["--time", "1e17"], "scene: time: wanted a time to which"),
+        (["--time", "1e17"], "scene: time: 1e+17 s is too large for an exposure"),
         (["--frames", "1-2"], "wanted a name with #"),
         (["--gt-time", "noon"], "wanted open, mid, close"),
     ],

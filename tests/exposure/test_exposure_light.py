@@ -57,7 +57,7 @@ def test_flags_set_what_the_ground_gets(tmp_path) -> None:
         ({"sky": "1,1,1", "env_lux": "500", "env_scale": 2.0}, "--env-scale and --env-lux"),
         ({"env_lux": "500"}, "--env-lux needs an environment: --env or --sky"),
         ({"sky": "1,1,1", "env_lux": "-1"}, "--env-lux: wanted at least 0"),
-        ({"sky": "0,0,0", "env_lux": "9"}, "--env-lux: wanted light from above the horizon"),
+        ({"sky": "0,0,0", "env_lux": "9"}, "--env-lux: no light comes from above the horizon"),
         ({"sky": "1,1,1", "env_lux": "bright"}, "--env-lux: wanted an illuminance"),
     ):
         with pytest.raises(dg.DaguerreError, match=message):

@@ -70,7 +70,9 @@ def test_bad_plates_are_refused() -> None:
         dg.InputError, match=r"plate: pixels: wanted shape \(H, W, 3\), got \(4, 4\)"
     ):
         scene.set_plate(np.zeros((4, 4)))
-    with pytest.raises(dg.InputError, match="numbers must be finite at 1 pixels"):
+    with pytest.raises(
+        dg.InputError, match="wanted finite numbers, got NaN or infinity in 1 pixels"
+    ):
         scene.set_plate(
             np.where(np.indices((3, 4, 5))[0].transpose(1, 2, 0) > 9, 0, np.nan)[:1, :1]
         )

@@ -277,7 +277,7 @@ FAULTS = [
     (("noise", "gain_dn_per_e"), 0, "noise.gain_dn_per_e"),
     (("sharpness", "blur", "sigma_px"), 1e9, "sharpness.blur.sigma_px"),
     (("development", "look"), "sepia", "development.look"),
-    (("mystery",), 1, "not known"),
+    (("mystery",), 1, "unknown member"),
 ]
 
 
