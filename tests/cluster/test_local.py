@@ -182,7 +182,7 @@ def test_the_command(client: Any, file: Path, tmp_path: Path) -> None:
         ("tcp://10.1.2.3:8786", "wanted tls:// for another machine"),
         ("http://127.0.0.1:1", "wanted local"),
         ("local:0", "1 to 1024 workers"),
-        ("missing.yaml", "cannot read"),
+        ("missing.yaml", "missing.yaml: no such file"),
     ],
 )
 def test_wrong_addresses(

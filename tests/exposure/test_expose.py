@@ -263,7 +263,7 @@ def test_light_below_zero_is_counted() -> None:
     frame.xyz[:8] = (-0.1, -0.1, -0.1)
     raw = frame.expose("ideal")
     assert raw.metadata["negative_photosites"] == 8 * 64
-    assert any("below 0 at 12.50%" in note for note in raw.notes)
+    assert any("clipped to 0 at 12.50%" in note for note in raw.notes)
 
 
 def test_the_renders_own_noise_is_told() -> None:

@@ -69,7 +69,9 @@ def test_spot_of_a_crop_is_that_of_the_frame() -> None:
     for at in (None, (80.0, 70.0)):
         expected = meter(frame(whole), "spot", at=at).luminance
         assert meter(part, "spot", at=at).luminance == pytest.approx(expected)
-    with pytest.raises(dg.UsageError, match=r"meter: spot at \(10.0, 10.0\): wanted a place in"):
+    with pytest.raises(
+        dg.UsageError, match=r"meter: spot at \(10.0, 10.0\): wanted a point inside"
+    ):
         meter(part, "spot", at=(10, 10))
 
 
