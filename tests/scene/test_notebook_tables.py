@@ -27,7 +27,7 @@ def test_a_camera_shows_where_it_stands_and_what_was_chosen() -> None:
         "stands at": "(0.05, 1.72, 3) m",
         "looks along": "(0, 0, -1)",
         "lens": "'sonnar-50mm-f2'",
-        "f_stop": "4.0",
+        "f_stop": "4",
         "focus_distance": "0.73 m",
         "tilt": "(2, 0) deg",
     }
