@@ -19,7 +19,7 @@ SIZE = (12, 8)
 
 def rows() -> dict[str, tuple[str, str]]:
     """Shape and condition of each name in the page's table."""
-    part = PAGE.read_text().partition("### Layers by name")[2].partition("![")[0]
+    part = PAGE.read_text().partition("\n## Layers by name")[2].partition("![")[0]
     found = {}
     for line in re.findall(r"^\| (`.*) \|$", part, re.MULTILINE):
         names, shape, _, condition = line.split(" | ")
