@@ -109,7 +109,7 @@ def test_a_notebook_shows_sections_without_matplotlib(
             assert result._repr_svg_().startswith("<svg")
         else:
             assert result._repr_png_() is None
-        with pytest.raises(UsageError, match=r"plot: wanted the package matplotlib.*plot"):
+        with pytest.raises(UsageError, match=r"plot: needs the package matplotlib.*plot"):
             result.plot()
 
 

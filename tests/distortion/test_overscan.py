@@ -224,7 +224,7 @@ def test_windows_of_files_and_pictures_without_overscan(tmp_path: Path, room: dg
     assert dg.metering.meter(frame) == dg.metering.meter(plain)
     assert dg.development.develop(frame).pixels.shape == (16, 24, 3)
     inner = dg.render(room, GAUSS, resolution=SIZE, spp=1, overscan=OVER, crop=(-4, -2, 0, 5))
-    with pytest.raises(UsageError, match="overscan alone"):
+    with pytest.raises(UsageError, match="holds only overscan"):
         inner.save(tmp_path / "c.png")
 
 

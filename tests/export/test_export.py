@@ -177,7 +177,9 @@ def test_what_code_cannot_express(double_gauss, tmp_path):
         dg.UsageError, match=r"ending in .c, .glsl, .osl, .py, .json, got 'lens.txt'"
     ):
         double_gauss.save("lens.txt")
-    with pytest.raises(dg.InputError, match="lens fit: setting: wanted f_stop"):
+    with pytest.raises(
+        dg.InputError, match="lens fit: setting: wanted the numbers of a lens setting"
+    ):
         LensFit.from_dict({**data, "setting": {"focus_m": "near"}})
     large = {**data, "segments": 80 * data["segments"]}
     with pytest.raises(dg.UsageError, match=r"at most 20000 coefficients, got .*lower degree"):

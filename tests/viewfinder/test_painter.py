@@ -114,7 +114,7 @@ def test_a_wish_that_cannot_be_is_a_failure_and_the_next_one_is_drawn(seen: Seen
     seen.wish(1, wrong)
     wish, error = seen.failures.get(timeout=60)
     assert wish.number == 1
-    assert "wanted f/" in str(error)
+    assert "f_stop: wanted 2 or more" in str(error)
     seen.wish(2)
     seen.until_rest(2)
 

@@ -43,7 +43,7 @@ class Value:
         if state.get(MADE_BY) != __version__:
             raise InputError(
                 f"pickle of a {type(self).__name__}: made by daguerre "
-                f"{state.get(MADE_BY, '(an older version)')}, but this is daguerre {__version__}"
+                f"{state.get(MADE_BY, 'of an older version')}, but this is daguerre {__version__}"
             )
         vars(self).update((name, part) for name, part in state.items() if name != MADE_BY)
 
