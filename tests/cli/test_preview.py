@@ -221,7 +221,7 @@ def test_a_preview_that_cannot_be_written_stops_no_render(tmp_path: Path) -> Non
     run = piped("--spp", "64", "-o", "a.png")
     assert run.returncode == 0
     assert run.stderr.count(b"--preview:") == 1
-    assert b"no more previews" in run.stderr
+    assert b"the preview stops" in run.stderr
     assert (tmp_path / "a.png").exists()
 
 
@@ -230,7 +230,7 @@ def test_a_preview_that_cannot_be_written_stops_no_render(tmp_path: Path) -> Non
     [
         (("-o", "nowhere/a.png"), b"no such folder"),
         (("-o", "a.png", "-o", "a.preview.png"), b"this name is reserved for --preview"),
-        (("--export-raymap", "a.exr"), b"wanted a picture for --aov"),
+        (("--export-raymap", "a.exr"), b"--preview need a picture"),
     ],
 )
 def test_a_preview_without_a_place_is_refused(flags: tuple[str, ...], words: bytes) -> None:
