@@ -104,7 +104,7 @@ def test_twice_the_same_is_the_same_bytes(tmp_path: Path) -> None:
 
 #: Parts of a scene or a camera, and words of the note on each, for both formats.
 LEFT_OUT: dict[str, tuple[Any, str]] = {
-    "range": (lambda s: s.add_light(dg.PointLight((1, 1, 1), range=2.0)), "range of a lamp"),
+    "range": (lambda s: s.add_light(dg.PointLight((1, 1, 1), range=2.0)), "range of a light"),
     "sun": (lambda s: s.add_light(dg.DirectionalLight((1, 1, 1), angle=1.0)), "sharp"),
     "curves": (
         lambda s: s.add_instance(
