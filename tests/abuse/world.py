@@ -98,6 +98,10 @@ class World:
         return analysis.pencil(self.bench, 5.0)
 
     @cached_property
+    def mtf(self) -> analysis.Mtf:
+        return analysis.modulation_transfer(self.pencil, np.array([10.0, 40.0]))
+
+    @cached_property
     def spot(self) -> analysis.Spot:
         return analysis.spot(self.pencil, grid=8)
 

@@ -74,7 +74,7 @@ def test_numbers_fill_the_place_of_the_hashes() -> None:
             ["-o", "shot.exr", "--frames", "1-3"],
             "wanted a name with # for 3 frames, such as shot.####",
         ),
-        (["-o", "shot.###.exr"], "wanted --frames"),
+        (["-o", "shot.###.exr"], "needs --frames"),
         (["-o", "s.#.exr", "--frames", "3-1"], "--frames: wanted frames such as 1-48"),
     ],
 )

@@ -103,7 +103,9 @@ def test_another_moment_is_that_of_plain_gltf(glb: Path, asked: dict[str, Any]) 
     assert found.warnings[0].startswith(
         "the exact scene is stored for the time of its export only: plain glTF is read instead"
     )
-    with pytest.raises(InputError, match="strict: the file has notes: the exact scene is stored for"):
+    with pytest.raises(
+        InputError, match="strict: the file has notes: the exact scene is stored for"
+    ):
         dg.load(glb, strict=True, **asked)
 
 
