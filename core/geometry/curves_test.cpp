@@ -470,7 +470,7 @@ TEST_CASE("bad curves are an error that names curve and element") {
     CHECK(message(mesh).find("positions") != std::string::npos);
     mesh = good();
     mesh.triangles = {{0, 1, 2}};
-    CHECK(message(mesh).find("triangles: wanted none") != std::string::npos);
+    CHECK(message(mesh).find("curves cannot have triangles") != std::string::npos);
     mesh = good();
     mesh.colors = std::vector<std::array<float, 4>>(3);
     CHECK(message(mesh).find("length of colours") != std::string::npos);

@@ -89,7 +89,7 @@ TEST_CASE("keys of another kind, texture or mode are refused, and so are numbers
     }
     const Material diffuse{"it", DiffuseMaterial{}};
     CHECK_THROWS_WITH(validate(std::vector{gltf(a), diffuse}, textures),
-                      doctest::Contains("material 'it': key 1: wanted the kind"));
+                      doctest::Contains("material 'it': key 1: must have the kind, textures and modes of key 0"));
 }
 
 TEST_CASE("what may be clear at some time is clear for shadow rays, at whatever key it is not") {
