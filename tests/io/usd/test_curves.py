@@ -88,7 +88,7 @@ def test_widths_of_another_number_are_noted(
     scene = stages.read(stage)
     assert np.allclose(scene.meshes[0].radii, 0.5)
     (length, default) = _noted(scene)
-    assert length.startswith("primvar 'widths' has another number of values than its mesh")
+    assert length.startswith("primvar 'widths' has the wrong number of values for its mesh")
     assert default == _NO_WIDTHS
 
 

@@ -82,4 +82,4 @@ def as_rows(value: Any, columns: int) -> Array | None:
 
 def note_length(name: str, notes: Notes) -> None:
     """Notes a primvar whose number of values does not fit its mesh."""
-    notes.add(f"primvar {name[:40]!r} does not fit its mesh in number and is left out")
+    notes.add(f"primvar {name[:40]!r} has the wrong number of values for its mesh and is left out")
