@@ -133,7 +133,9 @@ def test_a_primvar_of_a_wrong_length_is_noted(tmp_path: Path) -> None:
         stages.primvar(stages.mesh(stage, "/card"), "displayColor", np.ones((3, 3)), "vertex")
 
     scene = _load(tmp_path, write)
-    assert any("'displayColor' has the wrong number of values for its mesh" in w for w in scene.warnings)
+    assert any(
+        "'displayColor' has the wrong number of values for its mesh" in w for w in scene.warnings
+    )
 
 
 def test_texture_coordinates_have_their_origin_at_the_top_left(tmp_path: Path) -> None:
