@@ -40,7 +40,7 @@ def test_mypy_sees_the_package_of_this_install(tmp_path: Path) -> None:
         for number, line in enumerate(code.splitlines(), 1)
         if (found := re.search(r"# wrong: ([\w-]+)", line))
     ]
-    assert len(wrong) == 3
+    assert len(wrong) == 4
     names = "".join(f"dg.{name}\n" for name in dg.__all__)
     assert checked(tmp_path, "user.py", code + names) == wrong
 

@@ -26,3 +26,4 @@ material: dg.Diffuse = dg.Diffuse()
 loaded = dg.load(3)  # wrong: arg-type
 frame.save()  # wrong: call-arg
 name = dg.no_such_name  # wrong: attr-defined
+other = lenses.no_such_name  # wrong: attr-defined

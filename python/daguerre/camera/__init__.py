@@ -13,11 +13,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Camera", "Projection", "RollingShutter"]
 
-__getattr__, __dir__ = on_use(
-    __name__,
-    {
-        "Camera": "camera",
-        "Projection": "projection",
-        "RollingShutter": "rolling_shutter",
-    },
-)
+if not TYPE_CHECKING:  # checkers know the names above, and report all others
+    __getattr__, __dir__ = on_use(
+        __name__,
+        {
+            "Camera": "camera",
+            "Projection": "projection",
+            "RollingShutter": "rolling_shutter",
+        },
+    )

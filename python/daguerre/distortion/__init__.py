@@ -24,18 +24,19 @@ __all__ = [
     "Stereographic",
 ]
 
-__getattr__, __dir__ = on_use(
-    __name__,
-    {
-        "BrownConrady": "opencv",
-        "Distortion": "model",
-        "Division": "projections",
-        "Equidistant": "projections",
-        "Equisolid": "projections",
-        "OpenCV": "opencv",
-        "OpenCVFisheye": "opencv",
-        "Orthographic": "projections",
-        "Radial": "model",
-        "Stereographic": "projections",
-    },
-)
+if not TYPE_CHECKING:  # checkers know the names above, and report all others
+    __getattr__, __dir__ = on_use(
+        __name__,
+        {
+            "BrownConrady": "opencv",
+            "Distortion": "model",
+            "Division": "projections",
+            "Equidistant": "projections",
+            "Equisolid": "projections",
+            "OpenCV": "opencv",
+            "OpenCVFisheye": "opencv",
+            "Orthographic": "projections",
+            "Radial": "model",
+            "Stereographic": "projections",
+        },
+    )

@@ -13,11 +13,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Frame", "Picture", "Raw"]
 
-__getattr__, __dir__ = on_use(
-    __name__,
-    {
-        "Frame": "frame",
-        "Picture": "picture",
-        "Raw": "raw",
-    },
-)
+if not TYPE_CHECKING:  # checkers know the names above, and report all others
+    __getattr__, __dir__ = on_use(
+        __name__,
+        {
+            "Frame": "frame",
+            "Picture": "picture",
+            "Raw": "raw",
+        },
+    )

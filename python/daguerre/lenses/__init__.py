@@ -35,22 +35,23 @@ __all__ = [
     "read",
 ]
 
-__getattr__, __dir__ = on_use(
-    __name__,
-    {
-        "Configuration": "configurations",
-        "Entry": "index",
-        "FirstOrder": "lens",
-        "Focused": "focus",
-        "Lens": "lens",
-        "LensError": "errors",
-        "LensSetting": "setting",
-        "LensSurface": "surface",
-        "Nominal": "lens",
-        "Pupil": "lens",
-        "find": "search",
-        "load": "library",
-        "names": "index",
-        "read": "reader",
-    },
-)
+if not TYPE_CHECKING:  # checkers know the names above, and report all others
+    __getattr__, __dir__ = on_use(
+        __name__,
+        {
+            "Configuration": "configurations",
+            "Entry": "index",
+            "FirstOrder": "lens",
+            "Focused": "focus",
+            "Lens": "lens",
+            "LensError": "errors",
+            "LensSetting": "setting",
+            "LensSurface": "surface",
+            "Nominal": "lens",
+            "Pupil": "lens",
+            "find": "search",
+            "load": "library",
+            "names": "index",
+            "read": "reader",
+        },
+    )

@@ -11,12 +11,13 @@ if TYPE_CHECKING:
 
 __all__ = ["Keys", "Spin", "keys", "spin"]
 
-__getattr__, __dir__ = on_use(
-    __name__,
-    {
-        "Keys": "values",
-        "Spin": "values",
-        "keys": "values",
-        "spin": "values",
-    },
-)
+if not TYPE_CHECKING:  # checkers know the names above, and report all others
+    __getattr__, __dir__ = on_use(
+        __name__,
+        {
+            "Keys": "values",
+            "Spin": "values",
+            "keys": "values",
+            "spin": "values",
+        },
+    )

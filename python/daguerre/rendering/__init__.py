@@ -35,21 +35,22 @@ __all__ = [
     "in_order",
 ]
 
-__getattr__, __dir__ = on_use(
-    __name__,
-    {
-        "Checkpoint": "checkpoint",
-        "Control": "reporter",
-        "Finished": "reporter",
-        "Job": "job",
-        "Output": "output",
-        "Photograph": "photograph",
-        "Picture": "picture",
-        "RenderSettings": "settings",
-        "Reporter": "reporter",
-        "Status": "progress",
-        "Stopped": "reporter",
-        "View": "picture",
-        "in_order": "picture",
-    },
-)
+if not TYPE_CHECKING:  # checkers know the names above, and report all others
+    __getattr__, __dir__ = on_use(
+        __name__,
+        {
+            "Checkpoint": "checkpoint",
+            "Control": "reporter",
+            "Finished": "reporter",
+            "Job": "job",
+            "Output": "output",
+            "Photograph": "photograph",
+            "Picture": "picture",
+            "RenderSettings": "settings",
+            "Reporter": "reporter",
+            "Status": "progress",
+            "Stopped": "reporter",
+            "View": "picture",
+            "in_order": "picture",
+        },
+    )

@@ -11,9 +11,10 @@ if TYPE_CHECKING:
 
 __all__ = ["Scene"]
 
-__getattr__, __dir__ = on_use(
-    __name__,
-    {
-        "Scene": "scene",
-    },
-)
+if not TYPE_CHECKING:  # checkers know the names above, and report all others
+    __getattr__, __dir__ = on_use(
+        __name__,
+        {
+            "Scene": "scene",
+        },
+    )

@@ -29,19 +29,20 @@ __all__ = [
     "read",
 ]
 
-__getattr__, __dir__ = on_use(
-    __name__,
-    {
-        "Curve": "curve",
-        "DarkCurrent": "data",
-        "DualGain": "data",
-        "HotPixels": "data",
-        "Mosaic": "mosaic",
-        "PATTERNS": "mosaic",
-        "Sensor": "sensor",
-        "ideal": "ideal_sensor",
-        "load": "library",
-        "names": "library",
-        "read": "reader",
-    },
-)
+if not TYPE_CHECKING:  # checkers know the names above, and report all others
+    __getattr__, __dir__ = on_use(
+        __name__,
+        {
+            "Curve": "curve",
+            "DarkCurrent": "data",
+            "DualGain": "data",
+            "HotPixels": "data",
+            "Mosaic": "mosaic",
+            "PATTERNS": "mosaic",
+            "Sensor": "sensor",
+            "ideal": "ideal_sensor",
+            "load": "library",
+            "names": "library",
+            "read": "reader",
+        },
+    )

@@ -24,12 +24,13 @@ if TYPE_CHECKING:
 
 __all__ = ["Refiner", "Rules", "Subdivision", "edges_of_chains"]
 
-__getattr__, __dir__ = on_use(
-    __name__,
-    {
-        "Refiner": "refiner",
-        "Rules": "rules",
-        "Subdivision": "rules",
-        "edges_of_chains": "rules",
-    },
-)
+if not TYPE_CHECKING:  # checkers know the names above, and report all others
+    __getattr__, __dir__ = on_use(
+        __name__,
+        {
+            "Refiner": "refiner",
+            "Rules": "rules",
+            "Subdivision": "rules",
+            "edges_of_chains": "rules",
+        },
+    )
