@@ -18,7 +18,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-MAIN = "import sys; from daguerre.cli import main; main(sys.argv[1:])"
+MAIN = "import sys; from daguerre.cli import main; main()"
 COUNT = "; print(len(sys.modules), file=sys.stderr)"
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 #: Python may keep what it compiles, as it does for a user.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -9,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from daguerre import cli
+from daguerre.cli.short_process import CONTAINERS
 from tests.faults.scene import write_scene
 
 LOADED = (
@@ -79,3 +82,28 @@ def test_the_help_shows_each_command_with_its_whole_line(
 def test_flags_before_a_command_do_not_hide_it(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["--", "version"]) == 0
     assert "numpy" in capsys.readouterr().out
+
+
+def test_the_program_collects_garbage_rarely_and_lets_idle_threads_sleep() -> None:
+    code = (
+        "import gc, os, sys; from daguerre.cli import main; sys.argv = ['daguerre', '--version']; "
+        "main(); print(gc.get_threshold()[0], os.environ['OPENBLAS_THREAD_TIMEOUT'])"
+    )
+    for given, timeout in ((None, "4"), ("26", "26")):
+        surroundings = {k: v for k, v in os.environ.items() if k != "OPENBLAS_THREAD_TIMEOUT"}
+        if given:
+            surroundings["OPENBLAS_THREAD_TIMEOUT"] = given
+        done = subprocess.run(
+            [sys.executable, "-c", code],
+            capture_output=True,
+            text=True,
+            check=True,
+            env=surroundings,
+        )
+        assert done.stdout.splitlines()[-1].split() == [str(CONTAINERS), timeout]
+
+
+def test_a_call_from_python_leaves_the_garbage_collector_alone() -> None:
+    before = gc.get_threshold()
+    cli.main(["--version"])
+    assert gc.get_threshold() == before

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from daguerre.errors import DaguerreError, InputError, OutputError, suggest
 from daguerre.memory import left_bytes, shown
 
-from . import console
+from . import console, short_process
 from .commands import COMMANDS, COMPLETE
 
 if TYPE_CHECKING:
@@ -40,6 +40,8 @@ def __getattr__(name: str) -> Any:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs a command line; returns its exit code."""
+    if arguments is None:
+        short_process.tune()
     console.argv = list(sys.argv[1:] if arguments is None else arguments)
     if console.argv[:1] == [COMPLETE]:
         from .completion.shells import complete
