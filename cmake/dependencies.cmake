@@ -38,6 +38,16 @@ if(DG_MISSING)
         "it wants x86-64 Linux with glibc 2.34 or newer, and Python 3.11 or newer.")
 endif()
 
+# Vector code is compiled for SSE4.2, AVX2 and AVX-512, and on ARM for NEON: each further instruction set takes time to
+# compile. Highway's SSE4 includes AES, which our baseline lacks and our code does not use; without it SSE4 is the
+# baseline, and SSSE3 is not compiled. Sets beyond the first AVX-512 add nothing that our code uses. Sizeless vectors
+# (SVE, RVV) cannot be members of structs.
+target_compile_definitions(hwy::hwy INTERFACE
+    "HWY_DISABLED_TARGETS=(HWY_AVX3-1)|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV")
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    target_compile_definitions(hwy::hwy INTERFACE HWY_DISABLE_PCLMUL_AES)
+endif()
+
 # On ARM the vector code is compiled once, for NEON: Highway's choice of a target for each function does not
 # reach the constructors that GCC writes for structs of vectors. Highway 1.0.3 has NEON with AES only.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")

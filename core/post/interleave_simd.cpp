@@ -1,5 +1,3 @@
-// Sizeless vectors (SVE, RVV) cannot be members of structs; on Arm NEON serves.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "post/interleave_simd.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep

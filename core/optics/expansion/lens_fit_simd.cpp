@@ -1,5 +1,3 @@
-// Some targets are off, as in trace_simd.cpp: sizeless vectors cannot be members of structs.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "optics/expansion/lens_fit_simd.cpp"
 #include "optics/expansion/lens_fit_simd.h"

@@ -1,5 +1,4 @@
 // ghost_simd.cpp -- light on its way by mirrors, in lanes: trace_ghost (ghost_lens.h).
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "optics/stray/ghost_simd.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep

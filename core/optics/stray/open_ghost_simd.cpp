@@ -1,5 +1,4 @@
 // open_ghost_simd.cpp -- rays by mirrors that nothing stops, in lanes: trace_open_ghost (open_ghost.h).
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "optics/stray/open_ghost_simd.cpp"
 #include <cmath>

@@ -1,5 +1,4 @@
 // cell_numbers.cpp -- Owen-scrambled points in SIMD lanes.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/flare/maps/cell_numbers.cpp"
 #include "render/flare/maps/cell_numbers.h"

@@ -1,5 +1,4 @@
 // ghost_map_simd.cpp -- landings of a cell of a ghost's map, in SIMD lanes.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/flare/maps/ghost_map_simd.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
