@@ -183,6 +183,8 @@ class Camera(Value):
     shutter_type: str | None = None
     shutter_curve: ShutterCurve | None = None
     rolling_shutter: RollingShutter | None = None
+    exposure: str = _default("exposure")
+    meter: str = _default("meter")
     iso: float = _default("iso")
     exposure_compensation: float = _default("exposure_compensation")
     exposure_time: float | None = None

@@ -7,7 +7,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from daguerre.color.illuminants import white_xy
+from daguerre.errors import UsageError
 
+from .exposure_mode import CHOICES, CHOSEN, meter_of, mode_of, split_mode
 from .parameters import LIGHT
 from .shutter import seconds
 
@@ -16,13 +18,14 @@ if TYPE_CHECKING:
 
 #: Relative difference below which two numbers are one, as files hold single precision.
 _SINGLE = 1e-6
+LIGHT_DEFAULTS = {row.name: row.default for row in LIGHT}
 PINHOLE_F_STOP: float = LIGHT["exposure_f_stop"].usual
 
 
 #: Metadata keys about exposure; h0 follows from the others, for a pinhole from its f-stop.
 _EXPOSURE_FACTS = (
-    *("iso", "exposure_compensation", "exposure_time", "exposure_f_stop", "responsivity"),
-    *("white_balance", "h0"),
+    *("exposure", "meter", "iso", "exposure_compensation", "exposure_time", "exposure_f_stop"),
+    *("responsivity", "white_balance", "h0"),
 )
 
 
@@ -62,7 +65,7 @@ def without_exposure(facts: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def describe_exposure(camera: Camera, f_stop: float | None, shutter_s: float) -> str:
-    """Describes what sets the brightness, such as ``1/48 s, f/2, ISO 800, +1 EV``.
+    """Describes what sets the brightness, such as ``manual, 1/48 s, f/2, ISO 800, +1 EV``.
 
     Args:
         camera: The camera.
@@ -71,7 +74,8 @@ def describe_exposure(camera: Camera, f_stop: float | None, shutter_s: float) ->
     """
     time = shutter_s if camera.exposure_time is None else camera.exposure_time
     stop = f_stop if camera.exposure_f_stop is None else camera.exposure_f_stop
-    parts = [seconds(time), *([] if stop is None else [f"f/{stop:.3g}"]), f"ISO {camera.iso:g}"]
+    opening = [] if stop is None else [f"f/{stop:.3g}"]
+    parts = [camera.exposure, seconds(time), *opening, f"ISO {camera.iso:g}"]
     if camera.responsivity != 1:
         parts.append(f"responsivity {camera.responsivity:g}")
     if camera.exposure_compensation:
@@ -98,7 +102,9 @@ def exposure_notes(camera: Camera, f_stop: float | None, shutter_s: float) -> li
 def exposure_metadata(
     camera: Camera, f_stop: float | None, h0: float, shutter_s: float
 ) -> dict[str, Any]:
-    """``expTime``, ``aperture``, ``h0`` and ``luminance_exposure`` of a frame; None: unknown.
+    """Mode, ``expTime``, ``aperture``, ``h0`` and ``luminance_exposure`` of a frame.
+
+    None: unknown.
 
     Args:
         camera: Camera as given.
@@ -113,6 +119,7 @@ def exposure_metadata(
     if own is not None and asked is not None:
         light *= (own / asked) ** 2
     return {
+        "exposure": split_mode(camera.exposure, camera.meter)[0],
         "expTime": time,
         "aperture": asked if asked is not None else own,
         "h0": h0,
@@ -123,6 +130,11 @@ def exposure_metadata(
     }
 
 
+def is_held(camera: Camera, name: str) -> bool:
+    """Whether a parameter of a camera is set, or changes over time."""
+    return name in camera.motion or getattr(camera, name) != LIGHT_DEFAULTS.get(name)
+
+
 def check_exposure(camera: Camera) -> None:
     """Checks the exposure parameters of a camera.
 
@@ -130,5 +142,12 @@ def check_exposure(camera: Camera) -> None:
         UsageError: The message names the parameter.
     """
     LIGHT.check(camera, "camera")
+    meter_of("camera: meter", camera.meter)
+    mode, _ = split_mode(mode_of("camera: exposure", camera.exposure), camera.meter)
+    for name in CHOSEN.get(mode, ()):
+        if is_held(camera, name):
+            raise UsageError(
+                f"camera: exposure {mode} chooses {CHOICES[mode]}, but {name} is set: leave one out"
+            )
     if camera.white_balance is not None:
         white_xy(camera.white_balance, "camera: white_balance")

@@ -76,7 +76,6 @@ def view(
         for name, text in (
             ("look", job_flags.look),
             ("time", scene_flags.time),
-            ("exposure", job_flags.exposure),
         )
         if text is not None
     }
@@ -94,7 +93,7 @@ def view(
     size = cameras.size(seen, job_flags.res, scene)
     settings = checks.settings_of(job_flags, settings_flags, [], size)
     (settings,) = crops.placed([settings], settings_flags.crop, tell=True)
-    photograph = photograph_of({}, None, None, None, settings.sampling.seed)
+    photograph = photograph_of({}, None, None, settings.sampling.seed)
     stage = Stage(scene, camera, settings, photograph, job_flags.tone, load)
     stage.try_out(dials)
     words = without(console.argv, [*DIALS])

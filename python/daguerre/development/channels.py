@@ -20,7 +20,7 @@ from daguerre.color import illuminants
 from daguerre.errors import UsageError, suggest
 from daguerre.files import extras
 from daguerre.files.value import BriefRecord
-from daguerre.sensors.sensor import GREY_LX_S
+from daguerre.sensors.iso_speed import GREY_LX_S
 
 from .binning import bayer_of, is_mono
 from .dng import _LEAST, LEAST_XTRANS
@@ -134,13 +134,12 @@ class Channels(BriefRecord):
 
 
 def of_frame(frame: Frame) -> Channels:
-    """Makes channels from a frame's XYZ, as from a perfect sensor, with ISO 12232's brightness."""
-    from daguerre.exposure.lux_seconds import frame_iso, luminance_exposure
+    """Makes channels from a frame's XYZ, as from a perfect sensor, in its exposure mode."""
+    from daguerre.exposure.lux_seconds import compensation, exposure_of_one, frame_iso
 
     facts = frame.metadata
     iso = frame_iso(facts) or 100.0
-    gain = 2.0 ** float(facts.get("exposure_compensation") or 0)
-    unit = GREY_LX_S / GREY / iso / (luminance_exposure(facts) * gain)
+    unit = GREY_LX_S / GREY / iso / (exposure_of_one(facts, iso) * compensation(facts))
     pixels = np.ascontiguousarray(_xyz(frame), np.float32)
     plain_light(pixels, "frame", infinite=True)  # what is infinite is white
     return Channels(

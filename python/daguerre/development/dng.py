@@ -18,7 +18,7 @@ from daguerre.color import illuminants
 from daguerre.io import exif
 from daguerre.io.exif import Tags
 from daguerre.io.tiff import CFA, LINEAR_RAW, TiffImage, write_tiff
-from daguerre.sensors.sensor import GREY_LX_S
+from daguerre.sensors.iso_speed import GREY_LX_S
 
 from .binning import is_mono
 from .looks import GREY

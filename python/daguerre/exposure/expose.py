@@ -26,7 +26,7 @@ from daguerre.frame.seen_by import seen_of
 from daguerre.sensors.library import load
 from daguerre.sensors.sensor import Sensor
 
-from .lux_seconds import frame_iso, luminance_exposure
+from .lux_seconds import exposure_of_one, frame_iso
 
 FloatArray = NDArray[np.float64]
 #: Share of pixels with more render noise than photon noise above which a note says so.
@@ -69,7 +69,7 @@ def expose(
     compensation = chosen_ev(frame, ev)
     white = white_balance if white_balance is not None else frame.metadata.get("white_balance")
     white_xy = illuminants.white_xy(white)
-    light = light_of(frame, body, compensation)
+    light = light_of(frame, body, speed, compensation)
     seconds = number(frame.metadata.get("expTime", 0.0), "frame: expTime", 0, error=InputError)
     shot = _shot(body, light, speed, dark_electrons(body, seconds, temperature))
     shot.seed = whole(seed, "seed", 0, 2**64 - 1)
@@ -95,7 +95,7 @@ def expose(
         white_balance=white_xy,
         metadata=_facts(frame, body, speed, compensation, seed, light.source, negative),
         clipped=saturated.view(np.bool_),
-        luminance_exposure=exposure_map(frame, compensation),
+        luminance_exposure=exposure_map(frame, speed, compensation),
         notes=tuple(notes),
     )
 
@@ -144,9 +144,9 @@ def dark_electrons(
     return sensor.dark_current.rate * factor, sensor.hot_pixels.rate * factor
 
 
-def light_of(frame: Frame, sensor: Sensor, ev: float = 0.0) -> Light:
+def light_of(frame: Frame, sensor: Sensor, iso: float, ev: float = 0.0) -> Light:
     """Chooses the best planes of a frame for a sensor: its channels, else bands, else XYZ."""
-    lux_s = luminance_exposure(frame.metadata) * 2.0**ev
+    lux_s = exposure_of_one(frame.metadata, iso) * 2.0**ev
     electrons = sensor.electrons_per_lux_s()[:, None] * lux_s
     seen = seen_of(frame, sensor)
     planes = np.ascontiguousarray(seen.planes, np.float32)
@@ -245,9 +245,9 @@ def _stripes(height: int) -> Iterator[slice]:
 # Truth ------------------------------------------------------------------------------------------
 
 
-def exposure_map(frame: Frame, ev: float | None = None) -> NDArray[np.float32]:
-    """Luminance exposure of each pixel, lux s, shape (H, W)."""
-    factor = np.float32(luminance_exposure(frame.metadata) * 2.0 ** chosen_ev(frame, ev))
+def exposure_map(frame: Frame, iso: float, ev: float) -> NDArray[np.float32]:
+    """Luminance exposure of each pixel of a sensor at an ISO, lux s, shape (H, W)."""
+    factor = np.float32(exposure_of_one(frame.metadata, iso) * 2.0**ev)
     if frame.xyz is not None:
         return np.asarray(frame.xyz[..., 1] * factor, np.float32)
     luma = luminance_of_rgb().astype(np.float32)
@@ -264,14 +264,14 @@ def exposure_truth(
     body = chosen_sensor(frame, sensor)
     speed = chosen_iso(frame, body, iso, [])
     compensation = chosen_ev(frame, ev)
-    light = light_of(frame, body, compensation)
+    light = light_of(frame, body, speed, compensation)
     highest = (body.highest_dn - body.black_level) / body.gain(speed)
     most = np.float32(min(body.full_well_at(speed), highest))
     weights = light.electrons.T.astype(np.float32)
     full = np.empty((frame.height, frame.width, len(body.channels)), np.float32)
     for rows in _stripes(frame.height):
         full[rows] = light.planes[rows] @ weights >= most
-    truth = {"exposure.Y": exposure_map(frame, compensation)}
+    truth = {"exposure.Y": exposure_map(frame, speed, compensation)}
     return truth | {f"saturated.{name}": full[..., i] for i, name in enumerate(body.channels)}
 
 

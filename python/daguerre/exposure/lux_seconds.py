@@ -1,4 +1,4 @@
-"""Exposure in lux seconds of a value of 1 in a frame.
+"""Exposure in lux seconds of a value of 1 in a frame, and the brightness of its picture.
 
 A frame holds H / H0. A white world (D65) of 1 cd/m2, which is 1 on the axis, gives the film an
 illuminance of h0 lux. So a value of 1 is an exposure of h0 t lux seconds, with t the exposure time
@@ -8,6 +8,11 @@ of a point of the film. A lens that obeys the sine condition has h0 = pi sin^2(t
 ``exposure_time`` and ``exposure_f_stop`` separate brightness from blur. ``expTime`` and
 ``aperture`` of the metadata then are the exposure of the photograph; the stop and shutter of the
 blur are in ``metadata["camera"]``.
+
+A picture shows gain x H / H0. In the exposure mode ``light`` the gain is 2^EV. In the others it is
+0.018 ISO 2^EV times the luminance exposure of a value of 1, so that 10 / ISO lux s become 0.18
+(ISO 12232). A sensor or film in ``light`` gets 10 / 0.18 / ISO lux s for a value of 1, so that it
+shows the same brightness at any ISO.
 """
 
 from __future__ import annotations
@@ -20,6 +25,53 @@ from daguerre.camera.exposure import PINHOLE_F_STOP, ideal_h0
 from daguerre.checks import short
 from daguerre.doors import guarded
 from daguerre.errors import InputError
+from daguerre.sensors.iso_speed import GREY_LX_S
+
+#: Value of middle grey.
+GREY = 0.18
+LIGHT = "light"
+
+
+def in_light(metadata: Mapping[str, Any]) -> bool:
+    """Whether ISO, time and stop leave the brightness of a frame's picture alone."""
+    return metadata.get("exposure") == LIGHT
+
+
+def is_developed(metadata: Mapping[str, Any]) -> bool:
+    """Whether pictures of a frame are developed: all but those in ``light`` without a white.
+
+    A frame without a mode, such as another program's, is shown as it is.
+    """
+    if metadata.get("exposure") is None:
+        return False
+    return not in_light(metadata) or metadata.get("white_balance") is not None
+
+
+def exposure_of_one(metadata: Mapping[str, Any], iso: float) -> float:
+    """Exposure of a sensor or film of an ISO by a value of 1, lux s, without compensation.
+
+    Raises:
+        InputError: The frame is not in ``light``, and metadata of its exposure are missing.
+    """
+    return GREY_LX_S / GREY / iso if in_light(metadata) else luminance_exposure(metadata)
+
+
+def compensation(metadata: Mapping[str, Any]) -> float:
+    """Factor of a frame's exposure compensation, 2^EV."""
+    return float(2.0 ** float(metadata.get("exposure_compensation") or 0.0))
+
+
+def display_gain(metadata: Mapping[str, Any]) -> float:
+    """Display-linear value of a frame's value of 1; a frame without a mode is ``manual``.
+
+    Raises:
+        InputError: As for :func:`exposure_of_one`.
+    """
+    if in_light(metadata):
+        return compensation(metadata)
+    iso = frame_iso(metadata) or 100.0
+    light = luminance_exposure(metadata) * compensation(metadata)
+    return light * iso * GREY / GREY_LX_S
 
 
 def pinhole_note(metadata: Mapping[str, Any]) -> str | None:
@@ -88,8 +140,17 @@ def _positive(metadata: Mapping[str, Any], name: str, what: str) -> float | None
     raise InputError(f"frame: {name}: wanted {what}, above 0, got {short(value)}{hint}")
 
 
-def with_exposure(metadata: Mapping[str, Any], factor: float) -> dict[str, Any]:
-    """Metadata of the same frame exposed ``factor`` times as long."""
+def with_exposure(metadata: Mapping[str, Any], stops: float) -> dict[str, Any]:
+    """Metadata of the same frame at another exposure: in ``light`` by EV, else by time.
+
+    Args:
+        metadata: Metadata of a frame.
+        stops: Change of exposure, EV.
+    """
+    if in_light(metadata):
+        ev = float(metadata.get("exposure_compensation") or 0.0) + stops
+        return {**metadata, "exposure_compensation": ev or None}
+    factor = 2.0**stops
     light = luminance_exposure(metadata)
     time = metadata.get("expTime")
     changed = {"luminance_exposure": light * factor}

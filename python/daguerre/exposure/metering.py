@@ -16,20 +16,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.camera.exposure_mode import METERS
 from daguerre.checks import numbers, short
 from daguerre.color.spectra import luminance_of_rgb
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.frame.frame import Frame
+from daguerre.sensors.iso_speed import GREY_LX_S
 
-from .lux_seconds import luminance_exposure
+from .lux_seconds import GREY, display_gain, luminance_exposure
 
 FloatArray = NDArray[np.float64]
-MODES = ("centre", "spot", "matrix")
 #: cd s/m2: ISO 2720 allows 10.6 to 13.4; Canon, Nikon and Sekonic have 12.5.
 K = 12.5
-#: Luminance exposure of middle grey at ISO 1, lux s (ISO 12232, standard output sensitivity).
-GREY_LUX_S = 10.0
 #: Centre: a circle of half the frame's height (12 mm of 36 x 24) has this share of the weight.
 CENTER_SHARE, CENTER_DIAMETER = 0.75, 0.5
 #: Spot: a circle of this share of the frame's area.
@@ -40,6 +39,8 @@ ZONES, FOCUS_WEIGHT = (9, 7), 3.0
 WHITE_OVER_GREY, MOST_PROTECTION = 1 / 0.18, 2.0
 #: Zones count at least as this share of the brightest, so that a night sky does not weigh in.
 DARKEST_ZONE = 2.0**-10
+#: Highlight: this share of the picture may be brighter than white.
+WHITE_SHARE = 0.01
 _STRIPE = 256  # rows
 
 
@@ -49,7 +50,7 @@ class Metered:
     """Reading of a light meter.
 
     Attributes:
-        mode: Metering mode: centre, spot or matrix.
+        mode: Metering pattern: centre, spot, matrix or highlight.
         luminance: Luminance taken for middle grey, cd/m2.
         iso: ISO that makes that luminance middle grey with the frame's time and stop.
     """
@@ -71,31 +72,17 @@ class Metered:
 
 @guarded
 def check_mode(mode: str, where: str = "meter") -> str:
-    """Checks the name of a metering mode; ``center`` is valid, too.
+    """Checks the name of a metering pattern; ``center`` is valid, too.
 
     Raises:
-        UsageError: No such mode.
+        UsageError: No such pattern.
     """
     known = "centre" if mode == "center" else mode
-    if known not in MODES:
+    if known not in METERS:
         raise UsageError(
-            f"{where}: wanted {', '.join(MODES)}, got {short(mode)}{suggest(short(mode), MODES)}"
+            f"{where}: wanted {', '.join(METERS)}, got {short(mode)}{suggest(short(mode), METERS)}"
         )
     return known
-
-
-def mode_of(flag: str, text: str) -> str:
-    """Parses ``auto``, or ``auto:`` and a metering mode.
-
-    Raises:
-        UsageError: The text says something else.
-    """
-    kind, _, mode = text.partition(":")
-    if kind != "auto":
-        raise UsageError(
-            f"{flag}: wanted auto, auto:centre, auto:spot or auto:matrix; got {text!r}"
-        )
-    return check_mode(mode or "centre", f"{flag} auto")
 
 
 @guarded
@@ -106,32 +93,61 @@ def meter(frame: Frame, mode: str = "centre", *, at: tuple[float, float] | None 
         frame: With exposure metadata.
         mode: ``centre``: mean luminance, three quarters of it from the middle; ``spot``: mean of a
             fortieth of the area, about the point in focus; ``matrix``: zones, with most weight on
-            the point in focus and on highlights.
+            the point in focus and on highlights; ``highlight``: all but a hundredth of the picture
+            stays below white.
         at: Point in focus, px of the whole frame; None: its middle.
 
     Raises:
-        UsageError: No such mode, or the point is outside of the picture.
+        UsageError: No such pattern, or the point is outside of the picture.
         InputError: The metered part is black, or the frame lacks metadata of its exposure.
     """
     mode = check_mode(mode)
-    frame = frame.without_overscan()
-    unit = luminance_exposure(frame.metadata)
-    place = _Place.of(frame, at)
-    if mode == "matrix":
-        luminance = _matrix(frame, place)
-    else:
-        weight = _center_weight if mode == "centre" else _spot_weight
-        total, light = 0.0, 0.0
-        for rows, y in _luminances(frame):
-            weights = weight(place, rows)
-            total += float(weights.sum())
-            light += float((weights * y).sum())
-        if not total > 0:
-            raise UsageError(f"meter: spot at {place.focus}: wanted a point inside the picture")
-        luminance = light / total
+    luminance = luminance_of(frame, mode, at)
     if not luminance > 0:
         raise InputError(f"meter: {mode}: the metered area is black: there is no light to meter")
-    return Metered(mode, luminance, GREY_LUX_S / (luminance * unit))
+    unit = luminance_exposure(frame.metadata)
+    return Metered(mode, luminance, GREY_LX_S / (luminance * unit))
+
+
+def stops_over(frame: Frame, mode: str, at: tuple[float, float] | None = None) -> float | None:
+    """Distance of a picture from the meter, EV: above 0, it shows the metered part too bright.
+
+    Args:
+        frame: Frame with exposure metadata.
+        mode: Metering pattern.
+        at: Point in focus, px of the whole frame; None: its middle.
+
+    Returns:
+        None: The metered part is black or outside of the frame.
+
+    Raises:
+        InputError: The frame lacks metadata of its exposure.
+    """
+    try:
+        luminance = luminance_of(frame, mode, at)
+    except UsageError:  # a crop without the spot
+        return None
+    shown = display_gain(frame.metadata) * luminance
+    return math.log2(shown / GREY) if 0 < shown < math.inf else None
+
+
+def luminance_of(frame: Frame, mode: str, at: tuple[float, float] | None = None) -> float:
+    """Luminance that a pattern takes for middle grey, cd/m2; see :func:`meter`."""
+    frame = frame.without_overscan()
+    place = _Place.of(frame, at)
+    if mode == "matrix":
+        return _matrix(frame, place)
+    if mode == "highlight":
+        return _highlight(frame)
+    weight = _center_weight if mode == "centre" else _spot_weight
+    total, light = 0.0, 0.0
+    for rows, y in _luminances(frame):
+        weights = weight(place, rows)
+        total += float(weights.sum())
+        light += float((weights * y).sum())
+    if not total > 0:
+        raise UsageError(f"meter: spot at {place.focus}: wanted a point inside the picture")
+    return light / total
 
 
 @dataclass(frozen=True)
@@ -191,6 +207,12 @@ def _luminances(frame: Frame) -> Iterator[tuple[slice, FloatArray]]:
         y = frame.xyz[rows, :, 1] if frame.xyz is not None else frame.rgb[rows] @ luma
         y = np.asarray(y, np.float64)
         yield rows, np.where(np.isfinite(y) & (y > 0), y, 0.0)
+
+
+def _highlight(frame: Frame) -> float:
+    """Luminance of middle grey where all but the brightest pixels are below white."""
+    every = np.concatenate([y.ravel() for _, y in _luminances(frame)])
+    return float(GREY * np.quantile(every, 1 - WHITE_SHARE))
 
 
 def _matrix(frame: Frame, place: _Place) -> float:

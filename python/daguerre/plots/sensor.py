@@ -8,7 +8,8 @@ import numpy as np
 
 from daguerre.color import illuminants
 from daguerre.sensors.facts import isos, row, snr_db
-from daguerre.sensors.sensor import GREY_LX_S, SATURATION_LX_S, Sensor
+from daguerre.sensors.iso_speed import GREY_LX_S, SATURATION_LX_S
+from daguerre.sensors.sensor import Sensor
 
 from .sheet import saved
 

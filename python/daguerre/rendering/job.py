@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure import check_exposure
+from daguerre.camera.exposure_mode import is_automatic
 from daguerre.errors import DaguerreError, InputError
 from daguerre.scene.scene import Scene
 
@@ -21,6 +23,7 @@ from .schedule import WorkOf, work_of
 if TYPE_CHECKING:
     from daguerre.setup.built_scene import BuiltScene
 
+    from .auto_exposure import Chosen
     from .light_paths import Plan
     from .session import Session
 
@@ -81,6 +84,7 @@ class Job:
         self._warned: set[str] = set()
         self._seen: Scene | None = None
         self._built: BuiltScene | None = None
+        self._chosen: dict[str, Chosen] = {}
 
     def run(self, *, resume: bool = False, since: float | None = None) -> bool:
         """Renders the pictures.
@@ -93,7 +97,7 @@ class Job:
             False if the control stopped the job.
         """
         for view in {picture.view.name: picture.view for picture in self.pictures}.values():
-            view.camera(self.scene)  # an error comes before hours are spent, not after
+            check_exposure(view.camera(self.scene))  # before hours are spent, not after
         with kept_films():
             return self._run(resume, time.monotonic() if since is None else since)
 
@@ -127,8 +131,28 @@ class Job:
         return self._seen
 
     def camera_of(self, picture: Picture) -> Camera:
-        """Returns the camera of a picture."""
-        return picture.view.camera(self.scene_of(picture))
+        """Returns the camera of a picture, exposed as the meter of the job says."""
+        camera = picture.view.camera(self.scene_of(picture))
+        chosen = self._metered(picture, camera)
+        return camera if chosen is None else chosen.of(camera)
+
+    def _metered(self, picture: Picture, camera: Camera) -> Chosen | None:
+        """Exposure for a camera in an automatic mode: metered once, at frame 0, and shared."""
+        if not is_automatic(camera.exposure):
+            return None
+        if camera.exposure not in self._chosen:
+            from .auto_exposure import choose
+
+            first = picture.view.metered(self.scene)
+            settings = picture.settings
+            self._chosen[camera.exposure], built = choose(self.scene, first, settings, self._built)
+            self._built = built
+            chosen = self._chosen[camera.exposure]
+            if chosen.note:
+                self.reporter.note(chosen.note)
+            if chosen.warning:
+                self.reporter.warning(chosen.warning)
+        return self._chosen[camera.exposure]
 
     def open(self, picture: Picture) -> Session:
         """Makes and checks the session of a picture; reports warnings of each camera once."""
@@ -147,6 +171,8 @@ class Job:
             scene, camera, settings=picture.settings, built=self._built, piloted=piloted
         )
         self._built = session.built
+        if (chosen := self._metered(picture, picture.view.camera(scene))) is not None:
+            session.metering = chosen.facts
         picture.output.check(session.metadata, self.reporter)
         if picture.output.denoise:
             x0, y0, x1, y1 = session.crop
@@ -175,9 +201,7 @@ class Job:
             frame, self._built = coarse(scene, camera, picture.settings, self._built)
         except DaguerreError:  # the session will say it, if it is one for the picture, too
             return
-        output = picture.output
-        shown = output.photograph.metered(frame, output.paths, Reporter())
-        self.reporter.preview(output.look(shown))
+        self.reporter.preview(picture.output.look(frame))
 
     def _render(self, picture: Picture, began: float, *, resume: bool) -> bool:
         if self.reporter.previews and not resume:
@@ -250,11 +274,13 @@ class Drawing:
         self.checkpoint.remove()
         if self.tell.previews:
             self.tell.preview(self.output.look(frame, complete=True))
+        from .auto_exposure import exposure_in_words
+
         loop, seconds = self.loop, time.monotonic() - self.loop.started
         self.tell.finished(
             Finished(
                 self.session, frame, self.output.files, loop.work.done(), loop.drawn_here, seconds,
-                self.setup_s,
+                self.setup_s, exposure_in_words(self.session, frame),
             )
         )  # fmt: skip
 

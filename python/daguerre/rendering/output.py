@@ -13,7 +13,7 @@ from daguerre.files import extras, formats
 from daguerre.frame.aovs import Source, names_of
 
 from .parameters import PLATE
-from .photograph import Photograph
+from .photograph import Photograph, is_raw, shows_exposure
 from .reporter import Look, Reporter
 
 if TYPE_CHECKING:
@@ -94,16 +94,22 @@ class Output:
         """Checks, before anything is drawn, that the camera can provide the output."""
         self._load_writers()
         self.photograph.check(metadata, self.paths, tell)
+        pictures = [path for path in self.files if shows_exposure(path) and not is_raw(path)]
+        if self.tone != "srgb" and pictures and self.photograph.develops(metadata):
+            raise UsageError(
+                f"--tone {self.tone}: {pictures[0]} is developed, so its tone curve is set by "
+                "--look"
+            )
         if metadata.get("background") == PLATE:
-            self._check_plate()
+            self._check_plate(metadata)
         if DISPARITY in self.aovs:
             from .rig import check_straight
 
             check_straight(metadata)
         if self.exposed:
-            from daguerre.exposure.lux_seconds import luminance_exposure
+            from daguerre.exposure.lux_seconds import exposure_of_one
 
-            luminance_exposure(metadata)  # or an error that names what is missing
+            exposure_of_one(metadata, 100.0)  # or an error that names what is missing
 
     def _load_writers(self) -> None:
         """Imports the libraries that write, as memory may be short after hours of drawing.
@@ -124,15 +130,19 @@ class Output:
         if self.is_pass:
             from . import passes  # noqa: F401
 
-    def _check_plate(self) -> None:
+    def _check_plate(self, metadata: dict[str, Any]) -> None:
         """Refuses outputs that would process the plate twice, or lose it.
 
         Raises:
             UsageError: The message says what to do instead.
         """
-        exposed = [path for path in self.paths if self.photograph.exposes(path)]
-        if self.is_pass or exposed:
-            what = "a pass" if self.is_pass else f"{exposed[0]}, which is exposed and developed,"
+        developed = [
+            path
+            for path in self.paths
+            if is_raw(path) or (shows_exposure(path) and self.photograph.develops(metadata))
+        ]
+        if self.is_pass or developed:
+            what = "a pass" if self.is_pass else f"{developed[0]}, which is exposed and developed,"
             raise UsageError(
                 f"background: plate: {what} does not contain the plate; use --background "
                 "transparent, then `daguerre composite`"
@@ -165,7 +175,6 @@ class Output:
 
             apart = disparity(frame, self.baseline)
             frame = replace(frame, aovs={**frame.aovs, f"{DISPARITY}.X": apart})
-        frame = self.photograph.metered(frame, self.paths, tell)
         if self.exposed:
             truth = frame.exposure_truth(self.photograph.sensor)
             frame = replace(frame, aovs=frame.aovs | truth)
@@ -175,8 +184,7 @@ class Output:
         """Returns the picture so far for previews: not denoised, and without diffraction."""
         frame = session.frame(truth=False, waves=False)
         facts = {"resolution": (session.width, session.height), "crop": session.crop}
-        frame = replace(frame, metadata={**frame.metadata, **facts}, aovs={})
-        return self.photograph.metered(frame, self.paths, Reporter())
+        return replace(frame, metadata={**frame.metadata, **facts}, aovs={})
 
     def look(self, frame: Frame, *, complete: bool = False) -> Look:
         """Makes a preview of an incomplete picture, developed like the final one."""

@@ -1,12 +1,12 @@
-"""Photographs from a render: exposure set by hand or by a meter, brackets, development.
+"""Photographs from a render: sensor, brackets, development.
 
-Exposure never changes an ``.exr``. Other pictures show 1 as white unless a parameter of exposure or
-development is given. A ``.dng`` is always exposed.
+Exposure never changes an ``.exr``. Other pictures show a frame by its exposure mode. In ``light``
+they show 1 as white. They are developed in other modes, and for a sensor, a look or a white.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.errors import DaguerreError, UsageError
+from daguerre.errors import UsageError
 
 from .reporter import Reporter
 
@@ -43,47 +43,41 @@ class Like(Protocol):
 
 @dataclass(frozen=True)
 class Photograph:
-    """Exposure, development and bracketing of pictures.
+    """Development, sensor and bracketing of pictures; frames know their exposure.
 
     Attributes:
-        develops: Whether pictures are developed; otherwise 1 is white.
         sensor: Sensor that takes the picture; None: a perfect one.
-        iso: ISO setting; None: metered, or 100.
-        meters: Metering mode; None: the ISO is set.
-        ev: Exposure compensation, EV; without metering the frame's metadata have it.
+        iso: ISO that the sensor must have; None: the camera's, else the base ISO of the sensor.
         bracket: Exposures, EV, each of which gives a picture; empty: a single picture.
         look: Tone curve; None: neutral.
         seed: Seed of the noise.
-        focus_at: Pixel in focus, if given; spot metering uses it.
         like: Camera whose look pictures imitate; None: none.
     """
 
-    develops: bool = False
     sensor: Sensor | None = None
     iso: float | None = None
-    meters: str | None = None
-    ev: float = 0.0
     bracket: tuple[float, ...] = ()
     look: str | None = None
     seed: int = 0
-    focus_at: tuple[float, float] | None = None
     like: Like | None = None
 
-    def exposes(self, path: Path) -> bool:
-        """Whether a file depends on exposure."""
-        return _is_raw(path) or (self.develops and path.suffix.lower() in PICTURES)
+    def develops(self, metadata: Mapping[str, Any]) -> bool:
+        """Whether pictures of a frame with such metadata are developed, not just encoded."""
+        from daguerre.exposure.lux_seconds import is_developed
+
+        own = (self.sensor, self.look, self.like)
+        return any(one is not None for one in own) or is_developed(metadata)
 
     def packages(self, path: Path) -> list[str]:
         """Packages of extras that an output needs."""
         kind = path.suffix.lower()
-        writes_tags = kind in (".tif", ".tiff") or _is_raw(path)
+        writes_tags = kind in (".tif", ".tiff") or is_raw(path)
         mosaic = self.sensor is not None and len(self.sensor.channels) > 1
-        demosaics = mosaic and self.exposes(path) and not _is_raw(path)
-        return ["tifffile"] * writes_tags + ["rawpy"] * demosaics
+        return ["tifffile"] * writes_tags + ["rawpy"] * (mosaic and kind in PICTURES)
 
     def files(self, path: Path) -> list[tuple[Path, float]]:
         """Files that an output stands for, and their exposures, EV."""
-        if not self.bracket or not self.exposes(path):
+        if not self.bracket or not shows_exposure(path):
             return [(path, 0.0)]
         return [
             (path.with_name(f"{path.stem}_{offset_name(ev)}{path.suffix}"), ev)
@@ -96,53 +90,26 @@ class Photograph:
         Raises:
             InputError: They lack it; the message names the field.
         """
-        if not any(self.exposes(path) for path in paths):
-            if self.meters or self.bracket:
-                flag = "--exposure" if self.meters else "--bracket"
-                known = ", ".join(PICTURES)
-                raise UsageError(f"{flag} needs an output that is exposed (-o .dng, {known})")
-            return
-        from daguerre.exposure.lux_seconds import luminance_exposure, pinhole_note
+        from daguerre.exposure.lux_seconds import in_light, luminance_exposure, pinhole_note
 
+        if not any(shows_exposure(path) for path in paths):
+            if self.bracket:
+                known = ", ".join(PICTURES)
+                raise UsageError(f"--bracket needs an output that is exposed (-o .dng, {known})")
+            return
+        if in_light(metadata):
+            return
         luminance_exposure(metadata)
         if note := pinhole_note(metadata):
             tell.note(note)
         if self.bracket:
             tell.note("bracketed by time: motion blur is the same as at 0 EV")
 
-    def metered(self, frame: Frame, paths: Sequence[Path], tell: Reporter) -> Frame:
-        """Returns the frame with the metered ISO, if metering is on, and reports the ISO."""
-        if not any(self.exposes(path) for path in paths) or self.meters is None:
-            return frame
-        from daguerre.exposure.metering import meter
-
-        try:
-            read = meter(frame, self.meters, at=self.focus_at)
-        except DaguerreError as error:  # such as a black picture, which must not cost the render
-            tell.warning(f"--exposure auto: {error}; the ISO stays as set")
-            return frame
-        wanted = read.iso * 2.0**self.ev
-        low, high = (1.0, 1e7) if self.sensor is None else self.sensor.iso_range
-        iso = float(round(min(max(wanted, low), high), 0 if wanted > 50 else 2))
-        compensated = f", {self.ev:+g} EV" if self.ev else ""
-        tell.note(
-            f"metered ({read.mode}): {read.luminance:.3g} cd/m2, EV100 {read.ev100:.1f}; "
-            f"ISO {iso:g}{compensated}"
-        )
-        if not low <= wanted <= high:
-            tell.warning(
-                f"--exposure auto: ISO {wanted:.3g} is outside {low:g} .. {high:g}: the picture "
-                f"is {_stops(wanted, iso)}"
-            )
-        facts = {**frame.metadata, "isoSpeed": iso, "metering": read.mode}
-        facts.pop("exposure_compensation", None)  # the ISO has it
-        return replace(frame, metadata=facts)
-
     def write(self, frame: Frame, paths: Sequence[Path], tone: str, tell: Reporter) -> None:
         """Writes outputs; each exposure is taken once for all its formats."""
         if self.like is not None:
             frame = replace(frame, metadata={**frame.metadata, "plate": self.like.facts})
-        exposed = [path for path in paths if self.exposes(path)]
+        exposed = [path for path in paths if shows_exposure(path)]
         for path in paths:
             if path not in exposed:
                 frame.save(path, tone=tone)
@@ -151,29 +118,33 @@ class Photograph:
             files = [file for path in exposed for file, ev in self.files(path) if ev == offset]
             # Messages about a bracket name one of its pictures.
             told = tell if offset == min(offsets, key=abs) else Reporter()
-            self._shoot(frame, offset, files, told)
+            self._shoot(frame, offset, files, tone, told)
 
-    def _shoot(self, frame: Frame, offset: float, files: list[Path], tell: Reporter) -> None:
+    def _shoot(
+        self, frame: Frame, offset: float, files: list[Path], tone: str, tell: Reporter
+    ) -> None:
         """Writes one exposure to its files."""
         from daguerre.development.dng import size_note
 
-        frame, raw = self._exposed(frame, offset, raw=any(_is_raw(file) for file in files))
+        frame, raw = self._exposed(frame, offset, raw=any(is_raw(file) for file in files))
         for text in raw.notes if raw is not None else ():
             tell.note(text)
         for file in files:
-            if raw is not None and _is_raw(file):
+            if raw is not None and is_raw(file):
                 raw.save(file)
                 if remark := size_note(raw):
                     tell.note(f"{file}: {remark}")
-            else:
+            elif self.develops(frame.metadata):
                 self._developed(frame, raw).save(file)
+            else:
+                frame.save(file, tone=tone)
 
     def _exposed(self, frame: Frame, offset: float, *, raw: bool) -> tuple[Frame, Raw | None]:
         """Exposes a frame at an offset, EV; with a sensor, or if one is wanted, also a raw one."""
         from daguerre.exposure.lux_seconds import with_exposure
 
         if offset:
-            frame = replace(frame, metadata=with_exposure(frame.metadata, 2.0**offset))
+            frame = replace(frame, metadata=with_exposure(frame.metadata, offset))
         if self.like is not None:
             frame = self.like.seen(frame, self.seed)
         if self.sensor is None and not raw:
@@ -196,26 +167,24 @@ class Photograph:
             frame: The frame.
             tone: Tone curve if the picture is not developed.
         """
-        if not self.develops:
+        if not self.develops(frame.metadata):
             return frame.display(tone)
-        frame = self.metered(frame, [Path("shown.png")], Reporter())
         return self._developed(*self._exposed(frame, 0.0, raw=False)).bytes8()
 
     def _finished(self, picture: Picture) -> Picture:
         return picture if self.like is None else self.like.finished(picture, self.seed)
 
 
-def _is_raw(path: Path) -> bool:
+def is_raw(path: Path) -> bool:
+    """Whether a file is a raw picture."""
     return path.suffix.lower() == ".dng"
+
+
+def shows_exposure(path: Path) -> bool:
+    """Whether a file depends on the exposure of its frame."""
+    return is_raw(path) or path.suffix.lower() in PICTURES
 
 
 def offset_name(ev: float) -> str:
     """Name of a bracket's exposure in file names, such as ``+1ev``."""
     return f"{ev:+.3g}ev" if ev else "0ev"
-
-
-def _stops(wanted: float, iso: float) -> str:
-    import math
-
-    stops = math.log2(wanted / iso)
-    return f"{abs(stops):.1f} EV too {'dark' if stops > 0 else 'bright'}"

@@ -27,11 +27,17 @@ class View:
         name: Name in files and progress; empty: a single camera without a name.
         camera: Function that makes the camera from the scene of a frame.
         notes: Function that makes remarks about the camera, reported once.
+        unshifted: Function that makes the camera that a meter uses; None: ``camera``.
     """
 
     name: str = ""
     camera: Callable[[Scene], Camera] = Scene.camera
     notes: Callable[[Camera], Iterable[str]] = _nothing
+    unshifted: Callable[[Scene], Camera] | None = None
+
+    def metered(self, scene: Scene) -> Camera:
+        """Returns the camera that a meter uses: of a stereo pair the middle of both."""
+        return (self.unshifted or self.camera)(scene)
 
     @classmethod
     def of(cls, camera: Camera | str | None = None, name: str = "") -> View:

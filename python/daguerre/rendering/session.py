@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre.cached import cached_property
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure_mode import is_automatic
 from daguerre.checks import MAX_SAMPLES, shown, whole
 from daguerre.doors import guarded
 from daguerre.errors import InputError, MismatchError, UsageError, core_errors
@@ -73,12 +74,21 @@ class Session:
         **keywords: Unpack[SettingsKeywords],
     ) -> None:
         self.settings = settings_of(settings, keywords)
+        self.metering: Mapping[str, Any] = {}
+        metered: list[str] = []
+        seen = camera if isinstance(camera, Camera) else scene.camera(camera)
+        if is_automatic(seen.exposure):
+            from .auto_exposure import choose
+
+            chosen, built = choose(scene, seen, self.settings, built)
+            camera, self.metering = chosen.of(seen), chosen.facts
+            metered = [text for text in (chosen.note, chosen.warning) if text]
         self.prepared = one = prepare(scene, camera, self.settings, built)
         self.light_plan = plan_light(one, piloted)
         self.scene, self.camera, self.built = one.scene, one.camera, one.built
         self.width, self.height = one.size
         self.crop, self.overscan, self.interval = one.crop, one.overscan, one.interval
-        self.notes = [*one.notes, *self.light_plan.notes]
+        self.notes = [*metered, *one.notes, *self.light_plan.notes]
         self.warnings = list(one.built.warnings)
         self.light_paths = self.light_plan.light_paths
         self.flare, self.scatter = self.light_plan.flare, self.light_plan.scatter
@@ -313,7 +323,7 @@ class Session:
     @property
     def metadata(self) -> dict[str, Any]:
         """Camera and picture facts, in the names and units of the EXR attributes."""
-        return identity.metadata(self)
+        return {**identity.metadata(self), **self.metering}
 
 
 def _scaled(progress: Progress | None, done: float, share: float) -> Progress | None:

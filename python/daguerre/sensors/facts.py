@@ -10,7 +10,8 @@ import numpy as np
 
 from daguerre.color import illuminants
 
-from .sensor import GREY_LX_S, SATURATION_LX_S, Sensor
+from .iso_speed import GREY_LX_S, SATURATION_LX_S
+from .sensor import Sensor
 
 
 def isos(sensor: Sensor) -> list[float]:

@@ -7,8 +7,9 @@ import numpy as np
 from daguerre.color import illuminants
 from daguerre.doors import guarded
 
+from .iso_speed import SATURATION_LX_S
 from .mosaic import Mosaic
-from .sensor import SATURATION_LX_S, Sensor
+from .sensor import Sensor
 
 NAMES = ("ideal", "ideal-mono")
 _SOURCE = "computed: CIE 1931 colour matching functions"

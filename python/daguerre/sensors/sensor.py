@@ -18,13 +18,11 @@ from daguerre.errors import UsageError
 
 from . import fit
 from .checking import check
+from .iso_speed import SATURATION_LX_S
 from .mosaic import Mosaic
 from .response import Response
 
 FloatArray = NDArray[np.float64]
-#: ISO 12232: the exposure that just saturates is 78 / S lux s, half a stop above that of a white
-#: surface; middle grey of a developed picture has 10 / S lux s.
-SATURATION_LX_S, GREY_LX_S = 78.0, 10.0
 
 
 @guarded(init=True)

@@ -74,6 +74,7 @@ def facts_of(setup: ResolvedCamera) -> dict[str, Any]:
         "world_from_camera": setup.world_from_camera.tolist(),
         **({"near_clip_m": camera.near_clip} if camera.near_clip else {}),
         **({} if camera.dispersion else {"dispersion": False}),
+        "exposure": camera.exposure,
         "iso": camera.iso,
         "exposure_compensation": camera.exposure_compensation,
         **exposure_facts(camera),

@@ -14,12 +14,12 @@ from daguerre.checks import number, plain_light, whole
 from daguerre.color.spectra import rgb_from_xyz
 from daguerre.doors import guarded
 from daguerre.errors import InputError
-from daguerre.exposure.lux_seconds import luminance_exposure
+from daguerre.exposure.lux_seconds import exposure_of_one
 from daguerre.files.array_value import ArrayValue
 from daguerre.frame.seen_by import seen_of
 from daguerre.post.effects.grain import sharpness
 from daguerre.sensors.fit import channels_from_xyz
-from daguerre.sensors.sensor import GREY_LX_S
+from daguerre.sensors.iso_speed import GREY_LX_S
 
 from .curve import GREY
 from .spread import kernels
@@ -89,7 +89,7 @@ class Negative(ArrayValue, array="density"):
         from daguerre.frame.frame import Frame
 
         stock = self.stock
-        unit = luminance_exposure(self.metadata) * stock.iso
+        unit = exposure_of_one(self.metadata, stock.iso) * stock.iso
         seen = np.empty(self.density.shape)
         for k, layer in enumerate(stock.layers):
             seen[..., k] = 10 ** layer.curve.exposure(self.density[..., k]) / unit
@@ -117,7 +117,7 @@ def exposed(stock: Stock, frame: Frame, ev: float, seed: int) -> Negative:
     number(ev, "stock: ev", -64, 64)
     facts = {**frame.metadata, "isoSpeed": stock.iso, "stock": stock.name}
     facts["exposure_compensation"] = ev or None
-    unit = luminance_exposure(frame.metadata) * 2.0**ev * stock.iso
+    unit = exposure_of_one(frame.metadata, stock.iso) * 2.0**ev * stock.iso
     pitch = _pitch_um(frame)
     seen = layers_of(stock, frame)
     plain_light(seen, "frame")

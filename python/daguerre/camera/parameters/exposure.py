@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from daguerre import units
+from daguerre.camera.exposure_mode import METERS, MODES, meter_of, mode_of
 from daguerre.parameters.parameter import Parameter
 
 from . import needs
@@ -16,19 +17,43 @@ _Row = partial(Parameter, panel=EXPOSURE_PANEL)
 
 EXPOSURE = (
     _Row(
+        "exposure",
+        "Exposure mode: light (1 is white), manual (ISO, time and stop set the brightness), auto "
+        "(a meter sets the ISO), A (the time), S (the f-stop) or P (both)",
+        default="light",
+        kind="text",
+        flags=("--exposure",),
+        metavar="|".join(MODES),
+        parse=mode_of,
+        tells_default=True,
+        more="No parameter of exposure changes the linear picture",
+        explained=("exposure.md",),
+    ),
+    _Row(
+        "meter",
+        "Metering pattern: centre, spot, matrix or highlight; spot:X,Y and spot:NODE read the spot "
+        "at a pixel or a node",
+        default="centre",
+        kind="text",
+        flags=("--meter",),
+        metavar=f"{'|'.join(METERS)}|spot:X,Y|spot:NODE",
+        parse=meter_of,
+        tells_default=True,
+        explained=("exposure.md",),
+    ),
+    _Row(
         "iso",
-        "ISO speed of developed pictures",
+        "ISO speed of developed pictures; in the exposure mode light it sets the noise alone",
         default=100.0,
         above=0,
         flags=("--iso",),
         metavar="N",
         tells_default=True,
-        more="No parameter of exposure changes the linear picture",
         movable=True,
     ),
     _Row(
         "exposure_compensation",
-        "Exposure compensation of developed pictures, EV",
+        "Exposure compensation, EV; in every mode",
         "EV",
         0.0,
         low=-64,

@@ -81,15 +81,6 @@ class JobFlags(ClusterFlags):
             panel=PICTURE,
         ),
     ] = "srgb"
-    exposure: Annotated[
-        Text,
-        option(
-            "--exposure",
-            metavar="auto[:centre|spot|matrix]",
-            help="Choose the ISO by metering, as a camera does, in this metering mode [centre].",
-            panel=EXPOSURE_PANEL,
-        ),
-    ] = None
     bracket: Annotated[
         Text,
         option(

@@ -18,7 +18,7 @@ from daguerre.cli.flags.settings import SettingsFlags
 from daguerre.cli.flags.shutter import ShutterFlags
 
 from .coco import coco_of
-from .plan import plan_of
+from .plan import plan_of, tell_mode
 from .plate import over_plate, read_plate
 from .run import describe, interrupted_early, run
 from .views import Cameras
@@ -72,6 +72,7 @@ def render(
         console.warn(f"{scene_path}: {warning}")
     plan = plan_of(job_flags, settings_flags, map_flags, cameras, scene)
     cameras.check_frames(plan.pictures, job_flags.stereo, scene)
+    tell_mode(plan, cameras, job_flags, scene)
     if scene_flags.plate_moves:
         plan = replace(plan, stage=lambda n, now: scene_flags.throw_plate(now, taken, n))
     if job_flags.dry_run:

@@ -1,27 +1,29 @@
-"""Flags of a photograph: exposure set by hand or by a meter, brackets, development."""
+"""Flags of a photograph: sensor, brackets, development."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
 from daguerre import units as q
+from daguerre.camera.exposure_mode import CHOICES, CHOSEN, split_mode
+from daguerre.camera.parameters import CAMERA
 from daguerre.errors import UsageError
 from daguerre.rendering.photograph import Photograph, offset_name
 
 if TYPE_CHECKING:
+    from daguerre.camera.camera import Camera
     from daguerre.plates.match.plate_camera import PlateCamera
 
-#: Camera parameters that concern only exposure and development; any of them turns development on.
-ASKING = (
-    *("sensor", "iso", "exposure_compensation", "exposure_time", "exposure_f_stop"),
-    *("responsivity", "white_balance"),
+#: Camera parameters that exposed the picture before version 1.0.
+_EXPOSED = (
+    *("iso", "exposure_compensation", "exposure_time", "exposure_f_stop", "responsivity"),
+    *("white_balance", "sensor"),
 )
 MOST_EV, MOST_SHOTS = 20.0, 15
 
 
 def photograph_of(
     changes: dict[str, Any],
-    exposure: str | None,
     bracket: str | None,
     look: str | None,
     seed: int,
@@ -32,20 +34,14 @@ def photograph_of(
     Raises:
         UsageError: A flag is wrong, or excludes another.
     """
+    check_mode(changes)
     iso, sensor = changes.get("iso"), changes.get("sensor")
-    if plate is not None and exposure is not None:
-        raise UsageError(
-            "--exposure auto and --like-plate: wanted one of them, got both; the plate sets the ISO"
-        )
-    if exposure is not None and iso is not None:
-        raise UsageError("--exposure auto and --iso: wanted one of them, got both")
     if iso is not None and not iso > 0:
         raise UsageError(f"--iso: wanted a number above 0, got {iso:g}")
     if sensor is not None:
         from daguerre.exposure.expose import check_can_expose
 
         check_can_expose(sensor, iso)
-    asked = any(name in changes for name in ASKING) or any((exposure, bracket, look, plate))
     if look is not None:
         from daguerre.development.develop import Recipe
 
@@ -55,24 +51,50 @@ def photograph_of(
         from daguerre.plates.match.like import PlateLook
 
         like, look = PlateLook(plate), look or plate.look
-    return Photograph(
-        asked,
-        sensor,
-        iso,
-        None if exposure is None else _metering(exposure),
-        changes.get("exposure_compensation", 0.0),
-        () if bracket is None else _offsets(bracket),
-        look,
-        seed,
-        changes.get("focus_at"),
-        like,
-    )
+    offsets = () if bracket is None else _offsets(bracket)
+    return Photograph(sensor, iso, offsets, look, seed, like)
 
 
-def _metering(text: str) -> str:
-    from daguerre.exposure.metering import mode_of
+def check_mode(changes: dict[str, Any]) -> None:
+    """Refuses flags that set what the exposure mode chooses.
 
-    return mode_of("--exposure", text)
+    Raises:
+        UsageError: The message names both.
+    """
+    mode, _ = split_mode(changes.get("exposure") or "", "")
+    for name in CHOSEN.get(mode, ()):
+        if name in changes:
+            raise UsageError(
+                f"--exposure {mode} and {CAMERA[name].flag}: wanted one of them, got both; the "
+                f"mode chooses {CHOICES[mode]}"
+            )
+
+
+def mode_notes(
+    camera: Camera, changes: dict[str, Any], *, looks: bool, brackets: bool
+) -> list[str]:
+    """Notes on flags that had another meaning before version 1.0.
+
+    Args:
+        camera: Camera of the picture.
+        changes: Parameters from flags.
+        looks: Whether --look is given.
+        brackets: Whether --bracket is given.
+    """
+    found = []
+    mode, colon, pattern = camera.exposure.partition(":")
+    if colon:
+        found.append(
+            f"--exposure {mode}:{pattern} is now --exposure {mode} --meter {pattern}; the old form "
+            "ends with 1.2.0"
+        )
+    asked = [CAMERA[name].flag for name in _EXPOSED if name in changes]
+    asked += ["--look"] * looks + ["--bracket"] * brackets
+    if camera.exposure == "light" and asked and changes.get("exposure") is None:
+        found.append(
+            f"in light; before 1.0 {asked[0]} exposed the picture: add --exposure manual for that"
+        )
+    return found
 
 
 def _offsets(text: str) -> tuple[float, ...]:

@@ -7,18 +7,20 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from daguerre import units as q
+from daguerre.cli import console
 from daguerre.cli.flags.job import JobFlags
 from daguerre.cli.flags.map import MapFlags
 from daguerre.cli.flags.settings import SettingsFlags
 from daguerre.errors import UsageError
 from daguerre.rendering.output import DISPARITY, Output
+from daguerre.rendering.photograph import shows_exposure
 from daguerre.rendering.picture import Picture, in_order, path_of
 from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene
 
 from . import checks, crops
 from .frames import check_names, frame_numbers
-from .photograph import photograph_of
+from .photograph import mode_notes, photograph_of
 from .views import Cameras, View, check_places
 
 
@@ -100,13 +102,8 @@ def _output(
         raise UsageError(
             "--scatter-barrel, --scatter-blades and --scatter-surface-nm need --scatter"
         )
-    asked = (flags.exposure, flags.bracket, flags.look)
+    asked = (flags.bracket, flags.look)
     photograph = photograph_of(cameras.changes, *asked, settings.sampling.seed, cameras.plate)
-    if photograph.develops and flags.tone != "srgb":
-        raise UsageError(
-            f"--tone {flags.tone}: these pictures are developed, so their tone curve is set "
-            "by --look"
-        )
     is_pass = flags.samples is not None
     noisy = tuple(flags.noisy or ())
     return Output(flags.paths, tuple(groups), flags.denoise, noisy, flags.tone, photograph, is_pass)
@@ -117,6 +114,16 @@ def _output_of(output: Output, view: View, settings: RenderSettings) -> Output:
     if DISPARITY in output.aovs and not view.shift:
         raise UsageError("--aov disparity needs --stereo")
     return replace(output, baseline=2 * abs(view.shift))
+
+
+def tell_mode(plan: Plan, cameras: Cameras, flags: JobFlags, scene: Scene) -> None:
+    """Reports flags that exposed pictures before version 1.0 and do not now."""
+    if not any(shows_exposure(path) for path in flags.paths):
+        return
+    camera = plan.pictures[0].view.camera(scene)
+    told = {"looks": flags.look is not None, "brackets": flags.bracket is not None}
+    for text in mode_notes(camera, cameras.changes, **told):
+        console.note(text)
 
 
 def _check_distinct(plan: Plan) -> None:

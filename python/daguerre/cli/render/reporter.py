@@ -94,6 +94,8 @@ class ConsoleReporter(Reporter):
             console.warn(bad_samples(count, places))
         names, samples = ", ".join(map(str, result.paths)), shown(result.samples)
         console.note(f"wrote {names} ({samples} samples per pixel, {result.seconds:.1f} s)")
+        if result.exposure:
+            console.note(result.exposure)
         self._noise(result)
         if self._stats:
             from .stats import stats

@@ -48,19 +48,21 @@ class View:
     def view(self, cameras: Cameras) -> picture.View:
         """Makes the view for a job."""
 
-        def camera(scene: Scene) -> Camera:
+        def unshifted(scene: Scene) -> Camera:
             given = cameras.placed(scene, self.camera)
-            found: Camera = cameras.flags.camera(given, self.calibration, cameras.changes)
+            return cameras.flags.camera(given, self.calibration, cameras.changes)
+
+        def camera(scene: Scene) -> Camera:
             if not self.shift:
-                return found
+                return unshifted(scene)
             from daguerre.setup.pose import moved_right
 
-            return moved_right(found, self.shift)
+            return moved_right(unshifted(scene), self.shift)
 
         def notes(camera: Camera) -> list[str]:
             return cameras.flags.notes(camera, self.calibration)
 
-        return picture.View(self.name, camera, notes)
+        return picture.View(self.name, camera, notes, unshifted)
 
 
 @dataclass(frozen=True)

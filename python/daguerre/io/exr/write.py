@@ -49,7 +49,7 @@ OWN_NUMBERS = (
 )  # fmt: skip
 OWN_STRINGS = (
     "version", "scene_hash", "filter", "denoised", "noise_of", "gt_time", "gt_lens",
-    "light_paths", "flare", "scatter",
+    "light_paths", "flare", "scatter", "exposure", "metering",
     "diffraction", "sensor", "sensor_hash", "sensor_from", "overscan", "background",
 )  # fmt: skip
 OWN_JSON = ("bad_sample_places", "sensor_channels", "white_balance", "plate")

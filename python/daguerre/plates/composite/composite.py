@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from daguerre.checks import number
 from daguerre.color import srgb
 from daguerre.color.spectra import xyz_of
-from daguerre.development.looks import GREY
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
-from daguerre.exposure.lux_seconds import luminance_exposure
+from daguerre.exposure.lux_seconds import display_gain
 from daguerre.frame.frame import Frame
 from daguerre.frame.over import AUTO, change_of_rgb
 from daguerre.frame.picture import Picture
@@ -28,7 +27,6 @@ from daguerre.plates.match.plate_camera import PlateCamera
 from daguerre.plates.match.plate_raw import raw_of
 from daguerre.plates.match.reader import read_plate_camera
 from daguerre.plates.photograph import Photograph, encoded
-from daguerre.sensors.sensor import GREY_LX_S
 
 from .in_raw import composite_raw
 
@@ -147,14 +145,8 @@ def _developed(
 
 
 def white_of(frame: Frame) -> float:
-    """Light of a frame that becomes 1 in a developed picture of its exposure.
-
-    By ISO 12232, middle grey (0.18) is 10 / ISO lux s.
-    """
-    facts = frame.metadata
-    iso = float(facts.get("isoSpeed") or 100.0)
-    gain = 2.0 ** float(facts.get("exposure_compensation") or 0)
-    return float(GREY_LX_S / GREY / iso / (luminance_exposure(facts) * gain))
+    """Light of a frame that becomes 1 in a developed picture of its exposure."""
+    return 1 / display_gain(frame.metadata)
 
 
 def _noisy(

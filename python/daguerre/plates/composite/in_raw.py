@@ -90,7 +90,7 @@ def mixed(
 def kept_and_added(plate: Raw, frame: Frame, form: str) -> tuple[Mosaic, Mosaic]:
     """Kept share and added electrons of each photosite, after the sensor's filters."""
     body = plate.sensor
-    light = light_of(frame, body, chosen_ev(frame, None))
+    light = light_of(frame, body, plate.iso, chosen_ev(frame, None))
     change = _change(frame, body, light, form)
     one = np.eye(len(body.channels), dtype=np.float32)
     kept = _core.expected_electrons(_planes(np.clip(change.factor, 0, 1)), _shot(body, one, 0.0))

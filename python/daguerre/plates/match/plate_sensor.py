@@ -9,7 +9,7 @@ import numpy as np
 from daguerre import sensors
 from daguerre.plates.photograph import RawNumbers
 from daguerre.sensors import PATTERNS, DarkCurrent, HotPixels, Mosaic, Sensor
-from daguerre.sensors.sensor import SATURATION_LX_S
+from daguerre.sensors.iso_speed import SATURATION_LX_S
 
 from .transfer import Transfer
 

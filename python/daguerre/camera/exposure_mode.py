@@ -1,0 +1,64 @@
+"""Exposure modes and metering patterns: their names, and texts of them."""
+
+from __future__ import annotations
+
+from daguerre.checks import short
+from daguerre.errors import UsageError, suggest
+
+#: Exposure modes; the last four let a meter choose ISO, time, f-stop, or time and f-stop.
+MODES = ("light", "manual", "auto", "A", "S", "P")
+AUTOMATIC = MODES[2:]
+#: Parameters of a camera that set what a mode chooses.
+TIMES = ("shutter_time", "shutter_angle", "exposure_time")
+STOPS = ("f_stop", "t_stop", "aperture_diameter", "exposure_f_stop")
+CHOSEN: dict[str, tuple[str, ...]] = {
+    "auto": ("iso",), "A": TIMES, "S": STOPS, "P": (*TIMES, *STOPS)
+}  # fmt: skip
+#: What a mode chooses, in words.
+CHOICES = {
+    "auto": "the ISO", "A": "the exposure time", "S": "the f-stop", "P": "the time and the f-stop"
+}  # fmt: skip
+METERS = ("centre", "spot", "matrix", "highlight")
+
+
+def mode_of(where: str, text: str) -> str:
+    """Parses an exposure mode; ``auto:PATTERN``, as in version 1.0, is valid, too.
+
+    Raises:
+        UsageError: There is no such mode.
+    """
+    mode, colon, pattern = text.partition(":")
+    if colon and mode == "auto":
+        return f"auto:{meter_of(where, pattern)}"
+    if text not in MODES:
+        known = {name.lower(): name for name in MODES}
+        hint = suggest(known.get(text.lower(), text), MODES, few=True)
+        raise UsageError(f"{where}: wanted {', '.join(MODES)}; got {short(text)}{hint}")
+    return text
+
+
+def meter_of(where: str, text: str) -> str:
+    """Parses a metering pattern; ``center`` is valid, too.
+
+    Raises:
+        UsageError: There is no such pattern.
+    """
+    pattern, colon, place = text.partition(":")
+    pattern = "centre" if pattern == "center" else pattern
+    if pattern not in METERS or (colon and (pattern != "spot" or not place.strip())):
+        raise UsageError(
+            f"{where}: wanted {', '.join(METERS)}, spot:X,Y or spot:NODE; got {short(text)}"
+            f"{suggest(pattern, METERS)}"
+        )
+    return f"{pattern}{colon}{place}"
+
+
+def is_automatic(exposure: str) -> bool:
+    """Whether a meter chooses the exposure in a mode."""
+    return split_mode(exposure, "")[0] in AUTOMATIC
+
+
+def split_mode(exposure: str, meter: str) -> tuple[str, str]:
+    """Returns the mode and the pattern, which ``auto:PATTERN`` names, too."""
+    mode, colon, pattern = exposure.partition(":")
+    return mode, pattern if colon else meter

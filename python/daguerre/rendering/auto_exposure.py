@@ -1,0 +1,306 @@
+"""Automatic exposure: a meter takes a small picture of its own, and sets ISO, time or f-stop.
+
+The picture of the meter has its own size, samples and seed, so what it reads depends on nothing
+but the scene, the camera and the shape of the picture.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from daguerre.camera.camera import Camera
+from daguerre.camera.exposure import check_exposure
+from daguerre.camera.exposure_mode import split_mode
+from daguerre.camera.shutter import shutter_time
+from daguerre.errors import DaguerreError, InputError, UsageError
+from daguerre.exposure.lux_seconds import luminance_exposure
+from daguerre.exposure.metering import K, luminance_of, stops_over
+from daguerre.scene.node_names import find_node, no_node
+from daguerre.scene.scene import Scene
+from daguerre.sensors.iso_speed import GREY_LX_S
+from daguerre.setup.metadata import camera_metadata
+from daguerre.units import numbers
+
+from .prepare import prepare
+from .settings import RenderSettings
+
+if TYPE_CHECKING:
+    from daguerre.frame.frame import Frame
+    from daguerre.setup.built_scene import BuiltScene
+
+    from .session import Session
+
+#: Longer side of the meter's picture, px, and its samples per pixel.
+SIDE, SAMPLES = 96, 16
+#: Limits of what a meter chooses: a sensor may have fewer ISOs, a lens a smaller opening.
+ISOS, TIMES_S, STOPS = (100.0, 6400.0), (1 / 8000, 1 / 15), (1.0, 22.0)
+#: P opens the lens wholly up to this time; for more light it closes the stop and shortens the time
+#: by equal steps, up to this stop.
+PROGRAM_S, PROGRAM_STOP = 1 / 60, 16.0
+#: Steps that find the f-stop of an exposure, as glass vignettes and its pupil is no disk.
+_STEPS = 4
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """Exposure that a meter chose.
+
+    Attributes:
+        changes: Parameters of ``Camera``.
+        words: Flags of the command line that set the same.
+        facts: Metadata for frames.
+        ev: Compensation that the choice includes, EV.
+        note: What the meter read and chose.
+        warning: What is missing, if the limits are too narrow.
+    """
+
+    changes: Mapping[str, Any]
+    words: str
+    facts: Mapping[str, Any] = field(default_factory=dict)
+    ev: float = 0.0
+    note: str = ""
+    warning: str = ""
+
+    def of(self, camera: Camera) -> Camera:
+        """Returns a camera with this exposure."""
+        left = {"exposure_compensation": camera.exposure_compensation - self.ev} if self.ev else {}
+        return camera.with_(**self.changes, **left)
+
+
+def choose(
+    scene: Scene, camera: Camera, settings: RenderSettings, built: BuiltScene | None = None
+) -> tuple[Chosen, BuiltScene]:
+    """Meters a scene for a camera in an automatic mode; returns the scene built for it, too.
+
+    Raises:
+        UsageError: The mode chooses what the lens does not have, or the spot is not in the picture.
+        InputError: The scene or the lens cannot be used.
+    """
+    meter = _Meter(scene, camera, settings, built)
+    if not meter.luminance > 0:
+        words = "--exposure light"
+        note = "no light to meter: the picture is in light"
+        return Chosen({"exposure": "light"}, words, {}, 0.0, "", note), meter.session.built
+    return meter.chosen(), meter.session.built
+
+
+def kind_of(pattern: str) -> str:
+    """Pattern without the place of its spot."""
+    return pattern.partition(":")[0]
+
+
+def metered_point(
+    session: Session, pattern: str, size: tuple[int, int] | None = None
+) -> tuple[float, float] | None:
+    """Point that a metering pattern looks at, px of the session's picture; None: the middle.
+
+    Args:
+        session: Session of the picture.
+        pattern: Metering pattern, such as ``spot:480,270`` or ``spot:NODE``.
+        size: Size of the picture, px, of which ``spot:X,Y`` is a pixel; None: the session's.
+
+    Raises:
+        UsageError: The pixel is not in the picture.
+        InputError: There is no such node, or it is not in view.
+    """
+    _, colon, place = pattern.partition(":")
+    if not colon:
+        return session.camera.focus_at
+    if (instances := _instances(session.scene, place)) is not None:
+        return _seen_at(session, place, instances)
+    width, height = size or (session.width, session.height)
+    x, y = numbers("--meter spot", place, 2, "480,270, or the name of a node")
+    if not (0 <= x < width and 0 <= y < height):
+        raise UsageError(
+            f"--meter spot:{place}: wanted a pixel of the picture of {width} x {height} px"
+        )
+    return (x + 0.5) * session.width / width, (y + 0.5) * session.height / height
+
+
+def _instances(scene: Scene, name: str) -> list[int] | None:
+    """Instances of a node; None: the text gives a pixel."""
+    known = set(scene.nodes) | set(scene.node_positions)
+    found = find_node(name, known)
+    if found is not None:
+        return list(scene.nodes.get(found, ()))
+    if name[:1].isdigit() or "," in name:
+        return None
+    raise InputError(f"--meter spot: {no_node(name, known)}")
+
+
+def _seen_at(session: Session, name: str, instances: list[int]) -> tuple[float, float]:
+    """Pixel of a node that is nearest to the middle of its pixels."""
+    moment = session.ground_truth.moment(0)
+    seen = np.isin(session.object_ids(moment), [i + 1 for i in instances])
+    rows, columns = np.nonzero(seen)
+    if not rows.size:
+        raise InputError(f"--meter spot:{name}: this node is not in view")
+    away = (rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2
+    at = int(away.argmin())
+    left, top = session.crop[:2]
+    return left + float(columns[at]) + 0.5, top + float(rows[at]) + 0.5
+
+
+class _Meter:
+    """A small picture of the whole frame, and the camera that took it."""
+
+    def __init__(
+        self, scene: Scene, camera: Camera, settings: RenderSettings, built: BuiltScene | None
+    ) -> None:
+        from .session import Session
+
+        check_exposure(camera)
+        self.mode, self.pattern = split_mode(camera.exposure, camera.meter)
+        self.scene, self.camera = scene, camera.with_(exposure="manual")
+        wide, high = settings.film.resolution
+        scale = SIDE / max(wide, high)
+        size = max(round(wide * scale), 1), max(round(high * scale), 1)
+        self.settings = RenderSettings.of(resolution=size, spp=SAMPLES, threads=settings.threads)
+        placed = self.camera
+        if camera.focus_at is not None:
+            x, y = camera.focus_at
+            placed = placed.with_(focus_at=(x * size[0] / wide, y * size[1] / high))
+        self.session: Session = Session(scene, placed, settings=self.settings, built=built)
+        self.session.draw(0, SAMPLES)
+        spot = metered_point(self.session, self.pattern, (wide, high))
+        self.luminance = luminance_of(self.session.frame(plate=False), kind_of(self.pattern), spot)
+
+    def chosen(self) -> Chosen:
+        """Exposure by the mode."""
+        moving = "exposure_compensation" in self.camera.motion
+        ev = 0.0 if moving else self.camera.exposure_compensation
+        plain = self.camera if moving else self.camera.with_(exposure_compensation=0.0)
+        wanted = 2.0**ev * GREY_LX_S / self.luminance  # ISO times lux s of a value of 1
+        choice: Callable[[float], tuple[dict[str, Any], str, float]] = {
+            "auto": self._iso, "A": self._time, "S": self._stop, "P": self._program
+        }[self.mode]  # fmt: skip
+        changes, words, got = choice(wanted)
+        done = plain.with_(**changes)
+        told = f"--exposure manual --iso {done.iso:g}"
+        told = f"{told}{words}{' --ev 0' if ev else ''}"
+        missing = math.log2(got / wanted)
+        return Chosen(
+            {"exposure": "manual", **changes},
+            told,
+            {"exposure": self.mode, "metering": self.pattern},
+            ev,
+            f"metered ({self.pattern}): {self.luminance:.3g} cd/m2, EV100 "
+            f"{math.log2(100 * self.luminance / K):.1f}"
+            f"{f', {ev:+g} EV' if ev else ''}; the same picture: {told}",
+            self._missing(missing) if abs(missing) > 0.05 else "",
+        )
+
+    def _missing(self, stops: float) -> str:
+        low, high = self._isos()
+        ends = {
+            "auto": f"ISO {low:g} .. {high:g}",
+            "A": "1/8000 .. 1/15 s",
+            "S": f"f/{self._widest():.3g} .. f/{STOPS[1]:g}",
+            "P": f"1/8000 .. 1/15 s and f/{self._widest():.3g} .. f/{PROGRAM_STOP:g}",
+        }[self.mode]
+        return (
+            f"exposure {self.mode}: {ends} cannot expose this: the picture is {abs(stops):.1f} EV "
+            f"too {'dark' if stops < 0 else 'bright'}"
+        )
+
+    def _lux_s(self, **changes: Any) -> float:
+        """Luminance exposure of a value of 1 by the camera with other parameters, lux s."""
+        camera = self.session.camera.with_(**changes)
+        one = prepare(self.scene, camera, self.settings, self.session.built)
+        return luminance_exposure(camera_metadata(one.camera, one.setup, one.size[0]))
+
+    def _isos(self) -> tuple[float, float]:
+        low, high = ISOS
+        if (sensor := self.session.prepared.sensor) is not None:
+            low, high = max(low, sensor.iso_range[0]), min(high, sensor.iso_range[1])
+            if low > high:  # none in common: the sensor's end that is nearer
+                low = high = min(sensor.iso_range, key=lambda iso: abs(math.log(iso / ISOS[0])))
+        return low, high
+
+    def _iso(self, wanted: float) -> tuple[dict[str, Any], str, float]:
+        lux_s = self._lux_s()
+        low, high = self._isos()
+        iso = float(round(min(max(wanted / lux_s, low), high), 0 if wanted / lux_s > 50 else 2))
+        iso = min(max(iso, low), high)
+        return {"iso": iso}, "", iso * lux_s
+
+    def _time(self, wanted: float) -> tuple[dict[str, Any], str, float]:
+        now = shutter_time(self.session.camera)
+        per_s = self.session.camera.iso * self._lux_s() / now
+        time, words = _short(min(max(wanted / per_s, TIMES_S[0]), TIMES_S[1]))
+        return {"shutter_time": time}, f" --shutter {words}", per_s * time
+
+    def _stop(self, wanted: float) -> tuple[dict[str, Any], str, float]:
+        stop = self._stop_for(wanted, (self._widest(), STOPS[1]))
+        return (
+            {"f_stop": stop},
+            f" --f-stop {stop:g}",
+            self.session.camera.iso * self._lux_s(f_stop=stop),
+        )
+
+    def _stop_for(self, wanted: float, ends: tuple[float, float]) -> float:
+        """F-stop of an exposure within its ends, to three digits."""
+        iso, stop = self.session.camera.iso, self._now()
+        for _ in range(_STEPS):
+            got = iso * self._lux_s(f_stop=stop)
+            stop = min(max(stop * math.sqrt(got / wanted), ends[0]), ends[1])
+        rounded = float(f"{stop:.3g}")
+        return min(max(rounded, ends[0]), ends[1])
+
+    def _program(self, wanted: float) -> tuple[dict[str, Any], str, float]:
+        camera, widest = self.session.camera, self._widest()
+        open_lux = camera.iso * self._lux_s(f_stop=widest) / shutter_time(camera)
+        stops = math.log2(open_lux * PROGRAM_S / wanted)  # above 0: more light than it needs
+        stop = float(f"{min(widest * 2 ** (max(stops, 0.0) / 4), PROGRAM_STOP):.3g}")
+        stop = max(stop, widest)
+        per_s = camera.iso * self._lux_s(f_stop=stop) / shutter_time(camera)
+        time, words = _short(min(max(wanted / per_s, TIMES_S[0]), TIMES_S[1]))
+        changes = {"shutter_time": time, "f_stop": stop}
+        return changes, f" --shutter {words} --f-stop {stop:g}", per_s * time
+
+    def _now(self) -> float:
+        stop = self.session.prepared.setup.lens.f_stop
+        if stop is None:
+            raise UsageError(
+                f"exposure {self.mode} chooses the f-stop, but a pinhole has none; use auto or A"
+            )
+        return float(stop)
+
+    def _widest(self) -> float:
+        self._now()
+        glass = self.session.prepared.setup.lens.glass
+        if glass is None:
+            return STOPS[0]
+        widest = float(glass.lens.first_order().f_number)
+        return math.ceil(round(widest * 1000, 6)) / 1000  # not wider than it is, in four digits
+
+
+def _short(time: float) -> tuple[float, str]:
+    """Time near another that a text gives exactly, and the text: 1/N s or seconds."""
+    below = float(f"{1 / time:.3g}")
+    return 1 / below, f"1/{below:g}"
+
+
+def exposure_in_words(session: Session, frame: Frame) -> str:
+    """Exposure mode of a picture and its distance from the meter, in words.
+
+    Args:
+        session: Session that drew it.
+        frame: The picture.
+    """
+    mode, pattern = str(session.metadata["exposure"]), session.camera.meter
+    try:
+        point = metered_point(session, pattern)
+        stops = stops_over(frame, kind_of(pattern), point)
+    except DaguerreError:  # such as a spot out of view, or a frozen shutter
+        return mode
+    if stops is None:
+        return f"{mode}, nothing to meter"
+    if abs(stops) < 0.05:
+        return f"{mode}, as metered"
+    return f"{mode}, {abs(stops):.1f} EV {'over' if stops > 0 else 'under'} the meter"
