@@ -13,27 +13,30 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import daguerre._core as _core
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import check_exposure
 from daguerre.camera.exposure_mode import split_mode
 from daguerre.camera.shutter import shutter_time
-from daguerre.errors import DaguerreError, InputError, UsageError
+from daguerre.errors import InputError, UsageError
 from daguerre.exposure.lux_seconds import luminance_exposure
-from daguerre.exposure.metering import K, luminance_of, stops_over
+from daguerre.exposure.metering import K, luminance_of
 from daguerre.scene.node_names import find_node, no_node
 from daguerre.scene.scene import Scene
 from daguerre.sensors.iso_speed import GREY_LX_S
 from daguerre.setup.metadata import camera_metadata
 from daguerre.units import numbers
 
-from .prepare import prepare
+from .film_frame import frame_of
+from .light_plan import new_film, plan_light
+from .picture_truth import ground_truth
+from .prepare import Prepared, prepare
 from .settings import RenderSettings
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
     from daguerre.setup.built_scene import BuiltScene
 
-    from .session import Session
 
 #: Longer side of the meter's picture, px, and its samples per pixel.
 SIDE, SAMPLES = 96, 16
@@ -85,8 +88,8 @@ def choose(
     if not meter.luminance > 0:
         words = "--exposure light"
         note = "no light to meter: the picture is in light"
-        return Chosen({"exposure": "light"}, words, {}, 0.0, "", note), meter.session.built
-    return meter.chosen(), meter.session.built
+        return Chosen({"exposure": "light"}, words, {}, 0.0, "", note), meter.one.built
+    return meter.chosen(), meter.one.built
 
 
 def kind_of(pattern: str) -> str:
@@ -95,14 +98,14 @@ def kind_of(pattern: str) -> str:
 
 
 def metered_point(
-    session: Session, pattern: str, size: tuple[int, int] | None = None
+    one: Prepared, pattern: str, size: tuple[int, int] | None = None
 ) -> tuple[float, float] | None:
-    """Point that a metering pattern looks at, px of the session's picture; None: the middle.
+    """Point that a metering pattern looks at, px of a picture; None: the middle.
 
     Args:
-        session: Session of the picture.
+        one: The picture.
         pattern: Metering pattern, such as ``spot:480,270`` or ``spot:NODE``.
-        size: Size of the picture, px, of which ``spot:X,Y`` is a pixel; None: the session's.
+        size: Size of the picture, px, of which ``spot:X,Y`` is a pixel; None: this one's.
 
     Raises:
         UsageError: The pixel is not in the picture.
@@ -110,16 +113,16 @@ def metered_point(
     """
     _, colon, place = pattern.partition(":")
     if not colon:
-        return session.camera.focus_at
-    if (instances := _instances(session.scene, place)) is not None:
-        return _seen_at(session, place, instances)
-    width, height = size or (session.width, session.height)
+        return one.camera.focus_at
+    if (instances := _instances(one.scene, place)) is not None:
+        return _seen_at(one, place, instances)
+    width, height = size or one.size
     x, y = numbers("--meter spot", place, 2, "480,270, or the name of a node")
     if not (0 <= x < width and 0 <= y < height):
         raise UsageError(
             f"--meter spot:{place}: wanted a pixel of the picture of {width} x {height} px"
         )
-    return (x + 0.5) * session.width / width, (y + 0.5) * session.height / height
+    return (x + 0.5) * one.size[0] / width, (y + 0.5) * one.size[1] / height
 
 
 def _instances(scene: Scene, name: str) -> list[int] | None:
@@ -133,17 +136,26 @@ def _instances(scene: Scene, name: str) -> list[int] | None:
     raise InputError(f"--meter spot: {no_node(name, known)}")
 
 
-def _seen_at(session: Session, name: str, instances: list[int]) -> tuple[float, float]:
+def _seen_at(one: Prepared, name: str, instances: list[int]) -> tuple[float, float]:
     """Pixel of a node that is nearest to the middle of its pixels."""
-    moment = session.ground_truth.moment(0)
-    seen = np.isin(session.object_ids(moment), [i + 1 for i in instances])
+    truth = ground_truth(one, one.crop, one.overscan)
+    seen = np.isin(truth.object_ids(truth.moment(0)), [i + 1 for i in instances])
     rows, columns = np.nonzero(seen)
     if not rows.size:
         raise InputError(f"--meter spot:{name}: this node is not in view")
     away = (rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2
     at = int(away.argmin())
-    left, top = session.crop[:2]
+    left, top = one.crop[:2]
     return left + float(columns[at]) + 0.5, top + float(rows[at]) + 0.5
+
+
+def _picture(one: Prepared) -> Frame:
+    """Draws the meter's picture."""
+    plan = plan_light(one, None)
+    film, samples = new_film(one, plan), (0, SAMPLES)
+    for part in plan.parts:
+        part.draw(_core.render, one.core_scene, film, (0, 0), samples, None)
+    return frame_of(film, {"resolution": one.size, "crop": one.crop}, aovs=False)
 
 
 class _Meter:
@@ -152,8 +164,6 @@ class _Meter:
     def __init__(
         self, scene: Scene, camera: Camera, settings: RenderSettings, built: BuiltScene | None
     ) -> None:
-        from .session import Session
-
         check_exposure(camera)
         self.mode, self.pattern = split_mode(camera.exposure, camera.meter)
         self.scene, self.camera = scene, camera.with_(exposure="manual")
@@ -165,10 +175,9 @@ class _Meter:
         if camera.focus_at is not None:
             x, y = camera.focus_at
             placed = placed.with_(focus_at=(x * size[0] / wide, y * size[1] / high))
-        self.session: Session = Session(scene, placed, settings=self.settings, built=built)
-        self.session.draw(0, SAMPLES)
-        spot = metered_point(self.session, self.pattern, (wide, high))
-        self.luminance = luminance_of(self.session.frame(plate=False), kind_of(self.pattern), spot)
+        self.one = prepare(scene, placed, self.settings, built)
+        point = metered_point(self.one, self.pattern, (wide, high))
+        self.luminance = luminance_of(_picture(self.one), kind_of(self.pattern), point)
 
     def chosen(self) -> Chosen:
         """Exposure by the mode."""
@@ -210,13 +219,13 @@ class _Meter:
 
     def _lux_s(self, **changes: Any) -> float:
         """Luminance exposure of a value of 1 by the camera with other parameters, lux s."""
-        camera = self.session.camera.with_(**changes)
-        one = prepare(self.scene, camera, self.settings, self.session.built)
+        camera = self.one.camera.with_(**changes)
+        one = prepare(self.scene, camera, self.settings, self.one.built)
         return luminance_exposure(camera_metadata(one.camera, one.setup, one.size[0]))
 
     def _isos(self) -> tuple[float, float]:
         low, high = ISOS
-        if (sensor := self.session.prepared.sensor) is not None:
+        if (sensor := self.one.sensor) is not None:
             low, high = max(low, sensor.iso_range[0]), min(high, sensor.iso_range[1])
             if low > high:  # none in common: the sensor's end that is nearer
                 low = high = min(sensor.iso_range, key=lambda iso: abs(math.log(iso / ISOS[0])))
@@ -230,8 +239,8 @@ class _Meter:
         return {"iso": iso}, "", iso * lux_s
 
     def _time(self, wanted: float) -> tuple[dict[str, Any], str, float]:
-        now = shutter_time(self.session.camera)
-        per_s = self.session.camera.iso * self._lux_s() / now
+        now = shutter_time(self.one.camera)
+        per_s = self.one.camera.iso * self._lux_s() / now
         time, words = _short(min(max(wanted / per_s, TIMES_S[0]), TIMES_S[1]))
         return {"shutter_time": time}, f" --shutter {words}", per_s * time
 
@@ -240,12 +249,12 @@ class _Meter:
         return (
             {"f_stop": stop},
             f" --f-stop {stop:g}",
-            self.session.camera.iso * self._lux_s(f_stop=stop),
+            self.one.camera.iso * self._lux_s(f_stop=stop),
         )
 
     def _stop_for(self, wanted: float, ends: tuple[float, float]) -> float:
         """F-stop of an exposure within its ends, to three digits."""
-        iso, stop = self.session.camera.iso, self._now()
+        iso, stop = self.one.camera.iso, self._now()
         for _ in range(_STEPS):
             got = iso * self._lux_s(f_stop=stop)
             stop = min(max(stop * math.sqrt(got / wanted), ends[0]), ends[1])
@@ -253,7 +262,7 @@ class _Meter:
         return min(max(rounded, ends[0]), ends[1])
 
     def _program(self, wanted: float) -> tuple[dict[str, Any], str, float]:
-        camera, widest = self.session.camera, self._widest()
+        camera, widest = self.one.camera, self._widest()
         open_lux = camera.iso * self._lux_s(f_stop=widest) / shutter_time(camera)
         stops = math.log2(open_lux * PROGRAM_S / wanted)  # above 0: more light than it needs
         stop = float(f"{min(widest * 2 ** (max(stops, 0.0) / 4), PROGRAM_STOP):.3g}")
@@ -264,7 +273,7 @@ class _Meter:
         return changes, f" --shutter {words} --f-stop {stop:g}", per_s * time
 
     def _now(self) -> float:
-        stop = self.session.prepared.setup.lens.f_stop
+        stop = self.one.setup.lens.f_stop
         if stop is None:
             raise UsageError(
                 f"exposure {self.mode} chooses the f-stop, but a pinhole has none; use auto or A"
@@ -273,7 +282,7 @@ class _Meter:
 
     def _widest(self) -> float:
         self._now()
-        glass = self.session.prepared.setup.lens.glass
+        glass = self.one.setup.lens.glass
         if glass is None:
             return STOPS[0]
         widest = float(glass.lens.first_order().f_number)
@@ -284,23 +293,3 @@ def _short(time: float) -> tuple[float, str]:
     """Time near another that a text gives exactly, and the text: 1/N s or seconds."""
     below = float(f"{1 / time:.3g}")
     return 1 / below, f"1/{below:g}"
-
-
-def exposure_in_words(session: Session, frame: Frame) -> str:
-    """Exposure mode of a picture and its distance from the meter, in words.
-
-    Args:
-        session: Session that drew it.
-        frame: The picture.
-    """
-    mode, pattern = str(session.metadata["exposure"]), session.camera.meter
-    try:
-        point = metered_point(session, pattern)
-        stops = stops_over(frame, kind_of(pattern), point)
-    except DaguerreError:  # such as a spot out of view, or a frozen shutter
-        return mode
-    if stops is None:
-        return f"{mode}, nothing to meter"
-    if abs(stops) < 0.05:
-        return f"{mode}, as metered"
-    return f"{mode}, {abs(stops):.1f} EV {'over' if stops > 0 else 'under'} the meter"

@@ -274,7 +274,7 @@ class Drawing:
         self.checkpoint.remove()
         if self.tell.previews:
             self.tell.preview(self.output.look(frame, complete=True))
-        from .auto_exposure import exposure_in_words
+        from .over_meter import exposure_in_words
 
         loop, seconds = self.loop, time.monotonic() - self.loop.started
         self.tell.finished(

@@ -50,7 +50,8 @@ class View:
 
         def unshifted(scene: Scene) -> Camera:
             given = cameras.placed(scene, self.camera)
-            return cameras.flags.camera(given, self.calibration, cameras.changes)
+            found: Camera = cameras.flags.camera(given, self.calibration, cameras.changes)
+            return found
 
         def camera(scene: Scene) -> Camera:
             if not self.shift:
