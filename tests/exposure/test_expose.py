@@ -335,7 +335,7 @@ def test_a_rendered_white_world_gives_the_number_of_iso_12232(lens: str) -> None
     luminance, stop, seconds, iso = 400.0, 4.0, 1 / 60, 200
     scene = dg.Scene()
     scene.set_environment(np.full((4, 8, 3), luminance, np.float32))
-    camera = dg.Camera(lens=lens, f_stop=stop, shutter_time=seconds, iso=iso)
+    camera = dg.Camera(lens=lens, f_stop=stop, shutter_time=seconds, iso=iso, exposure="manual")
     camera = camera.with_(sensor_size=(0.6, 0.4), focus_distance=1e6)
     frame = dg.render(scene, camera, resolution=(30, 20), spp=256)
     exposure = math.pi / 4 * luminance * seconds / stop**2

@@ -161,10 +161,18 @@ def test_exposure_of_other_programs() -> None:
 
 def test_a_bracket_is_exposed_by_time() -> None:
     base = facts(f_stop=4.0)
-    longer = with_exposure(base, 4.0)
+    longer = with_exposure({**base, "exposure": "manual"}, 2.0)
     assert luminance_exposure(longer) == pytest.approx(4 * luminance_exposure(base))
     assert longer["expTime"] == pytest.approx(4 * base["expTime"])
     assert base["expTime"] == 1 / 50
+
+
+def test_a_bracket_in_light_is_exposed_by_compensation() -> None:
+    base = {**facts(f_stop=4.0), "exposure": "light", "exposure_compensation": 0.5}
+    longer = with_exposure(base, 2.0)
+    assert longer["exposure_compensation"] == 2.5
+    assert longer["expTime"] == base["expTime"]
+    assert with_exposure(base, -0.5)["exposure_compensation"] is None
 
 
 @pytest.mark.parametrize(

@@ -106,10 +106,10 @@ def test_fireflies_of_no_number_are_left_out() -> None:
 
 def test_what_cannot_be_metered() -> None:
     with pytest.raises(
-        dg.UsageError, match=r"meter: wanted centre, spot, matrix, got 'spto'.*spot"
+        dg.UsageError, match=r"meter: wanted centre, spot, matrix, highlight, got 'spto'.*spot"
     ):
         meter(frame(np.ones((4, 4))), "spto")
-    for mode in ("centre", "spot", "matrix"):
+    for mode in ("centre", "spot", "matrix", "highlight"):
         with pytest.raises(dg.InputError, match=f"meter: {mode}: the metered area is black"):
             meter(frame(np.zeros((4, 4))), mode)
     with pytest.raises(dg.InputError, match="expTime"):
@@ -121,6 +121,7 @@ def test_a_grey_world_metered_through_glass_is_middle_grey() -> None:
     scene = dg.Scene()
     scene.set_environment(color=(300.0, 300.0, 300.0))
     eye = dg.Camera(lens="double-gauss-50mm-f2", f_stop=5.6, focus_distance=5.0, shutter_time=0.002)
+    eye = eye.with_(exposure="manual")
     drawn = dg.render(scene, eye, resolution=(30, 20), spp=16)
     read = meter(drawn, "spot")
     assert read.luminance == pytest.approx(300, rel=0.03)

@@ -19,7 +19,13 @@ from tests.support.make_gltf import Builder
 #: A sky of 100 cd/m2: at f/4, 1/50 s and ISO 100 a value of 1 is 100 h0 / 50 lux s.
 SKY = 100.0
 QUICK = ["--res", "32x32", "--spp", "4", "--sky", "100,100,100", "--quiet", "--light-paths", "off"]
-BASE = {"--f-stop": "4", "--shutter": "1/50", "--iso": "100", "--focus": "2"}
+BASE = {
+    "--exposure": "manual",
+    "--f-stop": "4",
+    "--shutter": "1/50",
+    "--iso": "100",
+    "--focus": "2",
+}
 #: Linear value of that picture: 10 / ISO lux s is 0.18.
 VALUE = SKY * math.pi / 4 / 16 / 50 * 100 * 0.018
 
@@ -115,7 +121,7 @@ def test_an_exr_is_never_changed_and_keeps_what_it_was_exposed_with() -> None:
 
 def test_pictures_are_plain_unless_exposure_is_asked_for() -> None:
     """Linear 1 is white: a sky of 100 is far beyond."""
-    assert render("a.jpg", "a.png", "a.tif", iso="") == 0
+    assert render("a.jpg", "a.png", "a.tif", iso="", exposure="") == 0
     for path in ("a.jpg", "a.png", "a.tif"):
         assert linear(path) == pytest.approx(1, abs=0.01)
     frame = dg.Frame(np.full((8, 8, 3), 0.25, np.float32))
@@ -127,15 +133,20 @@ def test_pictures_are_plain_unless_exposure_is_asked_for() -> None:
 def test_the_meter_makes_what_it_reads_grey(capsys: pytest.CaptureFixture[str]) -> None:
     quick = [flag for flag in QUICK if flag != "--quiet"]
     words = ["--f-stop", "4", "--shutter", "1/50", "--focus", "2", "-o", "a.tif", "-o", "a.exr"]
-    for mode in ("auto", "auto:spot", "auto:matrix"):
-        assert main(["render", "s.glb", *words, *quick, "--exposure", mode]) == 0
+    for pattern in ("centre", "spot", "matrix", "spot:3,4"):
+        more = ["--exposure", "auto", "--meter", pattern]
+        assert main(["render", "s.glb", *words, *quick, *more]) == 0
         assert linear("a.tif") == pytest.approx(0.18, rel=0.01)
         told = capsys.readouterr().err
-        assert "100 cd/m2, EV100 9.6; ISO 102" in told
+        assert "100 cd/m2, EV100 9.6; the same picture: --exposure manual --iso 102\n" in told
+        assert "daguerre: auto, as metered\n" in told
     assert dg.load_frame("a.exr").metadata["isoSpeed"] == 102
-    assert main(["render", "s.glb", *words, *quick, "--exposure", "auto", "--ev", "-1"]) == 0
-    assert linear("a.tif") == pytest.approx(0.09, rel=0.01)
-    assert "ISO 51, -1 EV" in capsys.readouterr().err
+    quick[-2:-2] = ["--shutter", "1/100"]
+    assert main(["render", "s.glb", *words, *quick, "--exposure", "auto", "--ev", "-0.5"]) == 0
+    assert linear("a.tif") == pytest.approx(0.18 / math.sqrt(2), rel=0.01)
+    told = capsys.readouterr().err
+    assert "-0.5 EV; the same picture: --exposure manual --iso 144 --ev 0\n" in told
+    assert "auto, 0.5 EV under the meter" in told
 
 
 def test_the_meter_stays_within_the_sensor(capsys: pytest.CaptureFixture[str]) -> None:
@@ -144,7 +155,7 @@ def test_the_meter_stays_within_the_sensor(capsys: pytest.CaptureFixture[str]) -
     assert main(["render", "s.glb", "-o", "a.jpg", *words, *quick, "--exposure", "auto"]) == 0
     top = dg.sensors.load("nikon-d5100").iso_range[1]
     told = capsys.readouterr().err
-    assert f"ISO {top:g}" in told
+    assert f"--iso {min(top, 6400):g}" in told
     assert "EV too dark" in told
 
 
@@ -162,7 +173,7 @@ def test_a_sensor_that_lacks_iso_100_is_exposed_at_its_own() -> None:
 def test_a_black_picture_is_kept(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["--f-stop", "4", "--shutter", "1/50", "--focus", "2", "--res", "8x8", "--spp", "1"]
     assert main(["render", "s.glb", "-o", "a.png", *words, "--exposure", "auto"]) == 0
-    assert "there is no light to meter; the ISO stays as set" in capsys.readouterr().err
+    assert "no light to meter: the picture is in light" in capsys.readouterr().err
     assert linear("a.png") == 0
 
 
@@ -186,7 +197,22 @@ def test_a_raw_file_of_any_scene(capsys: pytest.CaptureFixture[str]) -> None:
 WRONG: dict[str, Any] = {
     "format": (["-o", "a.gif"], 2, "got '.gif'"),
     "mode": (["-o", "a.jpg", "--exposure", "auto:sport"], 2, "did you mean 'spot'"),
-    "exposure": (["-o", "a.jpg", "--exposure", "manual"], 2, "--exposure: wanted auto"),
+    "exposure": (["-o", "a.jpg", "--exposure", "m"], 2, "--exposure: wanted light, manual, auto"),
+    "meter": (["-o", "a.jpg", "--meter", "sport"], 2, "did you mean 'spot'"),
+    "no spot": (["-o", "a.jpg", "--meter", "matrix:3,4"], 2, "--meter: wanted centre, spot"),
+    "spot outside": (
+        ["-o", "a.jpg", "--exposure", "auto", "--meter", "spot:32,0"], 2, "a pixel of the picture",
+    ),
+    "spot node": (
+        ["-o", "a.jpg", "--exposure", "auto", "--meter", "spot:Camra"], 3, "did you mean 'Camera'",
+    ),
+    "spot unseen": (
+        ["-o", "a.jpg", "--exposure", "auto", "--meter", "spot:Camera"], 3, "is not in view",
+    ),
+    "time twice": (["-o", "a.jpg", "--exposure", "A", "--shutter", "1/48"], 2, "got both"),
+    "angle twice": (["-o", "a.jpg", "--exposure", "P", "--shutter-angle", "90"], 2, "got both"),
+    "stop twice": (["-o", "a.jpg", "--exposure", "S", "--f-stop", "4"], 2, "got both"),
+    "no stop": (["-o", "a.jpg", "--exposure", "S", "--lens", "pinhole"], 2, "a pinhole has none"),
     "iso twice": (["-o", "a.jpg", "--exposure", "auto", "--iso", "100"], 2, "got both"),
     "iso": (["-o", "a.jpg", "--iso", "-100"], 2, "--iso: wanted a number above 0"),
     "iso nan": (["-o", "a.jpg", "--iso", "nan"], 2, "--iso"),
@@ -199,10 +225,9 @@ WRONG: dict[str, Any] = {
     "bracket twice": (["-o", "a.jpg", "--bracket", "1,1"], 2, "each once"),
     "bracket far": (["-o", "a.jpg", "--bracket", "0,99"], 2, "within 20 EV"),
     "bracket of exr": (["-o", "a.exr", "--bracket", "0,1"], 2, "--bracket needs an output"),
-    "meter of exr": (["-o", "a.exr", "--exposure", "auto"], 2, "--exposure needs an output"),
     "look": (["-o", "a.jpg", "--look", "flimic"], 2, "did you mean 'filmic'"),
-    "tone": (["-o", "a.jpg", "--iso", "100", "--tone", "soft"], 2, "set by --look"),
-    "frozen": (["-o", "a.dng", "--shutter", "0"], 3, "expTime"),
+    "tone": (["-o", "a.jpg", "--exposure", "manual", "--tone", "soft"], 2, "set by --look"),
+    "frozen": (["-o", "a.dng", "--exposure", "manual", "--shutter", "0"], 3, "expTime"),
     "bands": (["-o", "a.exr", "--bands", "2"], 2, "--bands: wanted 3 .. 64"),
     "wb": (["-o", "a.jpg", "--wb", "12"], 2, "white_balance"),
 }  # fmt: skip

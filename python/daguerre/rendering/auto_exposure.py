@@ -21,6 +21,7 @@ from daguerre.camera.shutter import shutter_time
 from daguerre.errors import InputError, UsageError
 from daguerre.exposure.lux_seconds import luminance_exposure
 from daguerre.exposure.metering import K, luminance_of
+from daguerre.frame.seen_by import sensor_metadata
 from daguerre.scene.node_names import find_node, no_node
 from daguerre.scene.scene import Scene
 from daguerre.sensors.iso_speed import GREY_LX_S
@@ -155,7 +156,8 @@ def _picture(one: Prepared) -> Frame:
     film, samples = new_film(one, plan), (0, SAMPLES)
     for part in plan.parts:
         part.draw(_core.render, one.core_scene, film, (0, 0), samples, None)
-    return frame_of(film, {"resolution": one.size, "crop": one.crop}, aovs=False)
+    facts = {"resolution": one.size, "crop": one.crop, **sensor_metadata(one.sensor)}
+    return frame_of(film, facts, aovs=False)
 
 
 class _Meter:
