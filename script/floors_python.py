@@ -57,6 +57,8 @@ HAND_OVERS = {
     ("camera/camera.py", "from_opentrackio", "calibration.cameras"),
     ("camera/camera.py", "from_ros", "calibration.cameras"),
     ("frame/frame.py", "_repr_png_", "io.png"),
+    ("frame/frame.py", "display", "development.shown"),
+    ("frame/frame.py", "encoded", "development.shown"),
     ("frame/frame.py", "expose", "exposure.expose"),
     ("frame/frame.py", "exposure_truth", "exposure.expose"),
     ("frame/raw.py", "develop", "development.develop"),

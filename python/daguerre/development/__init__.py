@@ -1,10 +1,28 @@
 """Develops raw pictures and frames: white balance, highlights, colours, tone; writes DNG."""
 
-from daguerre.frame.picture import Picture
+from __future__ import annotations
 
-from .binning import bayer_of
-from .develop import develop, save_raw
-from .looks import LOOKS
-from .parameters import HIGHLIGHTS
+from typing import TYPE_CHECKING
+
+from daguerre.frame.picture import Picture
+from daguerre.on_use import on_use
+
+if TYPE_CHECKING:
+    from .binning import bayer_of
+    from .develop import develop, save_raw
+    from .looks import LOOKS
+    from .parameters import HIGHLIGHTS
 
 __all__ = ["HIGHLIGHTS", "LOOKS", "Picture", "bayer_of", "develop", "save_raw"]
+
+if not TYPE_CHECKING:  # checkers know the names above, and report all others
+    __getattr__, __dir__ = on_use(
+        __name__,
+        {
+            "HIGHLIGHTS": "parameters",
+            "LOOKS": "looks",
+            "bayer_of": "binning",
+            "develop": "develop",
+            "save_raw": "develop",
+        },
+    )

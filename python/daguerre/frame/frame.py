@@ -182,33 +182,38 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
         return replace(self, **cut, aovs=aovs, metadata=facts | {"crop": (x0, y0, x1, y1)})
 
     def display(self, tone: str = "srgb") -> NDArray[np.uint8]:
-        """Encodes the picture for a screen, shape (H, W, 3): linear 1.0 is the screen's white.
+        """Encodes the picture for a screen, shape (H, W, 3), by its exposure mode.
+
+        In ``light``, and without a mode, a value of 2^-EV is the screen's white. In other modes, or
+        with a white balance, the frame is developed with the neutral look.
 
         Args:
-            tone: "srgb" is the plain sRGB curve, clipped at 1. "soft" rolls off the highlights
-                above 0.8, so that small bright lamps keep some shape and get whiter the brighter
-                they are. Both move colours outside of sRGB toward the grey of the same luminance,
-                and leave ``rgb`` as it is. ISO and exposure compensation belong to development.
+            tone: Tone curve of pictures that are not developed. "srgb" is the plain sRGB curve,
+                clipped at 1. "soft" rolls off the highlights above 0.8, so that small bright lamps
+                keep some shape and get whiter the brighter they are. Both move colours outside of
+                sRGB toward the grey of the same luminance, and leave ``rgb`` as it is.
         """
-        shown = np.empty(self.rgb.shape, np.uint8)
-        for rows, encoded in self._stripes(tone):
-            shown[rows] = np.rint(encoded * 255)
-        return shown
+        from daguerre.development.shown import display
 
-    def encoded(self, tone: str) -> NDArray[np.float32]:
+        return display(self, tone)
+
+    def encoded(self, tone: str = "srgb") -> NDArray[np.float32]:
         """Encodes values like ``display``, 0 to 1."""
-        shown = np.empty(self.rgb.shape, np.float32)
-        for rows, encoded in self._stripes(tone):
-            shown[rows] = encoded
-        return shown
+        from daguerre.development.shown import encoded
 
-    def _stripes(self, tone: str) -> Iterator[tuple[slice, NDArray[np.float32]]]:
-        """Encodes the picture in strips of rows, which needs little memory."""
+        return encoded(self, tone)
+
+    def encoded_rows(
+        self, tone: str, gain: float = 1.0
+    ) -> Iterator[tuple[slice, NDArray[np.float32]]]:
+        """Encodes ``gain`` times the picture in strips of rows, which needs little memory."""
         if tone not in TONES:
             raise UsageError(f"frame: unknown tone {short(tone)}{suggest(tone, TONES, few=True)}")
         for row in range(0, self.height, _STRIPE):
             rows = slice(row, row + _STRIPE)
             linear = np.nan_to_num(self.rgb[rows], nan=0.0, posinf=3e38)
+            if gain != 1:
+                linear = np.minimum(linear * np.float32(gain), np.float32(3e38))
             linear = _into_gamut(linear)
             yield rows, _srgb(_shoulder(linear) if tone == "soft" else linear)
 
@@ -217,7 +222,7 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
 
         Args:
             path: ``.exr`` keeps everything, linear, with all channels and camera attributes.
-                ``.png``, ``.jpg`` and ``.tif`` are encoded for display, with 1 as white and
+                ``.png``, ``.jpg`` and ``.tif`` are encoded for display as :meth:`display` does,
                 without overscan. For a photograph use ``expose`` and
                 ``daguerre.development.develop``.
             tone: Tone curve of pictures for display; see :meth:`display`.

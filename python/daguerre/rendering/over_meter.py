@@ -22,7 +22,9 @@ def exposure_in_words(session: Session, frame: Frame) -> str:
         session: Session that drew it.
         frame: The picture.
     """
-    mode = str(session.metadata["exposure"])
+    mode = frame.metadata.get("exposure")
+    if mode is None:
+        return ""
     pattern = session.metering.get("metering") or session.camera.meter
     try:
         point = metered_point(session.prepared, pattern)
