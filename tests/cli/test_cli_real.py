@@ -233,6 +233,7 @@ def test_noise_goes_on_from_checkpoints_that_fit(capsys: pytest.CaptureFixture[s
 def test_truth_of_a_photograph_lies_beside_it() -> None:
     """A sky of luminance 1 on a surface of 0.25: in lux s, and where that saturates."""
     told = ["--aov", "exposure,saturated", "--sensor", "ideal", "--exposure-f-stop", "4"]
+    told += ["--exposure", "manual"]
     shot = [*told, "--exposure-time", "20", "--iso", "100", "--spp", "64"]
     assert main(["render", "s.glb", "-o", "a.exr", "-o", "a.dng", *QUICK, *shot]) == 0
     seen = pixels("a.exr")

@@ -52,7 +52,7 @@ RENDER = [
         ),
         "and needs --camera, --calibration or --stereo",
     ),
-    (("-o", "a.exr", "--exposure", "auto"), "--exposure needs an output that is exposed"),
+    (("-o", "a.exr", "--exposure", "on"), "--exposure: wanted light, manual, auto, A, S, P"),
     (("-o", "a.png", "--look", "pretty"), "develop: look (--look): wanted one of neutral"),
     (("-o", "a.png", "--flare", "9"), "flare (--flare): wanted a lens with surfaces"),
     (

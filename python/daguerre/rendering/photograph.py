@@ -97,7 +97,8 @@ class Photograph:
                 known = ", ".join(PICTURES)
                 raise UsageError(f"--bracket needs an output that is exposed (-o .dng, {known})")
             return
-        if in_light(metadata):
+        developed = self.develops(metadata) or any(is_raw(path) for path in paths)
+        if in_light(metadata) or not developed:
             return
         luminance_exposure(metadata)
         if note := pinhole_note(metadata):
@@ -124,13 +125,13 @@ class Photograph:
         self, frame: Frame, offset: float, files: list[Path], tone: str, tell: Reporter
     ) -> None:
         """Writes one exposure to its files."""
-        from daguerre.development.dng import size_note
-
         frame, raw = self._exposed(frame, offset, raw=any(is_raw(file) for file in files))
         for text in raw.notes if raw is not None else ():
             tell.note(text)
         for file in files:
             if raw is not None and is_raw(file):
+                from daguerre.development.dng import size_note
+
                 raw.save(file)
                 if remark := size_note(raw):
                     tell.note(f"{file}: {remark}")
