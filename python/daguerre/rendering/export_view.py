@@ -9,10 +9,13 @@ from dataclasses import replace
 import numpy as np
 
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure_mode import AUTOMATIC
+from daguerre.exposure.lux_seconds import compensation, display_gain
 from daguerre.files.notes import Notes
 from daguerre.io.outgoing.record import LensFile, View
 from daguerre.lenses import LensSurface
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
+from daguerre.setup.metadata import camera_metadata
 from daguerre.setup.resolved import Glass, ResolvedCamera
 
 #: Shares of the first and the last visible light, nm, between which glass may bend differently.
@@ -38,6 +41,7 @@ def view_of(setup: ResolvedCamera, notes: Notes) -> View:
         _radius_m(setup),
         math.inf if lens.focus_distance_m is None else lens.focus_distance_m,
         camera.near_clip,
+        gain=_gain(setup, notes),
     )
     if camera.projection is not None:
         notes.add(
@@ -50,6 +54,16 @@ def view_of(setup: ResolvedCamera, notes: Notes) -> View:
     if lens.glass is None or lens.model not in ("exact", "polynomial"):
         return view
     return _with_lens(view, setup, lens.glass, notes)
+
+
+def _gain(setup: ResolvedCamera, notes: Notes) -> float:
+    """Factor on the light of the picture, by the exposure mode."""
+    facts = camera_metadata(setup.camera, setup, setup.resolution[0])
+    mode = facts["exposure"]
+    if mode not in AUTOMATIC:
+        return display_gain(facts)
+    notes.add(f"exposure {mode} is left out: the picture is in light")
+    return compensation(facts)
 
 
 def _radius_m(setup: ResolvedCamera) -> float:

@@ -11,7 +11,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.errors import InputError
-from daguerre.exposure.lux_seconds import luminance_exposure
+from daguerre.exposure.lux_seconds import display_gain
 from daguerre.lenses import Lens
 from daguerre.rendering.pixels import check_filter
 
@@ -83,9 +83,9 @@ def test_the_picture_is_not_mirrored(tmp_path: Path, mirrored: str, column: int)
 
 
 def _shown(frame: dg.Frame) -> float:
-    """Shown value of 1 in a frame: 10 / ISO lux s become 0.18 (ISO 12232)."""
-    metadata = frame.metadata
-    return luminance_exposure(metadata) * float(metadata["isoSpeed"]) * 0.18 / 10
+    """Shown value of 1 in a frame, by the file's own exposure mode."""
+    assert frame.metadata["exposure"] == "light"
+    return display_gain(frame.metadata)
 
 
 @pytest.mark.parametrize(
@@ -93,16 +93,15 @@ def _shown(frame: dg.Frame) -> float:
     [
         ('Camera "perspective"', 1.0),
         ('Camera "perspective" Film "rgb" "float iso" 400', 4.0),
+        ('Camera "perspective" Film "rgb" "float iso" 400 "string sensor" "nikon_d850"', 4.0),
         ('Camera "perspective" "float shutterclose" 0.25 Film "rgb" "float iso" 200', 0.5),
         ('Camera "perspective" "float lensradius" 0.05 "float focaldistance" 2', 1.0),
         ('Camera "perspective" "float lensradius" 9 "float focaldistance" 2', 1.0),
         ('Camera "spherical" "string mapping" "equirectangular"', 1.0),
     ],
 )
-def test_the_developed_picture_is_as_bright_as_in_pbrt(
-    tmp_path: Path, options: str, ratio: float
-) -> None:
-    """Imaging ratio: time x ISO / 100; middle grey is 10 / ISO lux s (ISO 12232)."""
+def test_the_picture_is_as_bright_as_in_pbrt(tmp_path: Path, options: str, ratio: float) -> None:
+    """Imaging ratio: time x ISO / 100."""
     options = f'{options} Film "rgb" "integer xresolution" 8 "integer yresolution" 8'
     if "iso" in options:
         options = options.rsplit("Film", 1)[0]
@@ -111,14 +110,38 @@ def test_the_developed_picture_is_as_bright_as_in_pbrt(
     frame = dg.render(scene, resolution=size, spp=4)
     inner = frame.rgb[1:-1, 1:-1]  # a panorama loses light at its edges
     assert inner.mean() == pytest.approx(0.3, rel=0.05)  # the frame is in cd/m2
-    assert _shown(frame) == pytest.approx(ratio, rel=1e-3)
+    assert _shown(frame) == pytest.approx(ratio, rel=1e-6)
 
 
 def test_a_picture_of_pbrt_v3_has_no_exposure_but_its_scale(tmp_path: Path) -> None:
     options = 'Camera "perspective" "float shutterclose" 0.01 Film "image" "float scale" 3'
     scene = read(tmp_path, 'LightSource "infinite" "rgb L" [0.2 0.2 0.2] WorldEnd', options)
     frame = dg.render(scene, resolution=(8, 6), spp=4)
-    assert _shown(frame) == pytest.approx(3, rel=1e-3)
+    assert _shown(frame) == pytest.approx(3, rel=1e-6)
+
+
+@pytest.mark.parametrize("version", ["", " WorldEnd"])
+def test_what_pbrt_multiplies_by_is_all_in_the_ev(tmp_path: Path, version: str) -> None:
+    """In another mode the ISO does not count a second time, and a meter may choose it."""
+    options = 'Camera "perspective" "float shutterclose" 0.25 Film "rgb"'
+    options += ' "float scale" 3' if version else ' "float iso" 400'
+    camera = read(tmp_path, SQUARE + version, options).camera()
+    assert (camera.exposure, camera.iso, camera.responsivity) == ("light", 100, 1)
+    assert (camera.exposure_time, camera.exposure_f_stop) == (None, None)
+    assert camera.exposure_compensation == pytest.approx(math.log2(3) if version else 0, abs=1e-6)
+
+
+def test_a_film_of_no_brightness(tmp_path: Path) -> None:
+    options = 'Camera "perspective" Film "image" "float scale" 0'
+    scene = read(tmp_path, f"{SQUARE} WorldEnd", options)
+    assert scene.camera().exposure_compensation == 0
+    assert "a scale of 0 of the film is left out (1 use)" in scene.warnings
+    options = 'Camera "perspective" "float shutterclose" 1e-30'
+    with pytest.raises(InputError, match=r"Camera: .*exposure_compensation: .*at least -64"):
+        read(tmp_path, SQUARE, options)
+    options = 'Camera "perspective" "float shutterclose" 0'
+    with pytest.raises(InputError, match="the two times must differ"):
+        read(tmp_path, SQUARE, options)
 
 
 def test_the_thin_lens_has_its_radius_and_focus_in_the_units_of_the_camera(tmp_path: Path) -> None:
@@ -168,8 +191,7 @@ def test_the_realistic_camera_shows_the_illuminance_of_its_film(tmp_path: Path) 
     focused = camera.lens.focused(10, measured_from="sensor")
     distance = focused.film_z_mm - camera.lens.vertices[-1]
     sine = math.sin(math.atan(2 / distance))
-    glass = float(camera.lens.axial_transmittance(550.0))
-    assert shown == pytest.approx(0.5 * math.pi * sine**2 * glass, rel=0.02)
+    assert shown == pytest.approx(0.5 * math.pi * sine**2, rel=0.02)  # its glass loses no light
 
 
 def test_pbrt_v3_weighs_its_realistic_camera_simply(tmp_path: Path) -> None:
@@ -178,9 +200,17 @@ def test_pbrt_v3_weighs_its_realistic_camera_simply(tmp_path: Path) -> None:
     simple = read(tmp_path, f"{SQUARE} WorldEnd", options).camera()
     # The iris of 4 mm is the rear surface itself, of a radius of 5 mm: a square of 4 mm, widened.
     widened = 4 + 2 * (2 * math.hypot(15, 15) / 1024)
-    assert simple.responsivity == pytest.approx(math.pi / 4 * (4 / widened) ** 2, rel=1e-3)
+    share = math.pi / 4 * (4 / widened) ** 2
+    assert 2**simple.exposure_compensation == pytest.approx(share, rel=1e-3)
+    options = f'{options} "float shutterclose" 0.5'
+    again = read(tmp_path, f"{SQUARE} WorldEnd", options).camera()
+    assert again.exposure_compensation == simple.exposure_compensation  # its time does not count
     weighed = f'{options} "bool simpleweighting" "false"'
-    assert read(tmp_path, f"{SQUARE} WorldEnd", weighed).camera().exposure_f_stop is None
+    camera = read(tmp_path, f"{SQUARE} WorldEnd", weighed).camera()
+    focused = camera.lens.focused(10, measured_from="sensor")
+    sine = math.sin(math.atan(2 / (focused.film_z_mm - camera.lens.vertices[-1])))
+    wanted = 0.5 * math.pi * sine**2
+    assert 2**camera.exposure_compensation == pytest.approx(wanted, rel=0.02)
 
 
 def test_a_camera_that_moves(tmp_path: Path) -> None:

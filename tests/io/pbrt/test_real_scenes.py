@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.exposure.lux_seconds import luminance_exposure
+from daguerre.exposure.lux_seconds import display_gain
 from daguerre.files import formats
 
 from .text import counted
@@ -65,7 +65,7 @@ def test_pictures_are_those_of_pbrt(name: str) -> None:
     picture = formats.read("environment", root / "images" / f"{title}.exr")
     height = round(_WIDTH * picture.shape[0] / picture.shape[1])
     frame = dg.render(scene, resolution=(_WIDTH, height), spp=32)
-    unit = luminance_exposure(frame.metadata) * float(frame.metadata["isoSpeed"]) * 0.018
+    unit = display_gain(frame.metadata)
     ours, theirs = _blocks(frame.rgb * unit), _blocks(_shrunk(picture, height))
     assert np.median(np.abs(ours - theirs) / (theirs + 0.02)) < _DEMOS[name]
 

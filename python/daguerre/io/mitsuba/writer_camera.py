@@ -65,6 +65,10 @@ def add_sensor(root: Element, outgoing: Outgoing) -> Element:
         outgoing.notes.add(
             "lens with a prescription is written as a thin lens with the same framing"
         )
+    if view.gain != 1:
+        outgoing.notes.add(
+            f"exposure is left out: a film has none; ours multiplies the light by {view.gain:.4g}"
+        )
     _add_film(sensor, outgoing, window)
     return sensor
 

@@ -46,6 +46,7 @@ class View:
         focus_distance_m: Distance from the lens to the plane in focus, along the axis.
         near_m: Distance below which nothing is seen.
         lens: Prescription that stands behind the thin lens, if its surfaces are spherical.
+        gain: Factor on the light of the picture, by the exposure mode.
     """
 
     world_from_camera: NDArray[np.float64]
@@ -56,6 +57,7 @@ class View:
     focus_distance_m: float = np.inf
     near_m: float = 0.0
     lens: LensFile | None = None
+    gain: float = 1.0
 
     @property
     def window(self) -> tuple[float, float, float, float]:

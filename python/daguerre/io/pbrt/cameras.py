@@ -1,6 +1,7 @@
 """Reads ``Camera``: perspective, realistic and spherical.
 
 pbrt's camera looks along +z of a left-handed frame. Its ``fov`` is that of the film's shorter side.
+The factor that pbrt has on a picture becomes an exposure compensation, in the mode ``light``.
 
 Source: pbrt-v4's user's guide ("Cameras"); ``cameras.cpp`` where it is silent.
 """
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 
 from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure import check_exposure
 from daguerre.camera.parameters import OPTICS
 from daguerre.camera.projection import Projection
 from daguerre.errors import InputError, UsageError
@@ -25,9 +27,10 @@ from daguerre.scene.transforms import without_scale
 
 from .description import Description
 from .files import Files
-from .film import PBRT_F_STOP, FilmSize
+from .film import FilmSize
 from .ledger import Ledger
 from .realistic import lens_of
+from .seen import Seen
 from .state import Made
 from .transforms import unit_of
 
@@ -43,6 +46,8 @@ _TURNS = dict.fromkeys(
 _FASTEST = 0.5
 #: Focus distance that pbrt takes for infinity, and beyond it.
 _FAR = 1e6
+#: Digits of an exposure compensation, EV: those of a lens file are not exact.
+_DIGITS = 6
 
 
 @dataclass(frozen=True)
@@ -98,17 +103,17 @@ def read_camera(
         ledger.note(made.place, "a camera that is scaled to zero is left out")
         return None
     eye = Eye(made, film, size, unit_of(axes), described.version, files, ledger)
-    fields = {"transform": pose, **_shutter(eye), **film.exposure}
-    ahead, more = reader(eye)
-    fields = {**fields, **more}
-    if ahead:
-        fields["transform"] = _moved_ahead(fields["transform"], ahead)
+    seen = reader(eye)
+    fields = {"transform": pose, **_shutter(eye), **_exposure(eye, seen), **seen.fields}
+    if seen.ahead:
+        fields["transform"] = _moved_ahead(pose, seen.ahead)
     ledger.use(made.place)
     ledger.tell_unread(made.parameters, made.place, made.kind)
     try:
         camera = Camera(**fields)
         OPTICS.check(camera, "camera")
         shutter.check(camera)
+        check_exposure(camera)
         return camera
     except (UsageError, InputError) as error:
         made.place.fail(str(error))
@@ -140,20 +145,31 @@ def _moved_ahead(transform: Any, metres: float) -> Any:
     return keys([(time, pose @ offset) for time, pose in pairs])
 
 
-def _shutter(eye: Eye) -> dict[str, Any]:
-    """Shutter; in pbrt-v4 its time sets the brightness, too."""
+def _times(eye: Eye) -> tuple[float, float]:
+    """When the shutter opens and closes, s."""
     number = eye.made.parameters.number
     begin, end = number("shutteropen", 0.0), number("shutterclose", 1.0)
-    begin, end = min(begin, end), max(begin, end)
-    fields: dict[str, Any] = {"shutter_time": end - begin, "shutter_offset": begin * 24}
-    if eye.version == 3:
-        fields["exposure_time"] = 1.0
-    elif end == begin:
+    return min(begin, end), max(begin, end)
+
+
+def _shutter(eye: Eye) -> dict[str, Any]:
+    begin, end = _times(eye)
+    return {"shutter_time": end - begin, "shutter_offset": begin * 24}
+
+
+def _exposure(eye: Eye, seen: Seen) -> dict[str, Any]:
+    """Factor of pbrt on a picture, as EV, and the white."""
+    begin, end = _times(eye)
+    if seen.timed and end == begin:
         eye.made.place.fail("shutteropen, shutterclose: the two times must differ")
-    return fields
+    gain = eye.film.gain * seen.weight * (end - begin if seen.timed else 1.0)
+    return {
+        "exposure_compensation": round(math.log2(gain), _DIGITS) + 0.0,
+        "white_balance": eye.film.white,
+    }
 
 
-def _perspective(eye: Eye) -> tuple[float, dict[str, Any]]:
+def _perspective(eye: Eye) -> Seen:
     parameters, film = eye.made.parameters, eye.film
     number = parameters.number
     window = _window(eye)
@@ -165,7 +181,7 @@ def _perspective(eye: Eye) -> tuple[float, dict[str, Any]]:
     shift = tuple(half * focal * (low + high) / 2 for low, high in (window[:2], window[2:]))
     radius = number("lensradius", 0.0, 0.0) * eye.size
     distance = number("focaldistance", _FAR, 0.0) * eye.size
-    fields: dict[str, Any] = {"exposure_f_stop": PBRT_F_STOP}
+    fields: dict[str, Any] = {}
     if any(abs(one) > 1e-9 * focal for one in shift):
         fields["shift"] = shift
     if not radius > 0:
@@ -179,7 +195,7 @@ def _perspective(eye: Eye) -> tuple[float, dict[str, Any]]:
     fields["sensor_size"] = tuple(side * enlarged for side in film.millimetres)
     if "shift" in fields:
         fields["shift"] = tuple(one * enlarged for one in shift)
-    return 0.0, fields
+    return Seen(fields, timed=eye.version == 4)
 
 
 def _window(eye: Eye) -> tuple[float, float, float, float]:
@@ -205,11 +221,11 @@ def _distance(distance: float, eye: Eye) -> float:
     return math.inf if distance >= _FAR * eye.size else distance
 
 
-def _realistic(eye: Eye) -> tuple[float, dict[str, Any]]:
+def _realistic(eye: Eye) -> Seen:
     return lens_of(eye.made, eye.film, eye.unit, eye.files, eye.version, eye.ledger)
 
 
-def _spherical(eye: Eye) -> tuple[float, dict[str, Any]]:
+def _spherical(eye: Eye) -> Seen:
     usual = "equalarea" if eye.version == 4 else "equirectangular"
     mapping = eye.made.parameters.text("mapping", usual)
     if mapping not in ("equirectangular", "equalarea"):
@@ -220,10 +236,10 @@ def _spherical(eye: Eye) -> tuple[float, dict[str, Any]]:
         eye.made.parameters.find(name)
     width = eye.film.resolution[0] + eye.film.resolution[0] % 2
     projection = Projection.of_field("equirectangular", (width, width // 2), 360.0)
-    return 0.0, {"projection": projection, "exposure_f_stop": PBRT_F_STOP}
+    return Seen({"projection": projection}, timed=eye.version == 4)
 
 
-_KINDS: dict[str, Callable[[Eye], tuple[float, dict[str, Any]]]] = {
+_KINDS: dict[str, Callable[[Eye], Seen]] = {
     "perspective": _perspective,
     "realistic": _realistic,
     "spherical": _spherical,

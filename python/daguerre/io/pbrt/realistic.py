@@ -11,15 +11,18 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import daguerre._core as _core
 from daguerre.errors import InputError, asked_by
 from daguerre.files.reading import MISSING
 from daguerre.lenses import Lens
 from daguerre.lenses import read as read_lens
+from daguerre.lenses.errors import reported
 from daguerre.lenses.focus import Focused
 
 from .files import Files
-from .film import PBRT_F_STOP, PBRT_RESPONSIVITY, FilmSize
+from .film import FilmSize
 from .ledger import Ledger
+from .seen import Seen
 from .state import Made
 
 #: Shapes of the iris in pbrt-v4 by the number of blades.
@@ -27,11 +30,13 @@ _BLADES = {"square": 4, "pentagon": 5}
 #: pbrt-v3 draws rays from squares around the exit pupil, which it widens by this share of the rear
 #: element's radius on each side: twice the diagonal of 1.5 radii, in 1024 steps.
 _WIDENED = 2 * 3 * math.sqrt(2) / 1024
+#: Half the diagonal of a film that only needs its middle, mm.
+_SMALL_MM = 0.5
 
 
 def lens_of(
     made: Made, film: FilmSize, unit: float, files: Files, version: int, ledger: Ledger
-) -> tuple[float, dict[str, Any]]:
+) -> Seen:
     """Reads a realistic camera.
 
     Args:
@@ -41,9 +46,6 @@ def lens_of(
         files: Files of the scene.
         version: Version of pbrt, 3 or 4.
         ledger: Counts directives.
-
-    Returns:
-        Distance from its film to the entrance pupil, m, and the fields of ``Camera``.
 
     Raises:
         InputError: A parameter or the lens file is wrong.
@@ -70,9 +72,14 @@ def lens_of(
         "focus_from": "sensor",
         "sensor_size": film.millimetres,
         **_iris(made, ledger),
-        **_brightness(made, film, version, focused),
     }
-    return (focused.film_z_mm - focused.entrance_pupil_z) / 1000, fields
+    simple = version == 3 and made.parameters.flag("simpleweighting", True)
+    ahead = (focused.film_z_mm - focused.entrance_pupil_z) / 1000
+    if simple:
+        weight = _simple_share(focused, parameters.number("aperturediameter", 1.0))
+    else:
+        weight = _illuminance(made, focused, f_stop, distance - ahead)
+    return Seen(fields, ahead, weight, timed=not simple)
 
 
 def _f_stop(made: Made, lens: Lens, diameter: float, ledger: Ledger) -> float:
@@ -98,15 +105,18 @@ def _iris(made: Made, ledger: Ledger) -> dict[str, Any]:
     return {}
 
 
-def _brightness(made: Made, film: FilmSize, version: int, focused: Focused) -> dict[str, Any]:
-    """Exposure: that of the film's illuminance, or, in pbrt-v3's simple weights, of no f-stop."""
-    responsivity = float(film.exposure.get("responsivity", 1.0))
-    simple = made.parameters.flag("simpleweighting", True) if version == 3 else False
-    if simple:
-        diameter = made.parameters.number("aperturediameter", 1.0)
-        share = _simple_share(focused, diameter)
-        return {"exposure_f_stop": PBRT_F_STOP, "responsivity": responsivity * share}
-    return {"responsivity": responsivity * PBRT_RESPONSIVITY}
+def _illuminance(made: Made, focused: Focused, f_stop: float, distance: float) -> float:
+    """Illuminance of the film's middle by a radiance of 1, for glass that loses no light."""
+    lens = focused.lens
+    settings = _core.ExactLensSettings(
+        f_stop=f_stop,
+        focus_distance_m=distance,
+        half_diagonal_mm=_SMALL_MM,
+        film_z_mm=focused.film_z_mm,
+    )
+    with asked_by(made.place), reported(lens.source):
+        exact = _core.ExactLens(lens.prescription, settings)
+    return float(exact.h0 / exact.transmittance)
 
 
 def _simple_share(focused: Focused, diameter: float) -> float:

@@ -72,12 +72,12 @@ def _add_realistic(text: Text, lens: LensFile, folder: OutgoingFolder) -> None:
 
 def _add_film(text: Text, outgoing: Outgoing, stem: str) -> None:
     width, height = outgoing.resolution
-    lens = outgoing.view.lens
+    view = outgoing.view
     text.directive(
         "Film", "rgb", integer("xresolution", width), integer("yresolution", height),
-        floats("diagonal", math.hypot(*outgoing.view.film_mm)),
+        floats("diagonal", math.hypot(*view.film_mm)),
         string("sensor", "cie1931"),
-        floats("iso", 100.0 * (1.0 if lens is None else lens.gain)),
+        floats("iso", 100.0 * view.gain * (1.0 if view.lens is None else view.lens.gain)),
         string("filename", f"{plain_name(stem)}.exr"),
     )  # fmt: skip
     text.directive("PixelFilter", "box", floats("xradius", 0.5), floats("yradius", 0.5))
