@@ -13,9 +13,12 @@ import pytest
 
 import daguerre as dg
 from daguerre.camera import shutter
+from daguerre.camera.exposure import PINHOLE_F_STOP
 from daguerre.cli import main
 from daguerre.errors import UsageError
+from daguerre.exposure.lux_seconds import display_gain
 from daguerre.files import extras, formats
+from daguerre.lenses import library
 
 pytest.importorskip("pxr")
 
@@ -58,6 +61,13 @@ def same(a: dg.Camera, b: dg.Camera, times: tuple[float, ...] = (0.0,)) -> None:
                 assert x.model in ("rectilinear", "equidistant") or x.model == y.model
             if isinstance(x, dg.Projection):
                 assert (x.model, x.size) == (y.model, y.size)
+            if (
+                x is None
+                and name == "exposure_f_stop"
+                and one.exposure == "manual"
+                and y is not None
+            ):
+                x = PINHOLE_F_STOP  # which a stage states
             if x is None or isinstance(x, str | Path | bool | dg.RollingShutter | dg.LensScatter):
                 assert y == x, name
                 continue
@@ -133,8 +143,9 @@ def any_exposure(draw: random.Random) -> dict[str, Any]:
             {"exposure_time": draw.uniform(1e-4, 1), "exposure_f_stop": draw.uniform(1, 16)},
             {"responsivity": draw.uniform(0.1, 2), "white_balance": 5600.0},
             {"white_balance": (0.31, 0.33)},
+            {"exposure_compensation": -1.25, "iso": 800.0},
         ]
-    )
+    ) | {"exposure": draw.choice(["light", "manual"])}
 
 
 def any_calibration(draw: random.Random) -> dict[str, Any]:
@@ -287,7 +298,7 @@ def test_usd_itself_sees_the_camera(tmp_path: Path) -> None:
     np.testing.assert_allclose(window.GetMax(), (22 / 35, 10 / 35), rtol=1e-6)
     assert usd.GetCamera(0).focusDistance == 2.5
     scale = usd.ComputeLinearExposureScale(Usd.TimeCode.Default())
-    assert scale == pytest.approx(0.01 * 4 * 2 / 5.6**2, rel=1e-6)
+    assert scale == pytest.approx(2, rel=1e-6)  # in light the EV alone
     assert (usd.GetShutterOpenAttr().Get(), usd.GetShutterCloseAttr().Get()) == (-0.25, 0.25)
     assert usd.GetClippingRangeAttr().Get()[0] < 0.01  # its default hides the nearest metre
     assert read(first, metres=1.0).near_clip == 0
@@ -296,6 +307,78 @@ def test_usd_itself_sees_the_camera(tmp_path: Path) -> None:
     assert tuple(UsdGeom.Camera(second).GetClippingRangeAttr().Get()) == (0.25, 1e6)
     assert not second.GetAttribute("daguerre:nearClip")
     assert read(second, metres=1.0).near_clip == 0.25
+
+
+BRIGHT: dict[str, dict[str, Any]] = {
+    "light": {"iso": 400, "exposure_time": 0.01, "exposure_f_stop": 5.6},
+    "EV": {"exposure_compensation": -1.5, "responsivity": 0.5},
+    "manual": {"exposure": "manual", "f_stop": 4, "shutter_time": 0.02, "iso": 400},
+    "usual": {"exposure": "manual"},
+    "split": {
+        **{"exposure": "manual", "f_stop": 4, "iso": 50, "exposure_compensation": 1},
+        **{"exposure_time": 0.5, "exposure_f_stop": 1.4, "responsivity": 0.3},
+    },
+    "pinhole": {"exposure": "manual", "lens": "pinhole", "shutter_angle": 90},
+    "diameter": {"exposure": "manual", "aperture_diameter": 12.5, "focal_length": 35},
+    "fisheye": {
+        **{"exposure": "manual", "f_stop": 2.8, "shutter_time": 0.01},
+        "projection": dg.Projection("equidistant", (640, 480), (300, 300), (320, 240)),
+    },
+}
+
+
+def gain_of(camera: dg.Camera) -> float:
+    scene = dg.Scene()
+    scene.set_environment(color=(1, 1, 1))
+    placed = camera.with_(focus_distance=None if camera.projection else 3.0)
+    return display_gain(dg.render(scene, placed, resolution=(4, 3), spp=1).metadata)
+
+
+@pytest.mark.parametrize("name", BRIGHT)
+def test_usd_shows_an_ideal_lens_as_bright_as_we_do(name: str, tmp_path: Path) -> None:
+    """By its own scale; and the camera comes back with its numbers and its brightness."""
+    camera = dg.Camera(**BRIGHT[name])
+    dg.export_camera(camera, tmp_path / "a.usda")
+    (prim,) = opened(tmp_path / "a.usda")
+    scale = UsdGeom.Camera(prim).ComputeLinearExposureScale(Usd.TimeCode.Default())
+    assert scale == pytest.approx(gain_of(camera), rel=5e-7)
+    made = again(prim, tmp_path)
+    assert gain_of(made) == pytest.approx(gain_of(camera), rel=5e-7)
+    same(camera, made)
+    assert (made.iso, made.responsivity) == (camera.iso, camera.responsivity)
+
+
+@pytest.mark.parametrize("mode", ["auto", "A", "S", "P"])
+def test_a_mode_that_chooses_comes_back(mode: str, tmp_path: Path) -> None:
+    held = {"A": {"iso": 400.0, "f_stop": 4.0}, "S": {"shutter_time": 0.01}}.get(mode, {})
+    camera = dg.Camera(exposure=mode, meter="highlight", exposure_compensation=1.0, **held)
+    dg.export_camera(camera, tmp_path / "a.usda")
+    (prim,) = opened(tmp_path / "a.usda")
+    assert UsdGeom.Camera(prim).ComputeLinearExposureScale(Usd.TimeCode.Default()) == 2
+    if mode in ("auto", "S"):
+        same(camera, again(prim, tmp_path))
+
+
+def test_a_lens_slower_than_the_usual_stop_keeps_its_brightness(tmp_path: Path) -> None:
+    slow = next(
+        entry.name
+        for entry in library.entries()
+        if dg.lenses.load(entry.name).first_order().f_number > 6
+    )
+    camera = dg.Camera(lens=slow, exposure="manual", focus_distance=3.0)
+    made = round_trip(camera, tmp_path)
+    assert (made.exposure_f_stop, made.f_stop) == (None, None)
+
+
+def test_exposure_over_time_comes_back(tmp_path: Path) -> None:
+    camera = dg.Camera(
+        exposure="manual",
+        f_stop=dg.keys([(0.0, 2.0), (1.0, 8.0)]),
+        iso=dg.keys([(0.0, 100.0), (0.5, 400.0)]),
+        responsivity=dg.keys([(0.0, 1.0), (1.0, 0.5)]),
+        exposure_compensation=dg.keys([(0.0, 0.0), (1.0, 2.0)]),
+    )
+    same(camera, round_trip(camera, tmp_path), (0.0, 0.2, 0.5, 0.8, 1.0))
 
 
 def test_isaac_sims_names_are_written(tmp_path: Path) -> None:

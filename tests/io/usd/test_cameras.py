@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import pickle
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.exposure.lux_seconds import display_gain
 
 pytest.importorskip("pxr")
 
@@ -133,37 +135,121 @@ EXPOSURES: list[dict[str, float]] = [
 ]
 
 
-def scale_of(camera: dg.Camera) -> float:
-    """USD's scale of brightness, by Daguerre's parameters."""
-    assert camera.exposure_time is not None
-    assert camera.exposure_f_stop is not None
-    gain = camera.iso / 100 * camera.responsivity * 2**camera.exposure_compensation
-    return camera.exposure_time * gain / camera.exposure_f_stop**2
+def shown(camera: dg.Camera) -> float:
+    """Display-linear value of a radiance of 1 in the picture of a camera."""
+    scene = dg.Scene()
+    scene.set_environment(color=(20.0, 20.0, 20.0))
+    frame = dg.render(scene, camera.with_(focus_distance=2.0), resolution=(8, 6), spp=4)
+    assert frame.rgb.mean() == pytest.approx(20, rel=0.01)
+    return display_gain(frame.metadata)
+
+
+def usds(prim: Usd.Prim, code: Usd.TimeCode | None = None) -> float:
+    """USD's own scale."""
+    return float(UsdGeom.Camera(prim).ComputeLinearExposureScale(code or Usd.TimeCode.Default()))
 
 
 @pytest.mark.parametrize("values", EXPOSURES)
-def test_exposure_is_usds_own_scale(values: dict[str, float]) -> None:
-    prim = camera_prim(EXPOSED.format(**values))
-    wanted = UsdGeom.Camera(prim).ComputeLinearExposureScale(Usd.TimeCode.Default())
-    assert scale_of(read(prim)) == pytest.approx(wanted, rel=1e-6)
+@pytest.mark.parametrize("lens", ["", "fStop = 0", "fStop = 1.4", "focusDistance = 40"])
+def test_a_picture_is_usds_scale_times_the_light(values: dict[str, float], lens: str) -> None:
+    lines = EXPOSED.format(**values) + "double shutter:close = 0.1"
+    if lens:
+        name = lens.split()[0]
+        lines = "\n".join(line for line in lines.splitlines() if f"float {name} " not in line)
+        lines += f"\nfloat {lens}"
+    prim = camera_prim(lines)
+    camera = read(prim)
+    assert camera.exposure == "manual"
+    assert shown(camera) == pytest.approx(usds(prim), rel=3e-7)
 
 
-def test_developed_pictures_are_as_bright_as_usds_scale_says() -> None:
-    """Through a whole photograph: two cameras differ by the ratio of their scales."""
-    scene = dg.Scene()
-    scene.set_environment(color=(20.0, 20.0, 20.0))
-    got, wanted = [], []
-    for values in EXPOSURES:
-        prim = camera_prim(EXPOSED.format(**values) + "double shutter:close = 0.1")
-        wanted.append(UsdGeom.Camera(prim).ComputeLinearExposureScale(Usd.TimeCode.Default()))
-        frame = dg.render(scene, read(prim), resolution=(8, 6), spp=4)
-        got.append(dg.development.develop(frame, look="neutral").linear().mean())
-    np.testing.assert_allclose(np.array(got) / got[0], np.array(wanted) / wanted[0], rtol=1e-4)
+@pytest.mark.parametrize(
+    "line",
+    [
+        "exposure:iso = 800",
+        "exposure:iso = 100",
+        "exposure:time = 0.02",
+        "exposure:time = 1",
+        "exposure:fStop = 2",
+        "exposure:responsivity = 0.25",
+        "exposure:responsivity.timeSamples = {0: 0.25, 24: 1}",
+    ],
+)
+def test_one_attribute_of_exposure_is_manual_with_the_fallbacks_of_usd(line: str) -> None:
+    prim = camera_prim(f"float {line}\nfloat exposure = 1")
+    camera = read(prim)
+    assert camera.exposure == "manual"
+    assert shown(camera) == pytest.approx(usds(prim, Usd.TimeCode(0)), rel=3e-7)
 
 
-def test_only_what_is_authored_splits_light_from_blur() -> None:
-    camera = read(camera_prim("float exposure:iso = 800"))
-    assert (camera.iso, camera.exposure_time, camera.exposure_f_stop) == (800, None, None)
+@pytest.mark.parametrize("ev", [0.0, 1.5])
+def test_exposure_alone_is_an_ev_in_light(ev: float) -> None:
+    prim = camera_prim(f"float exposure = {ev}")
+    camera = read(prim)
+    assert (camera.exposure, camera.exposure_compensation) == ("light", ev)
+    assert shown(camera) == pytest.approx(2**ev, rel=1e-9)
+
+
+NAMED: dict[str, tuple[str, dict[str, Any]]] = {
+    "light": ("float exposure:iso = 400", {"exposure": "light", "iso": 400}),
+    "manual": ("", {"exposure": "manual", "exposure_time": None, "exposure_f_stop": None}),
+    "auto": (
+        "float exposure:time = 0.02\nfloat fStop = 4",
+        {"exposure": "auto", "exposure_time": 0.02, "exposure_f_stop": None, "responsivity": 1},
+    ),
+    "A": ("float exposure:iso = 400", {"exposure": "A", "iso": 400, "exposure_time": None}),
+    "S": ("float exposure:time = 0.02", {"exposure": "S", "exposure_f_stop": None}),
+    "P": ("float exposure = 1", {"exposure": "P", "exposure_compensation": 1}),
+}
+
+
+@pytest.mark.parametrize("mode", NAMED)
+def test_an_attribute_of_ours_names_the_mode(mode: str) -> None:
+    lines, wanted = NAMED[mode]
+    named = f'token daguerre:exposure:mode = "{mode}"\nstring daguerre:exposure:meter = "spot:3,4"'
+    camera = read(camera_prim(f"{lines}\n{named}"))
+    assert {name: getattr(camera, name) for name in wanted} == wanted
+    assert camera.meter == "spot:3,4"
+
+
+CONFLICTS = {
+    ("auto", "float exposure:iso = 400"): "exposure:iso: wanted none, as exposure auto chooses",
+    ("auto", "float exposure:iso = 100"): "exposure:iso: wanted none, as exposure auto chooses",
+    ("A", "float exposure:time = 0.5"): "exposure:time: wanted none, as exposure A chooses",
+    ("A", "double shutter:close = 0.5"): "exposure A chooses the exposure time, but shutter_time",
+    ("S", "float fStop = 2"): "exposure S chooses the f-stop, but f_stop is set",
+    ("P", "float exposure:fStop = 2"): "exposure:fStop: wanted none, as exposure P chooses",
+    ("auto", "double daguerre:exposure:iso = 400"): "chooses the ISO, but iso is set",
+    ("M", ""): "daguerre:exposure:mode: wanted light, manual, auto, A, S, P; got 'M'",
+    ("light", 'string daguerre:exposure:meter = "sky"'): "daguerre:exposure:meter: wanted centre",
+    ("light", "int daguerre:exposure:meter = 3"): "daguerre:exposure:meter: wanted a name, got 3",
+}
+
+
+@pytest.mark.parametrize(("mode", "line"), CONFLICTS)
+def test_a_mode_and_what_it_chooses_are_one_error(mode: str, line: str) -> None:
+    prim = camera_prim(f'{line}\ntoken daguerre:exposure:mode = "{mode}"')
+    with pytest.raises(dg.InputError, match=r"shot\.usda: /World/Cam") as error:
+        read(prim)
+    assert CONFLICTS[mode, line] in str(error.value)
+
+
+def test_equal_numbers_do_not_split_light_from_blur_where_the_mode_is_named() -> None:
+    """So a camera that we wrote comes back; the numbers of others stay as they are."""
+    named = '\ntoken daguerre:exposure:mode = "manual"'
+    lines = "float fStop = 2.8\nfloat exposure:fStop = 2.8\ndouble shutter:close = 0.48"
+    lines += "\nfloat exposure:time = 0.02"
+    camera = read(camera_prim(lines))
+    assert (camera.exposure_time, camera.exposure_f_stop) == (0.02, 2.8)
+    camera = read(camera_prim(lines + named))
+    assert (camera.exposure_time, camera.exposure_f_stop) == (None, None)
+    moving = "fStop.timeSamples = {0: 2.8, 24: 5.6}"
+    camera = read(camera_prim(f"float {moving}\nfloat exposure:{moving}{named}"))
+    assert camera.exposure_f_stop is None
+    assert "exposure_f_stop" not in camera.motion
+    other = moving.replace("5.6", "8")
+    camera = read(camera_prim(f"float {moving}\nfloat exposure:{other}{named}"))
+    assert "exposure_f_stop" in camera.motion
     camera = read(camera_prim("float exposure:time = 1"))
     assert camera.exposure_time == 1  # as the fallback, but authored
 
@@ -233,9 +319,9 @@ def test_exposure_and_shutter_over_time_are_what_usd_has_at_that_time(code: floa
     assert camera is not None
     assert notes == []
     now, usd = camera.evaluated_at(code / 24), UsdGeom.Camera(prim)
-    linear = usd.ComputeLinearExposureScale(Usd.TimeCode(code))
     ours = now.exposure_time * now.iso / 100 * 2**now.exposure_compensation * now.responsivity
-    assert ours / now.exposure_f_stop**2 == pytest.approx(linear, rel=1e-6)
+    ours *= 0.45 * math.pi / now.exposure_f_stop**2  # ISO 12232, f/1
+    assert ours == pytest.approx(usds(prim, Usd.TimeCode(code)), rel=1e-6)
     opens, closes = usd.GetShutterOpenAttr().Get(code), usd.GetShutterCloseAttr().Get(code)
     assert now.shutter_offset == pytest.approx(opens, abs=1e-9)
     assert now.shutter_time == pytest.approx((closes - opens) / 24, rel=1e-9)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from pxr import Usd
 
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure import check_exposure
 from daguerre.camera.ideal import IDEAL
 from daguerre.camera.parameters import CAMERA
 from daguerre.camera.shutter import check as check_shutter
@@ -25,7 +26,7 @@ from daguerre.motion.values import Dynamic, Keys, is_dynamic, keys
 
 from .checked import Checked
 from .daguerre_attributes import read_ours
-from .exposure import never_opens, read_exposure, read_shutter
+from .exposure import never_opens, read_exposure, read_shutter, unsplit
 from .omni import read_distortion
 from .rolling import OMNI, read_rolling
 from .stage_facts import StageFacts
@@ -61,22 +62,24 @@ def read_camera(
     if never_opens(read):
         notes.add("a camera with a shutter that closes before it opens is left out")
         return None
-    values = _film(read) | _opening(read) | read_exposure(read) | read_shutter(read)
-    values |= read_rolling(read, OMNI) | _near_clip(read)
     ours = read_ours(read)
+    values = _film(read) | _opening(read) | read_exposure(read, ours.get("exposure"))
+    values |= read_shutter(read) | read_rolling(read, OMNI) | _near_clip(read)
     if ours.get("lens") in (None, *IDEAL):
         values = _projected(values, read_distortion(read))
     values = _completed(values, ours, notes)
     _doubt(values, notes)
     _unread(read)
-    return _made(transform, values, read)
+    return _made(transform, values, read, ours)
 
 
-def _made(transform: Any, values: dict[str, Any], read: Checked) -> Camera:
+def _made(transform: Any, values: dict[str, Any], read: Checked, ours: dict[str, Any]) -> Camera:
     """Makes the camera, and checks that its values go together."""
     try:
         made = Camera(transform=transform, **values)
+        made = unsplit(made, ours) if "exposure" in ours else made
         check_shutter(made)
+        check_exposure(made)
         CAMERA.refuse_rivals(_given(made), "camera")
     except UsageError as error:
         place = f"{read.stage.file}: {path_text(read.prim.GetPath())}"

@@ -76,6 +76,12 @@ PLAIN = (
     Plain("shutter_time", "shutter:time", "double"),
     Plain("shutter_angle", "shutter:angle", "double"),
     Plain("shutter_type", "shutter:type", "token"),
+    Plain("exposure", "exposure:mode", "token"),
+    Plain("meter", "exposure:meter", "string"),
+    Plain("iso", "exposure:iso", "double"),
+    Plain("exposure_time", "exposure:time", "double"),
+    Plain("exposure_f_stop", "exposure:fStop", "double"),
+    Plain("responsivity", "exposure:responsivity", "double"),
 )
 #: Arrays of numbers, by the parameter: attribute, and the counts that it may have.
 ARRAYS = {
@@ -136,10 +142,23 @@ def _plain(read: Checked, row: Plain) -> Any:
     attribute = read.prim.GetAttribute(name)
     if not attribute:
         return None
+    if CAMERA[row.field].kind == "text":
+        return _text(read, row)
     if CAMERA[row.field].movable and read.stage.clock.codes(attribute):
         return read.accepted(name, row.field, read.stage.clock.value(attribute))
     value = read.fixed(name)
     return None if value is None else read.accepted(name, row.field, value)
+
+
+def _text(read: Checked, row: Plain) -> Any:
+    name, parse = PREFIX + row.name, CAMERA[row.field].parse
+    value = read.text(name)
+    if value is None or parse is None:
+        return value
+    try:
+        return parse(read.place(name), value)
+    except UsageError as error:
+        raise InputError(str(error)) from None
 
 
 def _named(

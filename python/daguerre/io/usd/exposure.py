@@ -1,37 +1,121 @@
 """Reads exposure and shutter of a camera of USD.
 
-``fStop`` and the shutter make blur, ``exposure:*`` makes brightness. Only values that the stage
-has count: the schema's fallbacks of ``exposure:*`` (1 s, f/1) are those of no photograph.
+``fStop`` and the shutter make blur, ``exposure:*`` makes brightness: USD shows radiance x time x
+iso / 100 x responsivity x 2^exposure / fStop^2. A stage that has one of ``exposure:*`` itself is
+in the exposure mode ``manual``, with the schema's fallbacks for the others; else it is in
+``light``. ``daguerre:exposure:mode`` names the mode.
 
 Source: OpenUSD, UsdGeomCamera, "Exposure" and "Shutter".
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Container
 from typing import Any
 
+import numpy as np
+
+from daguerre.camera import shutter
+from daguerre.camera.camera import Camera
+from daguerre.camera.exposure import ideal_h0
+from daguerre.camera.exposure_mode import AUTOMATIC, CHOICES, CHOSEN, split_mode
 from daguerre.motion.values import Keys, at, keys
+from daguerre.sensors.iso_speed import GREY_LX_S
 
 from .checked import Checked
+from .optics import exposed_stop
 
-#: Attributes of USD: the parameters of ``Camera``.
-EXPOSURE = {
-    "exposure:iso": "iso",
-    "exposure:time": "exposure_time",
-    "exposure:fStop": "exposure_f_stop",
-    "exposure:responsivity": "responsivity",
-    "exposure": "exposure_compensation",
+#: Attributes of USD's scale: the parameter of ``Camera``, and the schema's fallback.
+SCALE = {
+    "exposure:iso": ("iso", 100.0),
+    "exposure:time": ("exposure_time", 1.0),
+    "exposure:fStop": ("exposure_f_stop", 1.0),
+    "exposure:responsivity": ("responsivity", 1.0),
 }
+EV = "exposure"
+#: USD's responsivity of a camera with a responsivity of 1. At ISO 100, 1 s and f/1, 1 cd/m2 gives
+#: the film pi / 4 lux s, and a picture 0.18 where it gets 10 / ISO lux s (ISO 12232).
+RESPONSIVITY = 100 * 0.18 / GREY_LX_S * ideal_h0(1.0)
+#: Relative difference below which two numbers are one, as USD's have single precision.
+_SINGLE = 1e-6
 
 
-def read_exposure(read: Checked) -> dict[str, Any]:
-    """Parameters of brightness that the stage has."""
-    found = {}
-    for name, field in EXPOSURE.items():
-        if read.is_authored(name):
-            found[field] = read.accepted(name, field, read.moving(name, lambda value: value))
-    return found
+def read_exposure(read: Checked, named: str | None) -> dict[str, Any]:
+    """Parameters of brightness, with the mode.
+
+    Args:
+        read: The camera.
+        named: Mode by name; None: the stage has none.
+
+    Raises:
+        InputError: A value is wrong, or is what the named mode chooses.
+    """
+    found: dict[str, Any] = {}
+    if read.is_authored(EV):
+        field = "exposure_compensation"
+        found[field] = read.accepted(EV, field, read.moving(EV, float))
+    authored = [name for name in SCALE if read.is_authored(name)]
+    mode, _ = split_mode(named or "manual", "")
+    for name in authored:
+        field, _ = SCALE[name]
+        if field in CHOSEN.get(mode, ()):
+            read.fail(name, f"none, as exposure {mode} chooses {CHOICES[mode]}", "one")
+        found[field] = read.accepted(name, field, read.moving(name, float))
+    if authored and mode not in AUTOMATIC:
+        found = dict(SCALE.values()) | found
+    if "responsivity" in found:
+        found["responsivity"] = _ours(found["responsivity"])
+    return found | ({"exposure": "manual"} if authored else {})
+
+
+def _ours(responsivity: Any) -> Any:
+    """Our responsivity for USD's, to the digits that single precision has."""
+    if not isinstance(responsivity, Keys):
+        return float(f"{responsivity / RESPONSIVITY:.7g}")
+    pairs = zip(responsivity.times.tolist(), map(_ours, responsivity.values), strict=True)
+    return keys(pairs, responsivity.interpolation)
+
+
+def unsplit(camera: Camera, kept: Container[str]) -> Camera:
+    """Lets shutter and f-stop set the brightness, too, where ``exposure:*`` has their numbers.
+
+    Stages that we write have these numbers for other programs.
+
+    Args:
+        camera: A camera with a named mode.
+        kept: Parameters that attributes of ours give.
+    """
+    time, stop = (_over_time(camera, name) for name in ("exposure_time", "exposure_f_stop"))
+    same = {
+        "exposure_time": _is_same(time, camera, ("shutter_time",), shutter.shutter_time),
+        "exposure_f_stop": _is_same(stop, camera, ("f_stop", "t_stop"), exposed_stop),
+    }
+    gone = {name: None for name, drops in same.items() if drops and name not in kept}
+    return camera.with_(**gone) if gone else camera
+
+
+def _over_time(camera: Camera, name: str) -> Any:
+    return camera.motion.get(name, getattr(camera, name))
+
+
+def _is_same(
+    value: Any, camera: Camera, sources: tuple[str, ...], of: Callable[[Camera], float | None]
+) -> bool:
+    """Whether a value is that of a camera at each time: both keep still, or have the same keys."""
+    if value is None:
+        return False
+    moving = [camera.motion[name] for name in sources if name in camera.motion]
+    if not isinstance(value, Keys):
+        own = of(camera)
+        return not moving and own is not None and math.isclose(own, value, rel_tol=_SINGLE)
+    return any(
+        isinstance(own, Keys)
+        and own.interpolation == value.interpolation
+        and np.array_equal(own.times, value.times)
+        and np.allclose(own.values, value.values, rtol=_SINGLE, atol=0)
+        for own in moving
+    )
 
 
 def never_opens(read: Checked) -> bool:

@@ -6,11 +6,9 @@ import math
 from functools import partial
 
 from daguerre.camera.camera import Camera
-from daguerre.camera.ideal import IDEAL, WITHOUT_IRIS
-from daguerre.camera.parameters import CAMERA
-from daguerre.lenses import Lens, load
 
 from .omni_writer import write_projection
+from .optics import focal_mm, stop_of
 from .stage_writer import Output
 
 #: Camera lengths of a stage in metres, mm.
@@ -22,7 +20,7 @@ _LENS = ("focal_length", "zoom", "projection", "sensor_size")
 
 def write_film(output: Output) -> None:
     """Writes focal length, apertures, offsets, f-stop and focus; with a calibration, that too."""
-    output.follow("focalLength", "float", lambda c: _focal(c) / _TENTH, *_LENS)
+    output.follow("focalLength", "float", lambda c: focal_mm(c) / _TENTH, *_LENS)
     film = ("sensor_size", "projection")
     output.follow("horizontalAperture", "float", lambda c: c.sensor_size[0] / _TENTH, *film)
     output.follow("verticalAperture", "float", lambda c: _height(c) / _TENTH, *film)
@@ -35,24 +33,10 @@ def write_film(output: Output) -> None:
         )
     by_diameter = output.camera.aperture_diameter is not None
     stops = ("aperture_diameter", *_LENS) if by_diameter else ("f_stop",)
-    output.follow("fStop", "float", _stop, *stops)
+    output.follow("fStop", "float", stop_of, *stops)
     output.follow("focusDistance", "float", _focus, "focus_distance")
     if output.camera.projection is not None:
         write_projection(output)
-
-
-def _focal(camera: Camera) -> float:
-    """Focal length, mm; of a prescription the one that it has."""
-    if camera.projection is not None:
-        pair = camera.projection.film(camera.sensor_size[0])["focal_mm"]
-        return float(sum(pair) / 2)
-    if camera.lens is None or camera.lens in IDEAL:
-        usual = CAMERA["focal_length"].usual
-        return float(usual if camera.focal_length is None else camera.focal_length)
-    lens: Lens = load(camera.lens)
-    if camera.zoom is not None:
-        lens = lens.at_zoom(camera.zoom)
-    return float(lens.first_order().efl)
 
 
 def _height(camera: Camera) -> float:
@@ -68,16 +52,6 @@ def _offset(axis: int, camera: Camera) -> float:
     if camera.projection is None:
         return float(camera.shift[axis] / _TENTH)
     return float(-camera.projection.film(camera.sensor_size[0])["principal_mm"][axis] / _TENTH)
-
-
-def _stop(camera: Camera) -> float | None:
-    """F-stop; 0 without an iris; None: the default."""
-    hole = camera.lens in WITHOUT_IRIS or camera.lens_model in WITHOUT_IRIS
-    if hole or (camera.projection is not None and camera.f_stop is None):
-        return 0.0
-    if camera.aperture_diameter is not None:
-        return _focal(camera) / camera.aperture_diameter
-    return camera.t_stop if camera.f_stop is None else camera.f_stop
 
 
 def _focus(camera: Camera) -> float | None:

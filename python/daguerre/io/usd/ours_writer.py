@@ -31,7 +31,10 @@ from .daguerre_attributes import (
     Plain,
     camel,
 )
+from .exposure import SCALE
 from .stage_writer import Output
+
+_SCALED = {field for field, _ in SCALE.values()}
 
 
 def write_ours(output: Output) -> None:
@@ -75,6 +78,8 @@ def _is_told(output: Output, row: Plain) -> bool:
         return bool(value == 0)
     if row.field == "fps":
         return bool(camera.fps != output.rate)
+    if row.field in _SCALED and camera.exposure == "manual":  # as exposure:* has them
+        return False
     return row.field in camera.motion or (value is not None and value != default)
 
 

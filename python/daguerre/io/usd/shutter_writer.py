@@ -7,10 +7,11 @@ from operator import attrgetter
 
 from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
-from daguerre.camera.parameters import CAMERA
+from daguerre.camera.exposure import PINHOLE_F_STOP
 
 from .daguerre_attributes import CENTERED, CURVE, EFFICIENCY, PREFIX
-from .exposure import EXPOSURE
+from .exposure import EV, RESPONSIVITY
+from .optics import exposed_stop
 from .rolling import OMNI, OURS, SCHEMA, SIDES
 from .stage_writer import Output
 
@@ -19,11 +20,33 @@ _DENOMINATOR = 10**9
 
 
 def write_exposure(output: Output) -> None:
-    """Writes what differs from the defaults, as a stage's own values split light from blur."""
+    """Writes the compensation, and in ``manual`` all of USD's scale, which else is that alone."""
     camera = output.camera
-    for name, field in EXPOSURE.items():
-        if field in camera.motion or getattr(camera, field) != CAMERA[field].default:
-            output.follow(name, "float", attrgetter(field), field)
+    ev = "exposure_compensation"
+    if ev in camera.motion or camera.exposure_compensation:
+        output.follow(EV, "float", attrgetter(ev), ev)
+    if camera.exposure != "manual":
+        return
+    shutters = ("exposure_time", "shutter_time", "shutter_angle")
+    stops = ("exposure_f_stop", "f_stop", "t_stop", "aperture_diameter", "focal_length")
+    output.follow("exposure:iso", "float", attrgetter("iso"), "iso")
+    output.follow("exposure:time", "float", _time, *shutters)
+    output.follow("exposure:fStop", "float", _stop, *stops)
+    output.follow("exposure:responsivity", "float", _responsivity, "responsivity")
+
+
+def _time(camera: Camera) -> float:
+    own = shutter.shutter_time(camera)
+    return own if camera.exposure_time is None else camera.exposure_time
+
+
+def _stop(camera: Camera) -> float:
+    """F-stop of the brightness, which a pinhole has, too."""
+    return camera.exposure_f_stop or exposed_stop(camera) or PINHOLE_F_STOP
+
+
+def _responsivity(camera: Camera) -> float:
+    return camera.responsivity * RESPONSIVITY
 
 
 def write_shutter(output: Output) -> None:
