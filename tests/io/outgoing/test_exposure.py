@@ -30,7 +30,7 @@ def world(**fields: Any) -> dg.Scene:
 
 
 def gain_of(scene: dg.Scene) -> float:
-    """What the picture of a scene's camera shows of a value of 1."""
+    """Display-linear value of 1 in the picture of a scene's camera."""
     return display_gain(dg.render(scene, resolution=(6, 4), spp=1).metadata)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Seen:
-    """What a camera of pbrt sees.
+    """Lens of a camera of pbrt, and its brightness.
 
     Attributes:
         fields: Fields of ``Camera``.
