@@ -91,6 +91,31 @@ def test_every_extra_is_a_parameter_of_camera():
     assert {_snake(name) for name in _EXTRAS} <= set(Camera.__dataclass_fields__)
 
 
+def test_the_exposure_mode_is_light_unless_an_extra_names_one(tmp_path):
+    assert read(with_camera(), tmp_path).camera().exposure == "light"
+    extras = {"daguerre": {"iso": 400, "exposureCompensation": 1}}
+    assert read(with_camera(extras=extras), tmp_path).camera().exposure == "light"
+    extras = {"daguerre": {"iso": 400, "exposure": "manual", "meter": "center"}}
+    camera = read(with_camera(extras=extras), tmp_path).camera()
+    assert (camera.exposure, camera.iso, camera.meter) == ("manual", 400, "centre")
+
+
+@pytest.mark.parametrize(
+    ("extras", "message"),
+    [
+        ({"exposure": "M"}, "exposure: wanted light, manual, auto, A, S, P; got 'M'"),
+        ({"exposure": 3}, "exposure: wrong type"),
+        ({"meter": "sky"}, "meter: wanted centre, spot"),
+        ({"exposure": "auto", "iso": 400}, "auto chooses the ISO, but iso is set: leave one out"),
+        ({"exposureCompensation": 1000}, "at least -64 and at most 64, got 1000"),
+    ],
+)
+def test_a_wrong_exposure_is_one_error(tmp_path, extras, message):
+    with pytest.raises(InputError, match=r"a\.glb: cameras\[0\]") as error:
+        read(with_camera(extras={"daguerre": extras}), tmp_path)
+    assert message in str(error.value)
+
+
 @pytest.mark.parametrize("extras", [3, [], "text", {"daguerre_": 1}])
 def test_foreign_extras_are_left_alone(tmp_path, extras):
     assert read(with_camera(extras=extras), tmp_path).warnings == []

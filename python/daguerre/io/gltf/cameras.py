@@ -17,8 +17,11 @@ from numpy.typing import NDArray
 
 from daguerre import lenses
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure import check_exposure
+from daguerre.camera.exposure_mode import meter_of, mode_of
 from daguerre.camera.ideal import IDEAL
 from daguerre.camera.parameters import LIMITS
+from daguerre.errors import UsageError
 from daguerre.files.json_item import Item, clean, short
 from daguerre.files.notes import Notes
 
@@ -70,6 +73,18 @@ def _lens(item: Item) -> str:
     return clean(name)
 
 
+def _named(parse: Callable[[str, str], str]) -> _Reader:
+    """Reader of a name by the parser of its flag."""
+
+    def reader(item: Item) -> str:
+        try:
+            return parse("", item.text())
+        except UsageError as error:
+            item.fail(str(error).removeprefix(": "))
+
+    return reader
+
+
 def _one_of(*options: str) -> _Reader:
     return lambda item: item.choice(options)
 
@@ -96,6 +111,8 @@ _EXTRAS: dict[str, _Reader] = _PHYSICAL | {
     "shift": lambda item: item.numbers(2, *LIMITS["shift"]),
     "iso": _positive,
     "exposureCompensation": _any,
+    "exposure": _named(mode_of),
+    "meter": _named(meter_of),
     **SHUTTER,
 }
 
@@ -146,7 +163,12 @@ def read_camera(item: Item, transform: NDArray[np.float64], notes: Notes) -> Cam
                 f"got {yfov:g} rad, which is {values['focal_length']:g} mm"
             )
     _doubt(values, notes)
-    return Camera(transform=transform, **values)
+    made = Camera(transform=transform, **values)
+    try:
+        check_exposure(made)
+    except UsageError as error:
+        item.fail(str(error).removeprefix("camera: "))
+    return made
 
 
 def _known(item: Item, readers: dict[str, _Reader], notes: Notes, of: str) -> dict[str, Any]:
