@@ -61,7 +61,7 @@ HAND_OVERS = {
     ("frame/frame.py", "encoded", "development.shown"),
     ("frame/frame.py", "expose", "exposure.expose"),
     ("frame/frame.py", "exposure_truth", "exposure.expose"),
-    ("frame/raw.py", "develop", "development.develop"),
+    ("frame/raw.py", "develop", "development.recipe"),
     ("lenses/lens.py", "_repr_svg_", "plots.lens_section"),
     ("lenses/lens.py", "at_zoom", "lenses.zoom"),
     ("lenses/lens.py", "focused", "lenses.focus"),

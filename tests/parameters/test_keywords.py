@@ -16,8 +16,8 @@ from daguerre.analysis.calibrate import (
 )
 from daguerre.camera.parameters.bench import CALIBRATE, SEEN
 from daguerre.development import develop
-from daguerre.development.develop import Recipe
 from daguerre.development.parameters import DEVELOP, RecipeKeywords
+from daguerre.development.recipe import Recipe
 from daguerre.errors import UsageError
 from daguerre.parameters.keywords import takes
 from daguerre.parameters.table import Table

@@ -233,7 +233,7 @@ def _shot(path: Path, used: dict[str, Any], wanted: dict[str, Any]) -> Channels:
             f"--{name} applies to frames of `render` (.exr): {path} has its own sensor and ISO"
         )
     from daguerre.development.camera_raw import read_shot
-    from daguerre.development.develop import Recipe
+    from daguerre.development.recipe import Recipe
 
     passes = wanted.get("colour_noise", 0)
     if not 0 <= passes <= 20:

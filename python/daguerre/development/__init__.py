@@ -9,9 +9,9 @@ from daguerre.on_use import on_use
 
 if TYPE_CHECKING:
     from .binning import bayer_of
-    from .develop import develop, save_raw
     from .looks import LOOKS
     from .parameters import HIGHLIGHTS
+    from .recipe import develop, save_raw
 
 __all__ = ["HIGHLIGHTS", "LOOKS", "Picture", "bayer_of", "develop", "save_raw"]
 
@@ -22,7 +22,7 @@ if not TYPE_CHECKING:  # checkers know the names above, and report all others
             "HIGHLIGHTS": "parameters",
             "LOOKS": "looks",
             "bayer_of": "binning",
-            "develop": "develop",
-            "save_raw": "develop",
+            "develop": "recipe",
+            "save_raw": "recipe",
         },
     )

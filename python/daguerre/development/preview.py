@@ -20,7 +20,7 @@ def preview_of(raw: Raw) -> NDArray[np.uint8]:
 
     It samples only some cells of the pattern, which is fast but rough.
     """
-    from .develop import develop
+    from .recipe import develop
 
     return develop(of_cells(raw, cell_means(raw, LONGEST))).bytes8()
 

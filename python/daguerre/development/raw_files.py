@@ -11,9 +11,9 @@ from daguerre.files.atomic import atomic_path
 from daguerre.frame.raw import Raw
 
 from .binning import bayer_of
-from .develop import develop
 from .dng import put_dng
 from .preview import preview_of
+from .recipe import develop
 
 
 def write_dng(path: str | os.PathLike[str], raw: Raw) -> None:

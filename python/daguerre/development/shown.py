@@ -40,7 +40,7 @@ def _stripes(frame: Frame, tone: str) -> Iterator[tuple[slice, NDArray[np.float3
 
 
 def _developed(frame: Frame, tone: str) -> NDArray[np.float32]:
-    from .develop import develop
+    from .recipe import develop
 
     if tone != "srgb":
         raise UsageError(

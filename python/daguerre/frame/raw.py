@@ -108,7 +108,7 @@ class Raw(ArrayValue, array="mosaic"):
 
     def develop(self, **look: Any) -> Picture:
         """Develops the raw picture; see ``daguerre.development.develop``."""
-        from daguerre.development import develop
+        from daguerre.development.recipe import develop
 
         return develop(self, **look)
 

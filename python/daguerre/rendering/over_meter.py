@@ -30,7 +30,7 @@ def exposure_in_words(session: Session, frame: Frame) -> str:
         point = metered_point(session.prepared, pattern)
         stops = stops_over(frame, kind_of(pattern), point)
     except DaguerreError:  # such as a spot out of view, or a frozen shutter
-        return mode
+        return str(mode)
     if stops is None:
         return f"{mode}, nothing to meter"
     if abs(stops) < 0.05:

@@ -43,7 +43,7 @@ def photograph_of(
 
         check_can_expose(sensor, iso)
     if look is not None:
-        from daguerre.development.develop import Recipe
+        from daguerre.development.recipe import Recipe
 
         Recipe.of(look=look)
     like = None

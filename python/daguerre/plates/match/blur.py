@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.development.develop import SHARPEN_RADIUS
+from daguerre.development.recipe import SHARPEN_RADIUS
 
 FloatArray = NDArray[np.float64]
 Floats = NDArray[np.float32]
