@@ -124,9 +124,14 @@ class Camera(Value):
             (fraction of the time, opening); for a leaf shutter, the radius of the iris.
         rolling_shutter: Rolling shutter, which exposes lines of pixels in turn; default: that of
             the shutter type.
-        iso: ISO speed of developed pictures; default: 100. No parameter of exposure changes the
-            linear picture.
-        exposure_compensation: Exposure compensation of developed pictures, EV; default: 0.
+        exposure: Exposure mode: light (1 is white), manual (ISO, time and stop set the brightness),
+            auto (a meter sets the ISO), A (the time), S (the f-stop) or P (both); default: light.
+            No parameter of exposure changes the linear picture.
+        meter: Metering pattern: centre, spot, matrix or highlight; spot:X,Y and spot:NODE read the
+            spot at a pixel or a node; default: centre.
+        iso: ISO speed of developed pictures; in the exposure mode light it sets the noise alone;
+            default: 100.
+        exposure_compensation: Exposure compensation, EV; in every mode; default: 0.
         exposure_time: Exposure time that sets brightness, s; motion blur keeps ``shutter_time``;
             default: ``shutter_time``.
         exposure_f_stop: F-stop that sets brightness; depth of field keeps ``f_stop``; default:

@@ -14,7 +14,7 @@ STOPS = ("f_stop", "t_stop", "aperture_diameter", "exposure_f_stop")
 CHOSEN: dict[str, tuple[str, ...]] = {
     "auto": ("iso",), "A": TIMES, "S": STOPS, "P": (*TIMES, *STOPS)
 }  # fmt: skip
-#: What a mode chooses, in words.
+#: Choice of a mode, in words.
 CHOICES = {
     "auto": "the ISO", "A": "the exposure time", "S": "the f-stop", "P": "the time and the f-stop"
 }  # fmt: skip

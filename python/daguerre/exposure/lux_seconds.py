@@ -65,7 +65,7 @@ def display_gain(metadata: Mapping[str, Any]) -> float:
     """Display-linear value of a frame's value of 1; a frame without a mode is ``manual``.
 
     Raises:
-        InputError: As for :func:`exposure_of_one`.
+        InputError: See :func:`exposure_of_one`.
     """
     if in_light(metadata):
         return compensation(metadata)

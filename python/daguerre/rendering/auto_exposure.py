@@ -59,8 +59,8 @@ class Chosen:
         words: Flags of the command line that set the same.
         facts: Metadata for frames.
         ev: Compensation that the choice includes, EV.
-        note: What the meter read and chose.
-        warning: What is missing, if the limits are too narrow.
+        note: Reading and choice of the meter, in words.
+        warning: Stops that the limits leave missing, in words.
     """
 
     changes: Mapping[str, Any]
