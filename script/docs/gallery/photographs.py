@@ -63,7 +63,7 @@ class Sheet:
 def _night() -> Sheet:
     scene = (
         f"daguerre render out/night_table.glb {GAUSS} --f-stop 2 --ev 1.5 --res 600x400 "
-        f"--spp 128 --denoise --sensor {BODY}"
+        f"--spp 128 --denoise --sensor {BODY} --exposure manual"
     )
     shots, settings = [], (("100", "1"), ("25600", "1/250"))
     for iso, time in settings:
@@ -77,7 +77,7 @@ def _night() -> Sheet:
             Photograph(
                 f"{title}: developed by Daguerre",
                 (
-                    f"daguerre develop {file}.exr --sensor {BODY} -o {file}.dng",
+                    f"daguerre develop {file}.exr --sensor {BODY} --exposure manual -o {file}.dng",
                     f"daguerre develop {file}.dng -o {file}.png",
                 ),
                 f"night_{iso}.png",
@@ -105,7 +105,7 @@ def _night() -> Sheet:
 def _triangle() -> Sheet:
     scene = (
         f"daguerre render out/exposure/pinwheels.glb --sky 57,60,69 --time 0.3 {GAUSS} "
-        f"--res 420x280 --spp 128 --denoise --sensor {BODY}"
+        f"--res 420x280 --spp 128 --denoise --sensor {BODY} --exposure manual"
     )
     middle = {"f-stop": "4", "shutter": "1/125", "iso": "1600"}
     sides = {
