@@ -19,7 +19,7 @@ def main(folder: str = "out", width: int = 540, spp: int = 16) -> None:
     chart = dg.charts.make("colour")  # or a scene of your own: dg.load("scene.glb")
     body = dg.sensors.load("sony-a7r-ii")  # dg.sensors.names() has them all
     camera = chart.camera().with_(lens="thin", f_stop=5.6, shutter_time=1 / 60, sensor=body)
-    camera = camera.with_(exposure="manual")  # stop, time and ISO set the brightness
+    camera = camera.with_(exposure="manual")  # time, stop and ISO set the brightness
     size = width, 2 * width // 3
     frame = dg.render(chart.scene(luminance=60), camera, resolution=size, spp=spp)
 

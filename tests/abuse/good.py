@@ -167,7 +167,7 @@ ARGS: dict[str, Make] = {
         "neutral": w.raw.neutral,
         "white_balance": (1.0, 1.0),
     },
-    "dg.Raw.develop": constant(look="neutral", exposure=0.5),
+    "dg.Raw.develop": constant(look="neutral", ev=0.5),
     "dg.Raw.save": lambda w: {"path": w.out / "a.dng"},
     "dg.RayMap": lambda w: {
         "origin": w.raymap.origin,
@@ -307,7 +307,7 @@ ARGS: dict[str, Make] = {
     "dg.composite": lambda w: {"plate": w.photo, "objects": w.objects, "like_plate": w.camera_file},
     "dg.development.Picture": lambda w: {"pixels": w.image},
     "dg.development.Picture.save": lambda w: {"path": w.out / "a.png"},
-    "dg.development.develop": lambda w: {"source": w.raw, "exposure": 0.5},
+    "dg.development.develop": lambda w: {"source": w.raw, "ev": 0.5},
     "dg.development.save_raw": lambda w: {"path": w.out / "a.dng", "raw": w.raw},
     "dg.export.check_suffix": constant(path="a.c"),
     "dg.export.code": lambda w: {"data": w.fit.to_dict(), "suffix": ".c"},

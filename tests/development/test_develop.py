@@ -85,7 +85,7 @@ def test_half_the_exposure_is_half_the_light(source, shape):
         colours = np.repeat(np.repeat([[[0.8, 0.4, 0.2]]], 3, axis=0), 3, axis=1)
         full, half = frame(colours), frame(colours / 2)
     one, dark, bright = (
-        patch_means(develop(shot, exposure=ev).linear(), *shape)
+        patch_means(develop(shot, ev=ev).linear(), *shape)
         for shot, ev in ((full, 0), (half, 0), (half, 1))
     )
     np.testing.assert_allclose(dark, one / 2, atol=2e-4)
@@ -118,7 +118,7 @@ def test_sources_that_are_none(source):
 def test_light_near_saturation_is_in_proportion():
     """LibRaw would stretch such pictures to the highest number that they have."""
     raw = raw_of("ideal", greys(0.7, 1.2))
-    got = patch_means(raw.develop(exposure=-1, highlights="reconstruct").linear(), 1, 2)
+    got = patch_means(raw.develop(ev=-1, highlights="reconstruct").linear(), 1, 2)
     np.testing.assert_allclose(got[0, :, 1], [0.35, 0.6], rtol=2e-3)
 
 
@@ -141,8 +141,8 @@ def test_overexposed_white_is_white_and_not_magenta():
     for highlights in ("clip", "blend", "reconstruct"):
         assert raw.develop(highlights=highlights).bytes8().min() >= 254
     for highlights in ("blend", "reconstruct"):  # less exposure shows more light, still neutral
-        got = raw.develop(highlights=highlights, exposure=-2).linear()
-        clipped = raw.develop(highlights="clip", exposure=-2).linear()
+        got = raw.develop(highlights=highlights, ev=-2).linear()
+        clipped = raw.develop(highlights="clip", ev=-2).linear()
         assert got[PATCH // 2, PATCH // 2].mean() > clipped.mean() * 1.05
         assert np.ptp(got, axis=2).max() < 0.02
 
@@ -233,7 +233,7 @@ def test_an_ocio_view():
         ({"look": "flimic"}, "did you mean 'film"),
         ({"colour_space": "adobe"}, "colour_space: wanted one of srgb"),
         ({"highlights": "keep"}, "highlights: wanted one of clip"),
-        ({"exposure": float("nan")}, "exposure"),
+        ({"ev": float("nan")}, "ev"),
         ({"sharpen": -1}, "sharpen"),
         ({"colour_noise": 1.5}, "colour_noise"),
         ({"grain": -1}, "grain"),

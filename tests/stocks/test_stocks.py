@@ -98,6 +98,26 @@ def test_a_scan_of_more_light_is_developed_so_much_brighter_once() -> None:
     assert light[1] / light[0] == pytest.approx(2, rel=0.02)
 
 
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("ev", [0.0, 1.0])
+def test_film_in_light_gets_its_own_speed(name: str, ev: float) -> None:
+    """A value of 1 is white, 10 / 0.18 / ISO lux s, whatever time, stop and ISO the camera has."""
+    stock = plain(stocks.load(name))
+    frame = even(stock, [0.2, 1.0])
+    frame.metadata |= {"luminance_exposure": 10 / 0.18 / stock.iso, "exposure": "manual"}
+    manual = stock.expose(frame, ev=ev)
+    frame.metadata |= {"luminance_exposure": 1e-7, "isoSpeed": 12.0, "exposure": "light"}
+    frame.metadata["exposure_compensation"] = ev or None
+    light = stock.expose(frame)  # the camera's compensation
+    np.testing.assert_allclose(light.density, manual.density, rtol=1e-5)
+    for one in (light, manual):
+        shown = develop(one.shown()).linear()
+        np.testing.assert_allclose(shown, np.clip(one.positive(), 0, 1), atol=2e-3)
+    scanned = [develop(one.scan()).linear()[0] for one in (light, manual)]
+    np.testing.assert_allclose(*scanned, rtol=1e-3)
+    assert stock.expose(frame, ev=0).metadata["exposure_compensation"] is None
+
+
 @pytest.mark.parametrize("pitch", [4.0, 12.0])
 def test_granularity_is_measured_as_it_is_stated(pitch: float) -> None:
     """Through a hole of 48 um, at 1 above base; and by Selwyn's law through others."""
@@ -243,12 +263,21 @@ def test_the_command_line_exposes_film(tmp_path: Path, capsys: pytest.CaptureFix
     picture = np.asarray(oiio.ImageBuf(out).get_pixels(oiio.UINT8))
     assert picture.mean() == pytest.approx(118, abs=3)  # 0.18 in sRGB
     assert 0.3 < picture.std() < 10  # grain
-    assert "ISO" not in capsys.readouterr().err
+    assert "is ISO" not in capsys.readouterr().err
     frame.metadata["isoSpeed"] = 100.0
     frame.save(tmp_path / "set.exr")
     assert main(["develop", str(tmp_path / "set.exr"), "-o", out, *film]) == 0
     assert "the picture is 2.0 EV overexposed; --ev -2.0" in capsys.readouterr().err
+    frame.metadata |= {"isoSpeed": 25.0, "exposure": "light"}
+    frame.rgb[:] = 0.18
+    frame.save(tmp_path / "light.exr")
+    assert main(["develop", str(tmp_path / "light.exr"), "-o", out, *film]) == 0
+    told = capsys.readouterr().err
+    assert "exposed" not in told.replace("develop exposed the picture", "")
+    picture = np.asarray(oiio.ImageBuf(out).get_pixels(oiio.UINT8))
+    assert picture.mean() == pytest.approx(118, abs=3)
     for extra, message in (
+        (["--exposure", "auto"], "film has its own: leave one out"),
         (["--sensor", "ideal"], "--stock"),
         (["--iso", "400"], "--stock"),
         (["-o", str(tmp_path / "x.dng")], "film has no raw data"),

@@ -6,7 +6,8 @@ from daguerre.checks import short
 from daguerre.errors import UsageError, suggest
 
 #: Exposure modes; the last four let a meter choose ISO, time, f-stop, or time and f-stop.
-MODES = ("light", "manual", "auto", "A", "S", "P")
+LIGHT = "light"
+MODES = (LIGHT, "manual", "auto", "A", "S", "P")
 AUTOMATIC = MODES[2:]
 #: Parameters of a camera that set what a mode chooses.
 TIMES = ("shutter_time", "shutter_angle", "exposure_time")
@@ -18,6 +19,8 @@ CHOSEN: dict[str, tuple[str, ...]] = {
 CHOICES = {
     "auto": "the ISO", "A": "the exposure time", "S": "the f-stop", "P": "the time and the f-stop"
 }  # fmt: skip
+#: Modes that a picture can still have when it is taken: the others choose time or stop.
+RETAKEN = (LIGHT, "manual", "auto")
 METERS = ("centre", "spot", "matrix", "highlight")
 
 
@@ -35,6 +38,21 @@ def mode_of(where: str, text: str) -> str:
         hint = suggest(known.get(text.lower(), text), MODES, few=True)
         raise UsageError(f"{where}: wanted {', '.join(MODES)}; got {short(text)}{hint}")
     return text
+
+
+def retaken_mode(where: str, text: str) -> str:
+    """Parses the exposure mode of a picture that is already taken.
+
+    Raises:
+        UsageError: There is no such mode, or it chooses time or stop.
+    """
+    wanted = f"{', '.join(RETAKEN[:-1])} or {RETAKEN[-1]}"
+    mode = mode_of(where, text)
+    if mode in AUTOMATIC and mode not in RETAKEN:
+        raise UsageError(f"{where} {mode}: the picture is already taken; wanted {wanted}")
+    if mode not in RETAKEN:
+        raise UsageError(f"{where}: wanted {wanted}; got {short(text)}")
+    return mode
 
 
 def meter_of(where: str, text: str) -> str:

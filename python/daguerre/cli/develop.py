@@ -17,6 +17,7 @@ from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
 
 from . import console
+from .develop_mode import in_mode
 from .flags.from_table import TableFlags, made_of
 from .flags.groups import option, with_flags
 
@@ -91,19 +92,16 @@ def develop(
     wanted, used, saved = recipe.given(), taker.given(), file.given()
     _FILE["quality"].check(saved.get("quality"), "--quality")
     _check(source, output)
-    stock = used.get("stock")
-    if stock is not None:
+    if used.get("stock") is not None:
         _check_stock(source, output, used)
     with _named(source):
         taken: Raw | Frame | Channels
+        notes: list[str] = []
         if source.suffix.lower() != ".exr":
             taken = _shot(source, used, wanted)
-        elif stock is not None:
-            taken = _on_film(_frame(source), stock, wanted)
         else:
-            taken = _taken(_frame(source), used, wanted)
-        if stock is not None or hasattr(taken, "mosaic"):
-            wanted.pop("exposure", None)  # it is exposed so already
+            frame, notes = in_mode(_frame(source), source, used, wanted)
+            taken = _taken(frame, used, wanted)
         picture: Picture | None = None
         for path in output:
             if path.suffix.lower() == ".dng":
@@ -111,6 +109,8 @@ def develop(
             else:
                 picture = picture or _developed(taken, wanted)
                 picture.save(path, **saved)
+            while notes:  # of a picture that succeeds
+                console.note(notes.pop(0))
             console.note(f"wrote {path}")
     return 0
 
@@ -176,16 +176,15 @@ def _check_stock(source: Path, outputs: list[Path], used: dict[str, Any]) -> Non
             )
 
 
-def _on_film(frame: Frame, stock: str, wanted: dict[str, Any]) -> Frame:
+def _on_film(frame: Frame, stock: str, seed: int) -> Frame:
     """Exposes film and prints it."""
-    from daguerre.exposure.lux_seconds import frame_iso
+    from daguerre.exposure.lux_seconds import frame_iso, in_light
     from daguerre.stocks import load
 
-    own = float(frame.metadata.get("exposure_compensation") or 0.0)
-    film, ev = load(stock), wanted.get("exposure", 0.0)
-    if not ev:
+    film = load(stock)
+    if not in_light(frame.metadata) and not frame.metadata.get("exposure_compensation"):
         _tell_speed(film.iso, frame_iso(frame.metadata))
-    return film.expose(frame, ev=own + ev, seed=wanted.get("seed", 0)).shown()
+    return film.expose(frame, seed=seed).shown()
 
 
 def _tell_speed(film: float, camera: float | None) -> None:
@@ -206,29 +205,28 @@ def _frame(path: Path) -> Frame:
 
 
 def _taken(frame: Frame, used: dict[str, Any], wanted: dict[str, Any]) -> Raw | Frame:
-    """Exposes the sensor to the frame; without a sensor returns the frame itself."""
+    """Exposes the sensor or film to the frame; without one returns the frame itself."""
     from daguerre.development.white import numbers_of
-    from daguerre.exposure.lux_seconds import luminance_exposure
 
-    luminance_exposure(frame.metadata)  # complains of what is missing, before all else
-    sensor, iso = used.get("sensor"), used.get("iso")
+    sensor, iso, seed = used.get("sensor"), used.get("iso"), wanted.get("seed", 0)
+    if (stock := used.get("stock")) is not None:
+        return _on_film(frame, stock, seed)
     if sensor is None and frame.metadata.get("sensor") is None:
         if iso is not None:
             if iso <= 0:
                 raise UsageError(f"--iso: wanted a number above 0, got {iso:g}")
             frame.metadata["isoSpeed"] = iso
         return frame
-    ev = float(frame.metadata.get("exposure_compensation") or 0.0) + wanted.get("exposure", 0.0)
     wb = wanted.get("wb", "as-shot")
     white = None if wb in ("as-shot", "auto") else numbers_of(wb)
-    raw = frame.expose(sensor, iso, seed=wanted.get("seed", 0), ev=ev, white_balance=white)
+    raw = frame.expose(sensor, iso, seed=seed, white_balance=white)
     for remark in raw.notes:
         console.note(remark)
     return raw
 
 
 def _shot(path: Path, used: dict[str, Any], wanted: dict[str, Any]) -> Channels:
-    for name in used:
+    for name in (*used, *(name for name in ("exposure", "meter") if name in wanted)):
         raise UsageError(
             f"--{name} applies to frames of `render` (.exr): {path} has its own sensor and ISO"
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, TypedDict
 
+from daguerre.camera.exposure_mode import METERS, RETAKEN, meter_of, retaken_mode
 from daguerre.camera.parameters import typed
 from daguerre.color.spaces import COLOR_SPACES
 from daguerre.parameters.parameter import Parameter
@@ -18,7 +19,9 @@ class RecipeKeywords(TypedDict, total=False):
 
     wb: Any
     look: str
-    exposure: float
+    ev: float
+    exposure: str | None
+    meter: str
     colour_space: str
     sharpen: float
     grain: float
@@ -36,10 +39,28 @@ DEVELOP = Table(
         in_python="Seed of the grain.",
     ),
     Parameter(
-        "exposure", "Exposure compensation, EV; with --sensor on the sensor, else in development",
+        "ev", "Exposure compensation, EV, on top of the file's; in every mode",
         "EV", 0.0, low=-64, high=64,
         parse=typed.number("an exposure in EV such as -0.5"),
-        flags=("--ev",), metavar="EV", panel=LOOK, in_python="Exposure compensation, EV.",
+        flags=("--ev",), metavar="EV", panel=LOOK,
+        in_python="Exposure compensation, EV, on top of the frame's.",
+    ),
+    Parameter(
+        "exposure",
+        "Exposure mode: light (1 is white), manual (ISO, time and stop set the brightness) or auto "
+        "(a meter sets the ISO)",
+        kind="text", flags=("--exposure",), metavar="|".join(RETAKEN), parse=retaken_mode,
+        panel=LOOK, default_words="the file's, else manual",
+        in_python="Exposure mode of a frame: ``light`` (1 is white), ``manual`` (ISO, time and "
+        "stop set the brightness) or ``auto`` (a meter sets the ISO). None: the frame's, else "
+        "``manual``.",
+    ),
+    Parameter(
+        "meter", "Metering pattern of auto", default="centre", kind="text",
+        flags=("--meter",), metavar=f"{'|'.join(METERS)}|spot:X,Y", parse=meter_of, panel=LOOK,
+        tells_default=True,
+        in_python="Metering pattern of ``auto``: ``centre``, ``spot``, ``matrix`` or "
+        "``highlight``; ``spot:X,Y`` reads the spot at a pixel.",
     ),
     Parameter(
         "wb", "White that becomes neutral", kind="value",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from daguerre._core import Development, develop_picture
 from daguerre._core import sharpen as sharpen_picture
+from daguerre.camera.exposure_mode import meter_of, retaken_mode
 from daguerre.checks import shown
 from daguerre.color import illuminants, spaces
 from daguerre.color.adaptation import adaptation
@@ -20,7 +21,7 @@ from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.files import formats
 from daguerre.frame.picture import Picture
-from daguerre.parameters.keywords import takes
+from daguerre.parameters.keywords import takes, warn_renamed
 
 from .channels import XY, Channels, Demosaic, check_method, of_frame, of_raw
 from .looks import encode_table, look_of, saturation, tone_table
@@ -42,7 +43,9 @@ class Recipe:
 
     wb: Any
     look: str
-    exposure: float
+    ev: float
+    exposure: str | None
+    meter: str
     colour_space: str
     sharpen: float
     grain: float
@@ -54,12 +57,17 @@ class Recipe:
     @classmethod
     def of(cls, **keywords: Unpack[RecipeKeywords]) -> Recipe:
         """Makes a recipe from keywords, checked; others get defaults."""
-        return cls(**DEVELOP.filled(keywords, "develop"))
+        return cls(**DEVELOP.filled(_renamed(keywords), "develop"))
 
     def __post_init__(self) -> None:
         if not isinstance(self.look, str):
             raise UsageError(f"develop: look: wanted a name, got {shown(self.look)}")
         check_method(self.demosaic)
+        for name, parse in (("exposure", retaken_mode), ("meter", meter_of)):
+            if (text := getattr(self, name)) is not None:
+                if not isinstance(text, str):
+                    raise UsageError(f"develop: {name}: wanted a name, got {shown(text)}")
+                parse(f"develop: {name}", text)
         if not self.view:
             look_of(self.look)
         elif self.colour_space == "rec2020":
@@ -85,8 +93,10 @@ class Recipe:
 def develop(source: Raw | Frame | Channels, **keywords: Unpack[RecipeKeywords]) -> Picture:
     """Develops a raw picture, or a frame as if from a perfect sensor (without sensor noise).
 
-    Brightness follows ISO 12232: an exposure of 10 / ISO lux s becomes middle grey, 118 of 255 in
-    sRGB. Colours outside the colour space are moved toward the grey of the same luminance.
+    In the exposure mode ``light`` a frame's 1 becomes white. In the others, and for raw pictures,
+    brightness follows ISO 12232: an exposure of 10 / ISO lux s becomes middle grey, 118 of 255 in
+    sRGB. Compensation acts in every mode. Colours outside the colour space are moved toward the
+    grey of the same luminance.
 
     Args:
         source: Raw picture, frame, or channels.
@@ -97,6 +107,7 @@ def develop(source: Raw | Frame | Channels, **keywords: Unpack[RecipeKeywords]) 
         InputError: A frame lacks exposure metadata; the message has the field.
     """
     recipe = Recipe.of(**keywords)
+    source, recipe = _exposed(source, recipe)
     source = _channels(source, recipe.demosaicing)
     white = white_of(source, recipe.wb)
     if recipe.view or recipe.grain:
@@ -107,6 +118,32 @@ def develop(source: Raw | Frame | Channels, **keywords: Unpack[RecipeKeywords]) 
         luminance = _luminance(recipe.colour_space).tolist()
         sharpen_picture(pixels, luminance, recipe.sharpen, SHARPEN_RADIUS)
     return Picture(pixels, recipe.colour_space, dict(source.metadata))
+
+
+def _renamed(keywords: Any) -> dict[str, Any]:
+    """Keywords by their present names: before version 1.0 ``exposure`` was the compensation."""
+    given = dict(keywords)
+    old = given.get("exposure")
+    if isinstance(old, int | float | np.number) and not isinstance(old, bool):
+        warn_renamed("develop: exposure=EV is now ev=EV; the old name ends with 1.2.0")
+        if "ev" in given:
+            raise UsageError("develop: wanted either ev or exposure in EV, got both")
+        given["ev"] = float(given.pop("exposure"))
+    return given
+
+
+def _exposed(source: Any, recipe: Recipe) -> tuple[Any, Recipe]:
+    """A frame in the mode of a recipe, and what is left of the recipe."""
+    from daguerre.frame.frame import Frame
+
+    if isinstance(source, Frame):
+        from daguerre.exposure.retaken import retaken
+
+        frame = retaken(source, recipe.exposure, recipe.meter, recipe.ev).frame
+        return frame, replace(recipe, ev=0.0)
+    if recipe.exposure is not None:
+        raise UsageError("develop: exposure: a raw picture is already exposed; ev brightens it")
+    return source, recipe
 
 
 def _channels(source: Any, demosaic: Demosaic) -> Channels:
@@ -153,7 +190,7 @@ def _luminance(space: str) -> FloatArray:
 def _shown(source: Channels, white: XY, recipe: Recipe) -> NDArray[np.float32]:
     """Develops in one pass over the pixels."""
     space, look = recipe.colour_space, look_of(recipe.look)
-    luminance, gain = _luminance(space), 2.0**recipe.exposure
+    luminance, gain = _luminance(space), 2.0**recipe.ev
     balance = _balance(source, white)
     matrix = gain * saturation(look.color, luminance) @ _rgb_from_balanced(source, white, space)
     full = float((source.full * balance).min()) * gain
@@ -184,7 +221,7 @@ def _pass(
 
 def _by_light(source: Channels, white: XY, recipe: Recipe) -> NDArray[np.float32]:
     """Develops in two passes, with scene light in between, as grain and OCIO need."""
-    gain = 2.0**recipe.exposure
+    gain = 2.0**recipe.ev
     balance = _balance(source, white)
     matrix = gain * _rgb_from_balanced(source, white, "srgb")
     light = _pass(source, balance, matrix, recipe, None, None)

@@ -22,6 +22,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from daguerre.camera.exposure import PINHOLE_F_STOP, ideal_h0
+from daguerre.camera.exposure_mode import LIGHT
 from daguerre.checks import short
 from daguerre.doors import guarded
 from daguerre.errors import InputError
@@ -29,7 +30,6 @@ from daguerre.sensors.iso_speed import GREY_LX_S
 
 #: Value of middle grey.
 GREY = 0.18
-LIGHT = "light"
 
 
 def in_light(metadata: Mapping[str, Any]) -> bool:

@@ -19,6 +19,7 @@ from daguerre.camera.exposure import check_exposure
 from daguerre.camera.exposure_mode import split_mode
 from daguerre.camera.shutter import shutter_time
 from daguerre.errors import InputError, UsageError
+from daguerre.exposure.auto_iso import automatic_iso, iso_limits
 from daguerre.exposure.lux_seconds import luminance_exposure
 from daguerre.exposure.metering import K, luminance_of
 from daguerre.frame.seen_by import sensor_metadata
@@ -41,8 +42,8 @@ if TYPE_CHECKING:
 
 #: Longer side of the meter's picture, px, and its samples per pixel.
 SIDE, SAMPLES = 96, 16
-#: Limits of what a meter chooses: a sensor may have fewer ISOs, a lens a smaller opening.
-ISOS, TIMES_S, STOPS = (100.0, 6400.0), (1 / 8000, 1 / 15), (1.0, 22.0)
+#: Limits of the time and stop that a meter chooses; a lens may have a smaller opening.
+TIMES_S, STOPS = (1 / 8000, 1 / 15), (1.0, 22.0)
 #: P opens the lens wholly up to this time; for more light it closes the stop and shortens the time
 #: by equal steps, up to this stop.
 PROGRAM_S, PROGRAM_STOP = 1 / 60, 16.0
@@ -226,18 +227,11 @@ class _Meter:
         return luminance_exposure(camera_metadata(one.camera, one.setup, one.size[0]))
 
     def _isos(self) -> tuple[float, float]:
-        low, high = ISOS
-        if (sensor := self.one.sensor) is not None:
-            low, high = max(low, sensor.iso_range[0]), min(high, sensor.iso_range[1])
-            if low > high:  # none in common: the sensor's end that is nearer
-                low = high = min(sensor.iso_range, key=lambda iso: abs(math.log(iso / ISOS[0])))
-        return low, high
+        return iso_limits(self.one.sensor)
 
     def _iso(self, wanted: float) -> tuple[dict[str, Any], str, float]:
         lux_s = self._lux_s()
-        low, high = self._isos()
-        iso = float(round(min(max(wanted / lux_s, low), high), 0 if wanted / lux_s > 50 else 2))
-        iso = min(max(iso, low), high)
+        iso = automatic_iso(wanted / lux_s, self._isos())
         return {"iso": iso}, "", iso * lux_s
 
     def _time(self, wanted: float) -> tuple[dict[str, Any], str, float]:

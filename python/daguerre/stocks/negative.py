@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import grain_pattern
-from daguerre.checks import number, plain_light, whole
+from daguerre.checks import plain_light, whole
 from daguerre.color.spectra import rgb_from_xyz
 from daguerre.doors import guarded
 from daguerre.errors import InputError
+from daguerre.exposure.expose import chosen_ev
 from daguerre.exposure.lux_seconds import exposure_of_one
 from daguerre.files.array_value import ArrayValue
 from daguerre.frame.seen_by import seen_of
@@ -111,10 +112,10 @@ class Negative(ArrayValue, array="density"):
         return Frame(rgb=self.positive(), metadata=facts)
 
 
-def exposed(stock: Stock, frame: Frame, ev: float, seed: int) -> Negative:
+def exposed(stock: Stock, frame: Frame, ev: float | None, seed: int) -> Negative:
     """Exposes a stock; see ``Stock.expose``."""
     seed = whole(seed, "stock: seed", 0, 2**53)
-    number(ev, "stock: ev", -64, 64)
+    ev = chosen_ev(frame, ev)
     facts = {**frame.metadata, "isoSpeed": stock.iso, "stock": stock.name}
     facts["exposure_compensation"] = ev or None
     unit = exposure_of_one(frame.metadata, stock.iso) * 2.0**ev * stock.iso

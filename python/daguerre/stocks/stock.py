@@ -147,12 +147,15 @@ class Stock(Value):
         hole = math.pi * (HOLE_UM / 2) ** 2
         return (self.granularity / 1000) ** 2 * hole / (math.log10(math.e) * GRAIN_DENSITY)
 
-    def expose(self, frame: Frame, *, ev: float = 0.0, seed: int = 0) -> Negative:
+    def expose(self, frame: Frame, *, ev: float | None = None, seed: int = 0) -> Negative:
         """Exposes the film to a frame and develops it.
 
+        In the exposure mode ``light`` a value of 1 is white: 10 / 0.18 / ISO lux s. In the others
+        the frame's time and stop set the exposure.
+
         Args:
-            frame: Frame with exposure metadata.
-            ev: Exposure compensation, EV.
+            frame: Frame; in other modes than ``light`` with exposure metadata.
+            ev: Exposure compensation, EV; default: the camera's.
             seed: Seed of the grain.
 
         Raises:

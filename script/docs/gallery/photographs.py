@@ -62,8 +62,8 @@ class Sheet:
 
 def _night() -> Sheet:
     scene = (
-        f"daguerre render out/night_table.glb {GAUSS} --f-stop 2 --ev 1.5 --res 600x400 "
-        f"--spp 128 --denoise --sensor {BODY} --exposure manual"
+        f"daguerre render out/night_table.glb {GAUSS} --f-stop 2 --exposure manual --ev 1.5 "
+        f"--res 600x400 --spp 128 --denoise --sensor {BODY}"
     )
     shots, settings = [], (("100", "1"), ("25600", "1/250"))
     for iso, time in settings:
@@ -77,7 +77,7 @@ def _night() -> Sheet:
             Photograph(
                 f"{title}: developed by Daguerre",
                 (
-                    f"daguerre develop {file}.exr --sensor {BODY} --exposure manual -o {file}.dng",
+                    f"daguerre develop {file}.exr --sensor {BODY} -o {file}.dng",
                     f"daguerre develop {file}.dng -o {file}.png",
                 ),
                 f"night_{iso}.png",

@@ -30,7 +30,7 @@ def test_known_falloff_comes_back(tmp_path, ending):
     elif ending == "dng":
         frame.expose("sony-a7r-ii", 200, seed=1).save(path)
     else:
-        frame.expose("sony-a7r-ii", 200, seed=1).develop(exposure=-0.5).save(path)
+        frame.expose("sony-a7r-ii", 200, seed=1).develop(ev=-0.5).save(path)
     found = falloff_of(read(path))
     made = polynomial(found.terms, radii_squared(*SHAPE))
     np.testing.assert_allclose(made, light, rtol=0.004)
