@@ -56,7 +56,7 @@ HAND_OVERS = {
     ("camera/camera.py", "from_opencv", "calibration.cameras"),
     ("camera/camera.py", "from_opentrackio", "calibration.cameras"),
     ("camera/camera.py", "from_ros", "calibration.cameras"),
-    ("frame/frame.py", "_repr_png_", "io.png"),
+    ("frame/frame.py", "_repr_png_", "development.shown"),
     ("frame/frame.py", "display", "development.shown"),
     ("frame/frame.py", "encoded", "development.shown"),
     ("frame/frame.py", "expose", "exposure.expose"),

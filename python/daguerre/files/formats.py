@@ -56,6 +56,7 @@ class Format:
 
 _GLTF, _FRAMES = "daguerre.io.gltf.reader", "daguerre.io.frame_files"
 _DENSITY = "daguerre.io.volumes.density"
+_DISPLAYED = "daguerre.development.shown"
 _DEVELOPED = "daguerre.development.raw_files"
 _EXR, _PNG, _JPEG, _TIFF = (".exr",), (".png",), (".jpg", ".jpeg"), (".tif", ".tiff")
 _READ_EXR = "daguerre.io.exr.read:load_frame"
@@ -72,9 +73,9 @@ _FORMATS = [
     Format("Mitsuba", "scene", (".xml",), "daguerre.io.mitsuba.reader:read",
            takes=("define", "unit_m", "allow_dirs")),
     Format("OpenEXR", "frame", _EXR, _READ_EXR, "daguerre.io.exr.write:as_exr", _SHOWN),
-    Format("PNG", "frame", _PNG, None, "daguerre.io.png:as_png", _SHOWN),
-    Format("JPEG", "frame", _JPEG, None, f"{_FRAMES}:as_picture", _SHOWN),
-    Format("TIFF", "frame", _TIFF, None, f"{_FRAMES}:as_picture", _SHOWN),
+    Format("PNG", "frame", _PNG, None, f"{_DISPLAYED}:as_png", _SHOWN),
+    Format("JPEG", "frame", _JPEG, None, f"{_DISPLAYED}:as_picture", _SHOWN),
+    Format("TIFF", "frame", _TIFF, None, f"{_DISPLAYED}:as_picture", _SHOWN),
     Format("JPEG", "picture", _JPEG, None, f"{_FRAMES}:picture", _CODED),
     Format("PNG", "picture", _PNG, None, f"{_FRAMES}:picture", _CODED),
     Format("TIFF", "picture", _TIFF, None, f"{_FRAMES}:picture", _CODED),

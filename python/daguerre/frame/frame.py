@@ -297,9 +297,9 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
         return f"<Frame {self.width}x{self.height}{extra}{aovs}>"
 
     def _repr_png_(self) -> bytes:
-        from daguerre.io.png import png_bytes
+        from daguerre.development.shown import png_bytes
 
-        return png_bytes(self.without_overscan())
+        return png_bytes(self)
 
     def _repr_html_(self) -> str:
         from base64 import b64encode

@@ -1,19 +1,12 @@
-"""Writers of display pictures that the table of formats calls."""
+"""Writer of developed pictures that the table of formats calls."""
 
 from __future__ import annotations
 
 import os
 
-from daguerre.frame.frame import Frame
 from daguerre.frame.picture import Picture
 
 from .picture_files import write_picture
-
-
-def as_picture(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
-    """Writes a display picture with EXIF and an ICC profile, without overscan."""
-    shown = frame.without_overscan()
-    picture(path, Picture(shown.encoded(tone), "srgb", shown.metadata))
 
 
 def picture(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +15,6 @@ from daguerre.files.atomic import atomic_path
 
 from . import exif
 from .png_chunks import checksum, chunks, is_complete
-
-if TYPE_CHECKING:
-    from daguerre.frame.frame import Frame
 
 #: EXIF name in OpenImageIO by metadata name.
 EXIF = {
@@ -108,32 +105,15 @@ class PngWriter:
         return OutputError(f"{self._name}: cannot write: {reason}")
 
 
-def write_png(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
-    """Writes the display picture of a frame atomically."""
+def write_png(
+    path: str | os.PathLike[str], pixels: NDArray[np.uint8], metadata: Mapping[str, Any]
+) -> None:
+    """Writes a picture atomically; see :class:`PngWriter`."""
+    height, width = pixels.shape[:2]
     with atomic_path(path) as temp:
-        _write(temp, frame, tone, path)
-
-
-def as_png(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
-    """Writes a display picture with EXIF, without overscan."""
-    write_png(path, frame.without_overscan(), tone)
-
-
-def png_bytes(frame: Frame, tone: str = "srgb") -> bytes:
-    """Returns the same file as bytes, for notebooks."""
-    from tempfile import TemporaryDirectory
-
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "frame.png"
-        _write(path, frame, tone, path)
-        return path.read_bytes()
-
-
-def _write(path: Path, frame: Frame, tone: str, target: str | os.PathLike[str]) -> None:
-    pixels = frame.display(tone)
-    writer = PngWriter(path, frame.width, frame.height, frame.metadata, target=target)
-    writer.write(pixels)
-    writer.close()
+        writer = PngWriter(temp, width, height, metadata, target=path)
+        writer.write(pixels)
+        writer.close()
 
 
 def _put_rationals(file: BinaryIO, values: Mapping[int, tuple[int, int]]) -> None:

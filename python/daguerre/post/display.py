@@ -9,24 +9,25 @@ from typing import Self
 import numpy as np
 
 from daguerre.frame.frame import Frame
+from daguerre.io.exr.facts import read_facts
 from daguerre.io.png import PngWriter
 
 from .picture import Canvas, Image
 
 
 class Display:
-    """Writes a PNG row by row: sRGB, clipped at 1, like ``Frame.save``."""
+    """Writes a PNG row by row, in the picture's exposure mode, like ``Frame.save``."""
 
     def __init__(self, path: Path, canvas: Canvas, target: str | os.PathLike[str]) -> None:
         """Begins a file at ``path``; messages call it ``target``."""
-        self._alpha = canvas.alpha
+        self._alpha, self._facts = canvas.alpha, read_facts(canvas.facts)
         self._writer = PngWriter(path, canvas.width, canvas.height, target=target)
 
     def write(self, image: Image) -> None:
         """Writes the next rows, shape (rows, W, C), without alpha."""
         colors = image[:, :, : image.shape[2] - self._alpha]
         rgb = np.broadcast_to(colors, (*colors.shape[:2], 3))
-        self._writer.write(Frame(np.ascontiguousarray(rgb)).display())
+        self._writer.write(Frame(np.ascontiguousarray(rgb), metadata=self._facts).display())
 
     def __enter__(self) -> Self:
         return self

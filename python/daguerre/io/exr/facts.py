@@ -7,12 +7,14 @@ types than the standard or Daguerre give them are left out.
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
+
+from daguerre.color.illuminants import white_xy
+from daguerre.errors import UsageError
 
 from . import write as exr
 
@@ -101,12 +103,12 @@ def are_texts(value: Any) -> bool:
 
 
 def _is_balance(value: Any) -> bool:
-    """Whether a value is the x, y of a white."""
-    return isinstance(value, list) and len(value) == 2 and all(map(_is_finite, value))
-
-
-def _is_finite(value: Any) -> bool:
-    return is_number(value) and math.isfinite(value)
+    """Whether a value is a white: K, or x, y."""
+    try:
+        white_xy(value)
+    except UsageError:
+        return False
+    return value is not None
 
 
 def _is_object(value: Any) -> bool:
