@@ -184,3 +184,20 @@ def test_a_stop_is_in_the_range_of_the_lens(capsys: pytest.CaptureFixture[str]) 
     assert re.search(
         r"exposure S: f/2 .. f/22 cannot expose this: the picture is .* EV too dark", told
     )
+
+
+@pytest.mark.parametrize("lens", ["thin", "double-gauss-50mm-f2"])
+@pytest.mark.parametrize("mode", ["auto", "A", "S", "P"])
+def test_a_metered_picture_is_as_metered(
+    mode: str, lens: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Within 0.05 EV; the stop changes vignetting and the pupil of glass."""
+    given = {
+        "auto": ("--shutter", "1/50"),
+        "A": ("--iso", "3200"),
+        "S": ("--iso", "800", "--shutter", "1/100"),
+        "P": ("--iso", "800"),
+    }[mode]
+    words = ("--exposure", mode, "--lens", lens, *given)
+    assert render(*words, "-o", "a.exr", quick=("--res", "96x64", "--spp", "16")) == 0
+    assert f"{mode}, as metered\n" in capsys.readouterr().err

@@ -49,6 +49,8 @@ TIMES_S, STOPS = (1 / 8000, 1 / 15), (1.0, 22.0)
 PROGRAM_S, PROGRAM_STOP = 1 / 60, 16.0
 #: Steps that find the f-stop of an exposure, as glass vignettes and its pupil is no disk.
 _STEPS = 4
+#: Further pictures of the meter after it chose a stop, whose vignetting may differ.
+_LOOKS = 2
 
 
 @dataclass(frozen=True)
@@ -179,23 +181,28 @@ class _Meter:
             x, y = camera.focus_at
             placed = placed.with_(focus_at=(x * size[0] / wide, y * size[1] / high))
         self.one = prepare(scene, placed, self.settings, built)
-        point = metered_point(self.one, self.pattern, (wide, high))
-        self.luminance = luminance_of(_picture(self.one), kind_of(self.pattern), point)
+        self.point = metered_point(self.one, self.pattern, (wide, high))
+        self.luminance = self._read(self.one)
+
+    def _read(self, one: Prepared) -> float:
+        return luminance_of(_picture(one), kind_of(self.pattern), self.point)
 
     def chosen(self) -> Chosen:
         """Exposure by the mode."""
         moving = "exposure_compensation" in self.camera.motion
         ev = 0.0 if moving else self.camera.exposure_compensation
         plain = self.camera if moving else self.camera.with_(exposure_compensation=0.0)
-        wanted = 2.0**ev * GREY_LX_S / self.luminance  # ISO times lux s of a value of 1
         choice: Callable[[float], tuple[dict[str, Any], str, float]] = {
             "auto": self._iso, "A": self._time, "S": self._stop, "P": self._program
         }[self.mode]  # fmt: skip
-        changes, words, got = choice(wanted)
+        changes, words, got = choice(self._wanted(ev))
+        for _ in range(_LOOKS if "f_stop" in changes else 0):
+            self.luminance = self._read(self._with(f_stop=changes["f_stop"]))
+            changes, words, got = choice(self._wanted(ev))
         done = plain.with_(**changes)
         told = f"--exposure manual --iso {done.iso:g}"
         told = f"{told}{words}{' --ev 0' if ev else ''}"
-        missing = math.log2(got / wanted)
+        missing = math.log2(got / self._wanted(ev))
         return Chosen(
             {"exposure": "manual", **changes},
             told,
@@ -206,6 +213,10 @@ class _Meter:
             f"{f', {ev:+g} EV' if ev else ''}; the same picture: {told}",
             self._missing(missing) if abs(missing) > 0.05 else "",
         )
+
+    def _wanted(self, ev: float) -> float:
+        """ISO times lux s of a value of 1 that make the metered luminance grey, at an EV."""
+        return 2.0**ev * GREY_LX_S / self.luminance
 
     def _missing(self, stops: float) -> str:
         low, high = self._isos()
@@ -220,10 +231,14 @@ class _Meter:
             f"too {'dark' if stops < 0 else 'bright'}"
         )
 
+    def _with(self, **changes: Any) -> Prepared:
+        """Prepares the meter's picture with other parameters of the camera."""
+        camera = self.one.camera.with_(**changes)
+        return prepare(self.scene, camera, self.settings, self.one.built)
+
     def _lux_s(self, **changes: Any) -> float:
         """Luminance exposure of a value of 1 by the camera with other parameters, lux s."""
-        camera = self.one.camera.with_(**changes)
-        one = prepare(self.scene, camera, self.settings, self.one.built)
+        one = self._with(**changes)
         return luminance_exposure(camera_metadata(one.camera, one.setup, one.size[0]))
 
     def _isos(self) -> tuple[float, float]:
