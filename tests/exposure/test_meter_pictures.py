@@ -195,7 +195,7 @@ def test_a_metered_picture_is_as_metered(
     given = {
         "auto": ("--shutter", "1/50"),
         "A": ("--iso", "3200"),
-        "S": ("--iso", "800", "--shutter", "1/100"),
+        "S": ("--iso", "800", "--shutter", "1/40"),
         "P": ("--iso", "800"),
     }[mode]
     words = ("--exposure", mode, "--lens", lens, *given)
