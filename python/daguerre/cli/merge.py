@@ -63,6 +63,8 @@ def merge(
     if are_crops(passes):
         return _join(passes, output, plain=not (strict or keep_sums or denoise))
     frame, total = merging.merge(passes)
+    for text in total.notes:
+        console.note(text)
     if strict:
         merged.refuse_gaps(total)
     elif text := merged.gaps(total):

@@ -29,6 +29,8 @@ def merge(
 ) -> Frame:
     """Merges passes of one picture, in any order; the result is bit-identical to one render.
 
+    The picture has the exposure of the first pass.
+
     Args:
         passes: Files of ``daguerre render --samples``, or of a ``rendering.Job``.
         out: Files to write, .exr, .png and so on; default: none.

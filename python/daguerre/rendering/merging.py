@@ -16,6 +16,10 @@ from .film_frame import OBJECTS, frame_of, set_film_state
 from .passes import Pass, State, check_key, read_pass
 from .ranges import Range, join_ranges
 
+#: Metadata that set the brightness and white of a picture, and not its light.
+_EXPOSURE = (
+    "exposure", "isoSpeed", "exposure_compensation", "luminance_exposure", "white_balance"
+)  # fmt: skip
 BAND_WORDS = 4  # of 32 bits: a sum
 
 
@@ -29,7 +33,8 @@ def merge(
         aovs: Whether to keep the auxiliary channels, if the passes have them.
 
     Returns:
-        The picture, and the sum as a pass, which also has the ground truth.
+        The picture, and the sum as a pass, which also has the ground truth. Both have the exposure
+        of the first pass; a note tells of others.
 
     Raises:
         InputError: A file cannot be read.
@@ -39,12 +44,14 @@ def merge(
     total: Any = None
     first: Pass | None = None
     ranges: list[tuple[Range, Path | None]] = []
+    notes: list[str] = []
     for item in passes:
         # One at a time: a pass of a large picture takes gigabytes.
         one = item if isinstance(item, Pass) else read_pass(item)
         if first is None:
             first = replace(one, state={})
         check_key(first, one)
+        notes += _exposure_notes(first, one)
         if one.truth and not first.truth:  # every pass that has it has all of it
             first = replace(first, truth=one.truth, metadata=first.metadata | _truth_facts(one))
         if one.round is not None:
@@ -72,7 +79,19 @@ def merge(
     }
     state = {part: total.state(part) for part in total.state_parts()}
     frame = frame_of(total, metadata, aovs=aovs and _has_aovs(state))
-    return frame, Pass(state, merged, first.key, metadata, truth=first.truth)
+    return frame, Pass(state, merged, first.key, metadata, truth=first.truth, notes=tuple(notes))
+
+
+def _exposure_notes(first: Pass, one: Pass) -> list[str]:
+    """Note on a pass whose picture is exposed in another way than the first one's."""
+    facts, others = first.metadata, one.metadata
+    if all(facts.get(name) == others.get(name) for name in _EXPOSURE):
+        return []
+    mode, other = (str(known.get("exposure") or "no mode") for known in (facts, others))
+    return [
+        f"{one.path or 'a pass'} has another exposure ({other}) than {first.path or 'the first'}: "
+        f"the picture has the first one's ({mode})"
+    ]
 
 
 def _truth_facts(one: Pass) -> dict[str, Any]:

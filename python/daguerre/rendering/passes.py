@@ -92,6 +92,7 @@ class Pass(BriefRecord):
         path: File that it was read from, for messages.
         round: Round of adaptive sampling, else None.
         truth: Channels of ground truth (``rendering.truth``) by name, if the pass has them.
+        notes: Remarks on a merge.
     """
 
     state: State
@@ -101,6 +102,7 @@ class Pass(BriefRecord):
     path: Path | None = None
     round: Round | None = None
     truth: dict[str, NDArray[Any]] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
 
 def pass_of(session: Session) -> Pass:
