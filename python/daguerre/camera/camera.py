@@ -124,11 +124,6 @@ class Camera(Value):
             (fraction of the time, opening); for a leaf shutter, the radius of the iris.
         rolling_shutter: Rolling shutter, which exposes lines of pixels in turn; default: that of
             the shutter type.
-        exposure: Exposure mode: light (1 is white), manual (ISO, time and stop set the brightness),
-            auto (a meter sets the ISO), A (the time), S (the f-stop) or P (both); default: light.
-            No parameter of exposure changes the linear picture.
-        meter: Metering pattern: centre, spot, matrix or highlight; spot:X,Y and spot:NODE read the
-            spot at a pixel or a node; default: centre.
         iso: ISO speed of developed pictures; in the exposure mode light it sets the noise alone;
             default: 100.
         exposure_compensation: Exposure compensation, EV; in every mode; default: 0.
@@ -145,6 +140,11 @@ class Camera(Value):
         dispersion: Whether glass bends colours differently; without it a lens has no colour
             fringes. Without it each glass has its index at 587.56 nm at all wavelengths. Its
             absorption and its coatings keep their colours.
+        exposure: Exposure mode: light (1 is white), manual (ISO, time and stop set the brightness),
+            auto (a meter sets the ISO), A (the time), S (the f-stop) or P (both); default: light.
+            No parameter of exposure changes the linear picture.
+        meter: Metering pattern: centre, spot, matrix or highlight; spot:X,Y and spot:NODE read the
+            spot at a pixel or a node; default: centre.
     """
 
     transform: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
@@ -188,8 +188,6 @@ class Camera(Value):
     shutter_type: str | None = None
     shutter_curve: ShutterCurve | None = None
     rolling_shutter: RollingShutter | None = None
-    exposure: str = _default("exposure")
-    meter: str = _default("meter")
     iso: float = _default("iso")
     exposure_compensation: float = _default("exposure_compensation")
     exposure_time: float | None = None
@@ -199,6 +197,8 @@ class Camera(Value):
     motion: dict[str, Dynamic] = field(default_factory=dict)
     near_clip: float = _default("near_clip")
     dispersion: bool = _default("dispersion")
+    exposure: str = _default("exposure")
+    meter: str = _default("meter")
 
     def __post_init__(self) -> None:
         if self.sensor is not None and self.sensor_size is FULL_FRAME:
