@@ -140,9 +140,9 @@ class Camera(Value):
         dispersion: Whether glass bends colours differently; without it a lens has no colour
             fringes. Without it each glass has its index at 587.56 nm at all wavelengths. Its
             absorption and its coatings keep their colours.
-        exposure: Exposure mode: light (1 is white), manual (ISO, time and stop set the brightness),
-            auto (a meter sets the ISO), A (the time), S (the f-stop) or P (both); default: light.
-            No parameter of exposure changes the linear picture.
+        exposure: Exposure mode: ``light`` (1 is white), ``manual`` (ISO, time and f-stop count), or
+            a meter sets the ISO (``auto``), the time (``A``), the f-stop (``S``) or both (``P``);
+            default: light. No parameter of exposure changes the linear picture.
         meter: Metering pattern: centre, spot, matrix or highlight; spot:X,Y and spot:NODE read the
             spot at a pixel or a node; default: centre.
     """

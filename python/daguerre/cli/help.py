@@ -19,8 +19,9 @@ _CAMERA = ("--camera", "--lens", "--f-stop", "--focus", "--shutter", "--sensor")
 #: Flags that the page of a command shows first, if all of them would make it long; --help-all
 #: shows the others, too.
 FIRST = {
-    "render": ("--output", "--res", *_CAMERA, "--env", "--noise", "--denoise", "--frames"),
-    "view": ("--output", "--res", *_CAMERA, "--env", "--spp", "--denoise", "--host", "--port"),
+    "render": ("--output", "--res", *_CAMERA, "--exposure", "--env", "--noise", "--denoise",
+               "--frames"),
+    "view": ("--output", "--res", *_CAMERA, "--exposure", "--env", "--spp", "--denoise", "--host", "--port"),
     "info": ("--json", "--res", *_CAMERA, "--focal-length", "--zoom", "--time"),
     "lens": ("--plot", "--drawing", "--export", "--psf", "--through-focus", "--flare", "--json",
              "--zoom", "--focus", "--f-stop", "--wavelength"),

@@ -18,15 +18,17 @@ _Row = partial(Parameter, panel=EXPOSURE_PANEL)
 EXPOSURE = (
     _Row(
         "exposure",
-        "Exposure mode: light (1 is white), manual (ISO, time and stop set the brightness), auto "
-        "(a meter sets the ISO), A (the time), S (the f-stop) or P (both)",
+        "Exposure mode: light (1 is white), manual (ISO, time and f-stop count), or a meter sets "
+        "the ISO (auto), the time (A), the f-stop (S) or both (P)",
         default="light",
         kind="text",
         flags=("--exposure",),
         metavar="|".join(MODES),
         parse=mode_of,
         tells_default=True,
-        more="No parameter of exposure changes the linear picture",
+        in_python="Exposure mode: ``light`` (1 is white), ``manual`` (ISO, time and f-stop "
+        "count), or a meter sets the ISO (``auto``), the time (``A``), the f-stop (``S``) or both "
+        "(``P``); default: light. No parameter of exposure changes the linear picture.",
         explained=("exposure.md",),
     ),
     _Row(
