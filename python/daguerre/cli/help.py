@@ -21,7 +21,8 @@ _CAMERA = ("--camera", "--lens", "--f-stop", "--focus", "--shutter", "--sensor")
 FIRST = {
     "render": ("--output", "--res", *_CAMERA, "--exposure", "--env", "--noise", "--denoise",
                "--frames"),
-    "view": ("--output", "--res", *_CAMERA, "--exposure", "--env", "--spp", "--denoise", "--host", "--port"),
+    "view": ("--output", "--res", *_CAMERA, "--exposure", "--env", "--spp", "--denoise", "--host",
+             "--port"),
     "info": ("--json", "--res", *_CAMERA, "--focal-length", "--zoom", "--time"),
     "lens": ("--plot", "--drawing", "--export", "--psf", "--through-focus", "--flare", "--json",
              "--zoom", "--focus", "--f-stop", "--wavelength"),
