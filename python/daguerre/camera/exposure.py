@@ -147,7 +147,8 @@ def check_exposure(camera: Camera) -> None:
     for name in CHOSEN.get(mode, ()):
         if is_held(camera, name):
             raise UsageError(
-                f"camera: exposure {mode} chooses {CHOICES[mode]}, but {name} is set: leave one out"
+                f"camera: exposure {mode} chooses {CHOICES[mode]}, but {name} is set: "
+                "wanted one of them"
             )
     if camera.white_balance is not None:
         white_xy(camera.white_balance, "camera: white_balance")
