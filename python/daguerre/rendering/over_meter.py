@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from daguerre.errors import DaguerreError
 from daguerre.exposure.metering import stops_over
 
-from .auto_exposure import kind_of, metered_point
+from .meter_picture import kind_of, metered_point
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
