@@ -145,6 +145,20 @@ def test_given_flags_win(plate, tmp_path):
     assert facts["filter"].startswith("gaussian")
 
 
+def test_a_camera_file_is_manual_unless_a_flag_names_another_mode(plate, tmp_path):
+    assert run(plate, "-q") == 0
+    words = ("--like-plate", tmp_path / "plate.camera.json", "-o", tmp_path / "o.exr")
+    for given, mode in (
+        ((), "manual"),
+        (("--exposure", "light"), "light"),
+        (("--ev", "1"), "manual"),
+    ):
+        assert render(tmp_path, *words, "--res", "6x4", *given) == 0
+        facts = dg.load_frame(tmp_path / "o.exr").metadata
+        assert (facts["exposure"], facts["isoSpeed"]) == (mode, 400)
+        assert facts.get("exposure_compensation", 0) == ("--ev" in given)
+
+
 def test_developed_plates_give_their_grain(tmp_path):
     raw().save(tmp_path / "plate.jpg")
     assert run(tmp_path / "plate.jpg", "-q") == 0
@@ -163,7 +177,17 @@ def test_developed_plates_give_their_grain(tmp_path):
         (["--like-plate", "none.json", "-o", "o.exr"], "none.json: no such file"),
         (
             ["--like-plate", "plate.camera.json", "-o", "o.jpg", "--exposure", "auto"],
-            "the plate sets the ISO",
+            "--exposure auto and --like-plate: wanted one of them, got both; the plate sets the "
+            "ISO",
+        ),
+        (
+            ["--like-plate", "plate.camera.json", "-o", "o.exr", "--exposure", "S"],
+            "the plate sets the f-stop",
+        ),
+        (
+            ["--like-plate", "plate.camera.json", "-o", "o.exr", "--background", "plate"],
+            "wanted the exposure mode light, as a plate is exposed already, got manual; use "
+            "--background transparent, then `daguerre composite`",
         ),
     ],
 )

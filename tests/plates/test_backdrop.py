@@ -91,6 +91,18 @@ def test_what_cannot_be_a_background_is_refused() -> None:
         dg.render(scene, dg.Camera(), background="plate", **OPTIONS)
 
 
+@pytest.mark.parametrize("mode", ["manual", "auto", "A", "S", "P"])
+def test_a_plate_is_in_light_alone(mode: str) -> None:
+    """It is exposed already: another mode would expose it again."""
+    scene = dg.Scene()
+    scene.set_plate(np.ones((48, 72, 3)))
+    wanted = f"exposure mode light, .* got {mode}; use --background transparent, then `daguerre com"
+    with pytest.raises(dg.UsageError, match=wanted):
+        dg.render(scene, dg.Camera(exposure=mode), background="plate", **OPTIONS)
+    for other in ("transparent", "environment"):
+        dg.render(scene, dg.Camera(exposure=mode), background=other, **OPTIONS)
+
+
 def test_samples_go_on_and_the_plate_is_not_denoised() -> None:
     case = CASES["matte ground"]
     caught = case.scene("caught")
@@ -115,6 +127,9 @@ def file_of(folder: Path) -> Path:
         (["--plate", "p.exr", "-o", "a.dng"], "daguerre composite"),
         (["--plate", "p.exr", "-o", "a.exr", "--samples", "0:2"], "daguerre composite"),
         (["--plate", "p.exr", "-o", "a.exr", "--res", "40x40"], "40 x 40 px"),
+        (["--plate", "p.exr", "-o", "a.png", "--exposure", "manual"], "daguerre composite"),
+        (["--plate", "p.exr", "-o", "a.exr", "--exposure", "auto"], "daguerre composite"),
+        (["--plate", "p.exr", "-o", "a.png", "--look", "standard"], "daguerre composite"),
     ],
 )
 def test_the_command_line_says_what_it_wants(

@@ -67,7 +67,7 @@ def test_what_is_left_and_added_has_the_noise_of_one_shot(
 def frames(sensor: str, iso: float = 800.0, name: str = "matte ground") -> dict[str, dg.Frame]:
     """The whole scene, the set, and the objects with what catchers caught, nearly without noise."""
     case = CASES[name]
-    camera = case.camera.with_(sensor=sensor, iso=iso, shutter_time=1 / 30)
+    camera = case.camera.with_(sensor=sensor, iso=iso, shutter_time=1 / 30, exposure="manual")
     return {
         kind: dg.render(
             case.scene(kind), camera, resolution=SIZE, spp=256, seed=i, light_paths="off"

@@ -123,7 +123,8 @@ def test_raw_files(tmp_path):
     """Our own sensor takes an even light; the probe reads its luminance back from the DNG."""
     scene = dg.Scene()
     scene.set_environment(color=(1, 1, 1), scale=100)
-    scene.add_camera("c", dg.Camera(focal_length=50, f_stop=8, focus_distance=5, shutter_time=0.1))
+    lens = dg.Camera(focal_length=50, f_stop=8, focus_distance=5, shutter_time=0.1)
+    scene.add_camera("c", lens.with_(exposure="manual"))
     frame = dg.render(scene, resolution=(64, 32), spp=4)
     frame.expose("ideal", 100, seed=1).save(tmp_path / "shot.dng")
     made = dg.light_probe(tmp_path / "shot.dng", sun="off")

@@ -23,6 +23,7 @@ from daguerre.scene.scene import Scene
 from daguerre.sensors.iso_speed import GREY_LX_S
 from daguerre.setup.metadata import camera_metadata
 
+from .backdrop import check_backdrop
 from .meter_picture import kind_of, meter_picture, metered_point
 from .prepare import Prepared, prepare
 from .settings import RenderSettings
@@ -78,6 +79,7 @@ def choose(
         UsageError: The mode chooses what the lens does not have, or the spot is not in the picture.
         InputError: The scene or the lens cannot be used.
     """
+    check_backdrop(scene, settings, camera.exposure)
     meter = _Meter(scene, camera, settings, built)
     if not meter.luminance > 0:
         words = "--exposure light"

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.camera.exposure_mode import LIGHT
 from daguerre.color.spectra import xyz_of
 from daguerre.errors import InputError, UsageError
 from daguerre.frame.frame import Frame
@@ -26,15 +27,20 @@ def shows_plate(settings: RenderSettings) -> bool:
     return settings.backdrop.background == PLATE
 
 
-def check_backdrop(scene: Scene, settings: RenderSettings) -> None:
-    """Checks the background plate.
+def check_backdrop(scene: Scene, settings: RenderSettings, exposure: str) -> None:
+    """Checks the background plate, and that the exposure mode leaves its values as they are.
 
     Raises:
-        UsageError: There is no plate, or another camera took it.
+        UsageError: There is no plate, another camera took it, or the mode is not ``light``.
         InputError: Its aspect ratio differs from the picture's.
     """
     if not shows_plate(settings):
         return
+    if exposure != LIGHT:
+        raise UsageError(
+            f"background: plate: wanted the exposure mode {LIGHT}, as a plate is exposed already, "
+            f"got {exposure}; use --background transparent, then `daguerre composite`"
+        )
     plate = scene.plate
     if plate is None:
         raise UsageError("background: plate: wanted a photograph (--plate), got none")

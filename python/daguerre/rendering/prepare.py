@@ -125,7 +125,7 @@ def prepare(
         from daguerre import sensors
 
         sensor = sensors.load(camera.sensor)
-    check_backdrop(scene, settings)
+    check_backdrop(scene, settings, camera.exposure)
     film = settings.film
     mattes = matte_facts(scene, tuple(film.cryptomatte), film.cryptomatte_ranks)
     made = Prepared(

@@ -60,6 +60,7 @@ def test_files_give_the_same_camera(tmp_path, ending):
     assert again.camera == found.camera
     assert again.sensor == found.sensor
     assert again.changes().keys() == found.changes().keys()
+    assert again.changes()["exposure"] == "manual"  # as the plate was exposed
     assert (again.sha256, again.notes, again.look) == (found.sha256, found.notes, found.look)
     np.testing.assert_allclose(again.sharpness.response, found.sharpness.response, atol=1e-5)
     if isinstance(found.noise, Grain):

@@ -5,9 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daguerre.camera.exposure_mode import CHOICES, CHOSEN, split_mode
 from daguerre.camera.ideal import IDEAL
 from daguerre.camera.parameters import CAMERA
 from daguerre.cli import console
+from daguerre.errors import UsageError
 
 if TYPE_CHECKING:
     from daguerre.plates.match.plate_camera import PlateCamera
@@ -43,6 +45,9 @@ def over_plate(
         plate: The matched camera; None: there is none.
         given: Parameters from flags.
         calibrated: Whether a calibration replaces the lens.
+
+    Raises:
+        UsageError: A given exposure mode chooses what the plate sets.
     """
     if plate is None:
         return given
@@ -54,4 +59,15 @@ def over_plate(
         dropped.discard("focal_length")
     if calibrated:
         dropped |= {name for name in found if not CAMERA[name].takes("projection")}
-    return {name: value for name, value in found.items() if name not in dropped} | given
+    kept = {name: value for name, value in found.items() if name not in dropped | given.keys()}
+    _check_mode(given.get("exposure", ""), kept)
+    return kept | given
+
+
+def _check_mode(exposure: str, kept: dict[str, Any]) -> None:
+    mode, _ = split_mode(exposure, "")
+    if any(name in kept for name in CHOSEN.get(mode, ())):
+        raise UsageError(
+            f"--exposure {mode} and --like-plate: wanted one of them, got both; the plate sets "
+            f"{CHOICES[mode]}"
+        )

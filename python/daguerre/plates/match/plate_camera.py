@@ -58,11 +58,15 @@ class PlateCamera(Value):
     notes: tuple[str, ...] = ()
 
     def changes(self) -> dict[str, Any]:
-        """Arguments of ``Camera.with_`` that give another camera this one's settings."""
+        """Arguments of ``Camera.with_`` that give another camera this one's settings.
+
+        Its exposure mode is ``manual``, as the plate was exposed.
+        """
         defaults = Camera()
         found = {name: getattr(self.camera, name) for name in FOUND}
         kept = {name: value for name, value in found.items() if value != getattr(defaults, name)}
         always = {"sensor_size": self.camera.sensor_size, "iso": self.camera.iso}
+        always["exposure"] = "manual"
         return kept | always | ({} if self.sensor is None else {"sensor": self.sensor})
 
     def save(self, path: str | os.PathLike[str]) -> None:
