@@ -145,12 +145,15 @@ class _Meter:
 
     def _missing(self, stops: float) -> str:
         low, high = self._isos()
-        ends = {
-            "auto": f"ISO {low:g} .. {high:g}",
-            "A": "1/8000 .. 1/15 s",
-            "S": f"f/{self._widest():.3g} .. f/{STOPS[1]:g}",
-            "P": f"1/8000 .. 1/15 s and f/{self._widest():.3g} .. f/{PROGRAM_STOP:g}",
-        }[self.mode]
+        times = "1/8000 .. 1/15 s"
+        if self.mode == "auto":
+            ends = f"ISO {low:g} .. {high:g}"
+        elif self.mode == "A":
+            ends = times
+        else:  # of a lens with a stop
+            most = STOPS[1] if self.mode == "S" else PROGRAM_STOP
+            stops = f"f/{self._widest():.3g} .. f/{most:g}"
+            ends = stops if self.mode == "S" else f"{times} and {stops}"
         return (
             f"exposure {self.mode}: {ends} cannot expose this: the picture is {abs(stops):.1f} EV "
             f"too {'dark' if stops < 0 else 'bright'}"
