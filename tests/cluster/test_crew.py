@@ -19,7 +19,7 @@ from daguerre.cluster.crew import Crew
 from daguerre.cluster.spread import Spread
 from daguerre.cluster.work import work_of
 from daguerre.errors import InputError
-from daguerre.rendering import Job, Output, Picture, View, in_order, light_plan
+from daguerre.rendering import Job, Output, Picture, View, auto_exposure, in_order, light_plan
 from daguerre.rendering.checkpoint import Checkpoint
 from daguerre.rendering.identity import build
 from daguerre.rendering.loop import Loop
@@ -65,6 +65,31 @@ def test_folded_or_not_the_bits_are_those_of_one_machine(
     fake = Fake([f"w{k}" for k in range(9)])
     assert np.array_equal(drawn(Crew(fake), settings).rgb, alone(settings).rgb)
     assert ("fold" in {what for _, what in fake.done}) == (adding < 1)
+
+
+@pytest.mark.parametrize("mode", ["auto", "A"])
+def test_workers_never_meter(monkeypatch: pytest.MonkeyPatch, mode: str) -> None:
+    """The client does, once; workers get what it chose. Frames of a sequence share it."""
+    metered: list[dg.Camera] = []
+    choose = auto_exposure.choose
+
+    def counted(scene: dg.Scene, camera: dg.Camera, *given: Any) -> Any:
+        metered.append(camera)
+        return choose(scene, camera, *given)
+
+    monkeypatch.setattr(auto_exposure, "choose", counted)
+    made = scene()
+    camera = made.camera().with_(exposure=mode, shutter_time=None)
+    crew = Crew(Fake(["one", "two"]))
+    crew.workers.wait()
+    session = Session(made, camera, settings=HOW)
+    work = work_of(crew)(session, (0, 8), None, None)
+    assert Loop(session, work, Checkpoint(None), Reporter(), Control()).run()
+    assert len(metered) == 1
+    frame, by_one = session.frame(), dg.render(made, camera, settings=HOW.with_(spp=8))
+    assert np.array_equal(frame.rgb, by_one.rgb)
+    for fact in ("exposure", "isoSpeed", "expTime"):
+        assert frame.metadata[fact] == by_one.metadata[fact]
 
 
 def failed_on(bad: set[str], reason: str = "no space") -> PLAN:

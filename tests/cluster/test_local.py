@@ -166,13 +166,25 @@ def test_a_worker_of_another_build_is_refused_by_name(client: Any, file: Path) -
     drawn(Crew(client, mixed=True), session)
 
 
-def test_the_command(client: Any, file: Path, tmp_path: Path) -> None:
-    words = ["render", str(file), "--res", "48x32", "--spp", "16", "-q"]
-    assert cli.main([*words, "-o", str(tmp_path / "a.exr")]) == 0
+@pytest.mark.parametrize(
+    "flags",
+    [[], ["--exposure", "auto", "--ev", "1"], ["--exposure", "A", "--time", "0.4"]],
+    ids=["light", "auto", "A"],
+)
+def test_the_command(
+    client: Any, file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, flags: list[str]
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    words = ["render", str(file), "--res", "48x32", "--spp", "16", "-q", "--sky", "9,9,9", *flags]
     address = client.scheduler.address
-    assert cli.main([*words, "-o", str(tmp_path / "b.exr"), "--cluster", address]) == 0
-    a, b = (dg.load_frame(tmp_path / name).rgb for name in ("a.exr", "b.exr"))
-    assert np.array_equal(a, b)
+    for name, cluster in (("a", []), ("b", ["--cluster", address])):
+        files = [f"{tmp_path}/{name}.{end}" for end in ("exr", "png")]
+        assert cli.main([*words, "-o", files[0], "-o", files[1], *cluster]) == 0
+    a, b = (dg.load_frame(tmp_path / name) for name in ("a.exr", "b.exr"))
+    assert np.array_equal(a.rgb, b.rgb)
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+    for fact in ("exposure", "isoSpeed", "expTime", "metering"):
+        assert a.metadata.get(fact) == b.metadata.get(fact), fact
 
 
 @pytest.mark.parametrize(
