@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Daguerre in Blender: the render engine, its panels and its operators."""
 
-from . import engine, operators, osl_panel, panels, properties
+from . import engine, metering, operators, osl_panel, panels, properties
 
-_PARTS = (properties, engine, panels, operators, osl_panel)
+_PARTS = (properties, metering, engine, panels, operators, osl_panel)
 
 
 def register() -> None:

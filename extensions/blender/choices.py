@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Items of the menus: lenses, sensors and modes, with what a user needs to choose."""
 
-from daguerre import lenses, sensors
+from daguerre import sensors
+from daguerre.camera.exposure_mode import AUTOMATIC, CHOICES, METERS, MODES
 from daguerre.camera.parameters import CAMERA
 from daguerre.development.looks import LOOKS
-from daguerre.exposure.metering import MODES
 from daguerre.frame.aovs import Source, made_by
+from daguerre.lenses import library
 from daguerre.lenses.kinds import diagonal_mm, kinds_of
 
 #: (identifier, name, description), or with icon and number for flags.
 Item = tuple[str, str, str]
 
 
-def _lens(entry: lenses.library.Entry) -> Item:
+def _lens(entry: library.Entry) -> Item:
     """One lens: its name and year; widest stop, focal length and image circle."""
     year = f" ({entry.year})" if entry.year else ""
     facts = [f"{entry.type}, {entry.focal_length}, f/{entry.f_number:.3g} wide open"]
@@ -21,7 +22,7 @@ def _lens(entry: lenses.library.Entry) -> Item:
     return entry.name, entry.title + year, "; ".join([*facts, entry.patent])
 
 
-def _searched(entry: lenses.library.Entry) -> Item:
+def _searched(entry: library.Entry) -> Item:
     """One lens as the search shows it, in one line; Blender looks for words in it, such as zoom."""
     name, title, words = _lens(entry)
     circle = diagonal_mm(entry)
@@ -71,9 +72,9 @@ _PLAIN: list[Item] = [
     ("pinhole", "Pinhole", "Camera without depth of field"),
     ("file", "Lens file", "Lens from a file: Daguerre, Zemax, CODE V, Optical Bench or pbrt"),
 ]
-LENSES = [*_PLAIN, *map(_lens, lenses.library.entries())]
+LENSES = [*_PLAIN, *map(_lens, library.entries())]
 #: The same lenses, with all that matters in the name.
-SEARCHED = [*_PLAIN, *map(_searched, lenses.library.entries())]
+SEARCHED = [*_PLAIN, *map(_searched, library.entries())]
 MODELS: list[Item] = [
     ("auto", "Automatic", "Exact, for a lens of the library or a file"),
     *_named({name: _MODELS.get(name, "") for name in CAMERA["lens_model"].choices}),
@@ -86,10 +87,35 @@ SENSORS: list[Item] = [
     ("blender", "Blender's size", "Perfect sensor of the size in Blender's Camera panel"),
     *map(_sensor, sensors.names()),
 ]
-EXPOSURE: list[Item] = [
-    ("manual", "Manual", "Exposure by ISO, shutter and stop"),
-    *((mode, f"Automatic: {mode}", "The meter chooses the ISO") for mode in MODES),
-]
+_MODES = {
+    "light": "A value of 1 is white; ISO sets the noise alone",
+    "manual": "Exposure by ISO, shutter and stop",
+    **{mode: f"A meter chooses {CHOICES[mode]}" for mode in AUTOMATIC},
+}
+#: Numbers of modes in files; before 1.0 they were manual, 0, and metering patterns.
+_NUMBERS = dict(zip(MODES, (10, 0, 11, 12, 13, 14), strict=True))
+OLD_METERS = {1: "centre", 2: "spot", 3: "matrix"}
+EXPOSURE = [(mode, mode.capitalize(), _MODES[mode], "NONE", _NUMBERS[mode]) for mode in MODES]
+METER: list[Item] = _named(
+    {
+        "centre": "Mean luminance, three quarters of it from the middle",
+        "spot": "A small circle at the point in focus",
+        "matrix": "Zones of the picture, with most weight on the point in focus and on highlights",
+        "highlight": "All but a hundredth of the picture stays below white",
+    }
+)
+
+
+def mode_number(number: int) -> int:
+    """Number of an exposure mode that a file names; an old metering pattern is ``auto``."""
+    return _NUMBERS["auto"] if number in OLD_METERS else number
+
+
+def meter_number(number: int, *, named: bool, old: str | None) -> int:
+    """Number of a metering pattern: the named one, else that of an old file."""
+    return number if named or old is None else METERS.index(old)
+
+
 SHUTTER: list[Item] = [
     ("blender", "Blender's", "Shutter of Blender's Motion Blur panel"),
     ("time", "Time", "Exposure time in seconds"),

@@ -110,10 +110,14 @@ class Drawing:
         engine: Engine of Blender that shows it.
         shot: The picture.
         show: Called with each frame on the way.
+        open: Makes the session of the picture; default: as it is.
     """
 
-    def __init__(self, engine: Engine, shot: Shot, show: Frames) -> None:
+    def __init__(
+        self, engine: Engine, shot: Shot, show: Frames, open: Callable[[], Session] | None = None
+    ) -> None:
         self.engine, self.shot, self.show = engine, shot, show
+        self._open = open or (lambda: Session(shot.scene, shot.camera, settings=shot.settings))
         self.watch = Watch(engine)
 
     def run(self, *, denoises: bool) -> Frame:
@@ -123,9 +127,8 @@ class Drawing:
             Cancelled: The user cancelled.
             DaguerreError: The picture cannot be drawn.
         """
-        shot = self.shot
         self.engine.update_stats("", "Setting up")
-        session = self._long(lambda: Session(shot.scene, shot.camera, settings=shot.settings))
+        session = self._long(self._open)
         self._draw(session)
         if denoises:
             self.engine.update_stats("", "Denoising")

@@ -14,7 +14,7 @@ from daguerre.frame.frame import Frame
 from daguerre.rendering import Cancelled
 from daguerre.rendering.pixels import crop_box
 
-from . import passes, photograph, taking, translation
+from . import metering, passes, photograph, taking, translation
 from .drawing import Drawing, check_denoiser
 from .reports import told
 from .viewport import Viewport
@@ -82,7 +82,9 @@ class DaguerreEngine(bpy.types.RenderEngine):
         camera = self.camera_override or depsgraph.scene.camera
         if camera is None:
             raise InputError("scene: wanted a camera, got none")
-        shot = translation.shot_of(depsgraph, scene, camera, self._eye(camera) if view else None)
+        shot = middle = translation.shot_of(depsgraph, scene, camera)
+        if view:
+            shot = translation.shot_of(depsgraph, scene, camera, self._eye(camera))
         layer = depsgraph.view_layer_eval.name
         rows = passes.asked(depsgraph.scene)
         crop = translation.region_of(depsgraph.scene.render, shot.settings.film.resolution)
@@ -96,13 +98,29 @@ class DaguerreEngine(bpy.types.RenderEngine):
 
         finished = False
         try:
-            show(frame := Drawing(self, shot, show).run(denoises=denoises))
+            name = camera.name_full
+            drawing = Drawing(
+                self, shot, show, lambda: metering.session_of(shot, middle.camera, name)
+            )
+            show(frame := drawing.run(denoises=denoises))
             finished = True
         finally:
             self.end_result(result, cancel=not finished)
         if depsgraph.scene.daguerre.photograph:
+            self._tell_exposure(camera)
             files = photograph.paths(depsgraph.scene, numbered=self.is_animation)
             photograph.write(frame, shot.camera, depsgraph.scene, camera.data.daguerre, files)
+
+    def _tell_exposure(self, camera: Any) -> None:
+        """Reports what a meter chose, and the mode of an old file."""
+        if (old := metering.old_meter(camera.data.daguerre)) is not None:
+            self.report(
+                {"WARNING"},
+                f"Daguerre: the exposure mode {old!r} of before 1.0 is now auto with the metering "
+                f"pattern {old}; choose a mode to keep it",
+            )
+        for text in metering.words_of(camera.name_full):
+            self.report({"INFO"}, f"Daguerre: {text}")
 
     def _eye(self, camera: Any) -> translation.Eye:
         """Eye of the active view."""

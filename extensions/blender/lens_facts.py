@@ -14,6 +14,7 @@ from daguerre import lenses
 from daguerre.analysis.bench import half_image
 from daguerre.camera.ideal import IDEAL
 from daguerre.errors import InputError
+from daguerre.lenses import library
 from daguerre.lenses.errors import LensError
 from daguerre.lenses.kinds import diagonal_mm
 from daguerre.setup.lens import GRANTED
@@ -88,7 +89,7 @@ def _facts(name: str, changed: int, zoom: float) -> Facts | str:
 
 def _read(name: str, zoom: float) -> Facts:
     lens = lenses.load(name)
-    entry = next((one for one in lenses.library.entries() if one.name == name), None)
+    entry = next((one for one in library.entries() if one.name == name), None)
     try:
         stands, fault = lens.at_zoom(zoom) if zoom else lens, ""
     except LensError as error:
@@ -98,7 +99,7 @@ def _read(name: str, zoom: float) -> Facts:
     )
 
 
-def _circle(lens: lenses.Lens, entry: lenses.library.Entry | None) -> float | None:
+def _circle(lens: lenses.Lens, entry: library.Entry | None) -> float | None:
     """Diameter of the image circle, mm, by the source's words; None: it says nothing."""
     told_by_format = diagonal_mm(entry) if entry else None
     if told_by_format or lens.nominal.image_circle_mm:

@@ -6,6 +6,8 @@ from typing import Any
 
 import bpy
 
+from daguerre.camera.exposure_mode import AUTOMATIC
+
 from . import choices, denoising, lens_facts, lens_picture, translation
 from .engine import ENGINE
 
@@ -122,8 +124,9 @@ class DAGUERRE_PT_iris(_CameraPanel, bpy.types.Panel):
     def shown(self, group: Any) -> Iterator[str]:
         if group.lens in ("blender", "pinhole"):
             return
-        yield "use_t_stop"
-        yield "t_stop" if group.use_t_stop else "f_stop"
+        if group.exposure_mode not in ("S", "P"):  # which choose the stop
+            yield "use_t_stop"
+            yield "t_stop" if group.use_t_stop else "f_stop"
         yield "blades"
         if group.blades:
             yield from ("blade_rotation", "blade_curvature")
@@ -136,7 +139,9 @@ class DAGUERRE_PT_body(_CameraPanel, bpy.types.Panel):
 
     def shown(self, group: Any) -> Iterator[str]:
         yield from ("sensor", "exposure_mode")
-        if group.exposure_mode == "manual":
+        if group.exposure_mode in AUTOMATIC:
+            yield "meter"
+        if group.exposure_mode != "auto":
             yield "iso"
         yield "ev"
 
@@ -147,9 +152,10 @@ class DAGUERRE_PT_shutter(_CameraPanel, bpy.types.Panel):
     bl_label = "Shutter"
 
     def shown(self, group: Any) -> Iterator[str]:
-        yield "shutter_mode"
-        if group.shutter_mode != "blender":
-            yield f"shutter_{group.shutter_mode}"
+        if group.exposure_mode not in ("A", "P"):  # which choose the time
+            yield "shutter_mode"
+            if group.shutter_mode != "blender":
+                yield f"shutter_{group.shutter_mode}"
         yield from ("shutter_type", "rolling_side")
         if group.rolling_side != "off":
             yield "rolling_time"

@@ -8,6 +8,8 @@ from typing import Any
 import bpy
 
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure_mode import is_automatic
+from daguerre.exposure.retaken import retaken
 from daguerre.frame.frame import Frame
 from daguerre.rendering import Photograph, Reporter
 from daguerre.sensors import load
@@ -27,20 +29,16 @@ def paths(scene: Any, *, numbered: bool) -> list[Path]:
 
 
 def photograph_of(camera: Camera, look: str, group: Any) -> Photograph:
-    """Exposure and development that the camera's panel asks for."""
-    manual = group.exposure_mode == "manual"
+    """Sensor and development that the camera's panel asks for."""
     return Photograph(
-        develops=True,
         sensor=None if camera.sensor is None else load(camera.sensor),
-        iso=group.iso if manual else None,
-        meters=None if manual else group.exposure_mode,
-        ev=group.ev,
+        iso=None if is_automatic(group.exposure_mode) else group.iso,
         look=look,
     )
 
 
 def write(frame: Frame, camera: Camera, scene: Any, group: Any, files: list[Path]) -> None:
-    """Writes the photograph of a frame into files.
+    """Writes the photograph of a frame into files, in the exposure mode of the camera's panel.
 
     Raises:
         DaguerreError: It cannot be exposed, or a file cannot be written.
@@ -49,5 +47,7 @@ def write(frame: Frame, camera: Camera, scene: Any, group: Any, files: list[Path
     for file in files:
         file.parent.mkdir(parents=True, exist_ok=True)
     asked = photograph_of(camera, scene.daguerre.look, group)
+    if not is_automatic(group.exposure_mode):  # of a camera without a lens of Daguerre, too
+        frame = retaken(frame, group.exposure_mode).frame
     asked.check(frame.metadata, files, silent)
-    asked.write(asked.metered(frame, files, silent), files, "srgb", silent)
+    asked.write(frame, files, "srgb", silent)

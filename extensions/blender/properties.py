@@ -14,7 +14,7 @@ from daguerre.camera.parameters import CAMERA
 from daguerre.parameters.parameter import Parameter
 from daguerre.rendering.parameters import TABLE
 
-from . import choices
+from . import choices, metering
 
 
 def _changed(group: Any, context: Any) -> None:
@@ -131,7 +131,19 @@ _BODY = {
         description="Speed of the photograph; the render itself keeps its values",
     ),
     "exposure_mode": _choice(
-        "Exposure", choices.EXPOSURE, "Exposure of the photograph by hand or by a meter"
+        "Exposure",
+        choices.EXPOSURE,
+        "Exposure of the photograph: by light alone, by hand, or by a meter",
+        default="manual",
+        get_transform=lambda group, number, is_set: choices.mode_number(number),
+    ),
+    "meter": _choice(
+        "Metering",
+        choices.METER,
+        "Part of the picture that the meter takes for middle grey",
+        get_transform=lambda group, number, is_set: choices.meter_number(
+            number, named=is_set, old=metering.old_meter(group)
+        ),
     ),
     "ev": _number(
         CAMERA["exposure_compensation"],

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure_mode import LIGHT
 from daguerre.errors import UsageError
 from daguerre.rendering import Photograph
 from daguerre.viewfinder.dials import Dials
@@ -91,6 +92,7 @@ class Viewport:
 
     def ask(self, shot: translation.Shot, camera: Camera, size: tuple[int, int]) -> None:
         """Asks for a picture instead of all before."""
+        camera = camera.with_(exposure=LIGHT)  # shown linear: no picture needs a meter
         settings = shot.settings.with_(resolution=size, crop=None, overscan=None)
         if self._stage is None:
             self._stage = Stage(shot.scene, camera, settings)

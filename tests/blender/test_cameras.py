@@ -250,6 +250,26 @@ def test_the_panel_takes_precedence():
     assert (other.f_stop, other.t_stop) == (None, 8.0)
 
 
+def test_what_a_mode_chooses_is_not_set_by_the_panel():
+    blender.empty()
+    panel = {
+        "lens": "double-gauss-50mm-f2", "f_stop": 4.0, "use_t_stop": False, "iso": 400.0,
+        "ev": 0.5, "shutter_mode": "time", "shutter_time": 0.1, "meter": "matrix",
+    }  # fmt: skip
+    for mode, gone in (
+        ("light", ()), ("manual", ()), ("auto", ("iso",)), ("A", ("shutter_time",)),
+        ("S", ("f_stop",)), ("P", ("shutter_time", "f_stop")),
+    ):  # fmt: skip
+        found = made(with_panel(blender.camera(), **panel, exposure_mode=mode))
+        assert (found.exposure, found.meter) == (mode, "matrix")
+        assert found.exposure_compensation == 0.5
+        for name, value in (("iso", 400.0), ("shutter_time", 0.1), ("f_stop", 4.0)):
+            kept = getattr(dg.Camera(), name) if name in gone else value
+            assert getattr(found, name) == kept, (mode, name)
+    assert made(blender.camera()).exposure == "light"
+    assert made(with_panel(blender.camera(), exposure_mode="auto")).meter == "centre"
+
+
 def test_blenders_lens_is_no_choice_even_if_a_script_sets_it():
     blender.empty()
     thing = blender.camera()

@@ -295,12 +295,70 @@ def test_a_photograph_is_named_as_the_render(shot, module, tmp_path, name, stem)
 
 
 def test_the_photograph_is_metered_if_asked(module):
-    group = SimpleNamespace(exposure_mode="spot", iso=200.0, ev=1.5)
+    group = SimpleNamespace(exposure_mode="auto", iso=200.0)
     asked = module.photograph.photograph_of(camera(sensor="nikon-d5100"), "film", group)
-    assert (asked.meters, asked.iso, asked.ev, asked.look) == ("spot", None, 1.5, "film")
+    assert (asked.iso, asked.look) == (None, "film")
     assert asked.sensor == dg.sensors.load("nikon-d5100")
     group.exposure_mode = "manual"
     assert module.photograph.photograph_of(camera(), "film", group).iso == 200
+
+
+@pytest.mark.parametrize("mode", ["light", "manual", "auto"])
+def test_the_panel_s_mode_governs_the_photograph_alone(shot, tmp_path, monkeypatch, mode):
+    values = {"iso": 800.0} if mode == "manual" else {"exposure": mode}
+    values |= {"exposure_compensation": -2.0} if mode == "light" else {}
+    blender_extension.stand_in(monkeypatch, lens="pinhole", shutter_time=1.0, **values)
+    shot.daguerre.photograph = True
+    group = shot.camera.data.daguerre
+    group.exposure_mode, group.iso = mode, 800.0
+    bpy.ops.render.render(write_still=True)
+    frame = ours()
+    np.testing.assert_array_equal(drawn(tmp_path)[..., :3], frame.rgb * np.float32(FACTOR))
+    got = oiio.ImageBuf(str(tmp_path / "out_photograph.png")).get_pixels(oiio.UINT8)
+    with_mode = camera(lens="pinhole", shutter_time=1.0, **{"exposure": mode} | values)
+    settings = dg.RenderSettings.of(resolution=SIZE, spp=4, light_paths="off")
+    wanted = dg.render(scene(), with_mode, settings=settings).display()
+    assert 10 < wanted.mean() < 245
+    assert np.abs(np.asarray(got, int) - wanted.astype(int)).max() <= 1
+
+
+def test_the_frames_and_eyes_of_a_render_share_what_the_meter_chose(shot, module, monkeypatch):
+    blender_extension.stand_in(monkeypatch, lens="pinhole", exposure="auto")
+    metered = []
+    choose = module.metering.choose
+
+    def counted(scene, camera, settings):
+        metered.append(camera)
+        return choose(scene, camera, settings)
+
+    monkeypatch.setattr(module.metering, "choose", counted)
+    shot.daguerre.photograph = True
+    shot.frame_start, shot.frame_end = 1, 3
+    shot.render.use_multiview = True
+    bpy.ops.render.render(animation=True)
+    assert len(metered) == 1
+    np.testing.assert_array_equal(metered[0].transform, camera().transform)  # between the eyes
+    bpy.ops.render.render()
+    assert len(metered) == 2
+
+
+@pytest.mark.parametrize(("number", "pattern"), [(1, "centre"), (2, "spot"), (3, "matrix")])
+def test_metering_patterns_of_old_files_are_auto(shot, tmp_path, module, capfd, number, pattern):
+    """Before 1.0 the menu of modes was manual and the patterns, which files keep as numbers."""
+    group = shot.camera.data.daguerre
+    group.exposure_mode = "light"
+    group.bl_system_properties_get()["exposure_mode"] = number
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "old.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "old.blend"))
+    scene, group = bpy.context.scene, bpy.context.scene.camera.data.daguerre
+    assert (group.exposure_mode, group.meter) == ("auto", pattern)
+    scene.daguerre.photograph = True
+    bpy.ops.render.render(write_still=True)
+    assert f"exposure mode '{pattern}' of before 1.0 is now auto" in "".join(capfd.readouterr())
+    group.meter = "highlight"
+    assert (group.exposure_mode, group.meter) == ("auto", "highlight")
+    group.exposure_mode = "manual"
+    assert module.metering.old_meter(group) is None
 
 
 def test_twenty_renders_leave_no_memory_and_no_thread_behind(shot):

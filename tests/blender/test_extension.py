@@ -15,7 +15,7 @@ bpy = pytest.importorskip("bpy", reason="no bpy in this Python")
 
 LENS_NAMES = {"lens", "lens_file", "lens_model", "zoom", "focus_mode", "tilt_x", "tilt_y"}
 IRIS_NAMES = {"f_stop", "t_stop", "use_t_stop", "blades", "blade_rotation", "blade_curvature"}
-BODY_NAMES = {"sensor", "iso", "exposure_mode", "ev", "shutter_mode", "shutter_time"}
+BODY_NAMES = {"sensor", "iso", "exposure_mode", "meter", "ev", "shutter_mode", "shutter_time"}
 SHUTTER_NAMES = {"shutter_angle", "shutter_type", "rolling_side", "rolling_time"}
 STRAY_NAMES = {"flare", "scatter", "diffraction", "dispersion"}
 NAMES = LENS_NAMES | IRIS_NAMES | BODY_NAMES | SHUTTER_NAMES | STRAY_NAMES
@@ -131,7 +131,7 @@ def test_every_property_is_in_a_panel_in_some_state(extension):
     states = [
         {},
         {"lens": "file", "use_t_stop": True, "blades": 5, "rolling_side": "top"},
-        {"lens": "thin", "shutter_mode": "time", "exposure_mode": "spot", "use_t_stop": False},
+        {"lens": "thin", "shutter_mode": "time", "exposure_mode": "auto", "use_t_stop": False},
         {"shutter_mode": "angle", "exposure_mode": "manual"},
     ]
     scene.photograph = True

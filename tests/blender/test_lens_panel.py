@@ -169,5 +169,6 @@ def test_a_film_beyond_the_image_circle_is_told(extension):
 def test_the_search_shows_year_stop_and_image_circle(extension):
     items = {key: name for key, name, _ in extension.choices.SEARCHED}
     wanted = "Super-Takumar 50 mm f/1.4 (1969), f/1.4, circle 43.3 mm"
-    assert items["asahi-super-takumar-50mm-f1.4"] == wanted
+    words = "prime, normal, fast, bokeh, fullframe"  # by which the search finds it, too
+    assert items["asahi-super-takumar-50mm-f1.4"] == f"{wanted}, {words}"
     assert [key for key, *_ in extension.choices.LENSES] == list(items)

@@ -32,6 +32,10 @@ class CameraPanel:
             return None
         if not (self._always or self._has_lens or self._is_set(name)):
             return None
+        return self.value(name)
+
+    def value(self, name: str) -> Any:
+        """Value of a property, whether it counts or not; None if it names nothing."""
         value = getattr(self._group, name, None)
         return None if value == "" else value
 

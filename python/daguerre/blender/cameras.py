@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure_mode import CHOSEN, METERS
 from daguerre.camera.ideal import IDEAL
 from daguerre.camera.projection import Projection
 from daguerre.errors import InputError, UsageError
@@ -66,6 +67,8 @@ def camera_of(
     if "pinhole" not in (lens, values.get("lens_model")):
         values |= _iris(data, values, panel, metres, notes) | _focus(thing, panel, metres)
     values |= shutter_of(render, panel, notes)
+    for name in CHOSEN.get(values.get("exposure", ""), ()):  # the panel hides them
+        values.pop(name, None)
     values["near_clip"] = max(float(data.clip_start), 0.0) * metres
     try:
         return Camera(placed, **values)
@@ -157,6 +160,8 @@ def _body(panel: CameraPanel) -> dict[str, Any]:
     found: dict[str, Any] = {}
     if (sensor := panel.named("sensor", "blender")) is not None:
         found |= {"sensor": sensor, "sensor_size": load(sensor).size}
+    if (mode := panel.named("exposure_mode")) is not None:
+        found |= {"exposure": mode, "meter": panel.value("meter") or METERS[0]}
     for name, field in (("iso", "iso"), ("ev", "exposure_compensation")):
         if (value := panel.chosen(name)) is not None:
             found[field] = float(value)

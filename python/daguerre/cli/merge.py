@@ -63,8 +63,8 @@ def merge(
     if are_crops(passes):
         return _join(passes, output, plain=not (strict or keep_sums or denoise))
     frame, total = merging.merge(passes)
-    for text in total.notes:
-        console.note(text)
+    for remark in total.notes:
+        console.note(remark)
     if strict:
         merged.refuse_gaps(total)
     elif text := merged.gaps(total):
