@@ -186,6 +186,29 @@ def test_a_stop_is_in_the_range_of_the_lens(capsys: pytest.CaptureFixture[str]) 
     )
 
 
+@pytest.mark.parametrize("lens", ["thin", "pinhole"])
+@pytest.mark.parametrize(
+    ("mode", "ends"),
+    [
+        ("auto", r"ISO 100 \.\. 6400"),
+        ("A", r"1/8000 \.\. 1/15 s"),
+        ("S", r"f/\S+ \.\. f/22"),
+        ("P", r"1/8000 \.\. 1/15 s and f/\S+ \.\. f/16"),
+    ],
+)
+def test_what_the_limits_leave_missing_is_told(
+    mode: str, ends: str, lens: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    night = ("--sky", "1e-3,1e-3,1e-3", "--lens", lens, "-o", "a.png")
+    if lens == "pinhole" and mode in ("S", "P"):
+        assert render("--exposure", mode, *night) == 2
+        assert "a pinhole has none; use auto or A" in capsys.readouterr().err
+        return
+    assert render("--exposure", mode, *night) == 0
+    told = capsys.readouterr().err
+    assert re.search(f"exposure {mode}: {ends} cannot expose this: .* EV too dark", told)
+
+
 @pytest.mark.parametrize("lens", ["thin", "double-gauss-50mm-f2"])
 @pytest.mark.parametrize("mode", ["auto", "A", "S", "P"])
 def test_a_metered_picture_is_as_metered(

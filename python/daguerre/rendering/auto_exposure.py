@@ -141,7 +141,7 @@ class _Meter:
 
     def _wanted(self, ev: float) -> float:
         """ISO times lux s of a value of 1 that make the metered luminance grey, at an EV."""
-        return 2.0**ev * GREY_LX_S / self.luminance
+        return float(2.0**ev * GREY_LX_S / self.luminance)
 
     def _missing(self, stops: float) -> str:
         low, high = self._isos()
@@ -152,8 +152,8 @@ class _Meter:
             ends = times
         else:  # of a lens with a stop
             most = STOPS[1] if self.mode == "S" else PROGRAM_STOP
-            stops = f"f/{self._widest():.3g} .. f/{most:g}"
-            ends = stops if self.mode == "S" else f"{times} and {stops}"
+            openings = f"f/{self._widest():.3g} .. f/{most:g}"
+            ends = openings if self.mode == "S" else f"{times} and {openings}"
         return (
             f"exposure {self.mode}: {ends} cannot expose this: the picture is {abs(stops):.1f} EV "
             f"too {'dark' if stops < 0 else 'bright'}"
