@@ -10,6 +10,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.cli import main
+from daguerre.color import spaces
 from tests.faults.scene import write_scene
 
 QUICK = ["--res", "48x32", "--spp", "4", "--light-paths", "off"]
@@ -153,3 +154,31 @@ def test_raw_files_keep_their_exposure(capsys: pytest.CaptureFixture[str]) -> No
         assert f"{flags[0]} applies to frames of `render`" in capsys.readouterr().err
     assert main(["develop", "x.dng", "-o", "x.png", "--ev", "1"]) == 0
     assert pixels("x.png").mean() == pytest.approx(162, abs=2)
+
+
+@pytest.mark.parametrize("sensor", ["ideal", "nikon-d5100", "sony-a7r-ii"])
+def test_dngs_of_light_are_equally_bright_at_any_iso(sensor: str) -> None:
+    """A value of 1 gives 55.6 / ISO lux s: ISO sets the noise alone, EV the brightness."""
+    pytest.importorskip("rawpy", reason="needs the extra raw")
+    lit = [*QUICK, "-q", "--sky", "0.9,0.9,0.9", "--sensor", sensor, "--aov", "exposure,saturated"]
+    means, lux_s = {}, {}
+    for iso, ev in ((200, 0), (800, 0), (3200, 0), (800, -1)):
+        name = f"{iso}{ev}"
+        files = ["-o", f"{name}.dng", "-o", f"{name}.exr"]
+        assert main(["render", "s.glb", *files, *lit, "--iso", str(iso), "--ev", str(ev)]) == 0
+        assert main(["develop", f"{name}.dng", "-o", f"{name}.tif", "-q"]) == 0
+        light = spaces.decoded(oiio.ImageBuf(f"{name}.tif").get_pixels(oiio.FLOAT), "srgb")
+        means[iso, ev] = light[4:-4, 4:-4].mean()
+        frame = dg.load_frame(f"{name}.exr")
+        lux_s[iso, ev] = frame.aovs["exposure.Y"]
+        assert frame.aovs["saturated.G"].mean() < 0.01
+    assert means[200, 0] > 0.1
+    assert means[800, 0] == pytest.approx(means[200, 0], rel=0.02)
+    assert means[3200, 0] == pytest.approx(means[200, 0], rel=0.03)
+    assert means[800, -1] == pytest.approx(means[800, 0] / 2, rel=0.03)
+    np.testing.assert_allclose(lux_s[800, 0], lux_s[200, 0] / 4, rtol=1e-5)
+    np.testing.assert_allclose(lux_s[800, -1], lux_s[800, 0] / 2, rtol=1e-5)
+    assert frame.xyz is not None
+    np.testing.assert_allclose(
+        lux_s[800, -1], frame.xyz[..., 1] * 10 / 0.18 / 800 / 2, rtol=1e-3, atol=1e-7
+    )
