@@ -342,6 +342,8 @@ def test_usd_shows_an_ideal_lens_as_bright_as_we_do(name: str, tmp_path: Path) -
     (prim,) = opened(tmp_path / "a.usda")
     scale = UsdGeom.Camera(prim).ComputeLinearExposureScale(Usd.TimeCode.Default())
     assert scale == pytest.approx(gain_of(camera), rel=5e-7)
+    ours = prim.GetAttribute("daguerre:exposure:iso")  # where USD's would change its brightness
+    assert bool(ours) == (camera.exposure == "light" and camera.iso != 100)
     made = again(prim, tmp_path)
     assert gain_of(made) == pytest.approx(gain_of(camera), rel=5e-7)
     same(camera, made)
@@ -366,7 +368,11 @@ def test_a_lens_slower_than_the_usual_stop_keeps_its_brightness(tmp_path: Path) 
         if dg.lenses.load(entry.name).first_order().f_number > 6
     )
     camera = dg.Camera(lens=slow, exposure="manual", focus_distance=3.0)
-    made = round_trip(camera, tmp_path)
+    dg.export_camera(camera, tmp_path / "a.usda")
+    (prim,) = opened(tmp_path / "a.usda")
+    widest = dg.lenses.load(slow).first_order().f_number
+    assert prim.GetAttribute("exposure:fStop").Get() == pytest.approx(widest, rel=SINGLE)
+    made = again(prim, tmp_path)
     assert (made.exposure_f_stop, made.f_stop) == (None, None)
 
 

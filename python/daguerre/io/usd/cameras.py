@@ -70,14 +70,21 @@ def read_camera(
     values = _completed(values, ours, notes)
     _doubt(values, notes)
     _unread(read)
-    return _made(transform, values, read, ours)
+    return _made(transform, values, read, named=ours.get("exposure") == "manual")
 
 
-def _made(transform: Any, values: dict[str, Any], read: Checked, ours: dict[str, Any]) -> Camera:
-    """Makes the camera, and checks that its values go together."""
+def _made(transform: Any, values: dict[str, Any], read: Checked, *, named: bool) -> Camera:
+    """Makes the camera, and checks that its values go together.
+
+    Args:
+        transform: World from camera, or such over time.
+        values: Its other parameters.
+        read: Its attributes, for messages.
+        named: Whether an attribute of ours names the mode ``manual``.
+    """
     try:
         made = Camera(transform=transform, **values)
-        made = unsplit(made, ours) if "exposure" in ours else made
+        made = unsplit(made) if named else made
         check_shutter(made)
         check_exposure(made)
         CAMERA.refuse_rivals(_given(made), "camera")

@@ -11,7 +11,7 @@ Source: OpenUSD, UsdGeomCamera, "Exposure" and "Shutter".
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Container
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -77,21 +77,17 @@ def _ours(responsivity: Any) -> Any:
     return keys(pairs, responsivity.interpolation)
 
 
-def unsplit(camera: Camera, kept: Container[str]) -> Camera:
+def unsplit(camera: Camera) -> Camera:
     """Lets shutter and f-stop set the brightness, too, where ``exposure:*`` has their numbers.
 
     Stages that we write have these numbers for other programs.
-
-    Args:
-        camera: A camera with a named mode.
-        kept: Parameters that attributes of ours give.
     """
     time, stop = (_over_time(camera, name) for name in ("exposure_time", "exposure_f_stop"))
     same = {
         "exposure_time": _is_same(time, camera, ("shutter_time",), shutter.shutter_time),
         "exposure_f_stop": _is_same(stop, camera, ("f_stop", "t_stop"), exposed_stop),
     }
-    gone = {name: None for name, drops in same.items() if drops and name not in kept}
+    gone = {name: None for name, drops in same.items() if drops}
     return camera.with_(**gone) if gone else camera
 
 
