@@ -9,6 +9,7 @@ from typing import Any
 import bpy
 import numpy as np
 
+from daguerre.camera.exposure_mode import is_automatic
 from daguerre.errors import DaguerreError, InputError
 from daguerre.frame.frame import Frame
 from daguerre.rendering import Cancelled
@@ -82,9 +83,10 @@ class DaguerreEngine(bpy.types.RenderEngine):
         camera = self.camera_override or depsgraph.scene.camera
         if camera is None:
             raise InputError("scene: wanted a camera, got none")
-        shot = middle = translation.shot_of(depsgraph, scene, camera)
-        if view:
-            shot = translation.shot_of(depsgraph, scene, camera, self._eye(camera))
+        shot = translation.shot_of(depsgraph, scene, camera, self._eye(camera) if view else None)
+        middle = shot
+        if view and is_automatic(shot.camera.exposure):
+            middle = translation.shot_of(depsgraph, scene, camera)
         layer = depsgraph.view_layer_eval.name
         rows = passes.asked(depsgraph.scene)
         crop = translation.region_of(depsgraph.scene.render, shot.settings.film.resolution)
