@@ -127,6 +127,11 @@ def stops_over(frame: Frame, mode: str, at: tuple[float, float] | None = None) -
         luminance = luminance_of(frame, mode, at)
     except UsageError:  # a crop without the spot
         return None
+    return stops_over_grey(frame, luminance)
+
+
+def stops_over_grey(frame: Frame, luminance: float) -> float | None:
+    """How much brighter than middle grey a frame's picture shows a luminance, EV; see above."""
     shown = display_gain(frame.metadata) * luminance
     return math.log2(shown / GREY) if 0 < shown < math.inf else None
 

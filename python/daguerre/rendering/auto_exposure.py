@@ -29,6 +29,7 @@ from .prepare import Prepared, prepare
 from .settings import RenderSettings
 
 if TYPE_CHECKING:
+    from daguerre.frame.frame import Frame
     from daguerre.setup.built_scene import BuiltScene
 
 #: Longer side of the meter's picture, px, and its samples per pixel.
@@ -71,16 +72,27 @@ class Chosen:
 
 
 def choose(
-    scene: Scene, camera: Camera, settings: RenderSettings, built: BuiltScene | None = None
+    scene: Scene,
+    camera: Camera,
+    settings: RenderSettings,
+    built: BuiltScene | None = None,
+    look: Callable[[Prepared], Frame] = meter_picture,
 ) -> tuple[Chosen, BuiltScene]:
     """Meters a scene for a camera in an automatic mode; returns the scene built for it, too.
+
+    Args:
+        scene: The scene.
+        camera: The camera.
+        settings: Settings of the picture, of which the meter takes size and threads.
+        built: The scene built for another picture.
+        look: Takes the meter's picture, or returns the same from before.
 
     Raises:
         UsageError: The mode chooses what the lens does not have, or the spot is not in the picture.
         InputError: The scene or the lens cannot be used.
     """
     check_backdrop(scene, settings, camera.exposure)
-    meter = _Meter(scene, camera, settings, built)
+    meter = _Meter(scene, camera, settings, built, look)
     if not meter.luminance > 0:
         words = "--exposure light"
         note = "no light to meter: the picture is in light"
@@ -92,9 +104,15 @@ class _Meter:
     """A small picture of the whole frame, and the camera that took it."""
 
     def __init__(
-        self, scene: Scene, camera: Camera, settings: RenderSettings, built: BuiltScene | None
+        self,
+        scene: Scene,
+        camera: Camera,
+        settings: RenderSettings,
+        built: BuiltScene | None,
+        look: Callable[[Prepared], Frame],
     ) -> None:
         check_exposure(camera)
+        self.look = look
         self.mode, self.pattern = split_mode(camera.exposure, camera.meter)
         self.scene, self.camera = scene, camera.with_(exposure="manual")
         wide, high = settings.film.resolution
@@ -110,7 +128,7 @@ class _Meter:
         self.luminance = self._read(self.one)
 
     def _read(self, one: Prepared) -> float:
-        return luminance_of(meter_picture(one), kind_of(self.pattern), self.point)
+        return luminance_of(self.look(one), kind_of(self.pattern), self.point)
 
     def chosen(self) -> Chosen:
         """Exposure by the mode."""

@@ -15,6 +15,22 @@ if TYPE_CHECKING:
     from .session import Session
 
 
+def metered_part(
+    session: Session, size: tuple[int, int] | None = None
+) -> tuple[str, tuple[float, float] | None]:
+    """Metering pattern of a picture, and the point that it looks at, px; None: the middle.
+
+    Args:
+        session: Session that drew it.
+        size: Size of the picture of which ``spot:X,Y`` is a pixel; None: this one's.
+
+    Raises:
+        DaguerreError: The spot is not in the picture.
+    """
+    pattern = session.metering.get("metering") or session.camera.meter
+    return kind_of(pattern), metered_point(session.prepared, pattern, size)
+
+
 def exposure_in_words(session: Session, frame: Frame) -> str:
     """Exposure mode of a picture and its distance from the meter, in words.
 
@@ -22,13 +38,11 @@ def exposure_in_words(session: Session, frame: Frame) -> str:
         session: Session that drew it.
         frame: The picture.
     """
-    mode = frame.metadata.get("exposure")
-    if mode is None:
+    if (found := frame.metadata.get("exposure")) is None:
         return ""
-    pattern = session.metering.get("metering") or session.camera.meter
+    mode = str(found)
     try:
-        point = metered_point(session.prepared, pattern)
-        stops = stops_over(frame, kind_of(pattern), point)
+        stops = stops_over(frame, *metered_part(session))
     except DaguerreError:  # such as a spot out of view, or a frozen shutter
         return str(mode)
     if stops is None:
