@@ -16,7 +16,8 @@ from daguerre.errors import UsageError
 from daguerre.rendering import Photograph
 from daguerre.viewfinder.dials import Dials
 from daguerre.viewfinder.painter import Drawn, Painter, Wish
-from daguerre.viewfinder.stage import Shot, Stage
+from daguerre.viewfinder.shot import Shot
+from daguerre.viewfinder.stage import Stage
 
 from . import passes, translation
 from .reports import text_of

@@ -17,6 +17,7 @@ from PIL import Image
 import daguerre as dg
 from daguerre.cli.demo import write_scene
 from daguerre.viewfinder.dials import Dials
+from daguerre.viewfinder.opening import opened
 from daguerre.viewfinder.stage import Stage
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
@@ -26,7 +27,7 @@ from tests.viewfinder.live import TOKEN, live
 
 DOCS = Path("docs")
 DIALS = {"lens": "double-gauss-50mm-f2", "f_stop": "2"}
-WORDS = ["night_table.glb", "--res", "900x600", "--tone", "soft", "-o", "night_table.png"]
+WORDS = ["night_table.glb", "--res", "900x600", "-o", "night_table.png"]
 RESTS = "document.getElementById('frame')?.dataset.rests === 'true'"
 QUALITY = 85
 
@@ -48,8 +49,9 @@ def main() -> None:
         write_scene(folder / "night_table.glb")
         scene = dg.load(folder / "night_table.glb")
         settings = dg.RenderSettings.of(resolution=(900, 600), spp=64)
-        stage = Stage(scene, scene.camera(), settings, tone="soft")
-        with live(stage, Dials.of(DIALS), WORDS) as server:
+        stage = Stage(scene, scene.camera(), settings)
+        dials, _ = opened(stage, Dials.of(DIALS))
+        with live(stage, dials, WORDS) as server:
             page.size(1440, 900)
             page.open(f"http://{server.host}/#{TOKEN}")
             page.until(RESTS, 600)

@@ -55,7 +55,9 @@ def test_it_opens_in_the_viewfinder(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert main(["demo", str(tmp_path), "--view", "--res", "30x20"]) == 0
     ((stage, dials, *_),) = opened
     assert stage.settings.film.resolution == (30, 20)
-    assert dials.texts == {"lens": "double-gauss-50mm-f2", "f_stop": "2", "spp": "32"}
+    given = {"lens": "double-gauss-50mm-f2", "f_stop": "2", "spp": "32"}
+    metered = {"exposure": "manual", "iso": dials.texts["iso"]}
+    assert dials.texts == given | metered
 
 
 def test_a_folder_that_cannot_be_made(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

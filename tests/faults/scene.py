@@ -10,12 +10,15 @@ import numpy as np
 from tests.support.make_gltf import Builder
 
 
-def write_scene(path: Path) -> Path:
-    """Writes it as .glb."""
+def write_scene(path: Path, strength: float = 1.0) -> Path:
+    """Writes it as .glb; ``strength``: emission of the lamp."""
     made = Builder()
     grey = {"pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [0.5, 0.3, 0.1, 1]}}
     made.node(mesh=_square(made, 2.0, made.add("materials", grey)), translation=[0, 0, -3])
     lamp = {"pbrMetallicRoughness": {"metallicFactor": 0}, "emissiveFactor": [1, 1, 1]}
+    if strength != 1:
+        name = "KHR_materials_emissive_strength"
+        lamp["extensions"] = {name: {"emissiveStrength": strength}}
     made.node(mesh=_square(made, 0.05, made.add("materials", lamp)), translation=[0.2, 0.3, -2.9])
     flier = made.node(mesh=_square(made, 0.2, 0), name="Flier", translation=[-1, 0, -2])
     moments, places = [0.0, 1.0], [[-1, 0, -2], [1, 0.5, -2]]

@@ -54,15 +54,24 @@ def live(
     dials: Dials | None = None,
     words: Sequence[str] = WORDS,
     also: Sequence[str] = (),
+    said: str = "",
 ) -> Iterator[Live]:
-    """Runs a server while the context lasts; ``also``: other addresses that it lets in."""
+    """Runs a server while the context lasts.
+
+    Args:
+        stage: Scene, camera and settings.
+        dials: Dials of the command line.
+        words: Its other words.
+        also: Other addresses that it lets in.
+        said: Text that pages show until something is turned.
+    """
     sock = free_socket("127.0.0.1", 0)
     port = sock.getsockname()[1]
     started, hubs = threading.Event(), []
     loop = asyncio.new_event_loop()
 
     def hub_of(running: asyncio.AbstractEventLoop) -> Hub:
-        hubs.append(Hub(stage, dials or Dials(), words, running))
+        hubs.append(Hub(stage, dials or Dials(), words, running, said=said))
         started.set()
         return hubs[0]
 

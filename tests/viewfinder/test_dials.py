@@ -49,7 +49,8 @@ TEXTS = {
     "tilt": "0,6",
     "near_clip": "0.5",
     "iso": "400",
-    "exposure": "auto:spot",
+    "exposure": "manual",
+    "meter": "spot:480,270",
     "exposure_compensation": "-0.667",
     "exposure_time": "1/30",
     "exposure_f_stop": "8",
@@ -106,6 +107,38 @@ def test_rivals_take_each_other_back() -> None:
     dials = Dials().turned({"f_stop": "4", "focus_distance": "2"})
     dials = dials.turned({"t_stop": "4"}).turned({"focus_at": "1,2"})
     assert dials.texts == {"t_stop": "4", "focus_at": "1,2"}
+
+
+@pytest.mark.parametrize(
+    ("mode", "kept"),
+    [
+        ("light", {"iso", "f_stop", "shutter_angle"}),
+        ("manual", {"iso", "f_stop", "shutter_angle"}),
+        ("auto", {"f_stop", "shutter_angle"}),
+        ("auto:spot", {"f_stop", "shutter_angle"}),
+        ("A", {"iso", "f_stop"}),
+        ("S", {"iso", "shutter_angle"}),
+        ("P", {"iso"}),
+    ],
+)
+def test_a_mode_takes_back_what_it_chooses(mode: str, kept: set[str]) -> None:
+    dials = Dials().turned({"iso": "200", "f_stop": "4", "shutter_angle": "90"})
+    assert set(dials.turned({"exposure": mode}).texts) == kept | {"exposure"}
+
+
+def test_no_other_dial_changes_the_mode() -> None:
+    dials = Dials().turned({"exposure": "manual"})
+    for name in set(TEXTS) - {"exposure"}:
+        assert dials.turned({name: TEXTS[name]}).texts["exposure"] == "manual"
+        assert "exposure" not in Dials().turned({name: TEXTS[name]}).texts
+
+
+def test_a_dial_that_goes_back_does_not_take_back_what_is_turned() -> None:
+    dials = Dials().turned({"focus_at": "1,2"})
+    dials = dials.turned({"focus_distance": "2", "focus_at": None, "focus_on": None})
+    assert dials.texts == {"focus_distance": "2"}
+    back = dials.turned({"focus_at": "1,2", "focus_distance": None, "focus_on": None})
+    assert back.texts == {"focus_at": "1,2"}
 
 
 def test_a_new_lens_takes_its_zoom_back() -> None:

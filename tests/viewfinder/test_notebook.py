@@ -99,8 +99,9 @@ def test_the_panel_turns_the_camera(view: Any, page: Browser) -> None:
     assert np.array_equal(view._hub.picture.frame.rgb, alone.rgb)
 
 
-def test_the_camera_comes_back_as_it_was(view: Any) -> None:
-    assert view.camera == scene().camera()
+def test_the_camera_comes_back_exposed_as_metered(view: Any) -> None:
+    assert view.camera.exposure == "manual"
+    assert view.camera.with_(exposure="light", iso=100) == scene().camera()
 
 
 def test_a_wrong_setting_is_one_error() -> None:

@@ -41,10 +41,10 @@ def demo(
     scene = folder / "night_table.glb"
     write_scene(scene)
     words = ["view" if view else "render", str(scene), "--lens", "double-gauss-50mm-f2"]
-    words += ["--f-stop", "2", "--res", res, "--spp", str(spp), "--tone", "soft"]
+    words += ["--f-stop", "2", "--res", res, "--spp", str(spp)]
     if view:
         return main(words)
-    words += ["-o", str(folder / "demo.png")]
+    words += ["--tone", "soft", "-o", str(folder / "demo.png")]
     if why_not := _cannot_denoise():
         words += ["-o", str(folder / "demo.exr")]
         console.show(f"not denoised; {why_not}")

@@ -62,6 +62,7 @@ def view(
     It takes the flags of `render` as positions of the rings. Ctrl-C ends it.
     """
     from daguerre.viewfinder.dials import DIALS, Dials
+    from daguerre.viewfinder.opening import opened
     from daguerre.viewfinder.run import Listening, run
     from daguerre.viewfinder.stage import Stage
 
@@ -96,6 +97,7 @@ def view(
     photograph = photograph_of({}, None, None, settings.sampling.seed)
     stage = Stage(scene, camera, settings, photograph, job_flags.tone, load)
     stage.try_out(dials)
+    dials, said = opened(stage, dials)
     words = without(console.argv, [*DIALS])
     if job_flags.output is None:
         words += ["-o", f"{scene_path.stem}.png"]
@@ -107,7 +109,7 @@ def view(
         proxies=tuple(server_flags.proxy or ()),
         tev=server_flags.tev,
     )
-    return run(stage, dials, words, listening, console.show)
+    return run(stage, dials, words, listening, console.show, said)
 
 
 def texts_of(flags: TableFlags) -> dict[str, str]:

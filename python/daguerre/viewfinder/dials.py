@@ -12,13 +12,13 @@ from typing import Any
 
 from daguerre import lenses
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure_mode import CHOSEN, split_mode
 from daguerre.camera.ideal import IDEAL
 from daguerre.camera.parameters import CAMERA_FLAGS, SHUTTER
 from daguerre.camera.placement import Placement
 from daguerre.checks import short
 from daguerre.development.parameters import DEVELOP
 from daguerre.errors import UsageError
-from daguerre.exposure.metering import mode_of
 from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
 from daguerre.rendering.parameters import TABLE as RENDERING
@@ -27,28 +27,16 @@ from daguerre.rendering.settings import RenderSettings
 #: Longest text of a dial.
 MAX_TEXT = 200
 TIME = Parameter("time", "Time in the scene's animation, s", "s", flags=("--time",))
-EXPOSURE = Parameter(
-    "exposure",
-    "Metering mode that chooses the ISO",
-    kind="text",
-    flags=("--exposure",),
-    parse=mode_of,
-)
 #: Parameters that read files, which no page may name.
 _FILES = ("aperture_image", "front_mask", "iris_mask")
 _PICTURE = ("spp", "seed", "max_depth", "light_paths", "flare", "scatter")
-#: Dials that another dial takes back.
-_TAKEN_BACK = {
-    "lens": ("zoom", "decenter", "ripple", "focal_length", "aperture_diameter", "degree"),
-    "iso": ("exposure",),
-    "exposure": ("iso",),
-}
+#: Dials that a new lens takes back.
+_OF_LENS = ("zoom", "decenter", "ripple", "focal_length", "aperture_diameter", "degree")
 
 DIALS = Table(
     (row for row in (*CAMERA_FLAGS, *SHUTTER) if row.flags and row.name not in _FILES),
     (RENDERING[name] for name in _PICTURE),
     DEVELOP["look"],
-    EXPOSURE,
     TIME,
 )
 
@@ -81,18 +69,20 @@ class Dials:
     def turned(self, changes: Mapping[str, str | None]) -> Dials:
         """Returns the dials after a turn; None puts one back to the scene's value.
 
-        A dial that excludes another one takes it back.
+        A dial that excludes another one takes it back; an exposure mode, what it chooses.
 
         Raises:
             UsageError: No such dial, or a text that its flag would not accept.
         """
         texts = dict(self.texts)
-        for name, text in changes.items():
+        # Those that go back come first, so that they cannot take back what is turned.
+        for name, text in sorted(changes.items(), key=lambda change: change[1] is not None):
             row = DIALS.find(name, "view", UsageError)
-            for other in self._taken_back(row):
-                texts.pop(other, None)
             if text is not None:
                 self._check(row, text)
+            for other in _taken_back(row, text):
+                texts.pop(other, None)
+            if text is not None:
                 texts[name] = text
         return Dials(texts, self.given)
 
@@ -130,10 +120,6 @@ class Dials:
                 words.append(f"{row.flag}={text}")  # a minus in front would be another flag
         return words
 
-    def _taken_back(self, row: Parameter) -> list[str]:
-        rivals = next((names for names in DIALS.rivals() if row.name in names), (row.name,))
-        return [*rivals, *_TAKEN_BACK.get(row.name, ())]
-
     def _check(self, row: Parameter, text: str) -> None:
         if len(text) > MAX_TEXT:
             raise UsageError(
@@ -146,6 +132,23 @@ class Dials:
 
 
 _CAMERA = {row.name for row in (*CAMERA_FLAGS, *SHUTTER)} - {"camera"}
+
+
+def texts_of_words(words: str) -> dict[str, str]:
+    """Texts of dials from the words of a command line: flags, each with a value."""
+    names = {row.flag: row.name for row in DIALS}
+    parts = words.split()
+    return {names[flag]: text for flag, text in zip(parts[::2], parts[1::2], strict=True)}
+
+
+def _taken_back(row: Parameter, text: str | None) -> list[str]:
+    """Names of dials that a turn of one takes back."""
+    taken = next((names for names in DIALS.rivals() if row.name in names), (row.name,))
+    if row.name == "lens":
+        taken = (*taken, *_OF_LENS)
+    if row.name == "exposure" and text is not None:
+        taken = (*taken, *CHOSEN.get(split_mode(text, "")[0], ()))
+    return list(taken)
 
 
 def _value(row: Parameter, text: str) -> Any:

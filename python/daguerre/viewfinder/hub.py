@@ -6,19 +6,20 @@ import asyncio
 import itertools
 import json
 import shlex
-from collections.abc import Coroutine, Sequence
+from collections.abc import Coroutine, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
 from daguerre import sensors, units
+from daguerre.camera.exposure_mode import CHOSEN, METERS, MODES, split_mode
 from daguerre.camera.ideal import IDEAL
 from daguerre.development.looks import LOOKS
 from daguerre.errors import DaguerreError, UsageError
 from daguerre.files import extras
 
 from . import lens_list
-from .dials import DIALS, Dials
+from .dials import DIALS, Dials, texts_of_words
 from .glass import drawing_of, glass_at
 from .image import image_of, value_at
 from .messages import (
@@ -89,6 +90,7 @@ class Hub:
         loop: Event loop of the server.
         folder: Folder for saved files.
         tev: Viewer that gets each whole picture, too; None: none.
+        said: Text that pages show until something is turned.
     """
 
     def __init__(
@@ -99,9 +101,11 @@ class Hub:
         loop: asyncio.AbstractEventLoop,
         folder: Path = Path(),
         tev: Tev | None = None,
+        said: str = "",
     ) -> None:
         self._stage, self._words, self._loop, self._folder = stage, words, loop, folder
-        self.dials, self.number, self.error = dials, -1, ""
+        self.dials, self.number, self.error = dials, -1, said
+        self._first = dials
         self._show = Show(denoised=False, models=False)
         self._tev = tev
         self._readings: dict[str, Any] = {}
@@ -180,7 +184,7 @@ class Hub:
             case _ if not guest.turns:
                 raise UsageError("view: read-only: another page controls the camera")
             case Turn(changes):
-                await self._turn(self.dials.turned(changes))
+                await self._turn(self.dials.turned({**self._kept(changes), **changes}))
                 await self._tell(guest, {"heard": True})
             case Draw(samples):
                 await self._turn(self.dials.turned({"spp": str(samples)}))
@@ -199,6 +203,13 @@ class Hub:
         self._shot, self.dials, self.error = shot, dials, ""
         self._wish()
         await self._tell_all(self._state())
+
+    def _kept(self, changes: Mapping[str, str | None]) -> dict[str, str | None]:
+        """Settings that a meter chose, where an automatic mode ends in ``manual``."""
+        chosen = None if self._sheet is None else self._sheet.drawn.shot.chosen
+        if changes.get("exposure") != "manual" or chosen is None:
+            return {}
+        return {**texts_of_words(chosen.words), "exposure": "manual"}
 
     def _wish(self) -> None:
         """Has the picture drawn anew."""
@@ -269,16 +280,24 @@ class Hub:
             "duration_s": scene.duration,
             "denoises": not extras.missing("mitsuba_oidn"),
             "models": list(MODELS),
+            "modes": list(MODES),
+            "meters": list(METERS),
+            "dials": dict(self._first.texts),
             "resolution": settings.film.resolution,
             "spp": settings.sampling.most,
         }
 
     def _state(self) -> dict[str, Any]:
+        camera = self._shot.camera
+        mode, pattern = split_mode(camera.exposure, camera.meter)
         return {
             "state": {
                 "turn": self.number,
                 "read": self._read,
                 "dials": dict(self.dials.texts),
+                "mode": mode,
+                "pattern": pattern,
+                "chosen": list(CHOSEN.get(mode, ())),
                 "command": self.command,
                 "readings": self._readings,
                 "show": asdict(self._show),

@@ -12,7 +12,7 @@ from daguerre.frame.frame import Frame
 from daguerre.rendering.denoise import denoise
 
 from .painter import Drawn
-from .stage import Shot
+from .shot import Shot
 
 #: JPEG quality of pictures on their way to the page.
 QUALITY = 88

@@ -15,6 +15,7 @@ from daguerre.scene.scene import Scene
 
 from .dials import Dials
 from .hub import Guest, Hub
+from .opening import opened
 from .server import PAGE
 from .stage import Stage
 
@@ -52,7 +53,8 @@ class View:
         self._loop.call_soon_threadsafe(self._loop.stop)
 
     async def _open(self) -> Hub:
-        return Hub(self._stage, Dials(), None, self._loop)
+        dials, said = opened(self._stage, Dials())
+        return Hub(self._stage, dials, None, self._loop, said=said)
 
     def _hear(self, line: _Comm, message: dict[str, Any]) -> None:
         """Takes a message of the panel, in the kernel's thread."""

@@ -14,7 +14,8 @@ from daguerre.rendering.rounds import rounds
 from daguerre.rendering.session import Session
 
 from .dials import Dials
-from .stage import Shot, Stage
+from .shot import Shot
+from .stage import Stage
 
 #: Divisors of the picture's size, before the whole picture with 1, 2, 4, ... samples.
 LADDER = (6, 3)
@@ -147,17 +148,19 @@ class Painter:
                 self._fail(wish, error)
 
     def _pictures(self, wish: Wish) -> Iterator[Drawn]:
-        shot = wish.shot
+        stage = wish.stage
         if wish.models:
-            yield from _compared(wish, shot)
+            yield from _compared(wish, stage.exposed(wish.shot))
             return
+        quick = stage.exposed(wish.shot, fresh=False)
         for divisor in LADDER:
-            small = shot.smaller(divisor)
-            if small.settings.film.resolution != shot.settings.film.resolution:
+            small = quick.smaller(divisor)
+            if small.settings.film.resolution != quick.settings.film.resolution:
                 session = _session(wish, small)
                 session.draw(0, 1)
                 frame = session.frame(truth=False)
                 yield Drawn(wish, small, session, frame, 1, rests=False, whole=False)
+        shot = stage.exposed(wish.shot)
         session = _session(wish, shot)
         for samples, rests in _refined(session):
             frame = session.frame(truth=False)
@@ -176,6 +179,8 @@ def _session(wish: Wish, shot: Shot) -> Session:
     stage = wish.stage
     session = Session(shot.scene, shot.camera, settings=shot.settings, built=stage.built)
     stage.built = session.built
+    if shot.chosen is not None:
+        session.metering = shot.chosen.facts
     return session
 
 

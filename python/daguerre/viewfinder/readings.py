@@ -10,19 +10,19 @@ from numpy.typing import NDArray
 
 from daguerre.camera.placement import look_at
 from daguerre.errors import DaguerreError
-from daguerre.exposure.metering import meter
+from daguerre.exposure.metering import K, luminance_of, stops_over_grey
 from daguerre.lenses.focus import closest_focus_m
+from daguerre.rendering.over_meter import metered_part
 from daguerre.rendering.session import Session
 from daguerre.setup.camera_facts import UNLIT, Facts, camera_warnings, facts_of, lit
 from daguerre.setup.resolved import ResolvedLens
 
 from .painter import Drawn
-from .stage import Shot
 
 
 def readings_of(drawn: Drawn) -> dict[str, Any]:
     """Numbers of the camera that drew a picture, as JSON values; infinity is null."""
-    session, shot = drawn.session, drawn.shot
+    session = drawn.session
     facts = facts_of(
         session.prepared.setup, session.camera, session.scene.time, session.prepared.size
     )
@@ -38,9 +38,9 @@ def readings_of(drawn: Drawn) -> dict[str, Any]:
         "shutter_s": facts.shutter_s,
         "shutter": facts.shutter,
         "ev100": facts.ev100,
-        "warnings": _warnings(session),
+        "warnings": _warnings(drawn),
         "meter": _meter(drawn),
-        **_body(session, shot),
+        **_body(drawn),
     }
 
 
@@ -84,43 +84,47 @@ def _rounded_up(value: float) -> float:
     return math.ceil(round(value * scale, 6)) / scale
 
 
-def _warnings(session: Session) -> list[str]:
+def _warnings(drawn: Drawn) -> list[str]:
     """Warnings as the command line gives them."""
+    session, chosen = drawn.session, drawn.shot.chosen
     unlit = [] if lit(session.scene) else [UNLIT]
-    return [*camera_warnings(session.camera), *unlit, *session.warnings]
+    dim = [chosen.warning] if chosen is not None and chosen.warning else []
+    return [*camera_warnings(session.camera), *unlit, *session.warnings, *dim]
 
 
 def _meter(drawn: Drawn) -> dict[str, float] | None:
     """Light that a meter reads: of the scene, and of a lamp on it by the same exposure value.
 
     Lux are those of an incident meter with the constant C = 250 (ISO 2720): E = 2.5 * 2^EV100.
+    ``over`` is the distance of the picture from the meter, EV, as ``render`` prints it.
     """
-    photograph = drawn.shot.photograph
+    whole = drawn.wish.shot.settings.film.resolution
     try:
-        read = meter(drawn.frame, photograph.meters or "centre", at=drawn.shot.camera.focus_at)
-    except DaguerreError:  # a black picture, or a pinhole, which has no exposure
+        luminance = luminance_of(drawn.frame, *metered_part(drawn.session, whole))
+        over = stops_over_grey(drawn.frame, luminance)
+    except DaguerreError:  # such as a spot out of view, or a frozen shutter
         return None
-    return {
-        "luminance": read.luminance,
-        "ev100": read.ev100,
-        "lux": 2.5 * 2.0**read.ev100,
-        "iso": read.iso * 2.0**photograph.ev,
-    }
+    if over is None:
+        return None
+    ev100 = math.log2(100 * luminance / K)
+    return {"luminance": luminance, "ev100": ev100, "lux": 2.5 * 2.0**ev100, "over": over}
 
 
-def _body(session: Session, shot: Shot) -> dict[str, Any]:
+def _body(drawn: Drawn) -> dict[str, Any]:
     """Positions of the dials of the body, and the place of the camera."""
+    session = drawn.session
     camera = session.camera.frozen_at(session.scene.time)
+    asked = drawn.wish.shot.camera.frozen_at(session.scene.time)
     white, pose = camera.white_balance, np.asarray(camera.transform, np.float64)
     lens = session.prepared.setup.lens
     return {
         "fps": camera.fps,
         "iso": camera.iso,
-        "ev": camera.exposure_compensation,
+        "ev": asked.exposure_compensation,  # a mode that chooses takes it in
         "white_k": white if isinstance(white, float | int) else None,
         "blades": camera.blades,
         "widest": None if lens.f_stop is None else widest_of(session),
-        "spp": shot.settings.sampling.most,
+        "spp": drawn.shot.settings.sampling.most,
         "time_s": session.scene.time,
         "place": {
             "position": pose[:3, 3].tolist(),

@@ -48,6 +48,7 @@ def run(
     words: Sequence[str],
     where: Listening,
     say: Callable[[str], None],
+    said: str = "",
 ) -> int:
     """Serves a viewfinder until Ctrl-C.
 
@@ -57,6 +58,7 @@ def run(
         words: Its other words.
         where: Address of the server.
         say: Prints a line.
+        said: Text that pages show until something is turned.
 
     Raises:
         UsageError: The address cannot be used.
@@ -85,5 +87,7 @@ def run(
         webbrowser.open(url)
     door = Door.at(where.host, port, token, where.proxies)
     with contextlib.suppress(KeyboardInterrupt):
-        asyncio.run(serve(sock, door, lambda loop: Hub(stage, dials, words, loop, tev=tev)))
+        asyncio.run(
+            serve(sock, door, lambda loop: Hub(stage, dials, words, loop, tev=tev, said=said))
+        )
     return INTERRUPTED

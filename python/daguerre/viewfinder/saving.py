@@ -39,7 +39,6 @@ def save(drawn: Drawn, folder: Path, kind: str) -> Path:
     }
     frame = replace(drawn.frame, metadata={**drawn.frame.metadata, **facts})
     path = _free(folder, drawn, kind)
-    frame = shot.photograph.metered(frame, [path], Reporter())
     shot.photograph.write(frame, [path], shot.tone, Reporter())
     return path
 

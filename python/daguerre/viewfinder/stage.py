@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure import check_exposure, is_held
+from daguerre.camera.exposure_mode import CHOICES, CHOSEN, is_automatic, split_mode
 from daguerre.errors import UsageError
+from daguerre.rendering.backdrop import shows_plate
 from daguerre.rendering.photograph import Photograph
 from daguerre.rendering.session import Session
 from daguerre.rendering.settings import RenderSettings
@@ -16,65 +19,11 @@ from daguerre.sensors import Sensor
 from daguerre.setup.built_scene import BuiltScene
 
 from .dials import Dials
+from .light_meter import LightMeter
+from .shot import Shot
 
 #: Divisor of the size of a picture that is only set up.
 _SMALLEST = 64
-#: A rung's picture has at least so many pixels on its shorter side, if the whole one has them.
-_LEAST = 40
-
-
-@dataclass(frozen=True)
-class Shot:
-    """One picture to draw.
-
-    Attributes:
-        scene: The scene at its time.
-        camera: The camera with its dials.
-        settings: Render settings with their dials.
-        photograph: Exposure and development.
-        tone: Tone curve if the picture is not developed.
-    """
-
-    scene: Scene
-    camera: Camera
-    settings: RenderSettings
-    photograph: Photograph
-    tone: str = "srgb"
-
-    def smaller(self, divisor: int) -> Shot:
-        """Returns a preview of the shot, smaller by a divisor, with one sample."""
-        width, height = self.settings.film.resolution
-        divisor = max(1, min(divisor, min(width, height) // _LEAST))
-        if divisor == 1 and self.settings.film.crop is not None:
-            return self
-        size = max(1, round(width / divisor)), max(1, round(height / divisor))
-        few = RenderSettings.of(
-            resolution=size,
-            spp=1,
-            light_paths="off",
-            seed=self.settings.sampling.seed,
-            max_depth=self.settings.light.max_depth,
-            background=self.settings.backdrop.background,
-            threads=self.settings.threads,
-        )
-        return Shot(self.scene, self._camera_at(size), few, self.photograph, self.tone)
-
-    def by_model(self, model: str, divisor: int, samples: int) -> Shot:
-        """Returns a smaller picture of the shot by another model of the lens."""
-        width, height = self.settings.film.resolution
-        size = max(1, width // divisor), max(1, height // divisor)
-        settings = self.settings.with_(
-            resolution=size, spp=samples, light_paths="off", noise=None, crop=None
-        )
-        camera = self._camera_at(size).with_(lens_model=model)
-        return Shot(self.scene, camera, settings, self.photograph, self.tone)
-
-    def _camera_at(self, size: tuple[int, int]) -> Camera:
-        """Returns the camera for a picture of another size."""
-        if self.camera.focus_at is None:
-            return self.camera
-        (x, y), (width, height) = self.camera.focus_at, self.settings.film.resolution
-        return self.camera.with_(focus_at=(x * size[0] / width, y * size[1] / height))
 
 
 @dataclass
@@ -85,10 +34,12 @@ class Stage:
         scene: The scene.
         camera: The camera before any dial.
         settings: Render settings before any dial.
-        photograph: Exposure and development before any dial.
+        photograph: Sensor and development before any dial.
         tone: Tone curve of pictures that are not developed.
         load: Loads the scene again; None: it cannot be.
         built: Scene built for the core, kept between shots.
+        meter: Light meter for automatic modes.
+        moment: The scene at the time of the last shot, if that is another one than the scene's.
     """
 
     scene: Scene
@@ -98,6 +49,8 @@ class Stage:
     tone: str = "srgb"
     load: Callable[[], tuple[Scene, Camera]] | None = None
     built: BuiltScene | None = None
+    meter: LightMeter = field(default_factory=LightMeter)
+    moment: Scene | None = None
 
     def reload(self) -> Stage:
         """Loads the scene again; returns the stage with it.
@@ -108,7 +61,7 @@ class Stage:
         if self.load is None:
             raise UsageError("reload: this scene was not read from a file")
         scene, camera = self.load()
-        return replace(self, scene=scene, camera=camera, built=None)
+        return Stage(scene, camera, self.settings, self.photograph, self.tone, self.load)
 
     def shot(self, dials: Dials) -> Shot:
         """Returns the picture that dials ask for.
@@ -117,15 +70,35 @@ class Stage:
             DaguerreError: The camera cannot be set so.
         """
         values = dials.values()
-        scene = self.scene.at(values["time"]) if "time" in values else self.scene
+        scene = self._scene_at(values.get("time"))
         camera = self.camera if "camera" not in values else scene.camera(values["camera"])
-        return Shot(
-            scene,
-            dials.camera(camera),
-            dials.settings(self.settings),
-            self._photograph(values),
-            self.tone,
-        )
+        settings = dials.settings(self.settings)
+        names = ("iso", "look", "seed")
+        taken: dict[str, Any] = {name: values[name] for name in names if name in values}
+        if isinstance(values.get("sensor"), Sensor):
+            taken["sensor"] = values["sensor"]
+        photograph = replace(self.photograph, **taken)
+        shot = Shot(scene, dials.camera(camera), settings, photograph, self.tone)
+        _check_mode(shot.camera, values)
+        _check_shown(shot)
+        return shot
+
+    def exposed(self, shot: Shot, *, fresh: bool = True) -> Shot:
+        """Returns a shot with the exposure that its mode chooses, if it is an automatic one.
+
+        Args:
+            shot: The shot.
+            fresh: Whether the meter must look anew at what moved; if not, what it saw last will do.
+
+        Raises:
+            DaguerreError: The mode chooses what the lens does not have.
+        """
+        if not is_automatic(shot.camera.exposure):
+            return shot
+        chosen, built = self.meter.choose(shot, self.built, fresh=fresh)
+        if "shutter_time" not in chosen.changes:  # the meter exposes for as long as the picture
+            self.built = built
+        return replace(shot, camera=chosen.of(shot.camera), chosen=chosen)
 
     def try_out(self, dials: Dials) -> None:
         """Sets up a small picture, so that what cannot be drawn is an error before anyone looks.
@@ -133,36 +106,47 @@ class Stage:
         Raises:
             DaguerreError: The scene, the lens or a setting cannot be drawn.
         """
-        shot = self.shot(dials)
-        small = shot.smaller(_SMALLEST)
+        small = self.exposed(self.shot(dials)).smaller(_SMALLEST)
         session = Session(small.scene, small.camera, settings=small.settings, built=self.built)
         self.built = session.built
 
-    def _photograph(self, values: Mapping[str, Any]) -> Photograph:
-        """Exposure and development, with the dials of a camera's body."""
-        changes: dict[str, Any] = {}
-        for dial, name in _SHOT.items():
-            if dial in values:
-                changes[name] = values[dial]
-        develops = self.photograph.develops or any(name in values for name in _DEVELOPING)
-        if not isinstance(changes.get("sensor", self.photograph.sensor), Sensor):
-            changes.pop("sensor", None)
-        if "iso" in changes:
-            changes["meters"] = None
-        elif mode := values.get("exposure"):
-            changes |= {"meters": mode, "iso": None}
-        return replace(self.photograph, **changes, develops=develops)
+    def _scene_at(self, time: float | None) -> Scene:
+        """The scene at a time, s, kept with what was built of it; None: at its own time."""
+        if time is None:
+            return self.scene
+        if self.moment is None or self.moment.time != time:
+            self.moment = self.scene.at(time)
+        return self.moment
 
 
-#: Dials that are fields of a photograph, and those that ask for development.
-_SHOT = {
-    "iso": "iso",
-    "exposure_compensation": "ev",
-    "look": "look",
-    "sensor": "sensor",
-    "focus_at": "focus_at",
-}
-_DEVELOPING = (
-    *("sensor", "iso", "exposure_compensation", "exposure_time", "exposure_f_stop"),
-    *("responsivity", "white_balance", "look", "exposure"),
-)
+def _check_mode(camera: Camera, turned: Collection[str]) -> None:
+    """Checks that nothing holds what the exposure mode chooses.
+
+    Raises:
+        UsageError: Something does.
+    """
+    mode, _ = split_mode(camera.exposure, camera.meter)
+    for name in CHOSEN.get(mode, ()):
+        if name not in turned and is_held(camera, name):
+            raise UsageError(
+                f"exposure {mode} chooses {CHOICES[mode]}, but the scene sets it ({name}): choose "
+                "another mode"
+            )
+    check_exposure(camera)
+
+
+def _check_shown(shot: Shot) -> None:
+    """Checks that the command line can show a picture, too.
+
+    Raises:
+        UsageError: The picture is developed, though it has a tone curve or a plate that cannot be.
+    """
+    mode, _ = split_mode(shot.camera.exposure, shot.camera.meter)
+    if not shot.photograph.develops({"exposure": mode, "white_balance": shot.camera.white_balance}):
+        return
+    if shot.tone != "srgb":
+        raise UsageError(
+            f"--tone {shot.tone} shapes pictures in light alone; open the scene without it"
+        )
+    if shows_plate(shot.settings):
+        raise UsageError("--background plate: the plate shows in light alone; open it without it")

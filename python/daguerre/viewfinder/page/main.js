@@ -13,7 +13,12 @@ const RINGS = [
   ['iso', 'ISO'], ['exposure_compensation', 'Exposure compensation'], ['white_balance', 'White balance'],
   ['blades', 'Iris blades'], ['time', 'Time'],
 ];
-const SELECTS = {cameras: 'camera', sensor: 'sensor', look: 'look', 'shutter-type': 'shutter_type', exposure: 'exposure'};
+const SELECTS = {cameras: 'camera', sensor: 'sensor', look: 'look', 'shutter-type': 'shutter_type'};
+const MODES = {
+  light: 'Light: 1 is white', manual: 'Manual', auto: 'Auto: sets the ISO', A: 'A: sets the time', S: 'S: sets the f-stop',
+  P: 'P: sets time and f-stop',
+};
+const METERS = {centre: 'Centre', spot: 'Spot: point in focus', matrix: 'Matrix', highlight: 'Highlights'};
 const NONE = ['', 'as in the scene'];
 const PROBE_MS = 40;
 
@@ -119,8 +124,7 @@ class Panel {
     fill(this.find('sensor'), same(found.sensors));
     fill(this.find('look'), same(found.looks));
     fill(this.find('shutter-type'), same(found.shutter_types));
-    fill(this.find('exposure'), [['', 'set'], ['auto:centre', 'metered, centre'], ['auto:spot', 'metered, spot'],
-      ['auto:matrix', 'metered, matrix']]);
+    fill(this.find('exposure'), found.modes.map((name) => [name, MODES[name]]));
     fill(this.find('iris-scale'), [['f3', 'f, third stops'], ['f2', 'f, half stops'], ['T3', 'T, third stops'],
       ['T2', 'T, half stops']]);
     if (!this.find('iris-scale').value) this.find('iris-scale').value = 'f3';
@@ -136,14 +140,8 @@ class Panel {
       const element = document.createElement('div');
       element.dataset.label = label;
       this.find('rings').append(element);
-      this.rings[name] = new Ring(element, name, (text) => this.turned(name, text));
+      this.rings[name] = new Ring(element, name, (texts) => this.turn(texts));
     }
-  }
-
-  /** A ring was turned; that of the iris may have T-stops on it. */
-  turned(name, text) {
-    this.turn({[name === 'f_stop' && this.irisLetter === 'T' && text !== null ? 't_stop' : name]: text});
-    if (name === 'f_stop' && text === null) this.turn({t_stop: null});
   }
 
   get irisLetter() {
@@ -156,9 +154,9 @@ class Panel {
     this.find('command').value = command;
     this.find('command').closest('div').hidden = this.root.querySelector('[for=command]').hidden = !command;
     for (const [id, dial] of Object.entries(SELECTS)) {
-      if (this.root.activeElement !== this.find(id)) this.find(id).value = dials[dial] ?? '';
-      this.find(id).disabled = !this.mine;
+      this.select(id, dials[dial] ?? '');
     }
+    this.updateExposure();
     for (const name of ['models', 'denoised']) press(this.root.querySelector(`[data-show=${name}]`), show[name]);
     this.lenses.show(dials.lens, readings.lens);
     if (this.root.activeElement !== this.find('spp')) this.find('spp').value = readings.spp ?? '';
@@ -166,51 +164,83 @@ class Panel {
     this.open.spp = readings.spp;
     this.updateRings(dials, readings);
     this.find('hyperfocal').disabled = !this.mine || readings.hyperfocal_m === null;
-    this.find('lock').disabled = !this.mine || !readings.meter;
-    press(this.find('lock'), this.locked && 'iso' in dials);
     this.tripod.stand(readings.place, readings.focus_m, this.current);
     this.picture.lean(readings.place.roll, readings.place.forward, readings.field_of_view_deg[1]);
     this.numbers(readings);
   }
 
+  /** Shows a value in a select, unless it is the user who chooses there. */
+  select(id, value) {
+    const element = this.find(id);
+    if (this.current || this.root.activeElement !== element) element.value = value;
+    element.disabled = !this.mine;
+  }
+
+  /** Mode and pattern; a pattern that is not offered, such as a spot on a node, was given. */
+  updateExposure() {
+    const {mode, pattern} = this.state, offered = this.open.meters;
+    const patterns = offered.includes(pattern) ? offered : [...offered, pattern];
+    fill(this.find('meter'), patterns.map((name) => [name, METERS[name] ?? name]));
+    this.select('exposure', mode);
+    this.select('meter', pattern);
+    if (!['light', 'manual'].includes(mode)) this.automatic = mode;
+    this.find('lock').disabled = !this.mine || mode === 'light';
+    press(this.find('lock'), mode === 'manual');
+  }
+
   updateRings(dials, readings) {
     const {rings, open, current} = this;
     for (const ring of Object.values(rings)) ring.holds &&= !current;
-    const own = (...names) => names.some((name) => name in dials);
     const iris = readings.f_stop !== null;
     rings.focus_distance.show(scales.focusScale(readings.closest_m), readings.focus_m ?? Infinity, {
-      own: own('focus_distance', 'focus_at', 'focus_on'), disabled: !iris,
+      ...this.ringOf('focus_distance', 'focus_at', 'focus_on'), ...(iris ? {} : {off: 'everything is sharp'}),
       span: iris ? [readings.near_m, readings.far_m ?? Infinity] : null,
     });
     rings.f_stop.element.hidden = rings.blades.element.hidden = !iris;
-    if (iris) this.updateIris(readings, own);
+    if (iris) this.updateIris(readings);
     rings.zoom.element.hidden = !readings.zoom_range_mm;
     if (readings.zoom_range_mm) {
-      rings.zoom.show(scales.zoomScale(readings.zoom_range_mm), readings.zoom_mm, {own: own('zoom')});
+      rings.zoom.show(scales.zoomScale(readings.zoom_range_mm), readings.zoom_mm, this.ringOf('zoom'));
     }
     rings.shutter_time.show(scales.shutterScale(), readings.shutter_s || 1 / 8000, {
-      own: own('shutter_time', 'shutter_angle'), extra: `${(360 * readings.fps * readings.shutter_s).toPrecision(3)}°`,
+      ...this.ringOf('shutter_time', 'shutter_angle'),
+      extra: this.beside('shutter_time', `${(360 * readings.fps * readings.shutter_s).toPrecision(3)}°`),
     });
-    rings.iso.show(scales.isoScale(), dials.exposure ? readings.meter?.iso ?? readings.iso : readings.iso, {
-      own: own('iso'), extra: dials.exposure ? 'metered' : '',
-    });
-    rings.exposure_compensation.show(scales.evScale(), readings.ev, {own: own('exposure_compensation')});
-    rings.white_balance.show(scales.whiteScale(), readings.white_k ?? 6500, {own: own('white_balance')});
-    rings.blades.show(scales.bladesScale(), readings.blades, {own: own('blades')});
+    rings.iso.show(scales.isoScale(), readings.iso, {...this.ringOf('iso'), extra: this.beside('iso')});
+    rings.exposure_compensation.show(scales.evScale(), readings.ev, this.ringOf('exposure_compensation'));
+    rings.white_balance.show(scales.whiteScale(), readings.white_k ?? 6500, this.ringOf('white_balance'));
+    rings.blades.show(scales.bladesScale(), readings.blades, this.ringOf('blades'));
     rings.time.element.hidden = !open.duration_s;
     if (open.duration_s) {
-      rings.time.show(scales.timeScale(open.duration_s, readings.fps), readings.time_s, {own: own('time')});
+      rings.time.show(scales.timeScale(open.duration_s, readings.fps), readings.time_s, this.ringOf('time'));
     }
-    for (const ring of Object.values(rings)) ring.input.disabled ||= !this.mine;
   }
 
-  updateIris(readings, own) {
+  /** What a ring shows of its dials; the first one is what it turns. */
+  ringOf(dial, ...others) {
+    const names = [dial, ...others].sort();
+    const of = (texts) => Object.fromEntries(names.map((name) => [name, texts[name] ?? null]));
+    const {chosen, mode, dials} = this.state;
+    const off = chosen.includes(dial) ? `The exposure mode ${mode} sets it; Manual lets you turn it`
+      : this.mine ? '' : 'Another page turns the rings';
+    return {dial, texts: of(dials), opened: of(this.open.dials), off};
+  }
+
+  /** Text beside the value of a ring that an exposure mode sets. */
+  beside(dial, text = '') {
+    return [text, this.state.chosen.includes(dial) ? this.state.mode : ''].filter(Boolean).join(' · ');
+  }
+
+  updateIris(readings) {
     const letter = this.irisLetter, perStop = Number(this.find('iris-scale').value[1]);
     const loss = readings.t_stop ? readings.t_stop / readings.f_stop : 1;
     const [value, widest] = letter === 'T' ? [readings.t_stop, readings.widest * loss] : [readings.f_stop, readings.widest];
     const other = letter === 'T' ? `f/${readings.f_stop.toPrecision(3)}`
       : readings.t_stop ? `T/${readings.t_stop.toPrecision(3)}` : '';
-    this.rings.f_stop.show(scales.irisScale(widest, perStop, letter), value, {own: own('f_stop', 't_stop'), extra: other});
+    this.rings.f_stop.show(scales.irisScale(widest, perStop, letter), value, {
+      ...this.ringOf(letter === 'T' ? 't_stop' : 'f_stop', letter === 'T' ? 'f_stop' : 't_stop', 'aperture_diameter'),
+      extra: this.beside('f_stop', other),
+    });
   }
 
   numbers(r) {
@@ -224,6 +254,7 @@ class Panel {
       Hyperfocal: r.hyperfocal_m === null ? '' : metres(r.hyperfocal_m),
       'Set to': r.ev100 === null ? '' : `EV100 ${r.ev100.toFixed(1)}`,
       Meter: r.meter ? `EV100 ${r.meter.ev100.toFixed(1)}, ${Number(r.meter.lux.toPrecision(3))} lx` : '',
+      'Against the meter': r.meter ? scales.stops(r.meter.over) : '',
     };
     this.find('readings').replaceChildren(...Object.entries(rows).filter(([, text]) => text).map(([name, text]) => {
       const row = document.createElement('div');
@@ -242,7 +273,13 @@ class Panel {
     for (const [id, dial] of Object.entries(SELECTS)) {
       on(id, 'change', () => this.turn({[dial]: find(id).value || null}));
     }
-    on('iris-scale', 'change', () => this.state && this.update());
+    for (const [id, dial] of [['exposure', 'exposure'], ['meter', 'meter']]) {
+      on(id, 'change', () => this.turn({[dial]: find(id).value}));
+    }
+    on('iris-scale', 'change', () => {
+      this.rings.f_stop?.forget();
+      if (this.state) this.update();
+    });
     for (const button of this.root.querySelectorAll('[data-toggle]')) {
       button.addEventListener('click', () => this.toggle(button.dataset.toggle, press(button, !pressed(button))));
     }
@@ -259,7 +296,8 @@ class Panel {
     on('level', 'click', () => this.tripod.level());
     on('reset', 'click', () => {
       this.tripod.forget();
-      this.turn({'place.position': null, 'place.look_at': null, 'place.roll': null});
+      const names = ['place.position', 'place.look_at', 'place.roll'];
+      this.turn(Object.fromEntries(names.map((name) => [name, this.open.dials[name] ?? null])));
     });
     on('reload', 'click', () => this.link.send({reload: true}));
     on('lock', 'click', () => this.lock());
@@ -290,11 +328,9 @@ class Panel {
     else if (this.mine) this.turn({focus_at: pixel.join(',')});
   }
 
-  /** Keeps the ISO that the meter chose, or meters again. */
+  /** Keeps what the meter chose, or meters again. */
   lock() {
-    this.locked = !pressed(this.find('lock'));
-    const {iso} = this.state.readings.meter;
-    this.turn(this.locked ? {iso: `${Math.max(1, Math.round(iso))}`} : {exposure: 'auto:centre'});
+    this.turn({exposure: pressed(this.find('lock')) ? this.automatic ?? 'auto' : 'manual'});
   }
 
   /** Plays the animation as fast as pictures come. */

@@ -5,45 +5,61 @@
 
 const PX_PER_RING = 900;   // length of a whole ring, unrolled
 const PX_PER_LETTER = 7;
+const NEAR = 0.25;   // a click this near to where the ring was found gives way to it, in steps
+const LARGE = 5;     // steps of Page Up, and of the wheel with Shift
 const SVG = 'http://www.w3.org/2000/svg';
 
+/**
+ * A ring clicks at the marks of its scale, and where it was found: a value between two marks, or one
+ * that the scene has. So as many steps up as down give back the same picture, to the bit.
+ */
 export class Ring {
-  /** `turned(text)` is called with each new value; null: back to the scene's. */
+  /** `turned(texts)` is called with the texts of its dials at each click; null: as in the scene. */
   constructor(element, name, turned) {
     this.element = element;
     this.name = name;
     this.turned = turned;
     this.scale = null;
     this.holds = false;   // stays where it was turned to
+    this.home = null;     // where it was found: value, texts of its dials
+    this.sent = '';       // texts that it was turned to
     element.classList.add('ring');
     element.innerHTML = `
       <div class="ring-head"><label for="ring-${name}"></label><output></output>
-        <button type="button" class="back" title="As in the scene" hidden>↺</button></div>
+        <button type="button" class="back" title="As opened" hidden>↺</button></div>
       <div class="barrel"><svg aria-hidden="true"></svg><input type="range" id="ring-${name}"></div>`;
     this.label = element.querySelector('label');
     this.label.textContent = element.dataset.label;
     this.output = element.querySelector('output');
     this.back = element.querySelector('.back');
-    this.back.setAttribute('aria-label', `${element.dataset.label}: as in the scene`);
+    this.back.setAttribute('aria-label', `${element.dataset.label}: as opened`);
     this.svg = element.querySelector('svg');
     this.input = element.querySelector('input');
     this.input.addEventListener('input', () => this.move(Number(this.input.value)));
     this.input.addEventListener('wheel', (event) => this.wheel(event), {passive: false});
     this.drag();
-    this.back.addEventListener('click', () => this.turned(null));
+    this.back.addEventListener('click', () => this.turned(this.opened));
   }
 
-  /** Engraves another scale; `span` is a pair of values around the mark, such as the depth of field. */
-  show(scale, value, {span = null, own = false, disabled = false, extra = ''} = {}) {
-    this.scale = scale;
-    this.span = span;
-    this.extra = extra;
+  /**
+   * Engraves another scale.
+   *
+   * `dial`: dial that it turns. `texts`: texts of all dials that set its value, now; `opened`: at
+   * first. `span`: pair of values around the mark, such as the depth of field. `off`: why it cannot
+   * be turned.
+   */
+  show(scale, value, {dial, texts, opened, span = null, off = '', extra = ''}) {
+    Object.assign(this, {scale, dial, texts, opened, span, extra});
+    const now = JSON.stringify(texts);
     this.input.min = scale.low;
     this.input.max = scale.high;
     this.input.step = 'any';
-    this.input.disabled = disabled;
-    this.back.hidden = !own;
+    this.input.disabled = off !== '';
+    this.element.classList.toggle('off', off !== '');
+    this.element.title = off;
+    this.back.hidden = off !== '' || now === JSON.stringify(opened);
     if (!this.busy && !this.holds) {
+      if (now !== this.sent || now === JSON.stringify(this.home?.texts)) this.home = {value, texts};
       this.value = value;
       this.place(scale.position(value));
     }
@@ -59,23 +75,57 @@ export class Ring {
     this.input.setAttribute('aria-valuetext', this.output.textContent);
   }
 
-  move(position) {
+  /** Forgets where it was found, as the same value has another name now. */
+  forget() {
+    this.home = null;
+    this.sent = '';
+  }
+
+  /** Positions where it clicks. */
+  clicks() {
     const {low, high, step} = this.scale;
-    const stepped = Math.min(high, Math.max(low, low + Math.round((position - low) / step) * step));
-    const value = this.scale.value(stepped);
-    if (value === this.value && stepped === this.position) return;
+    const home = this.homePosition;
+    const found = [home];
+    for (let i = 0; low + i * step < high + step * (1 - NEAR); i++) {
+      const position = Math.min(high, low + i * step);
+      if (Math.abs(position - home) > NEAR * step) found.push(position);
+    }
+    return found.sort((a, b) => a - b);
+  }
+
+  get homePosition() {
+    const {low, high} = this.scale;
+    return Math.min(high, Math.max(low, this.scale.position(this.home.value)));
+  }
+
+  /** Goes to the click nearest to a position, and on by a number of clicks. */
+  move(position, steps = 0) {
+    const clicks = this.clicks();
+    const away = clicks.map((one) => Math.abs(one - position));
+    const index = away.indexOf(Math.min(...away)) + steps;
+    const to = clicks[Math.min(clicks.length - 1, Math.max(0, index))];
+    const comesHome = to === this.homePosition;
+    const value = comesHome ? this.home.value : this.scale.value(to);
+    if (value === this.value && to === this.position) return;
     this.value = value;
-    this.place(stepped);
+    this.place(to);
     this.draw();
     this.holds = true;
-    this.turned(this.scale.text(value));
+    const none = Object.fromEntries(Object.keys(this.texts).map((name) => [name, null]));
+    const texts = comesHome ? this.home.texts : {...none, [this.dial]: this.scale.text(value)};
+    this.sent = JSON.stringify(texts);
+    this.turned(texts);
+  }
+
+  /** Turns by clicks; to the right is up, except on a reversed scale. */
+  step(count) {
+    this.move(this.position, this.scale.reversed ? -count : count);
   }
 
   wheel(event) {
     if (this.input.disabled) return;
     event.preventDefault();
-    const way = this.scale.reversed ? -1 : 1;
-    this.move(this.position + way * Math.sign(event.deltaY || event.deltaX) * -this.scale.step * (event.shiftKey ? 5 : 1));
+    this.step(-Math.sign(event.deltaY || event.deltaX) * (event.shiftKey ? LARGE : 1));
   }
 
   /** Dragging turns the ring: the scale follows the finger. */
@@ -102,11 +152,10 @@ export class Ring {
     this.input.addEventListener('pointerup', end);
     this.input.addEventListener('pointercancel', end);
     this.input.addEventListener('keydown', (event) => {
-      const keys = {ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 5, PageDown: -5};
+      const keys = {ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: LARGE, PageDown: -LARGE};
       if (!(event.key in keys)) return;
       event.preventDefault();
-      const way = this.scale.reversed ? -1 : 1;
-      this.move(this.position + way * keys[event.key] * this.scale.step);
+      if (!this.input.disabled) this.step(keys[event.key]);
     });
   }
 

@@ -10,8 +10,14 @@ function nearest(values, value) {
   return values.reduce((a, b) => (Math.abs(Math.log(b / value)) < Math.abs(Math.log(a / value)) ? b : a));
 }
 
+/** A difference in stops, such as "+0.3 EV". */
+export function stops(difference) {
+  const shown = Number(difference.toFixed(1)) || 0;
+  return `${shown > 0 ? '+' : ''}${shown.toFixed(1)} EV`;
+}
+
 /** Full, half or third stops between two values; a stop is a factor of `factor`. */
-function stops(low, high, factor, perStop, names) {
+function engraved(low, high, factor, perStop, names) {
   const found = [];
   const first = Math.ceil((Math.log(low / names.base) / Math.log(factor)) * perStop - 1e-6);
   const last = Math.floor((Math.log(high / names.base) / Math.log(factor)) * perStop + 1e-6);
@@ -96,7 +102,7 @@ function place(logs, value) {
 }
 
 export function irisScale(widest, perStop, letter) {
-  const found = stops(widest, 64, Math.SQRT2, perStop, {base: 1, known: F_NUMBERS});
+  const found = engraved(widest, 64, Math.SQRT2, perStop, {base: 1, known: F_NUMBERS});
   if (!found.length || Math.abs(found[0].value / widest - 1) > 0.01) found.unshift({value: round(widest, 3), full: true});
   return logScale(found, {
     text: (value) => `${value}`, mark: (value) => `${value}`,

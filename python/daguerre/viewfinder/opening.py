@@ -1,0 +1,43 @@
+"""Opening: the exposure at which a viewfinder starts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from daguerre.camera.exposure import is_held
+from daguerre.camera.exposure_mode import LIGHT
+from daguerre.errors import InputError
+from daguerre.rendering.backdrop import shows_plate
+
+from .dials import Dials, texts_of_words
+from .shot import Shot
+from .stage import Stage
+
+
+def opened(stage: Stage, dials: Dials) -> tuple[Dials, str]:
+    """Dials in ``manual``, at a given ISO or at one that a meter chooses once.
+
+    A mode that is given or that the file has stays, and so does ``light`` where a picture can be
+    nothing else.
+
+    Returns:
+        The dials, and what the user should know about them; empty: nothing.
+    """
+    shot = stage.shot(dials)
+    if "exposure" in dials.texts or shot.camera.exposure != LIGHT or _only_light(shot):
+        return dials, ""
+    if "iso" in dials.texts or is_held(shot.camera, "iso"):
+        return dials.turned({"exposure": "manual"}), ""
+    # The ring keeps its compensation, so the meter leaves it out.
+    camera = shot.camera.with_(exposure="auto", exposure_compensation=0.0)
+    try:
+        chosen = stage.exposed(replace(shot, camera=camera)).chosen
+    except InputError as error:  # such as a frozen shutter
+        return dials, f"{error}; the picture is in light"
+    assert chosen is not None
+    texts = texts_of_words(chosen.words)
+    return (dials if texts["exposure"] == LIGHT else dials.turned(texts)), chosen.warning
+
+
+def _only_light(shot: Shot) -> bool:
+    return shot.tone != "srgb" or shows_plate(shot.settings)

@@ -1,0 +1,73 @@
+"""Shot: one picture to draw, with smaller ones of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from daguerre.camera.camera import Camera
+from daguerre.rendering.photograph import Photograph
+from daguerre.rendering.settings import RenderSettings
+from daguerre.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from daguerre.rendering.auto_exposure import Chosen
+
+#: A rung's picture has at least so many pixels on its shorter side, if the whole one has them.
+_LEAST = 40
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One picture to draw.
+
+    Attributes:
+        scene: The scene at its time.
+        camera: The camera with its dials.
+        settings: Render settings with their dials.
+        photograph: Sensor and development.
+        tone: Tone curve if the picture is not developed.
+        chosen: Exposure that a meter chose, which the camera has; None: none did.
+    """
+
+    scene: Scene
+    camera: Camera
+    settings: RenderSettings
+    photograph: Photograph
+    tone: str = "srgb"
+    chosen: Chosen | None = None
+
+    def smaller(self, divisor: int) -> Shot:
+        """Returns a preview of the shot, smaller by a divisor, with one sample."""
+        width, height = self.settings.film.resolution
+        divisor = max(1, min(divisor, min(width, height) // _LEAST))
+        if divisor == 1 and self.settings.film.crop is not None:
+            return self
+        size = max(1, round(width / divisor)), max(1, round(height / divisor))
+        few = RenderSettings.of(
+            resolution=size,
+            spp=1,
+            light_paths="off",
+            seed=self.settings.sampling.seed,
+            max_depth=self.settings.light.max_depth,
+            background=self.settings.backdrop.background,
+            threads=self.settings.threads,
+        )
+        return replace(self, camera=self._camera_at(size), settings=few)
+
+    def by_model(self, model: str, divisor: int, samples: int) -> Shot:
+        """Returns a smaller picture of the shot by another model of the lens."""
+        width, height = self.settings.film.resolution
+        size = max(1, width // divisor), max(1, height // divisor)
+        settings = self.settings.with_(
+            resolution=size, spp=samples, light_paths="off", noise=None, crop=None
+        )
+        camera = self._camera_at(size).with_(lens_model=model)
+        return replace(self, camera=camera, settings=settings)
+
+    def _camera_at(self, size: tuple[int, int]) -> Camera:
+        """Returns the camera for a picture of another size."""
+        if self.camera.focus_at is None:
+            return self.camera
+        (x, y), (width, height) = self.camera.focus_at, self.settings.film.resolution
+        return self.camera.with_(focus_at=(x * size[0] / width, y * size[1] / height))
