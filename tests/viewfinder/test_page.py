@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import re
 import shlex
 import time
 from collections.abc import Iterator
@@ -12,10 +13,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
+from PIL import Image
 
 import daguerre as dg
 from daguerre import cli
 from daguerre.viewfinder.dials import Dials
+from daguerre.viewfinder.opening import opened
 from daguerre.viewfinder.stage import Stage
 from tests.faults.scene import write_scene
 from tests.viewfinder.chromium import Browser, browser, program
@@ -30,6 +34,8 @@ pytestmark = [
     pytest.mark.xdist_group("chromium"),
 ]
 LENS = "double-gauss-50mm-f2"
+#: Lamp that a usual ISO exposes.
+LAMP = 3e4
 WORDS = ["--res", "96x64", "--spp", "4", "--quiet", "-o", "out.exr", "-o", "out.png"]
 
 
@@ -41,7 +47,7 @@ def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_scene(tmp_path_factory.mktemp("scene") / "scene.glb")
+    return write_scene(tmp_path_factory.mktemp("scene") / "scene.glb", LAMP)
 
 
 @pytest.fixture
@@ -50,18 +56,24 @@ def server(file: Path) -> Iterator[Live]:
         yield running
 
 
-def stage_of(file: Path) -> Any:
-    """A server that shows a file with the words of a command line."""
+def stage_of(file: Path, **given: str) -> Any:
+    """A server that shows a file as ``daguerre view`` opens it."""
     made = dg.load(file)
     settings = dg.RenderSettings.of(resolution=(96, 64), spp=4)
     stage = Stage(
         made, made.camera(), settings, load=lambda: (dg.load(file), dg.load(file).camera())
     )
-    return live(stage, Dials.of({"lens": LENS}), [str(file), *WORDS])
+    dials, said = opened(stage, Dials.of({"lens": LENS, **given}))
+    return live(stage, dials, [str(file), *WORDS], said=said)
 
 
 @pytest.fixture
 def page(chromium: Browser, server: Live) -> Browser:
+    return shows(chromium, server)
+
+
+def shows(chromium: Browser, server: Live) -> Browser:
+    """The page of a server, with its first picture at rest."""
     chromium.open("about:blank")  # the page before would look for its server
     chromium.run("1")
     chromium.errors.clear()
@@ -105,13 +117,32 @@ def check_bits(page: Browser, server: Live, folder: Path) -> None:
     words = shlex.split(command_of(page))
     assert words[:2] == ["daguerre", "render"]
     out = folder / "out.exr"
-    words[words.index("out.exr")], words[words.index("out.png")] = str(out), str(folder / "a.png")
+    png = folder / "a.png"
+    words[words.index("out.exr")], words[words.index("out.png")] = str(out), str(png)
     assert cli.main(words[1:]) == 0
     alone = dg.load_frame(out).rgb
     seen = server.hub.picture
     assert seen is not None
     assert seen.rests
     assert np.array_equal(np.asarray(seen.frame.rgb, np.float32), alone)
+    assert np.array_equal(pixels(server), np.asarray(Image.open(png)))
+
+
+def pixels(server: Live) -> NDArray[np.uint8]:
+    """Pixels of the picture at rest."""
+    seen = server.hub.picture
+    assert seen is not None
+    return seen.shot.photograph.shown(seen.frame, seen.shot.tone)
+
+
+def choose(page: Browser, name: str, value: str) -> None:
+    """Chooses an option of a select, and waits for its picture."""
+    before = turn_of(page)
+    page.run(
+        f"(() => {{ const s = document.getElementById('{name}'); s.value = '{value}';"
+        "s.dispatchEvent(new Event('change')); })()"
+    )
+    rests(page, before)
 
 
 RINGS = {
@@ -160,12 +191,81 @@ def test_a_click_focuses_there(page: Browser, server: Live, tmp_path: Path) -> N
 
 def test_a_key_held_down_turns_a_step_each_time(page: Browser, server: Live) -> None:
     before = turn_of(page)
+    began = iso_of(page)
     page.run("document.getElementById('ring-iso').focus()")
     for _ in range(10):
         page.press("ArrowRight")
     rests(page, before)
     settled(page, server)
-    assert "--iso=1000" in command_of(page)
+    assert iso_of(page) == pytest.approx(began * 2 ** (10 / 3), rel=0.15)
+
+
+def iso_of(page: Browser) -> float:
+    """ISO of the command."""
+    return float(re.findall(r"--iso=(\S+)", command_of(page))[0])
+
+
+@pytest.mark.parametrize("ring", [*RINGS, "time", "zoom", "t_stop"])
+def test_a_ring_turned_up_and_down_restores_the_picture(
+    chromium: Browser, file: Path, ring: str
+) -> None:
+    given = {"lens": "canon-ef-24-70mm-f2.8"} if ring == "zoom" else {}
+    with stage_of(file, **given) as server:
+        page = shows(chromium, server)
+        if ring == "t_stop":
+            page.run("document.getElementById('iris-scale').value = 'T3'")
+            page.run("document.getElementById('iris-scale').dispatchEvent(new Event('change'))")
+        shown, before = command_of(page), pixels(server)
+        selector = f"#ring-{'f_stop' if ring == 't_stop' else ring}"
+        for way, back, count in (("ArrowRight", "ArrowLeft", 3), ("PageUp", "PageDown", 1)):
+            turns(page, server, selector, way, count)
+            assert command_of(page) != shown
+            assert not np.array_equal(pixels(server), before) or ring == "blades"
+            turns(page, server, selector, back, count)
+            assert command_of(page) == shown
+            assert np.array_equal(pixels(server), before)
+        assert page.errors == []
+
+
+def turns(page: Browser, server: Live, selector: str, key: str, count: int = 3) -> None:
+    """Turns a ring by presses of a key, and waits for the picture at rest."""
+    before = turn_of(page)
+    page.run(f"document.querySelector({json.dumps(selector)}).focus()")
+    for _ in range(count):
+        page.press(key)
+    rests(page, before)
+    settled(page, server)
+
+
+def test_the_focus_ring_goes_back_to_the_point_that_was_clicked(
+    page: Browser, server: Live
+) -> None:
+    before = turn_of(page)
+    page.click("#picture", 40, 30)
+    rests(page, before)
+    shown, sharp = command_of(page), pixels(server)
+    assert "--focus-at=" in shown
+    turns(page, server, "#ring-focus_distance", "ArrowLeft")
+    assert "--focus-distance=" in command_of(page) or "--focus=" in command_of(page)
+    turns(page, server, "#ring-focus_distance", "ArrowRight")
+    assert command_of(page) == shown
+    assert np.array_equal(pixels(server), sharp)
+
+
+def test_a_ring_goes_back_to_where_it_was_at_first(page: Browser, server: Live) -> None:
+    shown = command_of(page)
+    back = "#ring-iso-back"
+    page.run(
+        "document.querySelector('#ring-iso').closest('.ring').querySelector('.back').id"
+        " = 'ring-iso-back'"
+    )
+    assert page.run(f"document.querySelector('{back}').hidden")
+    turns(page, server, "#ring-iso", "ArrowRight")
+    before = turn_of(page)
+    page.click(back)
+    rests(page, before)
+    assert command_of(page) == shown
+    assert page.run(f"document.querySelector('{back}').hidden")
 
 
 def test_a_ring_does_not_jump_back_while_its_picture_is_drawn(page: Browser, server: Live) -> None:
@@ -310,20 +410,90 @@ def test_the_loupe_tells_linear_values(page: Browser, server: Live) -> None:
     page.click("[data-toggle=loupe]")
 
 
-def test_exposure_is_metered_and_locked(page: Browser, server: Live, tmp_path: Path) -> None:
-    before = turn_of(page)
+def test_it_starts_in_manual_as_metered(page: Browser, server: Live, tmp_path: Path) -> None:
+    assert "--exposure=manual" in command_of(page)
+    assert "--iso=" in command_of(page)
+    options = "[...document.getElementById('{}').options].map((one) => one.value).join()"
+    assert page.run(options.format("exposure")) == "light,manual,auto,A,S,P"
+    assert page.run(options.format("meter")) == "centre,spot,matrix,highlight"
+    assert page.run("document.getElementById('exposure').value") == "manual"
+    check_bits(page, server, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("mode", "off"),
+    [
+        ("light", []),
+        ("auto", ["iso"]),
+        ("A", ["shutter_time"]),
+        ("S", ["f_stop"]),
+        ("P", ["f_stop", "shutter_time"]),
+    ],
+)
+def test_a_mode_turns_its_rings_itself(
+    page: Browser, server: Live, tmp_path: Path, mode: str, off: list[str]
+) -> None:
+    choose(page, "exposure", mode)
+    assert f"--exposure={mode}" in command_of(page)
+    check_bits(page, server, tmp_path)
+    rings = "[...document.querySelectorAll('.ring:not([hidden]) input:disabled')]"
+    assert page.run(f"{rings}.map((one) => one.id.slice(5)).join()") == ",".join(off)
+    titles = page.run(f"{rings}.map((one) => one.closest('.ring').title)")
+    assert titles == [f"The exposure mode {mode} sets it; Manual lets you turn it"] * len(off)
+    shown = command_of(page)
+    for ring in off:
+        page.drag(f"#ring-{ring}", -120)
+        page.run(f"document.getElementById('ring-{ring}').focus()")
+        page.press("ArrowRight")
+    assert command_of(page) == shown
+    assert page.errors == []
+
+
+def test_a_mode_that_the_scene_forbids_goes_back(page: Browser, server: Live) -> None:
+    server.hub._stage.camera = server.hub._stage.camera.with_(f_stop=4)
+    page.run("document.getElementById('exposure').focus()")
     page.run(
-        "(() => { const s = document.getElementById('exposure'); s.value = 'auto:matrix';"
+        "(() => { const s = document.getElementById('exposure'); s.value = 'S';"
         "s.dispatchEvent(new Event('change')); })()"
     )
-    rests(page, before)
-    assert "--exposure=auto:matrix" in command_of(page)
+    error = "document.getElementById('error')"
+    text = page.until(f"!{error}.hidden && {error}.textContent")
+    assert text == (
+        "exposure S chooses the f-stop, but the scene sets it (f_stop): choose another mode"
+    )
+    assert page.run("document.getElementById('exposure').value") == "manual"
+
+
+def test_metered_exposure_is_locked(page: Browser, server: Live, tmp_path: Path) -> None:
+    choose(page, "exposure", "P")
+    choose(page, "meter", "matrix")
+    assert "--exposure=P --meter=matrix" in command_of(page)
     check_bits(page, server, tmp_path)
+    metered = pixels(server)
+    lock = "document.getElementById('lock').getAttribute('aria-pressed')"
+    assert page.run(lock) == "false"
     before = turn_of(page)
     page.click("#lock")
     rests(page, before)
-    assert "--exposure" not in command_of(page)
+    assert "--exposure=manual" in command_of(page)
     assert "--iso=" in command_of(page)
+    assert np.array_equal(pixels(server), metered)
+    assert page.run(lock) == "true"
+    before = turn_of(page)
+    page.click("#lock")
+    rests(page, before)
+    assert "--exposure=P" in command_of(page)
+    assert np.array_equal(pixels(server), metered)
+
+
+def test_the_needle_follows_the_rings(page: Browser, server: Live) -> None:
+    needle = (
+        "[...document.querySelectorAll('#readings div')].find((one) =>"
+        "one.firstChild.textContent === 'Against the meter').lastChild.textContent"
+    )
+    began = float(page.run(needle).removesuffix(" EV"))
+    turns(page, server, "#ring-exposure_compensation", "ArrowRight")
+    page.until(f"{needle} === '{began + 1:+.1f} EV'")
 
 
 def test_a_scene_that_changes_is_offered(page: Browser, file: Path) -> None:
