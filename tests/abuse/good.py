@@ -123,6 +123,7 @@ ARGS: dict[str, Make] = {
     "dg.export_camera": lambda w: {"camera": w.camera, "path": w.out / "a.usda"},
     "dg.Frame": lambda w: {"rgb": w.image, "metadata": {}},
     "dg.Frame.encoded": constant(tone="srgb"),
+    "dg.Frame.encoded_rows": constant(tone="srgb"),
     "dg.Frame.expose": constant(sensor="ideal", iso=200.0, seed=1, temperature=20.0),
     "dg.Frame.exposure_truth": constant(sensor="ideal", iso=200.0),
     "dg.Frame.save": lambda w: {"path": w.out / "a.exr"},

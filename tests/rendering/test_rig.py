@@ -136,3 +136,17 @@ def test_rigs_move_with_the_body_that_they_are_fixed_to() -> None:
     scene = charts.make("slanted-edge").scene(1.0)
     frames = dg.render_rig(scene, {n: c.with_(shutter_time=0.5) for n, c in pair.items()}, spp=1)
     assert frames["left"].metadata["camera"]["motion"]["transform"]
+
+
+def test_cameras_of_a_rig_share_what_the_meter_of_the_first_chose() -> None:
+    scene = charts.make("slanted-edge").scene(300.0)
+    left, right = (
+        one.with_(exposure="auto", shutter_time=time)
+        for one, time in zip(dg.stereo_pair(base(), 0.6).values(), (0.01, 0.001), strict=True)
+    )
+    frames = dg.render_rig(scene, {"left": left, "right": right}, spp=1)
+    alone = dg.render(scene, left, resolution=(96, 54), spp=1)
+    isos = {name: frame.metadata["isoSpeed"] for name, frame in frames.items()}
+    assert isos == dict.fromkeys(frames, alone.metadata["isoSpeed"])
+    assert {frame.metadata["exposure"] for frame in frames.values()} == {"auto"}
+    assert dg.render(scene, right, resolution=(96, 54), spp=1).metadata["isoSpeed"] > isos["left"]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure_mode import is_automatic
 from daguerre.checks import number, short
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
@@ -19,6 +20,7 @@ from daguerre.setup.built_scene import BuiltScene
 from daguerre.setup.pose import moved_right
 from daguerre.setup.straight import straight_focal_px
 
+from .auto_exposure import Chosen, choose
 from .keywords import RigKeywords, settings_of
 from .parameters import TABLE
 from .render import finish
@@ -39,7 +41,8 @@ def render_rig(
     """Renders one picture for each camera; the scene is built once.
 
     All cameras use the same random numbers. So each frame is bit-identical to ``render`` with that
-    camera alone, and cameras with similar views have similar noise.
+    camera alone, and cameras with similar views have similar noise. Cameras of one automatic
+    exposure mode share what a meter chooses for the first of them.
 
     Args:
         scene: The scene.
@@ -58,11 +61,19 @@ def render_rig(
     common = settings_of(settings, keywords)
     frames: dict[str, Frame] = {}
     built: BuiltScene | None = None
+    chosen: dict[str, Chosen] = {}
     for name, given in cameras.items():
         camera = given if isinstance(given, Camera) else scene.camera(given)
         own = camera.projection.size if camera.projection else common.film.resolution
         one = common.with_(resolution=resolution or own)
+        choice = None
+        if is_automatic(camera.exposure):
+            if camera.exposure not in chosen:
+                chosen[camera.exposure], built = choose(scene, camera, one, built)
+            choice = chosen[camera.exposure]
+            camera = choice.of(camera)
         session = Session(scene, camera, settings=one, built=built)
+        session.metering = {} if choice is None else choice.facts
         frames[name] = finish(session)
         built = session.built
     return frames
