@@ -91,13 +91,15 @@ def test_notes_tell_of_a_split() -> None:
     scene = scenes.furnace()
 
     def notes(**changes: object) -> str:
-        camera = dg.Camera(f_stop=4.0, focus_distance=2.0, shutter_time=0.02).with_(**changes)
+        camera = dg.Camera(f_stop=4.0, focus_distance=2.0, shutter_time=0.02, exposure="manual")
+        camera = camera.with_(**changes)
         return " ".join(dg.Session(scene, camera, resolution=SIZE, light_paths="off").notes)
 
     assert not notes()
     assert not notes(exposure_time=0.02, exposure_f_stop=4.0)
     assert "exposure_time sets the brightness (as for 0.5 s)" in notes(exposure_time=0.5)
     assert "brightness (as for f/8); the lens at f/4 sets the blur" in notes(exposure_f_stop=8.0)
+    assert not notes(exposure_time=0.5, exposure="light")  # neither sets the brightness
 
 
 def test_a_pinhole_says_at_which_stop_it_is_exposed() -> None:

@@ -85,6 +85,8 @@ def describe_exposure(camera: Camera, f_stop: float | None, shutter_s: float) ->
 
 def exposure_notes(camera: Camera, f_stop: float | None, shutter_s: float) -> list[str]:
     """Notes for exposures whose brightness and blur come from different shutters or stops."""
+    if camera.exposure == "light":  # neither sets the brightness
+        return []
     notes = []
     time, stop, own = camera.exposure_time, camera.exposure_f_stop, f_stop
     if time is not None and not math.isclose(time, shutter_s, rel_tol=_SINGLE):
