@@ -30,12 +30,12 @@ def mode_of(where: str, text: str) -> str:
     Raises:
         UsageError: There is no such mode.
     """
-    mode, colon, pattern = text.partition(":")
+    mode, colon, pattern = str(text).partition(":")
     if colon and mode == "auto":
         return f"auto:{meter_of(where, pattern)}"
-    if text not in MODES:
+    if not isinstance(text, str) or text not in MODES:
         known = {name.lower(): name for name in MODES}
-        hint = suggest(known.get(text.lower(), text), MODES, few=True)
+        hint = suggest(known.get(mode.lower(), mode), MODES, few=True)
         raise UsageError(f"{where}: wanted {', '.join(MODES)}; got {short(text)}{hint}")
     return text
 
@@ -61,7 +61,7 @@ def meter_of(where: str, text: str) -> str:
     Raises:
         UsageError: There is no such pattern.
     """
-    pattern, colon, place = text.partition(":")
+    pattern, colon, place = str(text).partition(":")
     pattern = "centre" if pattern == "center" else pattern
     if pattern not in METERS or (colon and (pattern != "spot" or not place.strip())):
         raise UsageError(
