@@ -33,7 +33,7 @@ def mode_of(where: str, text: str) -> str:
     mode, colon, pattern = str(text).partition(":")
     if colon and mode == "auto":
         return f"auto:{meter_of(where, pattern)}"
-    if not isinstance(text, str) or text not in MODES:
+    if str(text) not in MODES:
         known = {name.lower(): name for name in MODES}
         hint = suggest(known.get(mode.lower(), mode), MODES, few=True)
         raise UsageError(f"{where}: wanted {', '.join(MODES)}; got {short(text)}{hint}")

@@ -29,7 +29,7 @@ FIGURES = PAGES / "plates.json"
 MEASURED = {"plates_difference": "difference", "plates_modelled": "modelled"}
 CAMERA = (
     "--lens nikon-ai-s-50mm-f1.8 --f-stop 2.8 --focus 0.76 --shutter 1/125 "
-    "--sensor sony-a7r-ii --iso 6400 --res 750x500"
+    "--sensor sony-a7r-ii --exposure manual --iso 6400 --res 750x500"
 )
 LAYERS = "python script/docs/gallery/plate_layers.py"
 LAYER_TIMES = 3

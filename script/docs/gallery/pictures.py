@@ -38,7 +38,7 @@ class Picture:
             frames = ".####" if "--frames" in given else ""
             output = f"{folder}/{self.name}{number}{frames}.png"
             common = COMMON if "--res" not in given else "--tone soft"
-            common = "" if "--ev" in given else common
+            common = "" if "--exposure manual" in given else common  # developed
             words = ("daguerre render", self.scene, given, common, f"-o {output}")
             made.append((" ".join(word for word in words if word), output))
         return made
@@ -279,7 +279,8 @@ MOTION = [
         "seen later than feet.",
         "DATA/killeroos/killeroo-moving.pbrt",
         tuple(
-            "--lens double-gauss-50mm-f2 --f-stop 2 --sensor 30x30 --ev 1.5 --time 0.5 "
+            "--lens double-gauss-50mm-f2 --f-stop 2 --sensor 30x30 --exposure manual --ev 1.5 "
+            "--time 0.5 "
             f"{shutter} --res 320x320 --spp 64 --denoise"
             for shutter in (
                 "--shutter 1s",
@@ -295,8 +296,8 @@ MOTION = [
         "Nikkor 50 mm at f/1.4. Mitsuba reads the same file, `scenes/modern_hall_in_fog.xml`, "
         "beside the room's own.",
         "DATA/modern-hall/modern_hall_in_fog.xml",
-        "--lens nikon-ai-s-50mm-f1.4 --f-stop 1.4 --iso 2000 --wb 5000 --look filmic "
-        "--res 600x400 --spp 64 --denoise",
+        "--lens nikon-ai-s-50mm-f1.4 --f-stop 1.4 --exposure manual --iso 2000 --wb 5000 "
+        "--look filmic --res 600x400 --spp 64 --denoise",
         needs_data=True,
     ),
 ]
