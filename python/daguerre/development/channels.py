@@ -20,11 +20,10 @@ from daguerre.color import illuminants
 from daguerre.errors import UsageError, suggest
 from daguerre.files import extras
 from daguerre.files.value import BriefRecord
-from daguerre.sensors.iso_speed import GREY_LX_S
+from daguerre.sensors.iso_speed import white_lx_s
 
 from .binning import bayer_of, is_mono
 from .dng import _LEAST, LEAST_XTRANS
-from .looks import GREY
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
@@ -139,7 +138,7 @@ def of_frame(frame: Frame) -> Channels:
 
     facts = frame.metadata
     iso = frame_iso(facts) or 100.0
-    unit = GREY_LX_S / GREY / iso / (exposure_of_one(facts, iso) * compensation(facts))
+    unit = white_lx_s(iso) / (exposure_of_one(facts, iso) * compensation(facts))
     pixels = np.ascontiguousarray(_xyz(frame), np.float32)
     plain_light(pixels, "frame", infinite=True)  # what is infinite is white
     return Channels(

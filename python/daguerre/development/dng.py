@@ -18,10 +18,9 @@ from daguerre.color import illuminants
 from daguerre.io import exif
 from daguerre.io.exif import Tags
 from daguerre.io.tiff import CFA, LINEAR_RAW, TiffImage, write_tiff
-from daguerre.sensors.iso_speed import GREY_LX_S
+from daguerre.sensors.iso_speed import white_lx_s
 
 from .binning import is_mono
-from .looks import GREY
 
 if TYPE_CHECKING:
     from daguerre.frame.raw import Raw
@@ -130,12 +129,8 @@ def mosaic_tags(raw: Raw) -> Tags:
 
 
 def value_dn(raw: Raw) -> float:
-    """DN above black for a developed value of 1 in the strongest channel, D65.
-
-    By ISO 12232 an exposure of 10 / S lux s becomes middle grey, 0.18.
-    """
-    lux_s = GREY_LX_S / GREY / raw.iso
-    return raw.gain * float(raw.sensor.white_electrons().max()) * lux_s
+    """DN above black for a developed value of 1 in the strongest channel, D65."""
+    return raw.gain * float(raw.sensor.white_electrons().max()) * white_lx_s(raw.iso)
 
 
 def baseline_exposure(raw: Raw) -> float:

@@ -17,10 +17,9 @@ from numpy.typing import NDArray
 from daguerre._core import curve_breakpoints
 from daguerre.color import spaces
 from daguerre.errors import UsageError, suggest
+from daguerre.sensors.iso_speed import GREY
 
 FloatArray = NDArray[np.float64]
-#: Middle grey of ISO 12232: the developed value of 10 / S lux s.
-GREY = 0.18
 
 
 @dataclass(frozen=True)

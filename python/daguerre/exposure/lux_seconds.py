@@ -26,10 +26,7 @@ from daguerre.camera.exposure_mode import LIGHT
 from daguerre.checks import short
 from daguerre.doors import guarded
 from daguerre.errors import InputError
-from daguerre.sensors.iso_speed import GREY_LX_S
-
-#: Value of middle grey.
-GREY = 0.18
+from daguerre.sensors.iso_speed import GREY, GREY_LX_S, white_lx_s
 
 
 def in_light(metadata: Mapping[str, Any]) -> bool:
@@ -53,12 +50,17 @@ def exposure_of_one(metadata: Mapping[str, Any], iso: float) -> float:
     Raises:
         InputError: The frame is not in ``light``, and metadata of its exposure are missing.
     """
-    return GREY_LX_S / GREY / iso if in_light(metadata) else luminance_exposure(metadata)
+    return white_lx_s(iso) if in_light(metadata) else luminance_exposure(metadata)
+
+
+def compensation_ev(metadata: Mapping[str, Any]) -> float:
+    """Exposure compensation of a frame, EV."""
+    return float(metadata.get("exposure_compensation") or 0.0)
 
 
 def compensation(metadata: Mapping[str, Any]) -> float:
     """Factor of a frame's exposure compensation, 2^EV."""
-    return float(2.0 ** float(metadata.get("exposure_compensation") or 0.0))
+    return float(2.0 ** compensation_ev(metadata))
 
 
 def display_gain(metadata: Mapping[str, Any]) -> float:
@@ -148,7 +150,7 @@ def with_exposure(metadata: Mapping[str, Any], stops: float) -> dict[str, Any]:
         stops: Change of exposure, EV.
     """
     if in_light(metadata):
-        ev = float(metadata.get("exposure_compensation") or 0.0) + stops
+        ev = compensation_ev(metadata) + stops
         return {**metadata, "exposure_compensation": ev or None}
     factor = 2.0**stops
     light = luminance_exposure(metadata)

@@ -22,9 +22,9 @@ from daguerre.color.spectra import luminance_of_rgb
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.frame.frame import Frame
-from daguerre.sensors.iso_speed import GREY_LX_S
+from daguerre.sensors.iso_speed import GREY, GREY_LX_S
 
-from .lux_seconds import GREY, display_gain, luminance_exposure
+from .lux_seconds import display_gain, luminance_exposure
 
 FloatArray = NDArray[np.float64]
 #: cd s/m2: ISO 2720 allows 10.6 to 13.4; Canon, Nikon and Sekonic have 12.5.
@@ -36,7 +36,7 @@ SPOT_AREA = 0.025
 #: Matrix: zones across and down; weight of those at the point in focus.
 ZONES, FOCUS_WEIGHT = (9, 7), 3.0
 #: A zone this many times as bright as middle grey is white; it may cost the rest one stop at most.
-WHITE_OVER_GREY, MOST_PROTECTION = 1 / 0.18, 2.0
+WHITE_OVER_GREY, MOST_PROTECTION = 1 / GREY, 2.0
 #: Zones count at least as this share of the brightest, so that a night sky does not weigh in.
 DARKEST_ZONE = 2.0**-10
 #: Highlight: this share of the picture may be brighter than white.

@@ -20,7 +20,7 @@ from daguerre.files.array_value import ArrayValue
 from daguerre.frame.seen_by import seen_of
 from daguerre.post.effects.grain import sharpness
 from daguerre.sensors.fit import channels_from_xyz
-from daguerre.sensors.iso_speed import GREY_LX_S
+from daguerre.sensors.iso_speed import white_lx_s
 
 from .curve import GREY
 from .spread import kernels
@@ -107,7 +107,7 @@ class Negative(ArrayValue, array="density"):
         """Returns the print or slide as a frame, lit so that its white develops to white."""
         from daguerre.frame.frame import Frame
 
-        facts = {**self.metadata, "luminance_exposure": GREY_LX_S / 0.18 / self.stock.iso}
+        facts = {**self.metadata, "luminance_exposure": white_lx_s(self.stock.iso)}
         facts["white_balance"] = facts["exposure_compensation"] = None
         return Frame(rgb=self.positive(), metadata=facts)
 

@@ -21,7 +21,7 @@ from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import ideal_h0
 from daguerre.camera.exposure_mode import AUTOMATIC, CHOICES, CHOSEN, split_mode
 from daguerre.motion.values import Keys, at, keys
-from daguerre.sensors.iso_speed import GREY_LX_S
+from daguerre.sensors.iso_speed import GREY, GREY_LX_S
 
 from .checked import Checked
 from .optics import exposed_stop
@@ -36,7 +36,7 @@ SCALE = {
 EV = "exposure"
 #: USD's responsivity of a camera with a responsivity of 1. At ISO 100, 1 s and f/1, 1 cd/m2 gives
 #: the film pi / 4 lux s, and a picture 0.18 where it gets 10 / ISO lux s (ISO 12232).
-RESPONSIVITY = 100 * 0.18 / GREY_LX_S * ideal_h0(1.0)
+RESPONSIVITY = 100 * GREY / GREY_LX_S * ideal_h0(1.0)
 #: Relative difference below which two numbers are one, as USD's have single precision.
 _SINGLE = 1e-6
 

@@ -13,10 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daguerre.development.looks import GREY
 from daguerre.errors import InputError, UsageError
 from daguerre.files.notes import Notes
-from daguerre.sensors.iso_speed import GREY_LX_S
+from daguerre.sensors.iso_speed import GREY, GREY_LX_S
 
 from .shots import Shot
 
