@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.camera.camera import Camera
-from daguerre.camera.exposure_mode import CHOSEN, METERS
+from daguerre.camera.exposure_mode import METERS, chosen_by
 from daguerre.camera.ideal import IDEAL
 from daguerre.camera.projection import Projection
 from daguerre.errors import InputError, UsageError
@@ -67,7 +67,7 @@ def camera_of(
     if "pinhole" not in (lens, values.get("lens_model")):
         values |= _iris(data, values, panel, metres, notes) | _focus(thing, panel, metres)
     values |= shutter_of(render, panel, notes)
-    for name in CHOSEN.get(values.get("exposure", ""), ()):  # the panel hides them
+    for name in chosen_by(values.get("exposure", "")):  # the panel hides them
         values.pop(name, None)
     values["near_clip"] = max(float(data.clip_start), 0.0) * metres
     try:

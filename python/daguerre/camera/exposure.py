@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from daguerre.color.illuminants import white_xy
 from daguerre.errors import UsageError
 
-from .exposure_mode import CHOICES, CHOSEN, meter_of, mode_of, split_mode
+from .exposure_mode import CHOICES, chosen_by, meter_of, mode_of, split_mode
 from .parameters import LIGHT
 from .shutter import seconds
 
@@ -121,7 +121,7 @@ def exposure_metadata(
     if own is not None and asked is not None:
         light *= (own / asked) ** 2
     return {
-        "exposure": split_mode(camera.exposure, camera.meter)[0],
+        "exposure": split_mode(camera.exposure)[0],
         "expTime": time,
         "aperture": asked if asked is not None else own,
         "h0": h0,
@@ -145,8 +145,8 @@ def check_exposure(camera: Camera) -> None:
     """
     LIGHT.check(camera, "camera")
     meter_of("camera: meter", camera.meter)
-    mode, _ = split_mode(mode_of("camera: exposure", camera.exposure), camera.meter)
-    for name in CHOSEN.get(mode, ()):
+    mode, _ = split_mode(mode_of("camera: exposure", camera.exposure))
+    for name in chosen_by(mode):
         if is_held(camera, name):
             raise UsageError(
                 f"camera: exposure {mode} chooses {CHOICES[mode]}, but {name} is set: "

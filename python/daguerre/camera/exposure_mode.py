@@ -71,12 +71,23 @@ def meter_of(where: str, text: str) -> str:
     return f"{pattern}{colon}{place}"
 
 
-def is_automatic(exposure: str) -> bool:
-    """Whether a meter chooses the exposure in a mode."""
-    return split_mode(exposure, "")[0] in AUTOMATIC
-
-
-def split_mode(exposure: str, meter: str) -> tuple[str, str]:
+def split_mode(exposure: str, meter: str = "") -> tuple[str, str]:
     """Returns the mode and the pattern, which ``auto:PATTERN`` names, too."""
     mode, colon, pattern = exposure.partition(":")
     return mode, pattern if colon else meter
+
+
+def is_automatic(exposure: str) -> bool:
+    """Whether a meter chooses the exposure in a mode."""
+    return split_mode(exposure)[0] in AUTOMATIC
+
+
+def chosen_by(exposure: str) -> tuple[str, ...]:
+    """Names of the parameters that set what a mode chooses; empty: it chooses nothing."""
+    return CHOSEN.get(split_mode(exposure)[0], ())
+
+
+def split_pattern(pattern: str) -> tuple[str, str]:
+    """Returns the kind of a metering pattern and the place of its spot; empty: none is named."""
+    kind, _, place = pattern.partition(":")
+    return kind, place

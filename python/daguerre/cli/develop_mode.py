@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from daguerre.camera.exposure_mode import LIGHT
 from daguerre.errors import InputError, UsageError
 
-from .render.photograph import check_mode
+from .exposure_flags import before_1_0, check_mode
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
@@ -75,5 +75,4 @@ def _mode_notes(frame: Frame, source: Path, used: dict[str, Any]) -> list[str]:
         ]
     if not in_light(frame.metadata):
         return []
-    flag = "--iso" if "iso" in used else "develop"
-    return [f"in light; before 1.0 {flag} exposed the picture: add --exposure manual for that"]
+    return [before_1_0("--iso" if "iso" in used else "develop")]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from daguerre import units
-from daguerre.camera.exposure_mode import LIGHT
+from daguerre.camera.exposure_mode import LIGHT, split_pattern
 from daguerre.frame.frame import Frame
 from daguerre.sensors.iso_speed import GREY_LX_S
 from daguerre.sensors.library import load
@@ -67,7 +67,7 @@ def _changed(frame: Frame, changes: dict[str, Any]) -> Frame:
 def _metered(frame: Frame, pattern: str, ev: float, sensor: str | Sensor | None) -> Retaken:
     """Chooses the ISO by a meter, with the compensation folded in."""
     unit = luminance_exposure(frame.metadata)
-    luminance = luminance_of(frame, pattern.partition(":")[0], _spot(pattern))
+    luminance = luminance_of(frame, split_pattern(pattern)[0], _spot(pattern))
     if not luminance > 0:
         changes = {"exposure": LIGHT, "metering": None, "exposure_compensation": ev or None}
         return Retaken(_changed(frame, changes), ["no light to meter: the picture is in light"])
@@ -92,8 +92,8 @@ def _metered(frame: Frame, pattern: str, ev: float, sensor: str | Sensor | None)
 
 def _spot(pattern: str) -> tuple[float, float] | None:
     """Centre of the pixel that a pattern names; None: the middle of the picture."""
-    _, colon, place = pattern.partition(":")
-    if not colon:
+    _, place = split_pattern(pattern)
+    if not place:
         return None
     x, y = units.numbers("--meter spot", place, 2, "480,270, as a frame has no nodes")
     return x + 0.5, y + 0.5

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import check_exposure
-from daguerre.camera.exposure_mode import split_mode
+from daguerre.camera.exposure_mode import split_mode, split_pattern
 from daguerre.camera.shutter import shutter_time
 from daguerre.errors import UsageError
 from daguerre.exposure.auto_iso import automatic_iso, iso_limits
@@ -24,7 +24,7 @@ from daguerre.sensors.iso_speed import GREY_LX_S
 from daguerre.setup.metadata import camera_metadata
 
 from .backdrop import check_backdrop
-from .meter_picture import kind_of, meter_picture, metered_point
+from .meter_picture import meter_picture, metered_point
 from .prepare import Prepared, prepare
 from .settings import RenderSettings
 
@@ -128,7 +128,7 @@ class _Meter:
         self.luminance = self._read(self.one)
 
     def _read(self, one: Prepared) -> float:
-        return luminance_of(self.look(one), kind_of(self.pattern), self.point)
+        return luminance_of(self.look(one), split_pattern(self.pattern)[0], self.point)
 
     def chosen(self) -> Chosen:
         """Exposure by the mode."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import daguerre._core as _core
+from daguerre.camera.exposure_mode import split_pattern
 from daguerre.errors import InputError, UsageError
 from daguerre.frame.seen_by import sensor_metadata
 from daguerre.scene.node_names import find_node, no_node
@@ -20,11 +21,6 @@ from .prepare import Prepared
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
-
-
-def kind_of(pattern: str) -> str:
-    """Pattern without the place of its spot."""
-    return pattern.partition(":")[0]
 
 
 def metered_point(
@@ -41,8 +37,8 @@ def metered_point(
         UsageError: The pixel is not in the picture.
         InputError: There is no such node, or it is not in view.
     """
-    _, colon, place = pattern.partition(":")
-    if not colon:
+    _, place = split_pattern(pattern)
+    if not place:
         return one.camera.focus_at
     if (instances := _instances(one.scene, place)) is not None:
         return _seen_at(one, place, instances)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from daguerre.camera.exposure_mode import split_pattern
 from daguerre.errors import DaguerreError
 from daguerre.exposure.metering import stops_over
 
-from .meter_picture import kind_of, metered_point
+from .meter_picture import metered_point
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
@@ -28,7 +29,7 @@ def metered_part(
         DaguerreError: The spot is not in the picture.
     """
     pattern = session.metering.get("metering") or session.camera.meter
-    return kind_of(pattern), metered_point(session.prepared, pattern, size)
+    return split_pattern(pattern)[0], metered_point(session.prepared, pattern, size)
 
 
 def exposure_in_words(session: Session, frame: Frame) -> str:
@@ -38,13 +39,13 @@ def exposure_in_words(session: Session, frame: Frame) -> str:
         session: Session that drew it.
         frame: The picture.
     """
-    if (found := frame.metadata.get("exposure")) is None:
+    mode = str(frame.metadata.get("exposure") or "")
+    if not mode:
         return ""
-    mode = str(found)
     try:
         stops = stops_over(frame, *metered_part(session))
     except DaguerreError:  # such as a spot out of view, or a frozen shutter
-        return str(mode)
+        return mode
     if stops is None:
         return f"{mode}, nothing to meter"
     if abs(stops) < 0.05:

@@ -12,7 +12,7 @@ from typing import Any
 
 from daguerre import lenses
 from daguerre.camera.camera import Camera
-from daguerre.camera.exposure_mode import CHOSEN, split_mode
+from daguerre.camera.exposure_mode import chosen_by
 from daguerre.camera.ideal import IDEAL
 from daguerre.camera.parameters import CAMERA_FLAGS, SHUTTER
 from daguerre.camera.placement import Placement
@@ -147,7 +147,7 @@ def _taken_back(row: Parameter, text: str | None) -> list[str]:
     if row.name == "lens":
         taken = (*taken, *_OF_LENS)
     if row.name == "exposure" and text is not None:
-        taken = (*taken, *CHOSEN.get(split_mode(text, "")[0], ()))
+        taken = (*taken, *chosen_by(text))
     return list(taken)
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from daguerre import sensors, units
-from daguerre.camera.exposure_mode import CHOSEN, METERS, MODES, split_mode
+from daguerre.camera.exposure_mode import METERS, MODES, chosen_by, split_mode
 from daguerre.camera.ideal import IDEAL
 from daguerre.development.looks import LOOKS
 from daguerre.errors import DaguerreError, UsageError
@@ -297,7 +297,7 @@ class Hub:
                 "dials": dict(self.dials.texts),
                 "mode": mode,
                 "pattern": pattern,
-                "chosen": list(CHOSEN.get(mode, ())),
+                "chosen": list(chosen_by(mode)),
                 "command": self.command,
                 "readings": self._readings,
                 "show": asdict(self._show),

@@ -8,7 +8,7 @@ from typing import Any
 
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import check_exposure, is_held
-from daguerre.camera.exposure_mode import CHOICES, CHOSEN, is_automatic, split_mode
+from daguerre.camera.exposure_mode import CHOICES, chosen_by, is_automatic, split_mode
 from daguerre.errors import UsageError
 from daguerre.rendering.backdrop import shows_plate
 from daguerre.rendering.photograph import Photograph
@@ -125,8 +125,8 @@ def _check_mode(camera: Camera, turned: Collection[str]) -> None:
     Raises:
         UsageError: Something does.
     """
-    mode, _ = split_mode(camera.exposure, camera.meter)
-    for name in CHOSEN.get(mode, ()):
+    mode, _ = split_mode(camera.exposure)
+    for name in chosen_by(mode):
         if name not in turned and is_held(camera, name):
             raise UsageError(
                 f"exposure {mode} chooses {CHOICES[mode]}, but the scene sets it ({name}): choose "
@@ -141,7 +141,7 @@ def _check_shown(shot: Shot) -> None:
     Raises:
         UsageError: The picture is developed, though it has a tone curve or a plate that cannot be.
     """
-    mode, _ = split_mode(shot.camera.exposure, shot.camera.meter)
+    mode, _ = split_mode(shot.camera.exposure)
     if not shot.photograph.develops({"exposure": mode, "white_balance": shot.camera.white_balance}):
         return
     if shot.tone != "srgb":

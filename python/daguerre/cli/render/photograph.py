@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from daguerre import units as q
-from daguerre.camera.exposure_mode import CHOICES, CHOSEN, split_mode
 from daguerre.camera.parameters import CAMERA
+from daguerre.cli.exposure_flags import before_1_0, check_mode
 from daguerre.errors import UsageError
 from daguerre.rendering.photograph import Photograph, offset_name
 
@@ -55,21 +55,6 @@ def photograph_of(
     return Photograph(sensor, iso, offsets, look, seed, like)
 
 
-def check_mode(changes: dict[str, Any]) -> None:
-    """Refuses flags that set what the exposure mode chooses.
-
-    Raises:
-        UsageError: The message names both.
-    """
-    mode, _ = split_mode(changes.get("exposure") or "", "")
-    for name in CHOSEN.get(mode, ()):
-        if name in changes:
-            raise UsageError(
-                f"--exposure {mode} and {CAMERA[name].flag}: wanted one of them, got both; the "
-                f"mode chooses {CHOICES[mode]}"
-            )
-
-
 def mode_notes(
     camera: Camera, changes: dict[str, Any], *, looks: bool, brackets: bool
 ) -> list[str]:
@@ -91,9 +76,7 @@ def mode_notes(
     asked = [CAMERA[name].flag for name in _EXPOSED if name in changes]
     asked += ["--look"] * looks + ["--bracket"] * brackets
     if camera.exposure == "light" and asked and changes.get("exposure") is None:
-        found.append(
-            f"in light; before 1.0 {asked[0]} exposed the picture: add --exposure manual for that"
-        )
+        found.append(before_1_0(asked[0]))
     return found
 
 

@@ -1,0 +1,29 @@
+"""Flags of exposure that several commands have: which exclude each other, and their old meaning."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from daguerre.camera.exposure_mode import CHOICES, chosen_by, split_mode
+from daguerre.camera.parameters import CAMERA
+from daguerre.errors import UsageError
+
+
+def check_mode(changes: dict[str, Any]) -> None:
+    """Refuses flags that set what the exposure mode chooses.
+
+    Raises:
+        UsageError: The message names both.
+    """
+    mode, _ = split_mode(changes.get("exposure") or "")
+    for name in chosen_by(mode):
+        if name in changes:
+            raise UsageError(
+                f"--exposure {mode} and {CAMERA[name].flag}: wanted one of them, got both; the "
+                f"mode chooses {CHOICES[mode]}"
+            )
+
+
+def before_1_0(flag: str) -> str:
+    """Note on a flag or command whose pictures are in ``light`` since version 1.0."""
+    return f"in light; before 1.0 {flag} exposed the picture: add --exposure manual for that"
