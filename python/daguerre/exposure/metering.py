@@ -62,12 +62,27 @@ class Metered:
     @property
     def ev100(self) -> float:
         """Exposure value at ISO 100."""
-        return math.log2(100 * self.luminance / K)
+        return ev100_of(self.luminance)
 
     def __str__(self) -> str:
         return (
             f"{self.mode}: {self.luminance:.3g} cd/m2, EV100 {self.ev100:.1f}, ISO {self.iso:.3g}"
         )
+
+
+def ev100_of(luminance: float) -> float:
+    """Exposure value at ISO 100 that makes a luminance, cd/m2, middle grey."""
+    return math.log2(100 * luminance / K)
+
+
+def wanted_lux_s(luminance: float, ev: float = 0.0) -> float:
+    """Exposure of a value of 1 at ISO 1 that makes a luminance, cd/m2, middle grey, lux s.
+
+    Args:
+        luminance: The luminance.
+        ev: Exposure compensation, EV.
+    """
+    return float(2.0**ev * GREY_LX_S / luminance)
 
 
 @guarded

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from daguerre import units
 from daguerre.camera.exposure_mode import LIGHT, split_pattern
 from daguerre.frame.frame import Frame
-from daguerre.sensors.iso_speed import GREY_LX_S
 from daguerre.sensors.library import load
 from daguerre.sensors.sensor import Sensor
 
 from .auto_iso import automatic_iso, iso_limits
-from .lux_seconds import luminance_exposure
-from .metering import K, luminance_of
+from .lux_seconds import compensation_ev, luminance_exposure
+from .meter_words import NO_LIGHT, missing, reading
+from .metering import luminance_of, wanted_lux_s
 
 
 @dataclass(frozen=True)
@@ -51,7 +50,7 @@ def retaken(
         UsageError: The spot of a meter is not in the picture.
         InputError: An automatic ISO needs metadata that the frame lacks.
     """
-    total = float(frame.metadata.get("exposure_compensation") or 0.0) + ev
+    total = compensation_ev(frame.metadata) + ev
     if mode == "auto":
         return _metered(frame, pattern, total, sensor)
     changes: dict[str, Any] = {"exposure_compensation": total or None} if ev else {}
@@ -70,24 +69,18 @@ def _metered(frame: Frame, pattern: str, ev: float, sensor: str | Sensor | None)
     luminance = luminance_of(frame, split_pattern(pattern)[0], _spot(pattern))
     if not luminance > 0:
         changes = {"exposure": LIGHT, "metering": None, "exposure_compensation": ev or None}
-        return Retaken(_changed(frame, changes), ["no light to meter: the picture is in light"])
-    wanted = 2.0**ev * GREY_LX_S / (luminance * unit)
+        return Retaken(_changed(frame, changes), [NO_LIGHT])
+    wanted = wanted_lux_s(luminance, ev) / unit
     sensor = sensor or frame.metadata.get("sensor")
     limits = iso_limits(None if sensor is None else load(sensor))
     iso = automatic_iso(wanted, limits)
-    own = float(frame.metadata.get("exposure_compensation") or 0.0)
-    notes = [
-        f"metered ({pattern}): {luminance:.3g} cd/m2, EV100 "
-        f"{math.log2(100 * luminance / K):.1f}{f', {ev:+g} EV' if ev else ''}; the same picture: "
-        f"--exposure manual --iso {iso:g}{f' --ev {-own:g}' if own else ''}"
-    ]
-    if abs(missing := math.log2(iso / wanted)) > 0.05:
-        notes.append(
-            f"exposure auto: ISO {limits[0]:g} .. {limits[1]:g} cannot expose this: the picture is "
-            f"{abs(missing):.1f} EV too {'dark' if missing < 0 else 'bright'}"
-        )
+    own = compensation_ev(frame.metadata)
+    words = f"--exposure manual --iso {iso:g}{f' --ev {-own:g}' if own else ''}"
+    ends = f"ISO {limits[0]:g} .. {limits[1]:g}"
+    notes = [reading(pattern, luminance, ev, words), missing("auto", ends, iso / wanted)]
     changes = {"exposure": "auto", "metering": pattern, "isoSpeed": iso}
-    return Retaken(_changed(frame, {**changes, "exposure_compensation": None}), notes)
+    changed = _changed(frame, {**changes, "exposure_compensation": None})
+    return Retaken(changed, [text for text in notes if text])
 
 
 def _spot(pattern: str) -> tuple[float, float] | None:

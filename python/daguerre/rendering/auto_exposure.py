@@ -13,18 +13,19 @@ from typing import TYPE_CHECKING, Any
 
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import check_exposure
-from daguerre.camera.exposure_mode import split_mode, split_pattern
+from daguerre.camera.exposure_mode import LIGHT, split_mode, split_pattern
 from daguerre.camera.shutter import shutter_time
 from daguerre.errors import UsageError
 from daguerre.exposure.auto_iso import automatic_iso, iso_limits
 from daguerre.exposure.lux_seconds import luminance_exposure
-from daguerre.exposure.metering import K, luminance_of
+from daguerre.exposure.meter_words import NO_LIGHT, missing, reading
+from daguerre.exposure.metering import luminance_of, wanted_lux_s
 from daguerre.scene.scene import Scene
-from daguerre.sensors.iso_speed import GREY_LX_S
 from daguerre.setup.metadata import camera_metadata
 
 from .backdrop import check_backdrop
 from .meter_picture import meter_picture, metered_point
+from .pixels import at_size
 from .prepare import Prepared, prepare
 from .settings import RenderSettings
 
@@ -34,8 +35,8 @@ if TYPE_CHECKING:
 
 #: Longer side of the meter's picture, px, and its samples per pixel.
 SIDE, SAMPLES = 96, 16
-#: Limits of the time and stop that a meter chooses; a lens may have a smaller opening.
-TIMES_S, STOPS = (1 / 8000, 1 / 15), (1.0, 22.0)
+#: Limits of the time and stop that a meter chooses; the lens has the widest stop.
+TIMES_S, MOST_STOP = (1 / 8000, 1 / 15), 22.0
 #: P opens the lens wholly up to this time; for more light it closes the stop and shortens the time
 #: by equal steps, up to this stop.
 PROGRAM_S, PROGRAM_STOP = 1 / 60, 16.0
@@ -94,9 +95,8 @@ def choose(
     check_backdrop(scene, settings, camera.exposure)
     meter = _Meter(scene, camera, settings, built, look)
     if not meter.luminance > 0:
-        words = "--exposure light"
-        note = "no light to meter: the picture is in light"
-        return Chosen({"exposure": "light"}, words, {}, 0.0, "", note), meter.one.built
+        dark = Chosen({"exposure": LIGHT}, f"--exposure {LIGHT}", warning=NO_LIGHT)
+        return dark, meter.one.built
     return meter.chosen(), meter.one.built
 
 
@@ -115,16 +115,13 @@ class _Meter:
         self.look = look
         self.mode, self.pattern = split_mode(camera.exposure, camera.meter)
         self.scene, self.camera = scene, camera.with_(exposure="manual")
-        wide, high = settings.film.resolution
-        scale = SIDE / max(wide, high)
-        size = max(round(wide * scale), 1), max(round(high * scale), 1)
+        whole = settings.film.resolution
+        scale = SIDE / max(whole)
+        size = max(round(whole[0] * scale), 1), max(round(whole[1] * scale), 1)
         self.settings = RenderSettings.of(resolution=size, spp=SAMPLES, threads=settings.threads)
-        placed = self.camera
-        if camera.focus_at is not None:
-            x, y = camera.focus_at
-            placed = placed.with_(focus_at=(x * size[0] / wide, y * size[1] / high))
+        placed = at_size(self.camera, whole, size)
         self.one = prepare(scene, placed, self.settings, built)
-        self.point = metered_point(self.one, self.pattern, (wide, high))
+        self.point = metered_point(self.one, self.pattern, whole)
         self.luminance = self._read(self.one)
 
     def _read(self, one: Prepared) -> float:
@@ -134,48 +131,35 @@ class _Meter:
         """Exposure by the mode."""
         moving = "exposure_compensation" in self.camera.motion
         ev = 0.0 if moving else self.camera.exposure_compensation
-        plain = self.camera if moving else self.camera.with_(exposure_compensation=0.0)
         choice: Callable[[float], tuple[dict[str, Any], str, float]] = {
             "auto": self._iso, "A": self._time, "S": self._stop, "P": self._program
         }[self.mode]  # fmt: skip
-        changes, words, got = choice(self._wanted(ev))
+        changes, words, got = choice(wanted_lux_s(self.luminance, ev))
         for _ in range(_LOOKS if "f_stop" in changes else 0):
             self.luminance = self._read(self._with(f_stop=changes["f_stop"]))
-            changes, words, got = choice(self._wanted(ev))
-        done = plain.with_(**changes)
-        told = f"--exposure manual --iso {done.iso:g}"
-        told = f"{told}{words}{' --ev 0' if ev else ''}"
-        missing = math.log2(got / self._wanted(ev))
+            changes, words, got = choice(wanted_lux_s(self.luminance, ev))
+        iso = changes.get("iso", self.camera.iso)
+        told = f"--exposure manual --iso {iso:g}{words}{' --ev 0' if ev else ''}"
         return Chosen(
             {"exposure": "manual", **changes},
             told,
             {"exposure": self.mode, "metering": self.pattern},
             ev,
-            f"metered ({self.pattern}): {self.luminance:.3g} cd/m2, EV100 "
-            f"{math.log2(100 * self.luminance / K):.1f}"
-            f"{f', {ev:+g} EV' if ev else ''}; the same picture: {told}",
-            self._missing(missing) if abs(missing) > 0.05 else "",
+            reading(self.pattern, self.luminance, ev, told),
+            missing(self.mode, self._ends(), got / wanted_lux_s(self.luminance, ev)),
         )
 
-    def _wanted(self, ev: float) -> float:
-        """ISO times lux s of a value of 1 that make the metered luminance grey, at an EV."""
-        return float(2.0**ev * GREY_LX_S / self.luminance)
-
-    def _missing(self, stops: float) -> str:
-        low, high = self._isos()
-        times = "1/8000 .. 1/15 s"
+    def _ends(self) -> str:
+        """Limits of the mode, in words."""
         if self.mode == "auto":
-            ends = f"ISO {low:g} .. {high:g}"
-        elif self.mode == "A":
-            ends = times
-        else:  # of a lens with a stop
-            most = STOPS[1] if self.mode == "S" else PROGRAM_STOP
-            openings = f"f/{self._widest():.3g} .. f/{most:g}"
-            ends = openings if self.mode == "S" else f"{times} and {openings}"
-        return (
-            f"exposure {self.mode}: {ends} cannot expose this: the picture is {abs(stops):.1f} EV "
-            f"too {'dark' if stops < 0 else 'bright'}"
-        )
+            low, high = self._isos()
+            return f"ISO {low:g} .. {high:g}"
+        times = f"1/{1 / TIMES_S[0]:g} .. 1/{1 / TIMES_S[1]:g} s"
+        if self.mode == "A":
+            return times
+        most = MOST_STOP if self.mode == "S" else PROGRAM_STOP
+        openings = f"f/{self._widest():.3g} .. f/{most:g}"
+        return openings if self.mode == "S" else f"{times} and {openings}"
 
     def _with(self, **changes: Any) -> Prepared:
         """Prepares the meter's picture with other parameters of the camera."""
@@ -184,7 +168,7 @@ class _Meter:
 
     def _lux_s(self, **changes: Any) -> float:
         """Luminance exposure of a value of 1 by the camera with other parameters, lux s."""
-        one = self._with(**changes)
+        one = self._with(**changes) if changes else self.one
         return luminance_exposure(camera_metadata(one.camera, one.setup, one.size[0]))
 
     def _isos(self) -> tuple[float, float]:
@@ -202,7 +186,7 @@ class _Meter:
         return {"shutter_time": time}, f" --shutter {words}", per_s * time
 
     def _stop(self, wanted: float) -> tuple[dict[str, Any], str, float]:
-        stop = self._stop_for(wanted, (self._widest(), STOPS[1]))
+        stop = self._stop_for(wanted, (self._widest(), MOST_STOP))
         return (
             {"f_stop": stop},
             f" --f-stop {stop:g}",
@@ -239,10 +223,7 @@ class _Meter:
 
     def _widest(self) -> float:
         self._now()
-        glass = self.one.setup.lens.glass
-        if glass is None:
-            return STOPS[0]
-        widest = float(glass.lens.first_order().f_number)
+        widest = self.one.setup.lens.widest_stop
         return math.ceil(round(widest * 1000, 6)) / 1000  # not wider than it is, in four digits
 
 

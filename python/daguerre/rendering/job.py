@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import check_exposure
@@ -132,9 +132,13 @@ class Job:
 
     def camera_of(self, picture: Picture) -> Camera:
         """Returns the camera of a picture, exposed as the meter of the job says."""
+        return self._exposed(picture)[0]
+
+    def _exposed(self, picture: Picture) -> tuple[Camera, Mapping[str, Any]]:
+        """The camera of a picture, and what the meter of the job adds to its metadata."""
         camera = picture.view.camera(self.scene_of(picture))
         chosen = self._metered(picture, camera)
-        return camera if chosen is None else chosen.of(camera)
+        return (camera, {}) if chosen is None else (chosen.of(camera), chosen.facts)
 
     def _metered(self, picture: Picture, camera: Camera) -> Chosen | None:
         """Exposure for a camera in an automatic mode: metered once, at frame 0, and shared."""
@@ -144,10 +148,8 @@ class Job:
             from .auto_exposure import choose
 
             first = picture.view.metered(self.scene)
-            settings = picture.settings
-            self._chosen[camera.exposure], built = choose(self.scene, first, settings, self._built)
-            self._built = built
-            chosen = self._chosen[camera.exposure]
+            chosen, self._built = choose(self.scene, first, picture.settings, self._built)
+            self._chosen[camera.exposure] = chosen
             if chosen.note:
                 self.reporter.note(chosen.note)
             if chosen.warning:
@@ -160,7 +162,8 @@ class Job:
 
         from .session import Session
 
-        scene, camera, name = self.scene_of(picture), self.camera_of(picture), picture.view.name
+        scene, name = self.scene_of(picture), picture.view.name
+        camera, metering = self._exposed(picture)
         first, new = not self._warned, name not in self._warned
         self._warned.add(name)
         which = f"camera {name}: " if "camera" in picture.facts else ""
@@ -171,8 +174,7 @@ class Job:
             scene, camera, settings=picture.settings, built=self._built, piloted=piloted
         )
         self._built = session.built
-        if (chosen := self._metered(picture, picture.view.camera(scene))) is not None:
-            session.metering = chosen.facts
+        session.metering = metering
         picture.output.check(session.metadata, self.reporter)
         if picture.output.denoise:
             x0, y0, x1, y1 = session.crop
@@ -274,13 +276,11 @@ class Drawing:
         self.checkpoint.remove()
         if self.tell.previews:
             self.tell.preview(self.output.look(frame, complete=True))
-        from .over_meter import exposure_in_words
-
         loop, seconds = self.loop, time.monotonic() - self.loop.started
         self.tell.finished(
             Finished(
                 self.session, frame, self.output.files, loop.work.done(), loop.drawn_here, seconds,
-                self.setup_s, exposure_in_words(self.session, frame),
+                self.setup_s,
             )
         )  # fmt: skip
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from daguerre.camera.exposure_mode import split_pattern
 from daguerre.errors import DaguerreError
+from daguerre.exposure.meter_words import distance
 from daguerre.exposure.metering import stops_over
 
 from .meter_picture import metered_point
@@ -46,9 +47,5 @@ def exposure_in_words(session: Session, frame: Frame) -> str:
         stops = stops_over(frame, *metered_part(session))
     except DaguerreError:  # such as a spot out of view, or a frozen shutter
         return mode
-    if stops is None:
-        return f"{mode}, nothing to meter"
-    if abs(stops) < 0.05:
-        return f"{mode}, as metered"
-    part = "" if session.crop == (0, 0, session.width, session.height) else " in this crop"
-    return f"{mode}, {abs(stops):.1f} EV {'over' if stops > 0 else 'under'} the meter{part}"
+    whole = session.crop == (0, 0, session.width, session.height)
+    return distance(mode, stops, "" if whole else " in this crop")

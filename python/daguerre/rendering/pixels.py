@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from daguerre.checks import MAX_RESOLUTION, short, whole
 from daguerre.errors import UsageError, suggest
 from daguerre.units import EDGES, edges_text
+
+if TYPE_CHECKING:
+    from daguerre.camera.camera import Camera
 
 Box = tuple[int, int, int, int]
 #: Left, top, right and bottom edge, px, right and bottom exclusive; None: that of the picture.
@@ -51,6 +54,14 @@ def check_crop(value: Any, where: str = "crop") -> Crop:
             f"{where}: wanted whole numbers (left, top, right, bottom), got {short(value)}"
         ) from None
     return left, top, right, bottom
+
+
+def at_size(camera: Camera, old: tuple[int, int], new: tuple[int, int]) -> Camera:
+    """Returns a camera for a picture of another size, px, with its focus on the same point."""
+    if camera.focus_at is None:
+        return camera
+    x, y = camera.focus_at
+    return camera.with_(focus_at=(x * new[0] / old[0], y * new[1] / old[1]))
 
 
 def crop_box(crop: CropLike | None, region: Box) -> Box:

@@ -28,7 +28,6 @@ class Finished:
         drawn: Samples per pixel that this run drew.
         seconds: Time since drawing began, s.
         setup_s: Time of the set-up before that, s.
-        exposure: Exposure mode, and the distance from the meter, in words; empty: not known.
     """
 
     session: Session
@@ -38,7 +37,6 @@ class Finished:
     drawn: float
     seconds: float
     setup_s: float
-    exposure: str = ""
 
 
 @dataclass(frozen=True)

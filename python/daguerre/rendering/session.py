@@ -76,12 +76,12 @@ class Session:
         self.settings = settings_of(settings, keywords)
         self.metering: Mapping[str, Any] = {}
         metered: list[str] = []
-        seen = camera if isinstance(camera, Camera) else scene.camera(camera)
-        if is_automatic(seen.exposure):
+        camera = camera if isinstance(camera, Camera) else scene.camera(camera)
+        if is_automatic(camera.exposure):
             from .auto_exposure import choose
 
-            chosen, built = choose(scene, seen, self.settings, built)
-            camera, self.metering = chosen.of(seen), chosen.facts
+            chosen, built = choose(scene, camera, self.settings, built)
+            camera, self.metering = chosen.of(camera), chosen.facts
             metered = [text for text in (chosen.note, chosen.warning) if text]
         self.prepared = one = prepare(scene, camera, self.settings, built)
         self.light_plan = plan_light(one, piloted)

@@ -93,6 +93,11 @@ class ResolvedLens:
         return self.f_stop / math.sqrt(self.glass.transmittance)
 
     @property
+    def widest_stop(self) -> float:
+        """Smallest f-stop; an ideal lens has none, and begins at f/1."""
+        return 1.0 if self.glass is None else float(self.glass.lens.first_order().f_number)
+
+    @property
     def effective_focal_length_mm(self) -> float:
         """Focal length at its focus; without glass, the engraved one."""
         return self.glass.effective_focal_length_mm if self.glass else self.focal_length_mm

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from daguerre.camera.placement import look_at
 from daguerre.errors import DaguerreError
-from daguerre.exposure.metering import K, luminance_of, stops_over_grey
+from daguerre.exposure.metering import ev100_of, luminance_of, stops_over_grey
 from daguerre.lenses.focus import closest_focus_m
 from daguerre.rendering.over_meter import metered_part
 from daguerre.rendering.session import Session
@@ -106,7 +106,7 @@ def _meter(drawn: Drawn) -> dict[str, float] | None:
         return None
     if over is None:
         return None
-    ev100 = math.log2(100 * luminance / K)
+    ev100 = ev100_of(luminance)
     return {"luminance": luminance, "ev100": ev100, "lux": 2.5 * 2.0**ev100, "over": over}
 
 
@@ -123,7 +123,7 @@ def _body(drawn: Drawn) -> dict[str, Any]:
         "ev": asked.exposure_compensation,  # a mode that chooses takes it in
         "white_k": white if isinstance(white, float | int) else None,
         "blades": camera.blades,
-        "widest": None if lens.f_stop is None else widest_of(session),
+        "widest": None if lens.f_stop is None else lens.widest_stop,
         "spp": drawn.shot.settings.sampling.most,
         "time_s": session.scene.time,
         "place": {
@@ -132,12 +132,6 @@ def _body(drawn: Drawn) -> dict[str, Any]:
             "roll": roll_of(pose),
         },
     }
-
-
-def widest_of(session: Session) -> float:
-    """Smallest f-stop of the lens; an ideal lens has none, and begins at f/1."""
-    glass = session.prepared.setup.lens.glass
-    return 1.0 if glass is None else float(glass.lens.first_order().f_number)
 
 
 def roll_of(pose: NDArray[np.float64]) -> float:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from daguerre.camera.camera import Camera
 from daguerre.rendering.photograph import Photograph
+from daguerre.rendering.pixels import at_size
 from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene
 
@@ -67,7 +68,4 @@ class Shot:
 
     def _camera_at(self, size: tuple[int, int]) -> Camera:
         """Returns the camera for a picture of another size."""
-        if self.camera.focus_at is None:
-            return self.camera
-        (x, y), (width, height) = self.camera.focus_at, self.settings.film.resolution
-        return self.camera.with_(focus_at=(x * size[0] / width, y * size[1] / height))
+        return at_size(self.camera, self.settings.film.resolution, size)

@@ -94,8 +94,7 @@ class ConsoleReporter(Reporter):
             console.warn(bad_samples(count, places))
         names, samples = ", ".join(map(str, result.paths)), shown(result.samples)
         console.note(f"wrote {names} ({samples} samples per pixel, {result.seconds:.1f} s)")
-        if result.exposure:
-            console.note(result.exposure)
+        self._exposure(result)
         self._noise(result)
         if self._stats:
             from .stats import stats
@@ -104,6 +103,14 @@ class ConsoleReporter(Reporter):
                 console.say(f"daguerre: {name}: {value}")
         paths = [str(path) for path in result.paths]
         self._shown.event("done", outputs=paths, samples=result.samples)
+
+    def _exposure(self, result: Finished) -> None:
+        if self._quiet:
+            return
+        from daguerre.rendering.over_meter import exposure_in_words
+
+        if text := exposure_in_words(result.session, result.frame):
+            console.note(text)
 
     def _noise(self, result: Finished) -> None:
         sampling, reached = result.session.settings.sampling, result.frame.metadata.get("noise")
