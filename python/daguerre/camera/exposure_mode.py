@@ -25,7 +25,7 @@ METERS = ("centre", "spot", "matrix", "highlight")
 
 
 def mode_of(where: str, text: str) -> str:
-    """Parses an exposure mode; ``auto:PATTERN``, as in version 1.0, is valid, too.
+    """Parses an exposure mode; ``auto:PATTERN``, as before version 1.0, is valid, too.
 
     Raises:
         UsageError: There is no such mode.
