@@ -48,9 +48,9 @@ def page(server: Live, page: Browser) -> Browser:
 def test_axe_finds_nothing(page: Browser, state: str, width: int, height: int) -> None:
     page.size(width, height, touch=width < 800)
     if state == "rays":
-        page.click("[data-toggle=section]")
+        page.click("[data-panel=rays]")
         page.click("#picture", 10, 12)
-        page.until("document.getElementById('section-drawing').naturalWidth > 100")
+        page.until("document.getElementById('rays-drawing').naturalWidth > 100")
     elif state == "lenses":
         page.click("#lens")
         page.click("#lens-list [role=option]:nth-child(9)")

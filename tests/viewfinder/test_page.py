@@ -371,17 +371,17 @@ def test_a_lens_found_by_its_name(page: Browser, server: Live, tmp_path: Path) -
 
 
 def test_rays_of_a_point(page: Browser) -> None:
-    page.click("[data-toggle=section]")
+    page.click("[data-panel=rays]")
     page.click("#picture", 20, 30)
-    page.until("document.getElementById('section-drawing').naturalWidth > 100")
-    text = page.run("document.querySelector('#section figcaption').textContent")
+    page.until("document.getElementById('rays-drawing').naturalWidth > 100")
+    text = page.run("document.querySelector('#rays-text').textContent")
     assert "µm wide" in text
     lit = page.run(
         "Math.max(...document.getElementById('spread').getContext('2d')"
         ".getImageData(0, 0, 48, 48).data.filter((_, i) => i % 4 === 0))"
     )
     assert lit == 255
-    page.click("[data-toggle=section]")
+    page.click("[data-panel=rays]")
 
 
 def test_three_models_side_by_side(page: Browser) -> None:
@@ -438,7 +438,7 @@ def test_a_mode_turns_its_rings_itself(
     check_bits(page, server, tmp_path)
     rings = "[...document.querySelectorAll('.ring:not([hidden]) input:disabled')]"
     assert page.run(f"{rings}.map((one) => one.id.slice(5)).join()") == ",".join(off)
-    titles = page.run(f"{rings}.map((one) => one.closest('.ring').title)")
+    titles = page.run(f"{rings}.map((one) => one.title.replace(/ \\(.*/, ''))")
     assert titles == [f"The exposure mode {mode} sets it; Manual lets you turn it"] * len(off)
     shown = command_of(page)
     for ring in off:

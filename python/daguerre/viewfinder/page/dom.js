@@ -25,3 +25,9 @@ export function showSvg(image, svg) {
   URL.revokeObjectURL(image.src);
   image.src = URL.createObjectURL(new Blob([svg], {type: 'image/svg+xml'}));
 }
+
+/** Sets the tooltip of a control, with its key where it has one. */
+export function title(control, text) {
+  const key = control.getAttribute('aria-keyshortcuts');
+  control.title = key ? `${text} (${key})` : text;
+}

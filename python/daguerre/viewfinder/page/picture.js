@@ -11,6 +11,7 @@ export class Picture {
     this.last = null;   // bitmap of the picture before the last turn
     this.shows = {grid: false, horizon: false, zebra: false, peaking: false};
     this.tilt = null;
+    this.whole = null;   // size of the picture at rest
   }
 
   /** Shows a picture; resolves when it is on the screen. */
@@ -30,6 +31,8 @@ export class Picture {
     this.canvas.width = bitmap.width;
     this.canvas.height = bitmap.height;
     this.context.drawImage(bitmap, 0, 0);
+    const [width, height] = this.head.panels.length || !this.whole ? [bitmap.width, bitmap.height] : this.whole;
+    this.canvas.closest('.frame').style.setProperty('--ratio', width / height);
   }
 
   compare(on) {

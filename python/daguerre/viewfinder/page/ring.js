@@ -3,9 +3,12 @@
 // The input is a native slider over the drawing, so that mouse, touch, keys and screen readers work
 // as everywhere; the wheel and dragging the scale itself are added.
 
+import {title} from './dom.js';
+
 const PX_PER_RING = 900;   // length of a whole ring, unrolled
 const PX_PER_LETTER = 7;
 const NEAR = 0.25;   // a click this near to where the ring was found gives way to it, in steps
+const HINT = 'Drag, turn the wheel, or use the arrow keys';
 const LARGE = 5;     // steps of Page Up, and of the wheel with Shift
 const SVG = 'http://www.w3.org/2000/svg';
 
@@ -26,7 +29,7 @@ export class Ring {
     element.classList.add('ring');
     element.innerHTML = `
       <div class="ring-head"><label for="ring-${name}"></label><output></output>
-        <button type="button" class="back" title="As opened" hidden>↺</button></div>
+        <button type="button" class="back" title="As it was when the viewfinder opened" hidden>↺</button></div>
       <div class="barrel"><svg aria-hidden="true"></svg><input type="range" id="ring-${name}"></div>`;
     this.label = element.querySelector('label');
     this.label.textContent = element.dataset.label;
@@ -56,7 +59,7 @@ export class Ring {
     this.input.step = 'any';
     this.input.disabled = off !== '';
     this.element.classList.toggle('off', off !== '');
-    this.element.title = off;
+    title(this.input, off || HINT);
     this.back.hidden = off !== '' || now === JSON.stringify(opened);
     if (!this.busy && !this.holds) {
       if (now !== this.sent || now === JSON.stringify(this.home?.texts)) this.home = {value, texts};

@@ -1,0 +1,38 @@
+// output.js -- what is taken home: the command, the samples to draw, saved files.
+
+const COPIED_MS = 1500;
+
+export class Output {
+  constructor(view) {
+    this.view = view;
+    const {find} = view;
+    find('copy').addEventListener('click', () => this.copy());
+    find('spp').addEventListener('change', () => view.send({draw: Number(find('spp').value)}));
+    for (const button of view.root.querySelectorAll('[data-save]')) {
+      button.addEventListener('click', () => view.send({save: button.dataset.save}));
+    }
+  }
+
+  update({command, readings}) {
+    const {find, root} = this.view;
+    find('command').value = command;
+    find('command').closest('div').hidden = root.querySelector('[for=command]').hidden = !command;
+    if (root.activeElement !== find('spp')) find('spp').value = readings.spp ?? '';
+  }
+
+  told({saved}) {
+    if (saved) this.view.find('saved').textContent = `Saved ${saved}`;
+  }
+
+  async copy() {
+    const field = this.view.find('command'), button = this.view.find('copy');
+    try {
+      await navigator.clipboard.writeText(field.value);
+    } catch {   // a page that is not from this machine may not use the clipboard
+      field.select();
+      document.execCommand('copy');
+    }
+    button.textContent = 'Copied';
+    setTimeout(() => (button.textContent = 'Copy'), COPIED_MS);
+  }
+}

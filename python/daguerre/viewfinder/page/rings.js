@@ -1,0 +1,124 @@
+// rings.js -- the rings of the camera: which there are, what each shows and turns.
+
+import {fill, press, pressed} from './dom.js';
+import {recall, remember} from './memory.js';
+import {Ring} from './ring.js';
+import * as scales from './scales.js';
+
+const RINGS = {
+  focus_distance: 'Focus', f_stop: 'Aperture', zoom: 'Zoom', shutter_time: 'Shutter', iso: 'ISO',
+  exposure_compensation: 'Exposure compensation', white_balance: 'White balance', blades: 'Iris blades', time: 'Time',
+};
+const IRIS_SCALES = [['f3', 'f, third stops'], ['f2', 'f, half stops'], ['T3', 'T, third stops'], ['T2', 'T, half stops']];
+
+export class Rings {
+  constructor(view) {
+    this.view = view;
+    this.rings = {};
+    for (const [name, label] of Object.entries(RINGS)) {
+      const element = document.createElement('div');
+      element.dataset.label = label;
+      view.find('rings').append(element);
+      this.rings[name] = new Ring(element, name, (texts) => view.turn(texts));
+    }
+    fill(this.irisScale, IRIS_SCALES);
+    this.irisScale.value = recall('iris-scale', 'f3');
+    this.irisScale.addEventListener('change', () => this.rescale());
+    view.find('hyperfocal').addEventListener('click', () => {
+      view.turn({focus_distance: `${Number(view.state.readings.hyperfocal_m.toPrecision(5))}`});
+    });
+    const play = view.find('play');
+    play.addEventListener('click', () => this.play(press(play, !pressed(play))));
+    new ResizeObserver(() => this.draw()).observe(view.find('rings'));
+  }
+
+  get irisScale() {
+    return this.view.find('iris-scale');
+  }
+
+  rescale() {
+    remember('iris-scale', this.irisScale.value);
+    this.rings.f_stop.forget();
+    if (this.view.state) this.update(this.view.state);
+  }
+
+  draw() {
+    for (const ring of Object.values(this.rings)) if (ring.scale) ring.draw();
+  }
+
+  opened({duration_s: duration}) {
+    this.view.find('play').hidden = !duration;
+  }
+
+  update({dials, readings}) {
+    if (!readings.lens) return;
+    const {rings, view} = this, {open, current} = view;
+    for (const ring of Object.values(rings)) ring.holds &&= !current;
+    const of = (...names) => this.ringOf(dials, ...names);
+    const iris = readings.f_stop !== null;
+    rings.focus_distance.show(scales.focusScale(readings.closest_m), readings.focus_m ?? Infinity, {
+      ...of('focus_distance', 'focus_at', 'focus_on'), ...(iris ? {} : {off: 'everything is sharp'}),
+      span: iris ? [readings.near_m, readings.far_m ?? Infinity] : null,
+    });
+    rings.f_stop.element.hidden = rings.blades.element.hidden = !iris;
+    if (iris) this.updateIris(dials, readings);
+    rings.zoom.element.hidden = !readings.zoom_range_mm;
+    if (readings.zoom_range_mm) rings.zoom.show(scales.zoomScale(readings.zoom_range_mm), readings.zoom_mm, of('zoom'));
+    rings.shutter_time.show(scales.shutterScale(), readings.shutter_s || 1 / 8000, {
+      ...of('shutter_time', 'shutter_angle'),
+      extra: this.beside('shutter_time', `${(360 * readings.fps * readings.shutter_s).toPrecision(3)}°`),
+    });
+    rings.iso.show(scales.isoScale(), readings.iso, {...of('iso'), extra: this.beside('iso')});
+    rings.exposure_compensation.show(scales.evScale(), readings.ev, of('exposure_compensation'));
+    rings.white_balance.show(scales.whiteScale(), readings.white_k ?? 6500, of('white_balance'));
+    rings.blades.show(scales.bladesScale(), readings.blades, of('blades'));
+    rings.time.element.hidden = !open.duration_s;
+    if (open.duration_s) {
+      rings.time.show(scales.timeScale(open.duration_s, readings.fps), readings.time_s, of('time'));
+    }
+    view.find('hyperfocal').disabled = !view.mine || readings.hyperfocal_m === null;
+  }
+
+  updateIris(dials, readings) {
+    const [letter, perStop] = readings.t_stop ? this.irisScale.value : ['f', this.irisScale.value[1]];
+    const loss = readings.t_stop ? readings.t_stop / readings.f_stop : 1;
+    const [value, widest] = letter === 'T' ? [readings.t_stop, readings.widest * loss] : [readings.f_stop, readings.widest];
+    const other = letter === 'T' ? `f/${readings.f_stop.toPrecision(3)}`
+      : readings.t_stop ? `T/${readings.t_stop.toPrecision(3)}` : '';
+    const names = letter === 'T' ? ['t_stop', 'f_stop'] : ['f_stop', 't_stop'];
+    this.rings.f_stop.show(scales.irisScale(widest, Number(perStop), letter), value, {
+      ...this.ringOf(dials, ...names, 'aperture_diameter'), extra: this.beside('f_stop', other),
+    });
+  }
+
+  /** What a ring shows of its dials; the first one is what it turns. */
+  ringOf(dials, dial, ...others) {
+    const names = [dial, ...others].sort();
+    const of = (texts) => Object.fromEntries(names.map((name) => [name, texts[name] ?? null]));
+    const {state: {chosen, mode}, mine, open} = this.view;
+    const off = chosen.includes(dial) ? `The exposure mode ${mode} sets it; Manual lets you turn it`
+      : mine ? '' : 'Another page turns the rings';
+    return {dial, texts: of(dials), opened: of(open.dials), off};
+  }
+
+  /** Text beside the value of a ring that an exposure mode sets. */
+  beside(dial, text = '') {
+    const {chosen, mode} = this.view.state;
+    return [text, chosen.includes(dial) ? mode : ''].filter(Boolean).join(' · ');
+  }
+
+  /** Plays the animation as fast as pictures come. */
+  play(on) {
+    clearInterval(this.player);
+    if (!on) return;
+    const {view} = this, {duration_s: duration} = view.open, {fps} = view.state.readings;
+    let shown = -1;
+    this.player = setInterval(() => {
+      const turn = Number(view.find('frame').dataset.turn);
+      if (turn === shown) return;   // the last step is not on the screen yet
+      shown = turn;
+      const next = view.state.readings.time_s + 1 / fps;
+      view.turn({time: `${next > duration ? 0 : Number(next.toFixed(6))}`});
+    }, 1000 / fps);
+  }
+}

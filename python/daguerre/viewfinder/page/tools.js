@@ -1,0 +1,63 @@
+// tools.js -- the buttons under the picture: what lies over it, how it is shown, where the camera stands.
+
+import {press, pressed} from './dom.js';
+import {recall, remember} from './memory.js';
+
+const PLACE = ['place.position', 'place.look_at', 'place.roll'];
+
+export class Tools {
+  constructor(view) {
+    this.view = view;
+    for (const button of this.all('toggle')) {
+      button.addEventListener('click', () => this.toggle(button, !pressed(button)));
+      if (recall(button.dataset.toggle)) this.toggle(button, true);
+    }
+    for (const button of this.all('show')) {
+      button.addEventListener('click', () => {
+        view.send({show: {...view.state.show, [button.dataset.show]: !pressed(button)}});
+      });
+    }
+    this.compare(view.find('compare'));
+    view.find('level').addEventListener('click', () => view.tripod.level());
+    view.find('reset').addEventListener('click', () => {
+      view.tripod.forget();
+      view.turn(Object.fromEntries(PLACE.map((name) => [name, view.open.dials[name] ?? null])));
+    });
+  }
+
+  all(kind) {
+    return this.view.root.querySelectorAll(`[data-${kind}]`);
+  }
+
+  /** Lays something over the picture; the page remembers it. */
+  toggle(button, on) {
+    press(button, on);
+    remember(button.dataset.toggle, on);
+    this.view.picture.toggle(button.dataset.toggle, on);
+  }
+
+  /** Shows the picture before the last turn while the button is held. */
+  compare(button) {
+    for (const [event, shows] of [['pointerdown', true], ['pointerup', false], ['pointerleave', false]]) {
+      button.addEventListener(event, () => this.view.picture.compare(shows));
+    }
+    button.addEventListener('keydown', (event) => event.key === ' ' && this.view.picture.compare(true));
+    button.addEventListener('keyup', () => this.view.picture.compare(false));
+  }
+
+  opened({denoises}) {
+    this.view.root.querySelector('[data-show=denoised]').hidden = !denoises;
+  }
+
+  update({show}) {
+    for (const button of this.all('show')) press(button, show[button.dataset.show]);
+  }
+
+  shown({panels}) {
+    this.view.find('names').replaceChildren(...panels.map((name) => {
+      const label = document.createElement('span');
+      label.textContent = name;
+      return label;
+    }));
+  }
+}
