@@ -15,7 +15,8 @@ from daguerre.analysis.pencils import Pencil
 from daguerre.errors import UsageError
 from daguerre.plots.lens_section import draw, section, to_svg
 from daguerre.rendering.session import Session
-from daguerre.setup.near_clip import directions_of, view_begins
+
+from .sight import depth_m
 
 #: Width of the spread's picture, px.
 PIXELS = 48
@@ -58,7 +59,7 @@ def glass_at(session: Session, x: float, y: float) -> dict[str, Any]:
     right = (x / pixels[0] - 0.5) * size[0] + setup.shift_mm[0]
     up = (0.5 - y / pixels[1]) * size[1] + setup.shift_mm[1]
     film = (-right, -up)  # the image is upside down
-    distance = _distance_mm(session, _lit(bench, film, None))
+    distance = 1e3 * depth_m(session, -_lit(bench, film, None).direction)  # the camera's axes
     light = _lit(bench, film, distance)
     drawn = [pencil(bench, -math.hypot(*film), distance_mm=distance)]
     half = max(bench.field_mm, 0.5 * math.hypot(*size))
@@ -77,17 +78,6 @@ def _lit(bench: Bench, film: tuple[float, float], distance_mm: float | None) -> 
     if found is None:
         raise UsageError("section: no light from this point reaches the film; choose another point")
     return found
-
-
-def _distance_mm(session: Session, light: Pencil) -> float:
-    """Depth of the surface that a chief ray comes from, mm; infinite: it meets none."""
-    setup = session.prepared.setup
-    pose, seen = setup.world_from_camera, directions_of(setup.core)
-    toward = -light.direction  # the lens's axes are the camera's
-    start = view_begins(setup.camera, seen, setup.frame_size_mm, toward)
-    hit = session.built.core.first_hit(tuple(pose[:3, 3]), tuple(pose[:3, :3] @ toward), start)
-    depth = math.inf if hit is None else 1e3 * float(hit[0]) * -float(toward[2])
-    return depth if depth > 0 else math.inf
 
 
 def _upright(image: NDArray[np.float64], light: Pencil) -> list[int]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import itertools
 import json
+import math
 import shlex
 from collections.abc import Coroutine, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -39,8 +40,10 @@ from .messages import (
 from .painter import MODELS, Drawn, Painter, Wish
 from .readings import readings_of
 from .saving import save, save_camera
+from .sight import distance_at
 from .stage import Stage
 from .tev import Tev
+from .tint import legends
 
 #: Time between two signs of life, s: browsers show pages no pings of the protocol.
 _PING_S = 10
@@ -173,7 +176,7 @@ class Hub:
                     guest.busy = None
                     await self._offer(guest)
             case Probe(x, y):
-                await self._tell(guest, {"value": self._value(x, y)})
+                await self._tell(guest, {"value": await asyncio.to_thread(self._value, x, y)})
             case Section(x, y):
                 found = await asyncio.to_thread(self._section, x, y)
                 await self._tell(guest, {"section": found})
@@ -244,13 +247,23 @@ class Hub:
                 await self._tell_all({"ping": second})
 
     def _value(self, x: int, y: int) -> dict[str, Any] | None:
-        if self._sheet is None or self._sheet.drawn.panels:
+        sheet = self._sheet  # the next one may come meanwhile
+        if sheet is None or sheet.drawn.panels:
             return None
-        drawn = self._sheet.drawn
+        drawn = sheet.drawn
         width, height = drawn.wish.shot.settings.film.resolution
         frame = drawn.frame
         found = value_at(frame, x * frame.width // width, y * frame.height // height)
-        return found and found | {"picture": self._sheet.number, "samples": drawn.samples}
+        own = drawn.session.prepared.setup.resolution
+        distance = distance_at(
+            drawn.session, (x + 0.5) * own[0] / width, (y + 0.5) * own[1] / height
+        )
+        return found and {
+            **found,
+            "picture": sheet.number,
+            "samples": drawn.samples,
+            "distance_m": distance if math.isfinite(distance) else None,
+        }
 
     def _section(self, x: float, y: float) -> dict[str, Any]:
         if self._sheet is None:
@@ -282,6 +295,7 @@ class Hub:
             "models": list(MODELS),
             "modes": list(MODES),
             "meters": list(METERS),
+            "legends": legends(),
             "dials": dict(self._first.texts),
             "resolution": settings.film.resolution,
             "spp": settings.sampling.most,
@@ -311,8 +325,10 @@ class Hub:
         """Develops a picture and sends it to the pages; may be called by any thread."""
         if self._tev is not None:
             self._tev.send(drawn)
-        image = image_of(drawn, denoised=self._show.denoised)
         readings = readings_of(drawn)
+        limits = readings["near_m"], readings["far_m"]
+        show = self._show
+        image = image_of(drawn, denoised=show.denoised, tint=show.tint, limits=limits)
         self._sheets += 1
         head = {
             "picture": self._sheets,
@@ -323,6 +339,7 @@ class Hub:
             "rests": drawn.rests,
             "panels": [panel.model for panel in drawn.panels],
             "histogram": image.histogram,
+            "tint": image.tint,
         }
         text = json.dumps(head).encode()
         sheet = Sheet(self._sheets, drawn, len(text).to_bytes(4, "little") + text + image.bytes)

@@ -13,9 +13,12 @@ from daguerre.rendering.denoise import denoise
 
 from .painter import Drawn
 from .shot import Shot
+from .tint import NONE, Tint, tint_of
 
 #: JPEG quality of pictures on their way to the page.
 QUALITY = 88
+#: That of tinted ones, whose colours are read.
+TINT_QUALITY = 95
 #: Pictures of so few pixels go as they are: a browser decodes others in a thread that may have to
 #: wait for a core.
 FEW = 20_000
@@ -31,27 +34,59 @@ class Image:
         bytes: Its pixels, or its file.
         size: Width and height, px.
         histogram: Share of pixels in each of 128 equal steps of brightness, for red, green, blue.
+        tint: Kind and note of a tint; ``bytes`` of it follow those of the picture; None: none.
     """
 
     kind: str
     bytes: bytes
     size: tuple[int, int]
     histogram: list[list[float]]
+    tint: dict[str, Any] | None = None
 
 
-def image_of(drawn: Drawn, *, denoised: bool = False) -> Image:
-    """Develops a picture, or those side by side, and encodes it."""
-    import simplejpeg
+def image_of(
+    drawn: Drawn,
+    *,
+    denoised: bool = False,
+    tint: str = NONE,
+    limits: tuple[float | None, float | None] = (None, None),
+) -> Image:
+    """Develops a picture, or those side by side, and encodes it.
 
+    Args:
+        drawn: The picture.
+        denoised: Whether to denoise it.
+        tint: How to tint it, too; see ``tint_of``, also for ``limits``.
+        limits: Limits of the depth of field.
+    """
     frame = denoise(drawn.frame) if denoised and drawn.whole else drawn.frame
     parts = [shown(panel.frame, panel.shot) for panel in drawn.panels]
     pixels = np.ascontiguousarray(np.hstack(parts)) if parts else shown(frame, drawn.shot)
     height, width = pixels.shape[:2]
-    if width * height <= FEW:
-        kind, data = "rgb", pixels.tobytes()
+    kind, data = _encoded(pixels, QUALITY)
+    if parts and tint != NONE:
+        tinted: Tint | None = Tint(tint, note="Pictures side by side are not tinted")
     else:
-        kind, data = "jpeg", simplejpeg.encode_jpeg(pixels, quality=QUALITY, colorspace="RGB")
-    return Image(kind, data, (width, height), _histogram(pixels))
+        tinted = tint_of(tint, frame, drawn.session, pixels, limits)
+    head, more = _told(tinted)
+    return Image(kind, data + more, (width, height), _histogram(pixels), head)
+
+
+def _told(tint: Tint | None) -> tuple[dict[str, Any] | None, bytes]:
+    """Head and bytes of a tint."""
+    if tint is None:
+        return None, b""
+    data = b"" if tint.pixels is None else _encoded(tint.pixels, TINT_QUALITY)[1]
+    return {"kind": tint.kind, "note": tint.note, "bytes": len(data)}, data
+
+
+def _encoded(pixels: NDArray[np.uint8], quality: int) -> tuple[str, bytes]:
+    """Kind and bytes of pixels on their way to the page."""
+    import simplejpeg
+
+    if pixels.shape[0] * pixels.shape[1] <= FEW:
+        return "rgb", pixels.tobytes()
+    return "jpeg", simplejpeg.encode_jpeg(pixels, quality=quality, colorspace="RGB")
 
 
 def shown(frame: Frame, shot: Shot) -> NDArray[np.uint8]:

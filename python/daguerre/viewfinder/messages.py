@@ -13,6 +13,7 @@ from daguerre.errors import UsageError
 from daguerre.lenses.search import MOST
 
 from .dials import DIALS
+from .tint import NONE, TINTS
 
 #: Longest message, bytes.
 MAX_BYTES = 64 << 10
@@ -71,10 +72,17 @@ class Reload:
 
 @dataclass(frozen=True)
 class Show:
-    """Way in which pictures are shown: denoised, or by three models of the lens side by side."""
+    """Way in which pictures are shown.
+
+    Attributes:
+        denoised: Whether they are denoised.
+        models: Whether they are drawn by three models of the lens, side by side.
+        tint: One of ``TINTS``: by exposure or distance.
+    """
 
     denoised: bool
     models: bool
+    tint: str = NONE
 
 
 @dataclass(frozen=True)
@@ -154,10 +162,13 @@ def _reload(value: Any) -> Reload:
 
 
 def _show(value: Any) -> Show:
-    names = ("denoised", "models")
-    fits = isinstance(value, dict) and value.keys() == set(names)
-    if not fits or not all(isinstance(value[name], bool) for name in names):
-        raise UsageError(f"show: wanted denoised and models, true or false; got {short(value)}")
+    fits = isinstance(value, dict) and value.keys() == {"denoised", "models", "tint"}
+    if not fits or not all(isinstance(value[name], bool) for name in ("denoised", "models")):
+        raise UsageError(
+            f"show: wanted denoised and models, true or false, and tint; got {short(value)}"
+        )
+    if value["tint"] not in TINTS:
+        raise UsageError(f"show: tint: wanted {', '.join(TINTS)}; got {short(value['tint'])}")
     return Show(**value)
 
 

@@ -18,6 +18,7 @@ from daguerre.setup.camera_facts import UNLIT, Facts, camera_warnings, facts_of,
 from daguerre.setup.resolved import ResolvedLens
 
 from .painter import Drawn
+from .sight import ring_offset_m
 
 
 def readings_of(drawn: Drawn) -> dict[str, Any]:
@@ -48,8 +49,7 @@ def _distances(session: Session, facts: Facts) -> dict[str, float | None]:
     """Distances of the focus ring, from where the camera measures them; None: infinity."""
     camera, lens = session.camera, session.prepared.setup.lens
     from_sensor = camera.focus_from == "sensor"
-    film_mm = lens.entrance_pupil_offset_mm or lens.pinhole_focal_length_mm
-    more = 1e-3 * film_mm if from_sensor else 0.0
+    more = ring_offset_m(session)
     found = {
         "focus_m": facts.focus_m,
         "hyperfocal_m": facts.hyperfocal_m,
