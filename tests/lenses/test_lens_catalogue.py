@@ -49,12 +49,18 @@ def test_pictures_and_links_of_the_page_exist() -> None:
     shown = set(re.findall(r'src="([^"]*)"', PAGE))
     for entry in library.entries():
         assert f"lenses/drawings/{entry.name}.svg" in shown
-        assert f"lenses/photographs/{entry.name}.jpg" in shown
+        assert f"../python/daguerre/lenses/library/photographs/{entry.name}.webp" in shown
     for name in shown:
         assert (ROOT / "docs" / name).stat().st_size < 40_000
     targets = {part.split(")")[0] for part in PAGE.split("](#")[1:]}
     headings = {line[4:].replace(".", "") for line in PAGE.splitlines() if line.startswith("### ")}
     assert targets <= headings
+
+
+def test_the_package_has_a_small_photograph_of_each_lens() -> None:
+    sizes = {path.name: path.stat().st_size for path in library.PHOTOGRAPHS.iterdir()}
+    assert set(sizes) == {f"{name}.webp" for name in library.names()}
+    assert sum(sizes.values()) < 1_100_000
 
 
 def test_a_small_drawing_keeps_its_curves(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,6 +12,8 @@ from functools import cache
 from pathlib import Path
 
 FOLDER = Path(__file__).parent / "library"
+#: A picture of the same scene through each lens, as NAME.webp.
+PHOTOGRAPHS = FOLDER / "photographs"
 
 
 @dataclass(frozen=True)

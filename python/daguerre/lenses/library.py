@@ -11,12 +11,12 @@ from daguerre.errors import UsageError
 from daguerre.files.library import find as file_of
 
 from .formats import SUFFIXES
-from .index import FOLDER, Entry, entries, names
+from .index import FOLDER, PHOTOGRAPHS, Entry, entries, names
 from .lens import Lens
 from .reader import read
 from .search import suggest
 
-__all__ = ["FOLDER", "Entry", "entries", "load", "names"]
+__all__ = ["FOLDER", "PHOTOGRAPHS", "Entry", "entries", "load", "names"]
 
 
 @guarded

@@ -45,7 +45,7 @@ def photograph_all(wanted: list[library.Entry], out: Path) -> None:
     scene, key = dg.load(file), photographs.scene_key(file)
     for entry in wanted:
         started = time.process_time()
-        target = PICTURES / "photographs" / f"{entry.name}.jpg"
+        target = library.PHOTOGRAPHS / f"{entry.name}.webp"
         if photographs.take(place(entry, lenses.load(entry.name)), scene, key, target):
             print(
                 f"{entry.name}: photograph, {time.process_time() - started:.1f} CPU s", flush=True

@@ -6,7 +6,10 @@ from pathlib import Path
 
 from daguerre.lenses.library import Entry
 
-PICTURES = Path(__file__).resolve().parents[3] / "docs" / "lenses"
+DOCS = Path(__file__).resolve().parents[3] / "docs"
+PICTURES = DOCS / "lenses"
+#: The program shows the same photographs, so its package has them.
+PHOTOGRAPHS_FROM_DOCS = "../python/daguerre/lenses/library/photographs"
 
 INTRODUCTION = """# Lens catalogue
 
@@ -71,12 +74,12 @@ def _section(entry: Entry) -> str:
     year = f" ({entry.year})" if entry.year else ""
     film = f", film {entry.format.replace('x', ' x ')} mm" if entry.format else ""
     pictures = " ".join(
-        f'<img src="lenses/{folder}/{entry.name}.{suffix}" alt="{what} {entry.title}">'
+        f'<img src="{folder}/{entry.name}.{suffix}" alt="{what} {entry.title}">'
         for folder, suffix, what in (
-            ("drawings", "svg", "Section of the"),
-            ("photographs", "jpg", "Photograph by the"),
+            ("lenses/drawings", "svg", "Section of the"),
+            (PHOTOGRAPHS_FROM_DOCS, "webp", "Photograph by the"),
         )
-        if (PICTURES / folder / f"{entry.name}.{suffix}").exists()
+        if (DOCS / folder / f"{entry.name}.{suffix}").exists()
     )
     return (
         f"### {entry.name}\n\n**{entry.title}**{year}, {entry.type}{film}. {_numbers(entry)}. "

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
+from PIL import ExifTags, Image
 from place import Place
 
 import daguerre as dg
@@ -17,16 +18,13 @@ from daguerre.rendering.denoise import denoise
 
 #: Samples per pixel, and deepest path; raise the number when pictures should be made anew.
 SPP, DEPTH, EDITION = 16, 4, 1
-JPEG = "jpeg:84"
+QUALITY = 85
 
 
 def take(at: Place, scene: dg.Scene, scene_key: str, path: Path) -> bool:
     """Takes the photograph unless it is there already; whether it was taken."""
     key = _key(at, scene_key)
-    if (
-        path.exists()
-        and oiio.ImageBuf(str(path)).spec().get_string_attribute("ImageDescription") == key
-    ):
+    if path.exists() and Image.open(path).getexif().get(ExifTags.Base.ImageDescription) == key:
         return False
     transform = np.eye(4)
     transform[2, 3] = at.distance_m
@@ -38,16 +36,16 @@ def take(at: Place, scene: dg.Scene, scene_key: str, path: Path) -> bool:
         focus_distance=at.distance_m,
     )
     frame = dg.render(scene, camera, spp=SPP, resolution=at.resolution, max_depth=DEPTH, aovs=True)
-    if find_spec("pyoidn"):
+    if find_spec("mitsuba_oidn"):
         frame = denoise(frame)
     path.parent.mkdir(parents=True, exist_ok=True)
     image = oiio.ImageBuf(np.ascontiguousarray(frame.display("soft")[..., :3]))
     if at.size != at.resolution:
         image = oiio.ImageBufAlgo.resize(image, roi=oiio.ROI(0, at.size[0], 0, at.size[1]))
-    image.specmod().attribute("Compression", JPEG)
-    image.specmod().attribute("ImageDescription", key)
-    if not image.write(str(path)):
-        raise SystemExit(image.geterror())
+    about = Image.Exif()
+    about[ExifTags.Base.ImageDescription] = key
+    shown = Image.fromarray(image.get_pixels(oiio.UINT8))
+    shown.save(path, quality=QUALITY, method=6, exif=about)
     return True
 
 

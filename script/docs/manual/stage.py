@@ -117,7 +117,7 @@ def pipes(text: str) -> str:
 
 def is_picture(file: Path) -> bool:
     """Whether a file is shown as it is."""
-    return file.suffix in (".jpg", ".png", ".svg")
+    return file.suffix in (".jpg", ".png", ".svg", ".webp")
 
 
 def listing(file: Path) -> str:
