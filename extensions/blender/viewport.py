@@ -15,7 +15,8 @@ from daguerre.camera.exposure_mode import LIGHT
 from daguerre.errors import UsageError
 from daguerre.rendering import Photograph
 from daguerre.viewfinder.dials import Dials
-from daguerre.viewfinder.painter import Drawn, Painter, Wish
+from daguerre.viewfinder.drawn import Drawn, Wish
+from daguerre.viewfinder.painter import Painter
 from daguerre.viewfinder.shot import Shot
 from daguerre.viewfinder.stage import Stage
 

@@ -17,8 +17,8 @@ from daguerre.rendering.over_meter import exposure_in_words
 from daguerre.rendering.prepare import Prepared
 from daguerre.viewfinder import saving
 from daguerre.viewfinder.dials import Dials
+from daguerre.viewfinder.drawn import Drawn
 from daguerre.viewfinder.opening import opened
-from daguerre.viewfinder.painter import Drawn
 from daguerre.viewfinder.readings import readings_of
 from daguerre.viewfinder.stage import Stage
 

@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.viewfinder import painter
+from daguerre.viewfinder import work
 from daguerre.viewfinder.dials import Dials
+from daguerre.viewfinder.drawn import Drawn, Wish
 from daguerre.viewfinder.image import image_of
-from daguerre.viewfinder.painter import MODELS, Drawn, Painter, Wish
+from daguerre.viewfinder.painter import Painter
+from daguerre.viewfinder.rungs import MODELS
 from daguerre.viewfinder.stage import Stage
 
 simplejpeg = pytest.importorskip("simplejpeg", reason="needs the extra view")
@@ -127,7 +129,7 @@ def test_after_a_fault_of_any_kind_the_next_wish_is_drawn(
         raise fault("planted")
 
     with monkeypatch.context() as patch:
-        patch.setattr(painter, "Session", fails)
+        patch.setattr(work, "Session", fails)
         seen.wish(1)
         assert isinstance(seen.failures.get(timeout=60)[1], fault)
     seen.wish(2)
@@ -171,7 +173,7 @@ def test_a_painter_at_rest_draws_nothing_until_the_next_wish(seen: Seen, stage: 
     time.sleep(0.5)
     while not seen.pictures.empty():
         seen.pictures.get()
-    time.sleep(painter.LONGEST_S + 0.5)
+    time.sleep(work.LONGEST_S + 0.5)
     assert seen.pictures.empty()
     stage.settings = settings
     seen.wish(2)

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 #: Relative difference below which two numbers are one, as files hold single precision.
 _SINGLE = 1e-6
 LIGHT_DEFAULTS = {row.name: row.default for row in LIGHT}
+#: Parameters of brightness alone, with their defaults: they change no light of a frame.
+BRIGHTNESS = {name: one for name, one in LIGHT_DEFAULTS.items() if name != "natural_vignetting"}
 PINHOLE_F_STOP: float = LIGHT["exposure_f_stop"].usual
 
 
@@ -57,6 +59,11 @@ def exposure_facts(camera: Camera) -> dict[str, Any]:
     usual = {"exposure_time": None, "exposure_f_stop": None, "responsivity": 1.0}
     given = {name: getattr(camera, name) for name in usual}
     return {name: value for name, value in given.items() if value != usual[name]}
+
+
+def without_brightness(camera: Camera) -> Camera:
+    """Returns a camera that sees the same light, with the usual brightness."""
+    return camera.with_(**BRIGHTNESS)
 
 
 def without_exposure(facts: Mapping[str, Any]) -> dict[str, Any]:

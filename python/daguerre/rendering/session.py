@@ -20,6 +20,7 @@ from daguerre.frame.frame import Frame
 from daguerre.parameters.keywords import takes
 from daguerre.scene.scene import Scene
 from daguerre.setup.built_scene import BuiltScene
+from daguerre.setup.metadata import camera_metadata
 
 from . import identity
 from .adaptive import PARTS, Round
@@ -319,6 +320,30 @@ class Session:
     def key(self) -> dict[str, str]:
         """Key that passes must share to be added: hashes of scene, camera, settings, build."""
         return identity.key(self)
+
+    def expose(self, camera: Camera, metering: Mapping[str, Any] | None = None) -> None:
+        """Gives frames from now on the brightness of another camera; the samples stay.
+
+        Args:
+            camera: Camera that sees the same light.
+            metering: Facts of the meter that chose its exposure; None: none did.
+
+        Raises:
+            MismatchError: The camera sees other light.
+        """
+        one = prepare(self.scene, camera, self.settings, self.built)
+        if identity.camera_hash(one) != self.key["camera"]:
+            raise MismatchError("expose: wanted a camera that sees the same light, got another")
+        self.prepared, self.camera, self.metering = one, one.camera, metering or {}
+        self.notes = [*one.notes, *self.light_plan.notes]
+
+    def exposed(self, frame: Frame) -> Frame:
+        """Returns a frame of this session from before with the brightness of now."""
+        one = self.prepared
+        facts = camera_metadata(one.camera, one.setup, one.size[0])
+        found = {**frame.metadata, **facts, "metering": None, **self.metering}
+        kept = {name: value for name, value in found.items() if value is not None}
+        return replace(frame, metadata=kept)
 
     @property
     def metadata(self) -> dict[str, Any]:

@@ -21,6 +21,7 @@ from daguerre.files import extras
 
 from . import lens_list
 from .dials import DIALS, Dials, texts_of_words
+from .drawn import Drawn, Wish
 from .glass import drawing_of, glass_at
 from .image import image_of, value_at
 from .messages import (
@@ -37,8 +38,9 @@ from .messages import (
     Turn,
     parse,
 )
-from .painter import MODELS, Drawn, Painter, Wish
+from .painter import Painter
 from .readings import readings_of
+from .rungs import MODELS
 from .saving import save, save_camera
 from .sight import distance_at
 from .stage import Stage

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from daguerre.frame.frame import Frame
 from daguerre.rendering.denoise import denoise
 
-from .painter import Drawn
+from .drawn import Drawn
 from .shot import Shot
 from .tint import NONE, Tint, tint_of
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from daguerre.camera.camera import Camera
-from daguerre.camera.exposure import LIGHT_DEFAULTS
+from daguerre.camera.exposure import without_brightness
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
@@ -16,10 +16,6 @@ if TYPE_CHECKING:
     from daguerre.setup.built_scene import BuiltScene
 
     from .shot import Shot
-
-#: Parameters that change the brightness of a picture, and not what a meter sees.
-_UNSEEN = {name: value for name, value in LIGHT_DEFAULTS.items() if name != "natural_vignetting"}
-
 
 #: Pictures that it keeps: modes that choose the f-stop look through several.
 _KEPT = 8
@@ -37,7 +33,7 @@ class _Taken:
     def shows(self, one: Prepared) -> bool:
         """Whether the meter would see the same again."""
         same = self.scene is one.scene and self.size == one.size
-        return same and self.camera == _seen(one.camera)
+        return same and self.camera == without_brightness(one.camera)
 
 
 class LightMeter:
@@ -76,12 +72,7 @@ class LightMeter:
         if taken is None and not fresh and last is not None and last.size == one.size:
             taken = last
         if taken is None:
-            taken = _Taken(one.scene, _seen(one.camera), one.size, meter_picture(one))
+            taken = _Taken(one.scene, without_brightness(one.camera), one.size, meter_picture(one))
         others = [other for other in self._taken if other is not taken]
         self._taken = [*others[1 - _KEPT :], taken]
         return taken.frame
-
-
-def _seen(camera: Camera) -> Camera:
-    """A camera without what a meter does not see."""
-    return camera.with_(**_UNSEEN)

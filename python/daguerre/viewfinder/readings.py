@@ -17,7 +17,7 @@ from daguerre.rendering.session import Session
 from daguerre.setup.camera_facts import UNLIT, Facts, camera_warnings, facts_of, lit
 from daguerre.setup.resolved import ResolvedLens
 
-from .painter import Drawn
+from .drawn import Drawn
 from .sight import ring_offset_m
 
 

@@ -12,7 +12,7 @@ from daguerre.errors import OutputError, UsageError
 from daguerre.files.atomic import write_bytes
 from daguerre.rendering.reporter import Reporter
 
-from .painter import Drawn
+from .drawn import Drawn
 
 _MOST = 10_000
 

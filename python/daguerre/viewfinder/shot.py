@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure import without_brightness
 from daguerre.rendering.photograph import Photograph
 from daguerre.rendering.pixels import at_size
 from daguerre.rendering.settings import RenderSettings
@@ -37,6 +38,12 @@ class Shot:
     photograph: Photograph
     tone: str = "srgb"
     chosen: Chosen | None = None
+
+    def is_lit_as(self, other: Shot) -> bool:
+        """Whether the samples of another shot show this one, too, if no meter changes them."""
+        if self.scene is not other.scene or self.settings != other.settings:
+            return False
+        return without_brightness(self.camera) == without_brightness(other.camera)
 
     def smaller(self, divisor: int) -> Shot:
         """Returns a preview of the shot, smaller by a divisor, with one sample."""

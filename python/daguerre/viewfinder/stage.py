@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -40,6 +41,7 @@ class Stage:
         built: Scene built for the core, kept between shots.
         meter: Light meter for automatic modes.
         moment: The scene at the time of the last shot, if that is another one than the scene's.
+        metering: Held while the meter is used.
     """
 
     scene: Scene
@@ -51,6 +53,7 @@ class Stage:
     built: BuiltScene | None = None
     meter: LightMeter = field(default_factory=LightMeter)
     moment: Scene | None = None
+    metering: threading.Lock = field(default_factory=threading.Lock, repr=False, compare=False)
 
     def reload(self) -> Stage:
         """Loads the scene again; returns the stage with it.
@@ -95,9 +98,10 @@ class Stage:
         """
         if not is_automatic(shot.camera.exposure):
             return shot
-        chosen, built = self.meter.choose(shot, self.built, fresh=fresh)
-        if "shutter_time" not in chosen.changes:  # the meter exposes for as long as the picture
-            self.built = built
+        with self.metering:
+            chosen, built = self.meter.choose(shot, self.built, fresh=fresh)
+            if "shutter_time" not in chosen.changes:  # the meter exposes as long as the picture
+                self.built = built
         return replace(shot, camera=chosen.of(shot.camera), chosen=chosen)
 
     def try_out(self, dials: Dials) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from daguerre.errors import UsageError
 
-from .painter import Drawn
+from .drawn import Drawn
 
 CREATE, UPDATE = 4, 6
 PORT = 14158

@@ -1,0 +1,165 @@
+"""Work on a wish: its rungs, each with more and more samples, until it rests.
+
+A wish for the same light in another brightness does not end the work: the picture that is there is
+developed anew, and the samples that are being drawn count for it, too.
+"""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any, Protocol
+
+from daguerre.frame.frame import Frame
+from daguerre.rendering.rounds import rounds
+from daguerre.rendering.session import Session
+
+from .drawn import Drawn, Panel, Wish
+from .rungs import Rung, rung_of
+from .shot import Shot
+from .stage import Stage
+
+#: Samples of the steps of pictures side by side.
+_STEPS = (1, 4, 16, 64)
+#: Time between two pictures at full size, s, if samples are that fast.
+LONGEST_S = 1.0
+
+
+class Do(Protocol):
+    """Does a step of work; ``Work.expose`` may be called while it lasts."""
+
+    def __call__(self, step: Callable[[], Any]) -> Any:
+        """Returns what the step returns."""
+
+
+class Work:
+    """Work on a wish.
+
+    Attributes:
+        wish: The wish, or a later one for the same light.
+        drawn: Its newest picture; None: there is none yet.
+    """
+
+    def __init__(self, wish: Wish) -> None:
+        self.wish = wish
+        self.drawn: Drawn | None = None
+        self._index = 0
+        self._rung: Rung | None = None
+        self._sessions: list[Session] = []
+
+    def expose(self, wish: Wish) -> bool:
+        """Goes on for another wish if that asks for the same light; returns whether it does."""
+        if wish.stage is not self.wish.stage or wish.models != self.wish.models:
+            return False
+        if self._rung is None:  # the first one is being set up
+            fits = wish.is_lit_as(self.wish)
+        else:
+            rung = rung_of(wish, self._index)
+            if fits := rung.is_lit_as(self._rung):
+                _expose(self._sessions, rung)
+                self._rung = rung
+                self.drawn = self.drawn and self._exposed(self.drawn, wish)
+        self.wish = wish if fits else self.wish
+        return fits
+
+    def pictures(self, do: Do) -> Iterator[Drawn]:
+        """Draws until nothing better follows."""
+        for index in itertools.count():
+            self._set_up(index, do)
+            assert self._rung is not None
+            steps = _steps(self._rung, self._sessions)
+            while (step := do(partial(next, steps, None))) is not None:
+                frames = [session.frame(truth=False) for session in self._sessions]
+                self.drawn = self._drawn(self.wish, frames, *step)
+                yield self.drawn
+                if step[1]:
+                    return
+
+    def _set_up(self, index: int, do: Do) -> None:
+        """Sets up a rung as the newest wish has it."""
+        wish = self.wish
+
+        def make() -> tuple[Rung, list[Session]]:
+            rung = rung_of(wish, index)
+            return rung, [_session(wish.stage, shot) for shot in rung.shots]
+
+        rung, sessions = do(make)
+        if self.wish is not wish:  # another brightness was asked for meanwhile
+            rung = rung_of(self.wish, index)
+            _expose(sessions, rung)
+        self._index, self._rung, self._sessions = index, rung, sessions
+
+    def _drawn(self, wish: Wish, frames: list[Frame], samples: int, rests: bool) -> Drawn:
+        assert self._rung is not None
+        shots, names = self._rung.shots, self._rung.names
+        panels = tuple(map(Panel, names, shots, frames))
+        whole = self._rung.last and not panels
+        session = self._sessions[-1]
+        return Drawn(wish, shots[-1], session, frames[-1], samples, rests, whole, panels)
+
+    def _exposed(self, drawn: Drawn, wish: Wish) -> Drawn:
+        """Returns a picture of the rung with the brightness of another wish."""
+        before = [panel.frame for panel in drawn.panels] or [drawn.frame]
+        pairs = zip(self._sessions, before, strict=True)
+        frames = [session.exposed(frame) for session, frame in pairs]
+        return self._drawn(wish, frames, drawn.samples, drawn.rests)
+
+
+def _session(stage: Stage, shot: Shot) -> Session:
+    """Session of a shot; the built scene is kept for the next one."""
+    session = Session(shot.scene, shot.camera, settings=shot.settings, built=stage.built)
+    stage.built = session.built
+    session.metering = _metering(shot)
+    return session
+
+
+def _metering(shot: Shot) -> Any:
+    return {} if shot.chosen is None else shot.chosen.facts
+
+
+def _expose(sessions: list[Session], rung: Rung) -> None:
+    for session, shot in zip(sessions, rung.shots, strict=True):
+        session.expose(shot.camera, _metering(shot))
+
+
+def _steps(rung: Rung, sessions: list[Session]) -> Iterator[tuple[int, bool]]:
+    """Draws a rung step by step; yields the samples so far, and whether nothing better follows."""
+    if not rung.last:
+        sessions[0].draw(0, 1)
+        yield 1, False
+    elif rung.names:
+        yield from _together(sessions)
+    else:
+        yield from _refined(sessions[0])
+
+
+def _together(sessions: list[Session]) -> Iterator[tuple[int, bool]]:
+    """Draws several sessions to their end, in equal steps."""
+    most = sessions[0].settings.sampling.most
+    begin = 0
+    for end in [step for step in _STEPS if step < most] + [most]:
+        for session in sessions:
+            session.draw(begin, end)
+        begin = end
+        yield end, end == most
+
+
+def _refined(session: Session) -> Iterator[tuple[int, bool]]:
+    """Draws a session to its end."""
+    sampling = session.settings.sampling
+    if sampling.noise is not None:
+        for _ in rounds(session, sampling.noise, sampling.most):
+            yield int(session.sample_counts().min()), False
+        yield int(session.sample_counts().min()), True
+        return
+    begin, per_sample = 0, 0.0
+    while begin < sampling.most:
+        fits = int(LONGEST_S / per_sample) if per_sample > 0 else 1
+        end = min(max(1, 2 * begin), begin + max(1, fits), sampling.most)
+        started = time.monotonic()
+        session.draw(begin, end)
+        per_sample = (time.monotonic() - started) / (end - begin)
+        yield end, end == sampling.most
+        begin = end
