@@ -53,6 +53,7 @@ def test_axe_finds_nothing(page: Browser, state: str, width: int, height: int) -
         page.until("document.getElementById('rays-drawing').naturalWidth > 100")
     elif state == "lenses":
         page.click("#lens")
+        page.until("document.querySelectorAll('#lens-list [role=option]').length > 100")
         page.click("#lens-list [role=option]:nth-child(9)")
         page.until("document.getElementById('lens-drawing').naturalWidth > 100")
     assert AXE is not None

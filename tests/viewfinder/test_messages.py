@@ -22,6 +22,8 @@ from daguerre.viewfinder import messages as m
         ('{"section": [3, 4.5]}', m.Section(3, 4.5)),
         ('{"reload": true}', m.Reload()),
         ('{"find": "canon zoom"}', m.Find("canon zoom")),
+        ('{"facts": true}', m.Facts()),
+        ('{"photograph": "double-gauss-50mm-f2"}', m.Photograph("double-gauss-50mm-f2")),
     ],
 )
 def test_a_message_is_read(text: str, message: Any) -> None:
@@ -57,6 +59,9 @@ def test_a_message_is_read(text: str, message: Any) -> None:
         '{"got": NaN}',
         '{"got": 1e400}',
         '{"probe": [1]}',
+        '{"facts": 1}',
+        '{"photograph": "../index"}',
+        '{"photograph": null}',
         '{"probe": [1, "2"]}',
         '{"probe": [1, Infinity]}',
         '{"probe": {"0": 1, "1": 2, "length": 2}}',

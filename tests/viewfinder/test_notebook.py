@@ -99,6 +99,26 @@ def test_the_panel_turns_the_camera(view: Any, page: Browser) -> None:
     assert np.array_equal(view._hub.picture.frame.rgb, alone.rgb)
 
 
+@pytest.mark.skipif(program() is None, reason="needs chromium")
+@pytest.mark.xdist_group("chromium")
+def test_photographs_of_lenses_come_by_message(view: Any, page: Browser) -> None:
+    kernel = Kernel(view, page)
+    kernel.until("root.getElementById('frame').dataset.rests === 'true'")
+    page.run("root.getElementById('lens').click()")
+    kernel.until("root.querySelectorAll('#lens-list [role=option]').length > 100")
+    kernel.until("root.querySelector('#lens-list img')?.naturalWidth > 100")
+    assert page.run("root.querySelectorAll('#lens-list img[src]').length") < 70
+    page.run("root.querySelectorAll('#lens-list [role=option]')[5].click()")
+    kernel.until("root.querySelector('#lens-photograph img')?.naturalWidth > 100")
+    kernel.until("root.getElementById('lens-drawing').naturalWidth > 100")
+    turn = view._hub.number
+    page.run("root.getElementById('lens-take').click()")
+    kernel.until(f"Number(root.getElementById('frame').dataset.turn) > {turn}")
+    assert view.camera.lens != scene().camera().lens
+    assert not [url for url in page.asked if "/photographs/" in url]
+    assert page.errors == []
+
+
 def test_the_camera_comes_back_exposed_as_metered(view: Any) -> None:
     assert view.camera.exposure == "manual"
     assert view.camera.with_(exposure="light", iso=100) == scene().camera()

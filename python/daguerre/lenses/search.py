@@ -147,7 +147,7 @@ def _subject(entry: Entry) -> Subject:
         words=words,
         focal_mm=[
             (entry.efl_mm, entry.efl_long_mm or entry.efl_mm),
-            *(word.focal_mm for word in named if word.sure and word.focal_mm),
+            *_focal_lengths(named, is_zoom=entry.efl_long_mm is not None),
         ],
         f_numbers=[entry.f_number, *(w.f_number for w in named if w.sure and w.f_number)],
         t_numbers=[word.t_number for word in named if word.t_number],
@@ -155,6 +155,12 @@ def _subject(entry: Entry) -> Subject:
         year=entry.year,
         names=[frozenset(_texts(words_of(name))) for name in (entry.name, entry.title)],
     )
+
+
+def _focal_lengths(named: Iterable[Word], *, is_zoom: bool) -> list[tuple[float, float]]:
+    """Focal lengths in a name; one of ``series-1-135mm``, which has no zoom, spans no range."""
+    found = [word.focal_mm for word in named if word.sure and word.focal_mm]
+    return [ends for ends in found if is_zoom or ends[0] == ends[1]]
 
 
 def _texts(words: Iterable[Word]) -> list[str]:

@@ -16,6 +16,7 @@ from daguerre.errors import UsageError
 from daguerre.plots.lens_section import draw, section, to_svg
 from daguerre.rendering.session import Session
 
+from .lens_list import about
 from .sight import depth_m
 
 #: Width of the spread's picture, px.
@@ -31,6 +32,7 @@ def drawing_of(name: str) -> dict[str, Any]:
         "svg": draw(lens),
         "focal_length_mm": order.efl,
         "f_stop": order.f_number,
+        "about": about(name),
     }
 
 

@@ -27,9 +27,11 @@ from .image import image_of, value_at
 from .messages import (
     Draw,
     Drawing,
+    Facts,
     Find,
     Got,
     Message,
+    Photograph,
     Probe,
     Reload,
     Save,
@@ -184,6 +186,10 @@ class Hub:
                 await self._tell(guest, {"section": found})
             case Drawing(name):
                 await self._tell(guest, {"drawing": await asyncio.to_thread(drawing_of, name)})
+            case Facts():
+                await self._tell(guest, {"facts": await asyncio.to_thread(lens_list.facts)})
+            case Photograph(name):
+                await self._tell(guest, {"photograph": lens_list.photograph(name)})
             case Find(words):
                 await self._tell(guest, {"found": lens_list.found(words)})
             case _ if not guest.turns:

@@ -93,13 +93,27 @@ class Drawing:
 
 
 @dataclass(frozen=True)
+class Facts:
+    """Request for the facts of all lenses, by which the page filters them."""
+
+
+@dataclass(frozen=True)
+class Photograph:
+    """Name of a lens of the library whose photograph a page without a server asks for."""
+
+    lens: str
+
+
+@dataclass(frozen=True)
 class Find:
     """Words of lenses that the page searches for."""
 
     words: str
 
 
-Message = Turn | Got | Probe | Save | Draw | Section | Reload | Show | Drawing | Find
+Message = (
+    Turn | Got | Probe | Save | Draw | Section | Reload | Show | Drawing | Facts | Photograph | Find
+)
 
 
 def parse(text: str | bytes) -> Message:
@@ -155,10 +169,15 @@ def _section(value: Any) -> Section:
     return Section(*_pair(value, "section"))
 
 
-def _reload(value: Any) -> Reload:
-    if value is not True:
-        raise UsageError(f"reload: wanted true, got {short(value)}")
-    return Reload()
+def _plain(name: str, message: Message) -> Callable[[Any], Message]:
+    """Reader of a message that says nothing but its name."""
+
+    def read(value: Any) -> Message:
+        if value is not True:
+            raise UsageError(f"{name}: wanted true, got {short(value)}")
+        return message
+
+    return read
 
 
 def _show(value: Any) -> Show:
@@ -173,9 +192,17 @@ def _show(value: Any) -> Show:
 
 
 def _drawing(value: Any) -> Drawing:
+    return Drawing(_lens(value, "drawing"))
+
+
+def _photograph(value: Any) -> Photograph:
+    return Photograph(_lens(value, "photograph"))
+
+
+def _lens(value: Any, where: str) -> str:
     if not isinstance(value, str) or value not in lenses.names():
-        raise UsageError(f"drawing: wanted a lens of the library, got {short(value)}")
-    return Drawing(value)
+        raise UsageError(f"{where}: wanted a lens of the library, got {short(value)}")
+    return value
 
 
 def _find(value: Any) -> Find:
@@ -217,8 +244,10 @@ _READERS: dict[str, Callable[[Any], Message]] = {
     "save": _save,
     "draw": _draw,
     "section": _section,
-    "reload": _reload,
+    "reload": _plain("reload", Reload()),
     "show": _show,
     "drawing": _drawing,
+    "facts": _plain("facts", Facts()),
+    "photograph": _photograph,
     "find": _find,
 }

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 _IMPORT = re.compile(r"^import (\{[^}]*\}|\* as \w+) from '\./(\w+)\.js';$", re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=(?:async )?(?:class|function|const) (\w+))", re.MULTILINE)
+_STYLE = re.compile(r'<link rel="stylesheet" href="([\w.]+)">')
 _SIZE = (640, 360)
 
 
@@ -124,12 +125,18 @@ def _widget(shown: View) -> AnyWidget:
     class Panel(AnyWidget):
         _esm = bundled("widget")
         panel = Unicode((PAGE / "index.html").read_text("utf-8")).tag(sync=True)
-        style = Unicode((PAGE / "style.css").read_text("utf-8")).tag(sync=True)
+        style = Unicode(_styles()).tag(sync=True)
 
     made = Panel()
     line = _Comm(made)
     made.on_msg(lambda _, message, __: shown._hear(line, message))
     return made
+
+
+def _styles() -> str:
+    """All styles of the page, in its order."""
+    files = _STYLE.findall((PAGE / "index.html").read_text("utf-8"))
+    return "".join((PAGE / name).read_text("utf-8") for name in files)
 
 
 def bundled(name: str) -> str:

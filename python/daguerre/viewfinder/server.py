@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from daguerre.errors import UsageError
+from daguerre.lenses.index import names
 
 from .door import HEADERS, Door
 from .hub import Hub
+from .lens_list import photograph_path
 from .messages import MAX_BYTES
 
 if TYPE_CHECKING:
@@ -29,6 +31,7 @@ KINDS = {
     ".css": "text/css; charset=utf-8",
     ".js": "text/javascript; charset=utf-8",
     ".svg": "image/svg+xml",
+    ".webp": "image/webp",
 }
 SOCKET = "/live"
 #: Seconds within which a page sends its token.
@@ -69,7 +72,7 @@ class Server:
         # Before version 17, websockets itself refuses all but GET.
         if getattr(request, "method", "GET") not in ("GET", "HEAD"):
             return _plain(connection, HTTPStatus.METHOD_NOT_ALLOWED, "wanted GET")
-        body = FILES.get("/index.html" if path == "/" else path)
+        body = _body("/index.html" if path == "/" else path)
         if body is None:
             return _plain(connection, HTTPStatus.NOT_FOUND, "no such file")
         return _file(connection, path, body)
@@ -132,6 +135,16 @@ def _read_files() -> dict[str, bytes]:
 
 
 FILES = _read_files()
+#: Photographs of the lenses by path: only these are ever read, one when it is asked for.
+PHOTOGRAPHS = {f"/photographs/{name}.webp": photograph_path(name) for name in names()}
+
+
+def _body(path: str) -> bytes | None:
+    """Bytes of a file of the page, or of a photograph; None: there is none."""
+    photograph = PHOTOGRAPHS.get(path)
+    if photograph is None:
+        return FILES.get(path)
+    return photograph.read_bytes() if photograph.is_file() else None
 
 
 def _plain(connection: ServerConnection, status: HTTPStatus, text: str) -> Response:

@@ -1,116 +1,175 @@
-// lens_picker.js -- the dialog of lenses: search, years, drawings.
+// lens_picker.js -- the dialog of lenses: photographs, filters and the library's search; one is chosen.
+//
+// Another part may set `view.compareWith(name)`: the dialog then offers to compare the chosen lens.
 
 import {showSvg} from './dom.js';
+import {LensCards} from './lens_cards.js';
+import {LensFilters} from './lens_filters.js';
+
+const DRAWING_MS = 120;   // a drawing waits until the arrow keys rest
 
 export class LensPicker {
-  /** `ask(message)` asks the server, `take(name)` uses the lens; null: the scene's. */
-  constructor(root, ask, take) {
-    this.find = (id) => root.getElementById(id);
-    this.ask = ask;
-    this.take = take;
-    this.lenses = [];
-    this.shown = [];   // those that the server has found, or all
+  constructor(view) {
+    this.view = view;
+    this.find = view.find;
+    this.titles = [];     // of all lenses: {name, title}
+    this.lenses = null;   // with their facts, once the dialog has asked for them
+    this.hits = null;     // what the server has found for the words; null: nothing yet
     this.chosen = null;
-    this.find('lens').addEventListener('click', () => this.open());
-    this.find('lenses-close').addEventListener('click', () => this.dialog.close());
-    this.find('lens-search').addEventListener('input', () => this.search());
-    this.find('lens-take').addEventListener('click', () => this.use());
-    this.find('lens-list').addEventListener('keydown', (event) => this.key(event));
+    this.cards = new LensCards(view, (lens) => this.choose(lens), () => this.use());
+    this.filters = new LensFilters(view, () => this.search());
+    const on = (id, event, act) => this.find(id).addEventListener(event, act);
+    on('lens', 'click', () => this.open());
+    on('lens-take', 'click', () => this.use());
+    on('lens-compare', 'click', () => this.compare());
+    on('lens-back', 'click', () => this.openSheet(false));
+    on('lens-search', 'keydown', (event) => this.leaveSearch(event));
+    on('lens-list', 'keydown', (event) => this.key(event));
   }
 
   get dialog() {
     return this.find('lenses');
   }
 
-  offer(lenses) {
-    this.lenses = [{name: null, title: 'as in the scene', year: null}, ...lenses];
-    this.search();
+  get lens() {
+    return this.lenses?.find((lens) => lens.name === this.chosen);
   }
 
-  /** Names the lens on the button. */
-  show(name, used) {
-    const own = this.lenses.find((lens) => lens.name === (name ?? null));
-    this.find('lens').textContent = name ? own?.title ?? name : `as in the scene (${used ?? '?'})`;
-    if (!this.dialog.open) this.chosen = name ?? null;
+  // What the server tells
+
+  opened({lenses}) {
+    this.titles = [{name: null, title: 'as in the scene'}, ...lenses];
+    this.lenses = this.hits = null;
+    if (this.dialog.open) this.view.send({facts: true});
   }
+
+  update({dials, readings}) {
+    const name = dials.lens ?? null;
+    const title = this.titles.find((lens) => lens.name === name)?.title ?? name;
+    this.find('lens').textContent = name ? title : `as in the scene (${readings.lens ?? '?'})`;
+    this.find('lens-take').disabled = !this.view.mine;
+    if (!this.dialog.open) this.chosen = name;
+  }
+
+  told({facts, found, drawing, photograph}) {
+    if (facts) this.know(facts);
+    if (found && found.words === this.filters.words) this.list(found);   // else the user has typed on
+    if (drawing) this.drawn(drawing);
+    if (photograph) this.cards.got(photograph);
+  }
+
+  know(facts) {
+    const byName = new Map(facts.map((lens) => [lens.name, lens]));
+    this.lenses = this.titles.map((lens) => ({...lens, ...byName.get(lens.name)}));
+    this.filters.know(this.lenses);
+    this.cards.make(this.lenses);
+    this.search();
+    if (this.lens) this.show(this.lens);
+  }
+
+  // The list
 
   open() {
     this.dialog.showModal();
-    this.search();
-    this.find('lens-search').focus();
-  }
-
-  get words() {
-    return this.find('lens-search').value.trim();
+    this.openSheet(false);
+    this.find('lens-compare').hidden = !this.view.compareWith;
+    if (!this.lenses) this.view.send({facts: true});
+    else if (this.lens) this.show(this.lens);
+    // On a touch screen the search would raise the keyboard over the list.
+    this.find(matchMedia('(pointer: coarse)').matches ? 'lens-list' : 'lens-search').focus();
   }
 
   /** Lists all lenses, or asks the server for those that have the words. */
   search() {
-    if (this.words) this.ask({find: this.words});
-    else this.list(this.lenses, '');
+    const {words} = this.filters;
+    if (words && words !== this.hits?.words) this.view.send({find: words});
+    else this.list(words ? this.hits : null);
   }
 
-  found({words, names, all}) {
-    if (words !== this.words) return;   // the user has typed on
-    const lenses = names.map((name) => this.lenses.find((lens) => lens.name === name));
-    const count = `${names.length} ${names.length === 1 ? 'lens' : 'lenses'}`;
-    const none = 'No lens has all these words.';
-    this.list(lenses, all ? count : names.length ? `${none} Nearest:` : none);
-  }
-
-  list(lenses = this.shown, count = this.find('lens-count').textContent) {
-    this.shown = lenses;
-    this.find('lens-count').textContent = count;
-    const rows = lenses.map((lens) => {
-      const row = document.createElement('div');
-      row.setAttribute('role', 'option');
-      row.setAttribute('aria-selected', lens.name === this.chosen);
-      row.id = `lens-${lens.name ?? 'scene'}`;
-      row.append(document.createElement('span'), document.createElement('small'));
-      row.firstChild.textContent = lens.title;
-      row.lastChild.textContent = lens.year ?? '';
-      row.addEventListener('click', () => this.choose(lens));
-      row.addEventListener('dblclick', () => this.use());
-      return row;
-    });
-    const list = this.find('lens-list');
-    list.replaceChildren(...rows);
-    const own = list.querySelector('[aria-selected=true]');
-    list.toggleAttribute('aria-activedescendant', false);
-    if (own) list.setAttribute('aria-activedescendant', own.id);
-  }
-
-  choose(lens) {
-    this.chosen = lens.name;
-    this.list();
-    this.find('lens-list').querySelector('[aria-selected=true]')?.scrollIntoView({block: 'nearest'});
-    this.find('lens-drawing').removeAttribute('src');
-    this.find('lens-facts').textContent = lens.title;
-    if (lens.drawn) this.ask({drawing: lens.name});
+  list(hits) {
+    this.hits = hits;
+    if (!this.lenses) return;
+    const lenses = hits ? hits.names.map((name) => this.lenses.find((lens) => lens.name === name)) : this.lenses;
+    const fitting = this.filters.active ? lenses.filter((lens) => this.filters.fits(lens)) : lenses;
+    this.find('lens-count').textContent = countOf(fitting, hits);
+    this.cards.show(fitting, this.chosen);
   }
 
   key(event) {
-    const found = this.shown;
-    const at = found.findIndex((lens) => lens.name === this.chosen);
-    const next = {ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: found.length - 1}[event.key];
-    if (event.key === 'Enter') this.use();
-    else if (next === undefined || !found[next]) return;
-    else this.choose(found[next]);
+    const next = this.cards.next(event.key, this.chosen);
+    if (event.key === 'Enter' && this.cards.has(this.chosen)) this.use();
+    else if (next) this.choose(next);
+    else return;
     event.preventDefault();
   }
 
-  drawn({name, svg, focal_length_mm: focal, f_stop: stop}) {
+  leaveSearch(event) {
+    const first = this.cards.shown[0];
+    if (!['Enter', 'ArrowDown'].includes(event.key) || !first) return;
+    event.preventDefault();
+    if (!this.cards.has(this.chosen)) this.choose(first);
+    this.find('lens-list').focus();
+  }
+
+  // The chosen lens
+
+  choose(lens) {
+    this.chosen = lens.name;
+    this.cards.mark(this.chosen);
+    this.openSheet(true);
+    this.show(lens);
+  }
+
+  /** Opens the chosen lens over the list, where there is no room beside it. */
+  openSheet(opens) {
+    this.dialog.classList.toggle('sheet', opens);
+  }
+
+  show(lens) {
+    this.cards.mark(lens.name);
+    this.find('lens-chosen').hidden = false;
+    this.find('lens-title').textContent = lens.title;
+    this.cards.photograph(this.find('lens-photograph'), lens);
+    this.find('lens-drawing').removeAttribute('src');
+    this.facts(lens, {});
+    this.find('lens-compare').disabled = lens.name === null;
+    clearTimeout(this.asks);
+    if (lens.photograph !== undefined) this.asks = setTimeout(() => this.view.send({drawing: lens.name}), DRAWING_MS);
+  }
+
+  drawn({name, svg, focal_length_mm: focal, f_stop: stop, about}) {
     if (name !== this.chosen) return;
-    const lens = this.lenses.find((one) => one.name === name);
     const image = this.find('lens-drawing');
     showSvg(image, svg);
-    image.alt = `Section of ${lens.title}`;
-    const facts = [lens.title, lens.year, `${focal.toPrecision(3)} mm`, `f/${stop.toPrecision(2)}`];
-    this.find('lens-facts').textContent = facts.filter(Boolean).join(' · ');
+    image.alt = `Section of ${this.lens.title}`;
+    this.facts(this.lens, {'Focal length': `${focal.toPrecision(3)} mm`, 'Widest stop': `f/${Number(stop.toPrecision(3))}`,
+      ...about});
+  }
+
+  facts(lens, rows) {
+    this.find('lens-facts').replaceChildren(...Object.entries(rows).map(([label, text]) => {
+      const row = document.createElement('div');
+      row.append(document.createElement('dt'), document.createElement('dd'));
+      row.firstChild.textContent = label;
+      row.lastChild.textContent = text;
+      return row;
+    }));
   }
 
   use() {
-    this.take(this.chosen);
+    if (this.find('lens-take').disabled) return;
+    this.view.turn({lens: this.chosen});
     this.dialog.close();
   }
+
+  compare() {
+    this.view.compareWith(this.chosen);
+    this.dialog.close();
+  }
+}
+
+function countOf(lenses, hits) {
+  if (hits && !hits.all) return `No lens has all these words.${lenses.length ? ' Nearest:' : ''}`;
+  const count = lenses.filter((lens) => lens.name !== null).length;
+  return count ? `${count} ${count === 1 ? 'lens' : 'lenses'}` : 'No lens fits all of this.';
 }

@@ -66,6 +66,11 @@ export class Link {
     if (document.visibilityState === 'visible' && this.socket.readyState === WebSocket.CLOSED) this.open();
   }
 
+  /** Address of the photograph of a lens; a link without a server has none. */
+  photograph(name) {
+    return `photographs/${name}.webp`;
+  }
+
   send(message) {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }

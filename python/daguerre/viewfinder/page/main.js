@@ -40,9 +40,8 @@ class Viewfinder {
     this.picture = new Picture(canvas, this.find('over'));
     this.tripod = new Tripod(canvas, (dials) => this.turn(dials));
     this.tripod.clicked = (event) => this.clicked(event);
-    this.lenses = new LensPicker(root, (message) => this.send(message), (name) => this.turn({lens: name}));
     this.panels = new Panels(root);
-    this.parts = [Choices, Exposure, Rings, Numbers, Tools, Loupe, Rays, Output, Screen].map((Part) => new Part(this));
+    this.parts = [LensPicker, Choices, Exposure, Rings, Numbers, Tools, Loupe, Rays, Output, Screen].map((Part) => new Part(this));
     this.keys = new Keys(this);
     this.link = makeLink({
       told: (message) => this.told(message),
@@ -87,8 +86,6 @@ class Viewfinder {
     if (message.state) this.state = message.state;
     if (this.open && this.state && (message.state || message.heard || message.refused)) this.update();
     if (message.refused) this.complain(message.refused);
-    if (message.drawing) this.lenses.drawn(message.drawing);
-    if (message.found) this.lenses.found(message.found);
     if (message.changed) {
       this.find('changed').hidden = false;
       this.find('changed').firstElementChild.textContent = `${message.changed} has changed.`;
@@ -122,14 +119,12 @@ class Viewfinder {
     if (this.root === document) document.title = `${found.scene}: Daguerre viewfinder`;
     this.find('changed').hidden = true;
     this.picture.whole = found.resolution;
-    this.lenses.offer(found.lenses);
     this.tell('opened', found);
   }
 
   update() {
-    const {dials, readings, error} = this.state;
+    const {readings, error} = this.state;
     this.complain(error || (readings.warnings ?? []).join('; '));
-    this.lenses.show(dials.lens, readings.lens);
     if (readings.lens) {
       this.open.spp = readings.spp;
       this.tripod.stand(readings.place, readings.focus_m, this.current);
