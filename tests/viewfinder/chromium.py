@@ -22,7 +22,15 @@ FLAGS = (
     *("--no-first-run", "--disable-extensions", "--disable-background-networking"),
     *("--remote-debugging-port=0", "--remote-allow-origins=*", "--hide-scrollbars"),
 )
-KEYS = {"ArrowRight": 39, "ArrowLeft": 37, "ArrowUp": 38, "ArrowDown": 40, "PageUp": 33, "Tab": 9}
+KEYS = {
+    "Escape": 27,
+    "ArrowRight": 39,
+    "ArrowLeft": 37,
+    "ArrowUp": 38,
+    "ArrowDown": 40,
+    "PageUp": 33,
+    "Tab": 9,
+}
 
 
 def program() -> str | None:

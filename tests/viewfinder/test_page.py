@@ -259,13 +259,13 @@ def test_a_ring_goes_back_to_where_it_was_at_first(page: Browser, server: Live) 
         "document.querySelector('#ring-iso').closest('.ring').querySelector('.back').id"
         " = 'ring-iso-back'"
     )
-    assert page.run(f"document.querySelector('{back}').hidden")
+    assert page.run(f"document.querySelector('{back}').disabled")
     turns(page, server, "#ring-iso", "ArrowRight")
     before = turn_of(page)
     page.click(back)
     rests(page, before)
     assert command_of(page) == shown
-    assert page.run(f"document.querySelector('{back}').hidden")
+    assert page.run(f"document.querySelector('{back}').disabled")
 
 
 def test_a_ring_does_not_jump_back_while_its_picture_is_drawn(page: Browser, server: Live) -> None:

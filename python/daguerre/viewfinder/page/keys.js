@@ -16,7 +16,7 @@ const KEYS = [
 ];
 /** Keys of a part of the page that has the focus; ring.js, tripod.js and browsers bind them. */
 const ELSEWHERE = {
-  'In a ring': [['← →', 'A step'], ['Page Up, Page Down', 'Five steps']],
+  'In a ring': [['← →', 'A step'], ['PgUp PgDn', 'Five steps']],
   'In the picture': [['← → ↑ ↓', 'Orbit'], ['+ -', 'Dolly'], ['[ ]', 'Roll']],
 };
 const TYPED = 'input:not([type=range], [type=checkbox], [type=radio]), textarea, select';
@@ -77,7 +77,7 @@ export class Keys {
   /** Opens the list of keys. */
   list() {
     const own = KEYS.map(([key, selector]) => [key, this.root.querySelector(selector)])
-      .filter(([, control]) => control.checkVisibility()).map(([key, control]) => [key, nameOfControl(control)]);
+      .filter(([, control]) => control.checkVisibility()).map(([key, control]) => [key, nameOfControl(this.root, control)]);
     const parts = Object.entries({'Anywhere': [...own, ['Escape', 'Close a panel']], ...ELSEWHERE});
     this.find('keys-list').replaceChildren(...parts.flatMap(([where, rows]) => [made('h3', where), listOf(rows)]));
     this.find('keys').showModal();
@@ -91,8 +91,9 @@ function nameOf(event) {
   return [event.ctrlKey || event.metaKey ? 'ctrl' : '', shift ? 'shift' : '', key].filter(Boolean).join('+');
 }
 
-function nameOfControl(control) {
-  return control.getAttribute('aria-label') ?? control.labels?.[0]?.firstChild.textContent ?? control.textContent;
+function nameOfControl(root, control) {
+  const label = root.getElementById(control.getAttribute('aria-labelledby')?.split(' ')[0] ?? '');
+  return control.getAttribute('aria-label') ?? (label ?? control.labels[0]?.firstChild ?? control).textContent.trim();
 }
 
 function listOf(rows) {

@@ -27,7 +27,6 @@ export class Numbers {
 
 function rowsOf(r) {
   return {
-    Lens: r.lens,
     'Focal length': `${r.focal_length_mm.toPrecision(3)} mm`,
     'Field of view': `${r.field_of_view_deg[0].toFixed(1)}° × ${r.field_of_view_deg[1].toFixed(1)}°`,
     Focus: r.f_stop === null ? 'everything is sharp' : `${metres(r.focus_m)} (${feet(r.focus_m)})`,

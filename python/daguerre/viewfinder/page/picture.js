@@ -1,5 +1,7 @@
 // picture.js -- the canvas: the picture, and what photographers lay over it.
 
+const INSIDE = 1 - 1e-9;
+const COLUMNS = 2;   // of pictures side by side
 const ZEBRA = 250, PEAK = 60;
 
 export class Picture {
@@ -8,6 +10,7 @@ export class Picture {
     this.over = over;
     this.context = canvas.getContext('2d', {willReadFrequently: true});
     this.head = null;
+    this.countOf = new WeakMap();   // pictures side by side in a bitmap
     this.last = null;   // bitmap of the picture before the last turn
     this.shows = {grid: false, horizon: false, zebra: false, peaking: false};
     this.tilt = null;
@@ -21,6 +24,7 @@ export class Picture {
     if (this.head && head.picture < this.head.picture) return false;   // a newer one was faster
     if (this.head && head.turn !== this.head.turn) this.last = this.bitmap;
     this.bitmap = bitmap;
+    this.countOf.set(bitmap, head.panels.length || 1);
     this.head = head;
     this.draw(bitmap);
     this.overlay();
@@ -28,11 +32,16 @@ export class Picture {
   }
 
   draw(bitmap) {
-    this.canvas.width = bitmap.width;
-    this.canvas.height = bitmap.height;
-    this.context.drawImage(bitmap, 0, 0);
-    const [width, height] = this.head.panels.length || !this.whole ? [bitmap.width, bitmap.height] : this.whole;
-    this.canvas.closest('.frame').style.setProperty('--ratio', width / height);
+    const count = this.countOf.get(bitmap), {columns, rows} = cells(count);
+    const width = bitmap.width / count, {height} = bitmap;
+    this.canvas.width = width * columns;
+    this.canvas.height = height * rows;
+    for (let i = 0; i < count; i++) {
+      const x = width * (i % columns), y = height * Math.floor(i / columns);
+      this.context.drawImage(bitmap, width * i, 0, width, height, x, y, width, height);
+    }
+    const [w, h] = this.whole ?? [width, height];
+    this.canvas.closest('.frame').style.setProperty('--ratio', (w * columns) / (h * rows));
   }
 
   compare(on) {
@@ -120,10 +129,18 @@ export class Picture {
   /** Pixel of the whole picture under a pointer. */
   pixel(event, [width, height]) {
     const box = this.canvas.getBoundingClientRect();
-    const x = ((event.clientX - box.left) / box.width) * width;
-    const y = ((event.clientY - box.top) / box.height) * height;
-    return [Math.floor(Math.min(width - 1, Math.max(0, x))), Math.floor(Math.min(height - 1, Math.max(0, y)))];
+    const {columns, rows} = cells(this.head?.panels.length);
+    const part = (at, count) => (Math.min(INSIDE, Math.max(0, at)) * count) % 1;
+    const x = part((event.clientX - box.left) / box.width, columns) * width;
+    const y = part((event.clientY - box.top) / box.height, rows) * height;
+    return [Math.floor(x), Math.floor(y)];
   }
+}
+
+/** Columns and rows of pictures beside each other. */
+function cells(count) {
+  const columns = Math.min(count || 1, COLUMNS);
+  return {columns, rows: Math.ceil((count || 1) / columns)};
 }
 
 /** A canvas with the pixels of a small picture, which needs no decoding. */

@@ -7,6 +7,7 @@ import {title} from './dom.js';
 
 const PX_PER_RING = 900;   // length of a whole ring, unrolled
 const PX_PER_LETTER = 7;
+const LABEL_GAP = 5;
 const NEAR = 0.25;   // a click this near to where the ring was found gives way to it, in steps
 const HINT = 'Drag, turn the wheel, or use the arrow keys';
 const LARGE = 5;     // steps of Page Up, and of the wheel with Shift
@@ -28,9 +29,9 @@ export class Ring {
     this.sent = '';       // texts that it was turned to
     element.classList.add('ring');
     element.innerHTML = `
-      <div class="ring-head"><label for="ring-${name}"></label><output></output>
-        <button type="button" class="back" title="As it was when the viewfinder opened" hidden>↺</button></div>
-      <div class="barrel"><svg aria-hidden="true"></svg><input type="range" id="ring-${name}"></div>`;
+      <div class="ring-head"><label for="ring-${name}"></label><output></output></div>
+      <div class="barrel"><svg aria-hidden="true"></svg><input type="range" id="ring-${name}"></div>
+      <button type="button" class="back" title="As it was when the viewfinder opened" disabled>↺</button>`;
     this.label = element.querySelector('label');
     this.label.textContent = element.dataset.label;
     this.output = element.querySelector('output');
@@ -41,6 +42,8 @@ export class Ring {
     this.input.addEventListener('input', () => this.move(Number(this.input.value)));
     this.input.addEventListener('wheel', (event) => this.wheel(event), {passive: false});
     this.drag();
+    this.width = 300;
+    new ResizeObserver(([{contentRect}]) => this.resize(contentRect.width)).observe(element.querySelector('.barrel'));
     this.back.addEventListener('click', () => this.turned(this.opened));
   }
 
@@ -60,7 +63,7 @@ export class Ring {
     this.input.disabled = off !== '';
     this.element.classList.toggle('off', off !== '');
     title(this.input, off || HINT);
-    this.back.hidden = off !== '' || now === JSON.stringify(opened);
+    this.back.disabled = off !== '' || now === JSON.stringify(opened);
     if (!this.busy && !this.holds) {
       if (now !== this.sent || now === JSON.stringify(this.home?.texts)) this.home = {value, texts};
       this.value = value;
@@ -162,33 +165,32 @@ export class Ring {
     });
   }
 
+  resize(width) {
+    this.width = width;
+    if (this.scale) this.draw();
+  }
+
   draw() {
-    const {low, high, marks, reversed} = this.scale;
-    const way = reversed ? -1 : 1;
-    const x = (position) => 50 + (way * (position - this.position) * PX_PER_RING * 100) / (high - low) / this.width();
+    const {low, high, marks, reversed} = this.scale, {width} = this;
+    const way = (reversed ? -1 : 1) * PX_PER_RING / (high - low);
+    const x = (value) => width / 2 + way * (this.scale.position(value) - this.position);
     const parts = [];
     if (this.span) {
-      const [a, b] = this.span.map((v) => x(this.scale.position(v ?? Infinity)));
-      parts.push(part('rect', {x: `${Math.min(a, b)}%`, y: 30, width: `${Math.abs(b - a)}%`, height: 4, class: 'span'}));
+      const [a, b] = this.span.map((v) => Math.min(width, Math.max(0, x(v ?? Infinity))));
+      parts.push(part('rect', {x: Math.min(a, b), y: 30, width: Math.abs(b - a), height: 4, class: 'span'}));
     }
+    let free = -Infinity;   // where the next label may begin, from where the ring begins
     for (const mark of marks) {
-      const at = x(this.scale.position(mark.value));
-      if (at < -5 || at > 105) continue;
-      parts.push(part('line', {x1: `${at}%`, x2: `${at}%`, y1: mark.full ? 18 : 23, y2: 28, class: 'tick'}));
-      if (mark.label && this.fits(mark.label, at)) parts.push(part('text', {x: `${at}%`, y: 13, class: 'mark'}, mark.label));
+      const at = x(mark.value), half = mark.label.length * PX_PER_LETTER / 2;
+      const along = Math.abs(at - x(marks[0].value));
+      const fits = mark.label && along - half > free;   // the same labels wherever the ring stands
+      if (fits) free = along + half + LABEL_GAP;
+      if (at < 0 || at > width) continue;
+      parts.push(part('line', {x1: at, x2: at, y1: mark.full ? 18 : 23, y2: 28, class: 'tick'}));
+      if (fits && at > half && at + half < width) parts.push(part('text', {x: at, y: 13, class: 'mark'}, mark.label));
     }
-    parts.push(part('line', {x1: '50%', x2: '50%', y1: 16, y2: 36, class: 'index'}));
+    parts.push(part('line', {x1: width / 2, x2: width / 2, y1: 16, y2: 36, class: 'index'}));
     this.svg.replaceChildren(...parts);
-  }
-
-  /** Whether no edge cuts a label, centred at a percentage of the width. */
-  fits(label, at) {
-    const half = (100 * label.length * PX_PER_LETTER) / 2 / this.width();
-    return at - half > 0 && at + half < 100;
-  }
-
-  width() {
-    return this.svg.clientWidth || 300;
   }
 }
 

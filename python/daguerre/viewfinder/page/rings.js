@@ -29,7 +29,6 @@ export class Rings {
     });
     const play = view.find('play');
     play.addEventListener('click', () => this.play(press(play, !pressed(play))));
-    new ResizeObserver(() => this.draw()).observe(view.find('rings'));
   }
 
   get irisScale() {
@@ -40,10 +39,6 @@ export class Rings {
     remember('iris-scale', this.irisScale.value);
     this.rings.f_stop.forget();
     if (this.view.state) this.update(this.view.state);
-  }
-
-  draw() {
-    for (const ring of Object.values(this.rings)) if (ring.scale) ring.draw();
   }
 
   opened({duration_s: duration}) {

@@ -66,7 +66,7 @@ export function feet(value) {
 /** Focus: a helicoid turns with 1/distance. */
 export function focusScale(closest) {
   const near = Math.max(closest ?? 0.25, 0.01);
-  const marks = [0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.7, 0.85, 1, 1.2, 1.5, 2, 3, 5, 10, 20, 50, Infinity];
+  const marks = [Infinity, 50, 20, 10, 5, 3, 2, 1.5, 1.2, 1, 0.85, 0.7, 0.6, 0.5, 0.4, 0.35, 0.3, 0.25, 0.2, 0.15, 0.1];
   return {
     low: 0, high: 1 / near, step: 1 / near / 300,
     position: (value) => (value === Infinity ? 0 : 1 / value),
