@@ -87,7 +87,7 @@ def test_a_photograph_that_is_missing_is_not_found(
     assert get(server, f"/photographs/{LENS}.webp").status == 404
 
 
-# What filters know
+# Facts for the filters
 
 
 def facts_of(name: str) -> dict[str, Any]:
