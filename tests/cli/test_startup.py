@@ -107,3 +107,27 @@ def test_a_call_from_python_leaves_the_garbage_collector_alone() -> None:
     before = gc.get_threshold()
     cli.main(["--version"])
     assert gc.get_threshold() == before
+
+
+ENDS = """
+import atexit, sys, threading, time
+from daguerre.cli import main
+sys.argv = ["daguerre", *sys.argv[1:]]
+class Kept:
+    def __del__(self): print("freed")
+kept = Kept()
+code = main()
+atexit.register(print, "handler")
+threading.Thread(target=lambda: (time.sleep(0.1), print("thread"))).start()
+sys.stdout.write("unflushed ")
+sys.exit(code)
+"""
+
+
+def test_the_program_ends_with_its_code_and_frees_nothing() -> None:
+    for words, code in ((["--version"], 0), (["render", "nowhere.glb", "-o", "x.png"], 3)):
+        done = subprocess.run(
+            [sys.executable, "-c", ENDS, *words], capture_output=True, text=True, check=False
+        )
+        assert done.returncode == code
+        assert done.stdout.endswith("unflushed thread\nhandler\n")

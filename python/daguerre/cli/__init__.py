@@ -39,10 +39,21 @@ def __getattr__(name: str) -> Any:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs a command line; returns its exit code."""
-    if arguments is None:
-        short_process.tune()
-    console.argv = list(sys.argv[1:] if arguments is None else arguments)
+    """Runs a command line; returns its exit code, with which the program also ends.
+
+    Args:
+        arguments: Words after the program's name; None: those of this process, which is the program
+            and ends with its command.
+    """
+    if arguments is not None:
+        return _run(arguments)
+    short_process.tune()
+    short_process.code = _run(sys.argv[1:])
+    return short_process.code
+
+
+def _run(arguments: Sequence[str]) -> int:
+    console.argv = list(arguments)
     if console.argv[:1] == [COMPLETE]:
         from .completion.shells import complete
 
