@@ -76,6 +76,23 @@ def to_numbers(
     return numbers
 
 
+def integers(values: Any, where: str, what: str, below: int) -> NDArray[np.int64]:
+    """Checks whole numbers in 0 .. below - 1; returns int64 of the same shape.
+
+    Raises:
+        InputError: Others.
+    """
+    found = to_numbers(values, where, what, "integers")
+    if found.size == 0:
+        return np.zeros(found.shape, np.int64)
+    if found.dtype.kind not in "iu":
+        raise InputError(f"{where}: {what}: wanted integers, got {found.dtype}")
+    low, high = int(found.min()), int(found.max())
+    if low < 0 or high >= below:
+        raise InputError(f"{where}: {what}: wanted 0 .. {below - 1}, got {low} .. {high}")
+    return found.astype(np.int64)
+
+
 def doubles(values: Any, where: str, what: str, wanted: str) -> NDArray[np.float64]:
     """Converts a parameter to a contiguous array of doubles of any shape, for the core."""
     numbers = to_numbers(values, where, what, wanted, UsageError)

@@ -19,9 +19,6 @@ from daguerre.files.value import FixedArrays
 Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
-BASES = ("bspline", "bezier", "catmull-rom", "linear")
-WRAPS = ("nonperiodic", "periodic", "pinned")
-
 #: Bezier points (rows) of a segment from its four control points (columns).
 _TO_BEZIER: dict[str, Array] = {
     "bezier": np.eye(4),
@@ -130,8 +127,8 @@ class Layout(FixedArrays):
 
     Attributes:
         counts: Number of control points of each curve, shape (C,).
-        basis: One of ``BASES``.
-        wrap: One of ``WRAPS``.
+        basis: One of ``curves.BASES``.
+        wrap: One of ``curves.WRAPS``.
     """
 
     counts: Counts

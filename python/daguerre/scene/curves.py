@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypedDict
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,12 +16,16 @@ from daguerre.motion.values import Dynamic
 from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
 
-from .curve_bases import BASES, WRAPS, BezierForm, Layout, are_counts, wanted_count
 from .mesh import with_alpha
 from .motion import Vertices
 from .parts import Curves, vertices_of
 
+if TYPE_CHECKING:
+    from .curve_bases import BezierForm, Layout
+
 FloatArray = NDArray[np.float32]
+BASES = ("bspline", "bezier", "catmull-rom", "linear")
+WRAPS = ("nonperiodic", "periodic", "pinned")
 _BALLS_PER_SEGMENT = 9
 
 
@@ -109,7 +113,7 @@ def curves_of(
             f"{where}: counts: wanted a sum of {len(control)}, the number of points, "
             f"got {each.sum()}"
         )
-    layout = Layout(freeze_in_place(each), basis, wrap)
+    layout = _layout(each, basis, wrap)
     form = layout.form
     size = len(each), len(control)
     colors = with_alpha(given["colors"], where)
@@ -142,7 +146,7 @@ def layout_of(counts: Any, basis: str, wrap: str, where: str) -> Layout:
     for value, names, what in ((basis, BASES, "basis"), (wrap, WRAPS, "wrap")):
         if value not in names:
             raise InputError(f"{where}: {what}: wanted {', '.join(names)}, got {short(value)}")
-    return Layout(freeze_in_place(_counts(counts, where, basis, wrap)), basis, wrap)
+    return _layout(_counts(counts, where, basis, wrap), basis, wrap)
 
 
 def balls_along(curves: Curves) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -158,7 +162,15 @@ def balls_along(curves: Curves) -> tuple[NDArray[np.float64], NDArray[np.float64
     return balls[:, :3], balls[:, 3:]
 
 
+def _layout(counts: NDArray[np.int64], basis: str, wrap: str) -> Layout:
+    from .curve_bases import Layout
+
+    return Layout(freeze_in_place(counts), basis, wrap)
+
+
 def _counts(counts: Any, where: str, basis: str, wrap: str) -> NDArray[np.int64]:
+    from .curve_bases import are_counts, wanted_count
+
     numbers = to_numbers(counts, where, "counts", "shape (C,)")
     if numbers.ndim != 1 or (numbers.size and numbers.dtype.kind not in "iu"):
         raise InputError(

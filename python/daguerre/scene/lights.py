@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from daguerre.checks import color, number, short, shown
 from daguerre.errors import InputError
 
-from .light_profile import LightProfile, check_profile
+if TYPE_CHECKING:
+    from .light_profile import LightProfile
 
 Color = tuple[float, float, float]
 
@@ -90,7 +92,9 @@ def check_light(light: Light) -> None:
             number(value, f"{where}: angle", 0, 360, error=InputError)
         elif name == "radius":
             number(value, f"{where}: radius", 0, error=InputError)
-        elif name == "profile":
+        elif name == "profile" and value is not None:
+            from .light_profile import check_profile
+
             check_profile(value, where)
     if isinstance(light, SphereLight) and not light.radius > 0:
         raise InputError(f"{where}: radius: wanted a number above 0, got {light.radius}")

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from daguerre.checks import short, shown
 from daguerre.errors import InputError
 from daguerre.files.value import BriefRecord
 
-from .light_profile import LightProfile, check_profile
 from .media import Medium, check_media
 from .spectrum import Spectrum
 from .surfaces.boundary import Boundary
@@ -20,6 +20,9 @@ from .surfaces.diffuse import Color, Diffuse
 from .surfaces.gltf import Gltf
 from .surfaces.mix import Mix
 from .surfaces.texture_slot import TextureSlot
+
+if TYPE_CHECKING:
+    from .light_profile import LightProfile
 
 __all__ = [
     "Boundary",
@@ -95,7 +98,10 @@ def check_material(material: Material, where: str) -> None:
     if not isinstance(material.name, str):
         raise InputError(f"material: name: wanted a string, got {shown(material.name)}")
     check_fields(material, where)
-    check_profile(material.profile, where)
+    if material.profile is not None:
+        from .light_profile import check_profile
+
+        check_profile(material.profile, where)
     check_surface(kind, where)
     check_media(material.interior, material.exterior, where)
     if isinstance(kind, Boundary) and any(material.emission):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, TypedDict
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +15,9 @@ from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
 
 from .parts import Mesh
-from .subdivision.rules import Subdivision
+
+if TYPE_CHECKING:
+    from .subdivision.rules import Subdivision
 
 #: Number of components of each vertex attribute.
 COLUMNS = {"normals": 3, "uv": 2, "uv1": 2, "tangents": 4, "colors": 4}

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from daguerre.checks import array, freeze_in_place, short, to_numbers
+from daguerre.checks import array, freeze_in_place, integers, short, to_numbers
 from daguerre.errors import InputError
 from daguerre.files.value import Value
 from daguerre.motion.values import Dynamic
@@ -19,7 +19,6 @@ from .motion import Vertices
 from .parts import Mesh, vertices_of
 from .polygons import check_sizes, triangulate, vertices_of_triangles, weld
 from .subdivision import Refiner, Subdivision
-from .subdivision.rules import integers
 
 IntArray = NDArray[np.int64]
 

@@ -20,6 +20,7 @@ from daguerre.checks import (
     MAX_NUMBERS,
     MAX_RESOLUTION,
     as_readonly,
+    integers,
     matrix,
     short,
     to_numbers,
@@ -45,8 +46,6 @@ from .mesh import MESH, MeshKeywords, mesh_of
 from .motion import SceneMotion
 from .node_names import find_node, no_node
 from .parts import Curves, Environment, Instance, Mesh, Plate, Texture, vertices_of
-from .point_cache import PointCache, steps_of
-from .subdivision.rules import integers
 
 
 @guarded(
@@ -328,7 +327,7 @@ class Scene(Value):
         name, steps, motion = (given.pop(key) for key in ("name", "steps", "motion"))
         sizes, subdivision = given.pop("sizes"), given.pop("subdivision")
         where = f"mesh {name or len(self.meshes)!r}"
-        moving = _dynamic(positions) if steps is None else steps_of(steps, where)
+        moving = _dynamic(positions) if steps is None else _steps(steps, where)
         moving_normals = _dynamic(normals)
         given |= {"normals": self._now(normals), "uv": uv}
         if sizes is None and subdivision is None:
@@ -345,6 +344,8 @@ class Scene(Value):
         if moving is not None or moving_normals is not None:
             rest = vertices_of(mesh)
             path = moving or Composite(mesh.positions)
+            from .point_cache import PointCache
+
             cache = PointCache(path, moving_normals, rest, mesh.indices, where)
             mesh, motion = replace(mesh, **vars(cache.at(self.time))), cache
         if motion is not None:
@@ -378,7 +379,7 @@ class Scene(Value):
         given = CURVES.filled(keywords, "Scene.add_curves")
         where = f"curves {given['name'] or len(self.meshes)!r}"
         steps = given.pop("steps")
-        path = _dynamic(points) if steps is None else steps_of(steps, where)
+        path = _dynamic(points) if steps is None else _steps(steps, where)
         curves, layout = curves_of(self._now(points), counts, widths, given, where)
         if path is not None:
             motion = moving_curves(path, curves, layout)
@@ -620,6 +621,12 @@ class Scene(Value):
 
 def _counted(count: int, name: str) -> str:
     return f"{count} {name}" + ("" if count == 1 else "es" if name == "mesh" else "s")
+
+
+def _steps(steps: Any, where: str) -> Dynamic:
+    from .point_cache import steps_of
+
+    return steps_of(steps, where)
 
 
 def _dynamic(value: Any) -> Dynamic | None:

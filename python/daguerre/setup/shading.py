@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,6 @@ import daguerre._core as _core
 from daguerre.errors import InputError
 from daguerre.motion.resample import resample
 from daguerre.motion.values import Dynamic
-from daguerre.scene.light_profile import LightProfile
 from daguerre.scene.lights import (
     DirectionalLight,
     Light,
@@ -29,6 +28,9 @@ from daguerre.scene.parts import Environment
 from daguerre.scene.scene import Scene
 
 from .core_materials import common_values, kind_name, kind_values
+
+if TYPE_CHECKING:
+    from daguerre.scene.light_profile import LightProfile
 
 Interval = tuple[float, float]
 #: Kind of light, and arguments of the core's function for that kind.

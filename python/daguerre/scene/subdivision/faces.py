@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from daguerre.cached import cached_property
-from daguerre.checks import MAX_NUMBERS, whole
+from daguerre.checks import MAX_NUMBERS, integers, whole
 from daguerre.errors import InputError
 from daguerre.files.value import Value
 
-from .rules import IntArray, integers
+from .rules import IntArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from daguerre.cached import cached_property
-from daguerre.checks import short, to_numbers, whole
+from daguerre.checks import integers, short, to_numbers, whole
 from daguerre.errors import InputError
 from daguerre.files.value import Value
 
@@ -19,7 +19,7 @@ from .face_varying import cut_values, linear_corners, value_indices
 from .faces import Faces, checked_faces
 from .holes import kept_faces
 from .loop import Loop
-from .rules import MAX_LEVEL, SCHEMES, FloatArray, IntArray, Rules, choice, integers
+from .rules import MAX_LEVEL, SCHEMES, FloatArray, IntArray, Rules, choice
 from .scheme import Scheme
 from .surface import Surface
 

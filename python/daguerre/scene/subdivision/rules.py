@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from daguerre.checks import MAX_NUMBERS, short, to_numbers
+from daguerre.checks import MAX_NUMBERS, integers, short, to_numbers
 from daguerre.errors import InputError, suggest
 from daguerre.files.value import Value
 
@@ -140,23 +140,6 @@ def choice(value: Any, known: tuple[str, ...], where: str) -> str:
         near = suggest(value, known)
         raise InputError(f"{where}: wanted one of {', '.join(known)}, got {short(value)}{near}")
     return value
-
-
-def integers(values: Any, where: str, what: str, below: int) -> IntArray:
-    """Checks whole numbers in 0 .. below - 1; returns int64 of the same shape.
-
-    Raises:
-        InputError: Others.
-    """
-    found = to_numbers(values, where, what, "integers")
-    if found.size == 0:
-        return np.zeros(found.shape, np.int64)
-    if found.dtype.kind not in "iu":
-        raise InputError(f"{where}: {what}: wanted integers, got {found.dtype}")
-    low, high = int(found.min()), int(found.max())
-    if low < 0 or high >= below:
-        raise InputError(f"{where}: {what}: wanted 0 .. {below - 1}, got {low} .. {high}")
-    return found.astype(np.int64)
 
 
 def _sharpness(values: ArrayLike, where: str, what: str, count: int) -> FloatArray:
