@@ -11,6 +11,7 @@ const KEYS = [
   ['9', '#ring-time'], ['O', '#lens'], ['E', '#exposure'], ['K', '#lock'], ['Y', '#hyperfocal'],
   ['G', '[data-toggle=grid]'], ['H', '[data-toggle=horizon]'], ['Z', '[data-toggle=zebra]'],
   ['P', '[data-toggle=peaking]'], ['L', '[data-toggle=loupe]'], ['R', '[data-panel=rays]'],
+  ['T', '[data-tint=false-colour]'], ['D', '[data-tint=depth]'], ['B', '[data-toggle=parade]'], ['A', '#guides'],
   ['M', '[data-show=models]'], ['N', '[data-show=denoised]'], ['C', '#compare', HELD],
   ['V', '#level'], ['0', '#reset'], ['S', '[data-save=png]'], ['F', '#full'], ['?', '#help'],
 ];

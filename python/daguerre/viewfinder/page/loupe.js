@@ -1,4 +1,6 @@
-// loupe.js -- pixels under the pointer, and their linear values.
+// loupe.js -- pixels under the pointer, their linear values, and how far the point is.
+
+import {feet, metres} from './scales.js';
 
 const PROBE_MS = 40;
 const SIDE = 121, PIXELS = 11;
@@ -39,6 +41,10 @@ export class Loupe {
     if (!('value' in message)) return;
     const {value} = message, digits = (i) => value.rgb[i].toPrecision(4);
     this.element.querySelector('p').textContent = value
-      ? `${value.x}, ${value.y}\nR ${digits(0)}\nG ${digits(1)}\nB ${digits(2)}` : '';
+      ? `${value.x}, ${value.y}\nR ${digits(0)}\nG ${digits(1)}\nB ${digits(2)}\n${distance(value)}` : '';
   }
+}
+
+function distance({distance_m: m}) {
+  return m === null ? '∞' : `${metres(m)} (${feet(m)})`;
 }

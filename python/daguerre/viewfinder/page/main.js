@@ -9,16 +9,20 @@
 
 import {Choices} from './choices.js';
 import {Exposure} from './exposure.js';
+import {Guides} from './guides.js';
 import {Keys} from './keys.js';
 import {LensPicker} from './lens_picker.js';
 import {Loupe} from './loupe.js';
+import {Needle} from './needle.js';
 import {Numbers} from './numbers.js';
 import {Output} from './output.js';
 import {Panels} from './panels.js';
+import {Parade} from './parade.js';
 import {Picture} from './picture.js';
 import {Rays} from './rays.js';
 import {Rings} from './rings.js';
 import {Screen} from './screen.js';
+import {Tints} from './tints.js';
 import {Tools} from './tools.js';
 import {Tripod} from './tripod.js';
 
@@ -41,7 +45,10 @@ class Viewfinder {
     this.tripod = new Tripod(canvas, (dials) => this.turn(dials));
     this.tripod.clicked = (event) => this.clicked(event);
     this.panels = new Panels(root);
-    this.parts = [LensPicker, Choices, Exposure, Rings, Numbers, Tools, Loupe, Rays, Output, Screen].map((Part) => new Part(this));
+    const parts = [
+      LensPicker, Choices, Exposure, Rings, Needle, Numbers, Tools, Tints, Guides, Parade, Loupe, Rays, Output, Screen,
+    ];
+    this.parts = parts.map((Part) => new Part(this));
     this.keys = new Keys(this);
     this.link = makeLink({
       told: (message) => this.told(message),

@@ -1,8 +1,9 @@
 // picture.js -- the canvas: the picture, and what photographers lay over it.
 
+import {marks} from './marks.js';
+
 const INSIDE = 1 - 1e-9;
 const COLUMNS = 2;   // of pictures side by side
-const ZEBRA = 250, PEAK = 60;
 
 export class Picture {
   constructor(canvas, over) {
@@ -19,8 +20,7 @@ export class Picture {
 
   /** Shows a picture; resolves when it is on the screen. */
   async show(head, bytes) {
-    const bitmap = head.kind === 'rgb' ? fromRgb(bytes, head.size)
-      : await createImageBitmap(new Blob([bytes], {type: 'image/jpeg'}));
+    const bitmap = await decoded(head.kind, bytes, head.size);
     if (this.head && head.picture < this.head.picture) return false;   // a newer one was faster
     if (this.head && head.turn !== this.head.turn) this.last = this.bitmap;
     this.bitmap = bitmap;
@@ -93,23 +93,7 @@ export class Picture {
   marks(context) {
     const {width, height} = this.canvas;
     const seen = this.context.getImageData(0, 0, width, height).data;
-    const out = context.createImageData(width, height);
-    const luma = new Float32Array(width * height);
-    for (let i = 0, p = 0; i < luma.length; i++, p += 4) {
-      luma[i] = 0.2126 * seen[p] + 0.7152 * seen[p + 1] + 0.0722 * seen[p + 2];
-    }
-    for (let y = 1; y < height - 1; y++) {
-      for (let x = 1; x < width - 1; x++) {
-        const i = y * width + x, p = 4 * i;
-        const clipped = Math.max(seen[p], seen[p + 1], seen[p + 2]) >= ZEBRA;
-        if (this.shows.zebra && clipped && (x + y) % 8 < 4) out.data.set([20, 20, 20, 220], p);
-        if (this.shows.peaking) {
-          const edge = Math.abs(luma[i - 1] + luma[i + 1] + luma[i - width] + luma[i + width] - 4 * luma[i]);
-          if (edge > PEAK) out.data.set([255, 60, 40, 230], p);
-        }
-      }
-    }
-    context.putImageData(out, 0, 0);
+    context.putImageData(new ImageData(marks(seen, width, height, this.shows), width, height), 0, 0);
   }
 
   grid(context) {
@@ -141,6 +125,11 @@ export class Picture {
 function cells(count) {
   const columns = Math.min(count || 1, COLUMNS);
   return {columns, rows: Math.ceil((count || 1) / columns)};
+}
+
+/** What a canvas can draw of a picture's bytes. */
+export function decoded(kind, bytes, size) {
+  return kind === 'rgb' ? fromRgb(bytes, size) : createImageBitmap(new Blob([bytes], {type: 'image/jpeg'}));
 }
 
 /** A canvas with the pixels of a small picture, which needs no decoding. */

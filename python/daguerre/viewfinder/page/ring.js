@@ -52,9 +52,9 @@ export class Ring {
    *
    * `dial`: dial that it turns. `texts`: texts of all dials that set its value, now; `opened`: at
    * first. `span`: pair of values around the mark, such as the depth of field. `off`: why it cannot
-   * be turned.
+   * be turned. `metered`: letter of the exposure mode that turns it.
    */
-  show(scale, value, {dial, texts, opened, span = null, off = '', extra = ''}) {
+  show(scale, value, {dial, texts, opened, span = null, off = '', metered = '', extra = ''}) {
     Object.assign(this, {scale, dial, texts, opened, span, extra});
     const now = JSON.stringify(texts);
     this.input.min = scale.low;
@@ -62,6 +62,8 @@ export class Ring {
     this.input.step = 'any';
     this.input.disabled = off !== '';
     this.element.classList.toggle('off', off !== '');
+    this.element.classList.toggle('metered', metered !== '');
+    this.label.dataset.metered = metered;
     title(this.input, off || HINT);
     this.back.disabled = off !== '' || now === JSON.stringify(opened);
     if (!this.busy && !this.holds) {
@@ -194,7 +196,8 @@ export class Ring {
   }
 }
 
-function part(name, attributes, text = '') {
+/** An element of SVG. */
+export function part(name, attributes, text = '') {
   const made = document.createElementNS(SVG, name);
   for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
   made.textContent = text;

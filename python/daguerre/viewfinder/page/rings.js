@@ -2,6 +2,7 @@
 
 import {fill, press, pressed} from './dom.js';
 import {recall, remember} from './memory.js';
+import {letterOf} from './mode_dial.js';
 import {Ring} from './ring.js';
 import * as scales from './scales.js';
 
@@ -61,9 +62,9 @@ export class Rings {
     if (readings.zoom_range_mm) rings.zoom.show(scales.zoomScale(readings.zoom_range_mm), readings.zoom_mm, of('zoom'));
     rings.shutter_time.show(scales.shutterScale(), readings.shutter_s || 1 / 8000, {
       ...of('shutter_time', 'shutter_angle'),
-      extra: this.beside('shutter_time', `${(360 * readings.fps * readings.shutter_s).toPrecision(3)}°`),
+      extra: `${(360 * readings.fps * readings.shutter_s).toPrecision(3)}°`,
     });
-    rings.iso.show(scales.isoScale(), readings.iso, {...of('iso'), extra: this.beside('iso')});
+    rings.iso.show(scales.isoScale(), readings.iso, of('iso'));
     rings.exposure_compensation.show(scales.evScale(), readings.ev, of('exposure_compensation'));
     rings.white_balance.show(scales.whiteScale(), readings.white_k ?? 6500, of('white_balance'));
     rings.blades.show(scales.bladesScale(), readings.blades, of('blades'));
@@ -82,7 +83,7 @@ export class Rings {
       : readings.t_stop ? `T/${readings.t_stop.toPrecision(3)}` : '';
     const names = letter === 'T' ? ['t_stop', 'f_stop'] : ['f_stop', 't_stop'];
     this.rings.f_stop.show(scales.irisScale(widest, Number(perStop), letter), value, {
-      ...this.ringOf(dials, ...names, 'aperture_diameter'), extra: this.beside('f_stop', other),
+      ...this.ringOf(dials, ...names, 'aperture_diameter'), extra: other,
     });
   }
 
@@ -91,15 +92,10 @@ export class Rings {
     const names = [dial, ...others].sort();
     const of = (texts) => Object.fromEntries(names.map((name) => [name, texts[name] ?? null]));
     const {state: {chosen, mode}, mine, open} = this.view;
-    const off = chosen.includes(dial) ? `The exposure mode ${mode} sets it; Manual lets you turn it`
+    const metered = chosen.includes(dial) ? letterOf(mode) : '';
+    const off = metered ? `The meter turns it in mode ${metered}; M lets you turn it`
       : mine ? '' : 'Another page turns the rings';
-    return {dial, texts: of(dials), opened: of(open.dials), off};
-  }
-
-  /** Text beside the value of a ring that an exposure mode sets. */
-  beside(dial, text = '') {
-    const {chosen, mode} = this.view.state;
-    return [text, chosen.includes(dial) ? mode : ''].filter(Boolean).join(' · ');
+    return {dial, texts: of(dials), opened: of(open.dials), off, metered};
   }
 
   /** Plays the animation as fast as pictures come. */

@@ -1,0 +1,76 @@
+// tints.js -- the picture by exposure or by distance, over the picture itself, with its legend.
+
+import {press} from './dom.js';
+import {decoded} from './picture.js';
+import {feet, metres} from './scales.js';
+
+const TINTS = {'false-colour': 'false colour', depth: 'depth of field'};
+
+export class Tints {
+  constructor(view) {
+    this.view = view;
+    this.canvas = view.find('tint');
+    this.legend = view.find('legend');
+    this.buttons = [...view.root.querySelectorAll('[data-tint]')];
+    for (const button of this.buttons) {
+      button.addEventListener('click', () => {
+        const {show} = view.state, {tint} = button.dataset;
+        view.send({show: {...show, tint: show.tint === tint ? 'none' : tint}});
+      });
+    }
+  }
+
+  update({show}) {
+    for (const button of this.buttons) press(button, show.tint === button.dataset.tint);
+    this.explain();
+  }
+
+  async shown(head) {
+    this.head = head;
+    const bitmap = head.tint?.bytes.length ? await decoded(head.kind, head.tint.bytes, head.size) : null;
+    if (head !== this.head) return;   // a newer one was faster
+    this.canvas.hidden = !bitmap;
+    if (bitmap) {
+      [this.canvas.width, this.canvas.height] = head.size;
+      this.canvas.getContext('2d').drawImage(bitmap, 0, 0);
+    }
+    this.explain();
+  }
+
+  /** Draws the legend of the tint that is shown. */
+  explain() {
+    const {tint} = this.head ?? {}, {open, state: {readings}} = this.view;
+    this.legend.hidden = !tint || !readings.lens;
+    if (this.legend.hidden) return;
+    const {note, kind} = tint;
+    const rows = note ? [] : kind === 'depth' ? parts(open.legends[kind], readings) : zones(open.legends[kind]);
+    const title = note || (kind === 'depth' ? '' : 'EV from 18 % grey');
+    this.legend.setAttribute('aria-label', `Legend of ${TINTS[kind]}: ${title || rows.map(([, text]) => text).join('; ')}`);
+    this.legend.replaceChildren(made('b', title), ...rows.map(([colour, text]) => {
+      const swatch = made('span', text);
+      swatch.style.background = `rgb(${colour})`;
+      swatch.style.color = luma(colour) > 110 ? '#000' : '#fff';
+      return swatch;
+    }));
+  }
+}
+
+function zones(colours) {
+  const ends = {0: '≤', [colours.length - 1]: '≥'};
+  return colours.map(([ev, colour], i) => [colour, `${ends[i] ?? ''}${ev > 0 ? '+' : ''}${ev}`.replace('-', '−')]);
+}
+
+function parts([near, sharp, far], {near_m: from, far_m: to, f_stop: stop}) {
+  const both = (value) => `${metres(value)} (${feet(value)})`;
+  if (stop === null) return [[sharp, 'everything is sharp']];
+  const rows = [[near, `nearer than ${both(from)}`], [sharp, `sharp to ${both(to)}`]];
+  return to === null ? rows : [...rows, [far, 'farther']];
+}
+
+const luma = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
+
+function made(name, text) {
+  const element = document.createElement(name);
+  element.textContent = text;
+  return element;
+}
