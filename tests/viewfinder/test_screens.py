@@ -16,6 +16,7 @@ from tests.faults.scene import write_scene
 
 from .chromium import Browser, browser, program
 from .live import TOKEN, Live, live
+from .live import page as guest
 
 pytest.importorskip("websockets", reason="needs the extra view")
 pytest.importorskip("simplejpeg", reason="needs the extra view")
@@ -258,3 +259,23 @@ def test_a_barred_storage_bars_nothing(tmp_path: Path, server: Live) -> None:
         page.press("g")
         assert page.run("document.querySelector('[data-toggle=grid]').ariaPressed") == "true"
         assert page.errors == []
+
+
+def test_a_page_that_watches_says_so(chromium: Browser, server: Live) -> None:
+    chromium.open("about:blank")
+    with guest(server) as first:
+        first.step()
+        page = shows(chromium, server, PHONE)
+        text = page.until("!document.getElementById('watches').hidden && document.body.innerText")
+        assert "This page only watches: another one turns the rings." in text
+    page.until("document.getElementById('watches').hidden")
+
+
+def test_a_distance_too_near_for_the_lens_is_one_sentence(chromium: Browser, server: Live) -> None:
+    page = shows(chromium, server, PHONE)
+    server.turn({"focus_distance": "0.001"})
+    error = "document.getElementById('error')"
+    text = page.until(f"!{error}.hidden && {error}.textContent")
+    assert text.startswith("The lens does not focus that near")
+    server.turn({"focus_distance": None})
+    page.until(f"{error}.hidden")

@@ -18,6 +18,7 @@ from daguerre.camera.ideal import IDEAL
 from daguerre.development.looks import LOOKS
 from daguerre.errors import DaguerreError, UsageError
 from daguerre.files import extras
+from daguerre.lenses.errors import LensError
 
 from . import lens_list
 from .dials import DIALS, Dials, texts_of_words
@@ -402,6 +403,8 @@ class Hub:
 def _reason(error: Exception) -> str:
     """Message of an error; one that a user cannot correct says whose fault it is."""
     match error:
+        case LensError(code="lens-focus-near"):
+            return "The lens does not focus that near: focus farther away, or move the camera back."
         case DaguerreError():
             return str(error)
         case MemoryError():

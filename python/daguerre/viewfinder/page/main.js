@@ -89,7 +89,7 @@ class Viewfinder {
     if (message.heard) this.unheard--;
     if (message.role || message.refused) this.unheard = 0;
     if (message.role) this.mine = message.role === 'turns';
-    if (message.role === 'watches') this.status('Watching: another page turns the rings');
+    if (message.role) this.find('watches').hidden = this.mine;
     if (message.state) this.state = message.state;
     if (this.open && this.state && (message.state || message.heard || message.refused)) this.update();
     if (message.refused) this.complain(message.refused);
