@@ -196,8 +196,7 @@ class Hub:
             case _ if not guest.turns:
                 raise UsageError("view: read-only: another page controls the camera")
             case Turn(changes):
-                await self._turn(self.dials.turned({**self._kept(changes), **changes}))
-                await self._tell(guest, {"heard": True})
+                await self._turn(self.dials.turned({**self._kept(changes), **changes}), guest)
             case Draw(samples):
                 await self._turn(self.dials.turned({"spp": str(samples)}))
             case Save(kind):
@@ -210,10 +209,13 @@ class Hub:
                 await self._turn(self.dials)
                 await self._tell_all({"open": self._opened()})
 
-    async def _turn(self, dials: Dials) -> None:
+    async def _turn(self, dials: Dials, guest: Guest | None = None) -> None:
+        """Turns dials; the page that asked hears so before the state, and updates once."""
         shot = self._stage.shot(dials)  # or an error, and everything stays as it is
         self._shot, self.dials, self.error = shot, dials, ""
         self._wish()
+        if guest is not None:
+            await self._tell(guest, {"heard": True})
         await self._tell_all(self._state())
 
     def _kept(self, changes: Mapping[str, str | None]) -> dict[str, str | None]:
@@ -346,6 +348,7 @@ class Hub:
             "kind": image.kind,
             "samples": drawn.samples,
             "rests": drawn.rests,
+            "whole": drawn.whole,
             "panels": [panel.model for panel in drawn.panels],
             "histogram": image.histogram,
             "tint": image.tint,
@@ -363,11 +366,11 @@ class Hub:
         if sheet.drawn.wish.number != self.number:
             return  # a newer wish came
         self._sheet = sheet
+        for guest in self._guests:
+            self._start(self._offer(guest))  # before the numbers, which take the page longer
         if (readings, self.number) != (self._readings, self._read):
             self._readings, self._read = readings, self.number
             self._start(self._tell_all(self._state()))
-        for guest in self._guests:
-            self._start(self._offer(guest))
 
     def _report(self, wish: Wish, text: str) -> None:
         """Says why a wish cannot be drawn, and puts the dials back to those that could."""

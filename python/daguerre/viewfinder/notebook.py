@@ -13,17 +13,15 @@ from daguerre.files import extras
 from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene
 
+from .bundle import PAGE, bundled
 from .dials import Dials
 from .hub import Guest, Hub
 from .opening import opened
-from .server import PAGE
 from .stage import Stage
 
 if TYPE_CHECKING:
     from anywidget import AnyWidget
 
-_IMPORT = re.compile(r"^import (\{[^}]*\}|\* as \w+) from '\./(\w+)\.js';$", re.MULTILINE)
-_EXPORT = re.compile(r"^export (?=(?:async )?(?:class|function|const) (\w+))", re.MULTILINE)
 _STYLE = re.compile(r'<link rel="stylesheet" href="([\w.]+)">')
 _SIZE = (640, 360)
 
@@ -123,7 +121,7 @@ def _widget(shown: View) -> AnyWidget:
     from traitlets import Unicode
 
     class Panel(AnyWidget):
-        _esm = bundled("widget")
+        _esm = bundled("widget") + "export default {render: module_widget.render};\n"
         panel = Unicode((PAGE / "index.html").read_text("utf-8")).tag(sync=True)
         style = Unicode(_styles()).tag(sync=True)
 
@@ -137,27 +135,3 @@ def _styles() -> str:
     """All styles of the page, in its order."""
     files = _STYLE.findall((PAGE / "index.html").read_text("utf-8"))
     return "".join((PAGE / name).read_text("utf-8") for name in files)
-
-
-def bundled(name: str) -> str:
-    """Joins a module of the page and all that it imports into one module."""
-    done: dict[str, str] = {}
-
-    def add(module: str) -> None:
-        text = (PAGE / f"{module}.js").read_text("utf-8")
-        for _, other in _IMPORT.findall(text):
-            if other not in done:
-                add(other)
-        names = _EXPORT.findall(text)
-        text = _IMPORT.sub(_from_module, _EXPORT.sub("", text))
-        done[module] = (
-            f"const module_{module} = (() => {{\n{text}\nreturn {{{', '.join(names)}}};\n}})();\n"
-        )
-
-    add(name)
-    return "".join(done.values()) + f"export default {{render: module_{name}.render}};\n"
-
-
-def _from_module(found: re.Match[str]) -> str:
-    names = found[1].removeprefix("* as ")
-    return f"const {names} = module_{found[2]};"

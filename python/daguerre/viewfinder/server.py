@@ -16,6 +16,7 @@ from urllib.parse import urlsplit
 from daguerre.errors import UsageError
 from daguerre.lenses.index import names
 
+from .bundle import PAGE, bundled
 from .door import HEADERS, Door
 from .hub import Hub
 from .lens_list import photograph_path
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from websockets.asyncio.server import ServerConnection
     from websockets.http11 import Request, Response
 
-PAGE = Path(__file__).parent / "page"
 KINDS = {
     ".html": "text/html; charset=utf-8",
     ".css": "text/css; charset=utf-8",
@@ -127,11 +127,12 @@ class _Line:
 
 def _read_files() -> dict[str, bytes]:
     """Files of the page by path, read once: no request reaches the disk."""
-    return {
+    files = {
         f"/{path.relative_to(PAGE).as_posix()}": path.read_bytes()
         for path in sorted(PAGE.rglob("*"))
-        if path.suffix in KINDS
+        if path.suffix in KINDS and path.suffix != ".js"
     }
+    return {**files, "/start.js": bundled("start").encode()}
 
 
 FILES = _read_files()

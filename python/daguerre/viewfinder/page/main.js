@@ -38,7 +38,8 @@ class Viewfinder {
     this.open = null;    // what the stage offers
     this.state = null;   // dials and readings
     this.mine = false;   // whether this page may turn
-    this.wish = null;
+    this.wish = null;     // turns to send
+    this.sent = false;   // whether some were sent in this frame
     this.unheard = 0;    // turns that the server has not taken yet
     const canvas = this.find('picture');
     this.picture = new Picture(canvas, this.find('over'));
@@ -62,16 +63,20 @@ class Viewfinder {
     this.link.send(message);
   }
 
-  /** Sends turns at most once a frame, the newest of each dial. */
+  /** Sends turns at once, and further ones at most once a frame, the newest of each dial. */
   turn(dials) {
-    const waits = this.wish !== null;
     this.wish = {...this.wish, ...dials};
-    if (waits) return;
-    requestAnimationFrame(() => {
-      this.send({turn: this.wish});
-      this.unheard++;
-      this.wish = null;
-    });
+    if (this.sent) return;
+    this.sendTurn();
+  }
+
+  sendTurn() {
+    this.sent = this.wish !== null;
+    if (!this.sent) return;
+    this.send({turn: this.wish});
+    this.unheard++;
+    this.wish = null;
+    requestAnimationFrame(() => this.sendTurn());
   }
 
   /** Whether the readings are those of all that was turned; if not, what was turned stays where it is. */
@@ -91,7 +96,7 @@ class Viewfinder {
     if (message.role) this.mine = message.role === 'turns';
     if (message.role) this.find('watches').hidden = this.mine;
     if (message.state) this.state = message.state;
-    if (this.open && this.state && (message.state || message.heard || message.refused)) this.update();
+    if (this.open && this.state && (message.state || message.refused)) this.update();
     if (message.refused) this.complain(message.refused);
     if (message.changed) {
       this.find('changed').hidden = false;

@@ -31,17 +31,14 @@ export class Picture {
     return true;
   }
 
+  /** Draws a picture at the size of the one at rest; smaller ones look soft, not like blocks. */
   draw(bitmap) {
-    const count = this.countOf.get(bitmap), {columns, rows} = cells(count);
-    const width = bitmap.width / count, {height} = bitmap;
-    this.canvas.width = width * columns;
-    this.canvas.height = height * rows;
-    for (let i = 0; i < count; i++) {
-      const x = width * (i % columns), y = height * Math.floor(i / columns);
-      this.context.drawImage(bitmap, width * i, 0, width, height, x, y, width, height);
-    }
-    const [w, h] = this.whole ?? [width, height];
-    this.canvas.closest('.frame').style.setProperty('--ratio', (w * columns) / (h * rows));
+    const {panels, whole} = this.head;
+    const [width, height] = panels.length || whole || !this.whole ? [bitmap.width, bitmap.height] : this.whole;
+    Object.assign(this.canvas, {width, height});
+    this.context.imageSmoothingQuality = 'high';
+    this.context.drawImage(bitmap, 0, 0, width, height);
+    this.canvas.closest('.frame').style.setProperty('--ratio', width / height);
   }
 
   compare(on) {
