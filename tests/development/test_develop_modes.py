@@ -90,7 +90,7 @@ def test_night_stays_night_and_sensors_have_their_isos() -> None:
     few = dg.sensors.load("ideal").with_(iso_range=(200, 800), base_iso=200)
     assert retaken(frame(1e-3), "auto", sensor=few).frame.metadata["isoSpeed"] == 800
     black = retaken(frame(0.0), "auto", ev=1)
-    assert black.notes == ["no light to meter: the picture is in light"]
+    assert black.notes == ["no light to meter, so the exposure mode is light"]
     assert black.frame.metadata["exposure"] == "light"
     assert black.frame.metadata["exposure_compensation"] == 1
 

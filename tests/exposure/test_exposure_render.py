@@ -173,7 +173,7 @@ def test_a_sensor_that_lacks_iso_100_is_exposed_at_its_own() -> None:
 def test_a_black_picture_is_kept(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["--f-stop", "4", "--shutter", "1/50", "--focus", "2", "--res", "8x8", "--spp", "1"]
     assert main(["render", "s.glb", "-o", "a.png", *words, "--exposure", "auto"]) == 0
-    assert "no light to meter: the picture is in light" in capsys.readouterr().err
+    assert "no light to meter, so the exposure mode is light" in capsys.readouterr().err
     assert linear("a.png") == 0
 
 

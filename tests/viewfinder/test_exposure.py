@@ -101,7 +101,7 @@ def test_without_a_reading_it_starts_in_light_and_says_so(changes: Any, said: st
     dials, text = opened(bright(**changes), Dials())
     assert "exposure" not in dials.texts
     assert said in text
-    assert text.endswith("in light")
+    assert text.endswith("so the exposure mode is light")
 
 
 def test_a_picture_that_only_light_shows_stays_in_light() -> None:

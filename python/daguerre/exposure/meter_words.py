@@ -6,7 +6,7 @@ import math
 
 from .metering import ev100_of
 
-NO_LIGHT = "no light to meter: the picture is in light"
+NO_LIGHT = "no light to meter, so the exposure mode is light"
 #: Stops that nobody sees.
 _SLIGHT = 0.05
 

@@ -62,7 +62,7 @@ def _gain(setup: ResolvedCamera, notes: Notes) -> float:
     mode = facts["exposure"]
     if mode not in AUTOMATIC:
         return display_gain(facts)
-    notes.add(f"exposure {mode} is left out: the picture is in light")
+    notes.add(f"exposure {mode} is left out: the file has the mode light")
     return compensation(facts)
 
 

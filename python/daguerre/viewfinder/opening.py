@@ -33,7 +33,7 @@ def opened(stage: Stage, dials: Dials) -> tuple[Dials, str]:
     try:
         chosen = stage.exposed(replace(shot, camera=camera)).chosen
     except InputError as error:  # such as a frozen shutter
-        return dials, f"{error}; the picture is in light"
+        return dials, f"{error}; so the exposure mode is light"
     assert chosen is not None
     texts = texts_of_words(chosen.words)
     return (dials if texts["exposure"] == LIGHT else dials.turned(texts)), chosen.warning

@@ -49,7 +49,7 @@ def test_pbrt_shows_what_ours_shows(name: str, tmp_path: Path) -> None:
 def test_an_automatic_exposure_is_noted(tmp_path: Path) -> None:
     scene = world(exposure="auto", exposure_compensation=1.0)
     notes = dg.export_scene(scene, tmp_path / "a.pbrt")
-    assert "exposure auto is left out: the picture is in light (1 use)" in notes
+    assert "exposure auto is left out: the file has the mode light (1 use)" in notes
     assert dg.load(tmp_path / "a.pbrt").camera().exposure_compensation == pytest.approx(1)
 
 

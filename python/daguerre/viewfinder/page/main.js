@@ -136,7 +136,7 @@ class Viewfinder {
 
   update() {
     const {readings, error} = this.state;
-    this.complain(error || (readings.warnings ?? []).join('; '));
+    this.complain([error, ...(readings.warnings ?? [])].filter(Boolean).join('; '));
     if (readings.lens) {
       this.open.spp = readings.spp;
       this.tripod.stand(readings.place, readings.focus_m, this.current);

@@ -5,10 +5,11 @@ const COPIED_MS = 1500;
 export class Output {
   constructor(view) {
     this.view = view;
+    this.saves = [...view.root.querySelectorAll('[data-save]')];
     const {find} = view;
     find('copy').addEventListener('click', () => this.copy());
     find('spp').addEventListener('change', () => view.send({draw: Number(find('spp').value)}));
-    for (const button of view.root.querySelectorAll('[data-save]')) {
+    for (const button of this.saves) {
       button.addEventListener('click', () => view.send({save: button.dataset.save}));
     }
   }
@@ -17,6 +18,7 @@ export class Output {
     const {find, root} = this.view;
     find('command').value = command;
     find('command').closest('div').hidden = root.querySelector('[for=command]').hidden = !command;
+    for (const control of [...this.saves, find('spp')]) control.disabled = !this.view.mine;
     if (root.activeElement !== find('spp')) find('spp').value = readings.spp ?? '';
   }
 

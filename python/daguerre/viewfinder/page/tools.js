@@ -50,7 +50,9 @@ export class Tools {
   }
 
   update({show}) {
+    const {mine, find} = this.view;
     for (const button of this.all('show')) press(button, show[button.dataset.show]);
+    for (const button of [...this.all('show'), find('level'), find('reset')]) button.disabled = !mine;
   }
 
   shown({panels}) {
