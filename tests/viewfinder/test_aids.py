@@ -196,7 +196,7 @@ def test_a_tilted_lens_says_why_it_is_not_tinted() -> None:
     assert "tilted" in made.note
 
 
-# What goes to the page
+# Messages to the page
 
 
 @pytest.mark.parametrize("size", [(90, 60), (240, 160)])

@@ -47,7 +47,7 @@ def finder(window: Browser, boards: Live) -> Browser:
 
 
 def marked(page: Browser, shown: NDArray[np.uint8], **which: bool) -> NDArray[np.uint8]:
-    """What marks.js lays over pixels, (H, W, 4)."""
+    """Pixels that marks.js lays over a picture, (H, W, 4)."""
     height, width = shown.shape[:2]
     opaque = np.dstack([shown, np.full((height, width), 255, np.uint8)])
     shows = {"zebra": False, "peaking": False, **which}

@@ -80,6 +80,6 @@ def by_depth(
 
 
 def legends() -> dict[str, Any]:
-    """What the page draws legends from: stops and their colours; colours of near, sharp, far."""
+    """Facts for the page's legends: stops and their colours; colours of near, sharp, far."""
     zones = zip(range(-REACH, REACH + 1), zone_colours().tolist(), strict=True)
     return {FALSE_COLOUR: list(zones), DEPTH: [NEAR, SHARP, FAR]}
