@@ -333,7 +333,9 @@ class Session:
         """
         one = prepare(self.scene, camera, self.settings, self.built)
         if identity.camera_hash(one) != self.key["camera"]:
-            raise MismatchError("expose: the camera must see the same light: only its exposure may differ")
+            raise MismatchError(
+                "expose: the camera must see the same light: only its exposure may differ"
+            )
         self.prepared, self.camera, self.metering = one, one.camera, metering or {}
         self.notes = [*one.notes, *self.light_plan.notes]
 
