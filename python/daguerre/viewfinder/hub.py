@@ -7,7 +7,7 @@ import itertools
 import json
 import math
 import shlex
-from collections.abc import Coroutine, Mapping, Sequence
+from collections.abc import Collection, Coroutine, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Protocol
@@ -24,6 +24,7 @@ from . import lens_list
 from .dials import DIALS, Dials, texts_of_words
 from .drawn import Drawn, Wish
 from .glass import drawing_of, glass_at
+from .history import History, Steps
 from .image import image_of, value_at
 from .messages import (
     Draw,
@@ -31,14 +32,17 @@ from .messages import (
     Facts,
     Find,
     Got,
+    Hold,
     Message,
     Photograph,
     Probe,
+    Redo,
     Reload,
     Save,
     Section,
     Show,
     Turn,
+    Undo,
     parse,
 )
 from .painter import Painter
@@ -112,7 +116,9 @@ class Hub:
         said: str = "",
     ) -> None:
         self._stage, self._words, self._loop, self._folder = stage, words, loop, folder
-        self.dials, self.number, self.error = dials, -1, said
+        self.number, self.error = -1, said
+        self._history = self._drawn_history = History(dials)
+        self._steps = Steps()
         self._first = dials
         self._show = Show(denoised=False, models=False)
         self._tev = tev
@@ -144,6 +150,8 @@ class Hub:
     async def leave(self, guest: Guest) -> None:
         """Forgets a page; if it turned, the next one does."""
         self._guests.remove(guest)
+        if guest.turns:
+            self._steps.let_go(self._loop.time())
         if guest.turns and self._guests:
             self._guests[0].turns = True
             await self._tell(self._guests[0], {"role": "turns"})
@@ -161,6 +169,11 @@ class Hub:
             await self._act(guest, parse(text))
         except Exception as error:  # whatever it is, the page stays
             await self._tell(guest, {"refused": _reason(error)})
+
+    @property
+    def dials(self) -> Dials:
+        """Positions of the dials."""
+        return self._history.now
 
     @property
     def command(self) -> str:
@@ -196,9 +209,15 @@ class Hub:
             case _ if not guest.turns:
                 raise UsageError("view: read-only: another page controls the camera")
             case Turn(changes):
-                await self._turn(self.dials.turned({**self._kept(changes), **changes}), guest)
+                await self._turn({**self._kept(changes), **changes}, changes, guest)
             case Draw(samples):
-                await self._turn(self.dials.turned({"spp": str(samples)}))
+                await self._turn({"spp": str(samples)})
+            case Undo():
+                await self._go_back(self._history.undone, "undo: nothing was turned")
+            case Redo():
+                await self._go_back(self._history.redone, "redo: nothing was undone")
+            case Hold(begins):
+                (self._steps.hold if begins else self._steps.let_go)(self._loop.time())
             case Save(kind):
                 path = await asyncio.to_thread(self._save, kind)
                 await self._tell_all({"saved": str(path)})
@@ -206,13 +225,34 @@ class Hub:
                 await self._change_show(message)
             case Reload():
                 self._stage = await asyncio.to_thread(self._stage.reload)
-                await self._turn(self.dials)
+                await self._go(self._history)
                 await self._tell_all({"open": self._opened()})
 
-    async def _turn(self, dials: Dials, guest: Guest | None = None) -> None:
-        """Turns dials; the page that asked hears so before the state, and updates once."""
-        shot = self._stage.shot(dials)  # or an error, and everything stays as it is
-        self._shot, self.dials, self.error = shot, dials, ""
+    async def _turn(
+        self,
+        changes: Mapping[str, str | None],
+        names: Collection[str] | None = None,
+        guest: Guest | None = None,
+    ) -> None:
+        """Turns dials; those of the names tell steps apart."""
+        dials = self.dials.turned(changes)
+        step = self._steps.of_turn(names or changes, self._loop.time())
+        await self._go(self._history.turned(dials, step), guest)
+
+    async def _go_back(self, history: History | None, nothing: str) -> None:
+        """Undoes or redoes a step; one that cannot be drawn any more is forgotten."""
+        if history is None:
+            raise UsageError(nothing)
+        try:
+            await self._go(history)
+        except DaguerreError:
+            self._history = self._history.without(history.now)
+            raise
+
+    async def _go(self, history: History, guest: Guest | None = None) -> None:
+        """Takes other dials; the page that asked hears so before the state, and updates once."""
+        shot = self._stage.shot(history.now)  # or an error, and everything stays as it is
+        self._shot, self._history, self.error = shot, history, ""
         self._wish()
         if guest is not None:
             await self._tell(guest, {"heard": True})
@@ -325,6 +365,8 @@ class Hub:
                 "chosen": list(chosen_by(mode)),
                 "command": self.command,
                 "readings": self._readings,
+                "undoes": self._history.undone is not None,
+                "redoes": self._history.redone is not None,
                 "show": asdict(self._show),
                 "error": self.error,
             }
@@ -365,7 +407,7 @@ class Hub:
     def _hand_out(self, sheet: Sheet, readings: dict[str, Any]) -> None:
         if sheet.drawn.wish.number != self.number:
             return  # a newer wish came
-        self._sheet = sheet
+        self._sheet, self._drawn_history = sheet, self._history
         for guest in self._guests:
             self._start(self._offer(guest))  # before the numbers, which take the page longer
         if (readings, self.number) != (self._readings, self._read):
@@ -377,7 +419,8 @@ class Hub:
         if wish.number != self.number:
             return
         if self._sheet is not None and self._sheet.drawn.wish.dials != self.dials:
-            self.dials, self._shot = self._sheet.drawn.wish.dials, self._sheet.drawn.wish.shot
+            self._history = self._drawn_history.without(self.dials)
+            self._shot = self._sheet.drawn.wish.shot
             self._wish()
         self.error = text
         self._start(self._tell_all(self._state()))

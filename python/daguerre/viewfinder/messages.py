@@ -58,6 +58,23 @@ class Draw:
 
 
 @dataclass(frozen=True)
+class Undo:
+    """Request to undo a step."""
+
+
+@dataclass(frozen=True)
+class Redo:
+    """Request to do the step again that was undone last."""
+
+
+@dataclass(frozen=True)
+class Hold:
+    """Begin or end of a gesture: all turns of the same dials between are one step."""
+
+    begins: bool
+
+
+@dataclass(frozen=True)
 class Section:
     """Point of the picture whose rays through the lens, and spread, the page asks for."""
 
@@ -112,7 +129,21 @@ class Find:
 
 
 Message = (
-    Turn | Got | Probe | Save | Draw | Section | Reload | Show | Drawing | Facts | Photograph | Find
+    Turn
+    | Got
+    | Probe
+    | Save
+    | Draw
+    | Undo
+    | Redo
+    | Hold
+    | Section
+    | Reload
+    | Show
+    | Drawing
+    | Facts
+    | Photograph
+    | Find
 )
 
 
@@ -180,6 +211,12 @@ def _plain(name: str, message: Message) -> Callable[[Any], Message]:
     return read
 
 
+def _hold(value: Any) -> Hold:
+    if not isinstance(value, bool):
+        raise UsageError(f"hold: wanted true or false, got {short(value)}")
+    return Hold(value)
+
+
 def _show(value: Any) -> Show:
     fits = isinstance(value, dict) and value.keys() == {"denoised", "models", "tint"}
     if not fits or not all(isinstance(value[name], bool) for name in ("denoised", "models")):
@@ -244,6 +281,9 @@ _READERS: dict[str, Callable[[Any], Message]] = {
     "save": _save,
     "draw": _draw,
     "section": _section,
+    "undo": _plain("undo", Undo()),
+    "redo": _plain("redo", Redo()),
+    "hold": _hold,
     "reload": _plain("reload", Reload()),
     "show": _show,
     "drawing": _drawing,
