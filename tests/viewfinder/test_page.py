@@ -556,3 +556,91 @@ def test_nothing_is_asked_of_another_host(page: Browser, server: Live) -> None:
 def test_nothing_is_wider_than_the_window(page: Browser, width: int, height: int) -> None:
     page.size(width, height, touch=width < 800)
     assert page.run("document.documentElement.scrollWidth") <= width
+
+
+def keys(page: Browser, key: str, *, shift: bool = False) -> None:
+    """Presses a key with Ctrl."""
+    facts = {"key": key, "code": f"Key{key.upper()}", "modifiers": 2 + 8 * shift}
+    for kind in ("rawKeyDown", "keyUp"):
+        page.call("Input.dispatchKeyEvent", type=kind, windowsVirtualKeyCode=ord(key), **facts)
+
+
+def steps_of(page: Browser) -> list[bool]:
+    """Whether the page offers undo and redo."""
+    found = page.run("['undo', 'redo'].map((id) => !document.getElementById(id).disabled)")
+    return list(found)
+
+
+def test_steps_are_undone_and_redone_by_keys_and_buttons(page: Browser, server: Live) -> None:
+    assert steps_of(page) == [False, False]
+    seen = [(command_of(page), pixels(server))]
+    page.drag("#ring-focus_distance", -120)
+    settled(page, server)
+    seen.append((command_of(page), pixels(server)))
+    set_mode(page, "A")
+    seen.append((command_of(page), pixels(server)))
+    assert steps_of(page) == [True, False]
+
+    def does(act: Any, index: int) -> None:
+        before = turn_of(page)
+        act()
+        rests(page, before)
+        assert command_of(page) == seen[index][0]
+        assert np.array_equal(pixels(server), seen[index][1])
+
+    page.run("document.getElementById('meter').focus()")
+    does(lambda: keys(page, "Z"), 1)
+    does(lambda: page.click("#undo"), 0)
+    assert steps_of(page) == [False, True]
+    does(lambda: keys(page, "Z", shift=True), 1)
+    does(lambda: keys(page, "Y"), 2)
+    assert steps_of(page) == [True, False]
+    assert page.errors == []
+
+
+def test_a_drag_with_a_pause_is_one_step(page: Browser, server: Live) -> None:
+    began = command_of(page)
+    x, y = page.place("#ring-iso")
+    page.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+    for dx in (-60, -120):
+        page.mouse("mouseMoved", x + dx, y, button="left", buttons=1)
+        time.sleep(1.3)
+    page.mouse("mouseReleased", x - 120, y, button="left", clickCount=1)
+    settled(page, server)
+    before = turn_of(page)
+    page.click("#undo")
+    rests(page, before)
+    assert command_of(page) == began
+    assert steps_of(page) == [False, True]
+
+
+SUM = """(() => { const c = document.getElementById('picture');
+    return [...c.getContext('2d').getImageData(0, 0, c.width, c.height).data].join(); })()"""
+
+
+def test_the_picture_at_rest_before_is_shown_while_held(page: Browser, server: Live) -> None:
+    assert page.run("document.getElementById('compare').disabled")
+    first = page.run(SUM)
+    page.run("document.getElementById('ring-exposure_compensation').focus()")
+    for _ in range(4):  # each comes to rest, and is gone before anyone has looked
+        before = turn_of(page)
+        page.press("ArrowRight")
+        rests(page, before)
+    second = page.run(SUM)
+    assert second != first
+    says = "document.getElementById('which').textContent"
+    page.call("Input.dispatchKeyEvent", type="keyDown", key="c", code="KeyC")
+    assert page.run(SUM) == first
+    assert page.run(says).startswith("Before: ")
+    assert "ISO" in page.run(says)
+    page.call("Input.dispatchKeyEvent", type="keyUp", key="c", code="KeyC")
+    assert page.run(SUM) == second
+    assert page.run("document.getElementById('which').hidden")
+    x, y = page.place("#compare")
+    for begins in (True, False):
+        point = [{"x": x, "y": y}] if begins else []
+        kind = "touchStart" if begins else "touchEnd"
+        page.call("Input.dispatchTouchEvent", type=kind, touchPoints=point)
+        page.until(f"document.getElementById('which').hidden !== {str(begins).lower()}")
+        assert page.run(SUM) == (first if begins else second)
+    assert page.errors == []

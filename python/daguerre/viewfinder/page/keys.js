@@ -13,14 +13,15 @@ const KEYS = [
   ['P', '[data-toggle=peaking]'], ['L', '[data-toggle=loupe]'], ['R', '[data-panel=rays]'],
   ['T', '[data-tint=false-colour]'], ['D', '[data-tint=depth]'], ['B', '[data-toggle=parade]'], ['A', '#guides'],
   ['M', '[data-show=models]'], ['N', '[data-show=denoised]'], ['C', '#compare', HELD],
-  ['V', '#level'], ['0', '#reset'], ['S', '[data-save=png]'], ['F', '#full'], ['?', '#help'],
+  ['V', '#level'], ['0', '#reset'], ['S', '[data-save=png]'],
+  ['Ctrl+Y', '#redo'], ['Ctrl+Shift+Z', '#redo'], ['Ctrl+Z', '#undo'], ['F', '#full'], ['?', '#help'],
 ];
 /** Keys of a part of the page that has the focus; ring.js, tripod.js and browsers bind them. */
 const ELSEWHERE = {
   'In a ring': [['← →', 'A step'], ['PgUp PgDn', 'Five steps']],
   'In the picture': [['← → ↑ ↓', 'Orbit'], ['+ -', 'Dolly'], ['[ ]', 'Roll']],
 };
-const TYPED = 'input:not([type=range], [type=checkbox], [type=radio]), textarea, select';
+const TYPED = 'input:not([type=range], [type=checkbox], [type=radio]), textarea';
 
 export class Keys {
   constructor({root, find, panels}) {
@@ -48,7 +49,7 @@ export class Keys {
       if (dialog) dialog.close();
       else if (this.panels.shown) this.panels.open(null);
       else return;
-    } else if (dialog || event.composedPath()[0].matches?.(TYPED) || !this.press(event)) return;
+    } else if (dialog || isTyped(event) || !this.press(event)) return;
     event.preventDefault();
     event.stopPropagation();   // a notebook has keys of its own
   }
@@ -83,6 +84,12 @@ export class Keys {
     this.find('keys-list').replaceChildren(...parts.flatMap(([where, rows]) => [made('h3', where), listOf(rows)]));
     this.find('keys').showModal();
   }
+}
+
+/** Whether a key is text for a field, or finds an option of a select. */
+function isTyped(event) {
+  const field = event.composedPath()[0];
+  return field.matches?.(TYPED) || (field.matches?.('select') && !event.ctrlKey && !event.metaKey);
 }
 
 /** Name of a key in the table, in small letters: `g`, `ctrl+shift+z`. */

@@ -8,6 +8,7 @@
 //   clicked(pixel)   a click on the picture; true: this part has taken it
 
 import {Choices} from './choices.js';
+import {Compare} from './compare.js';
 import {Exposure} from './exposure.js';
 import {Guides} from './guides.js';
 import {Keys} from './keys.js';
@@ -25,6 +26,7 @@ import {Screen} from './screen.js';
 import {Tints} from './tints.js';
 import {Tools} from './tools.js';
 import {Tripod} from './tripod.js';
+import {Undo} from './undo.js';
 
 /** Runs the page in a document or shadow root; `makeLink(handlers)` connects it. */
 export function mount(root, makeLink) {
@@ -48,6 +50,7 @@ class Viewfinder {
     this.panels = new Panels(root);
     const parts = [
       LensPicker, Choices, Exposure, Rings, Needle, Numbers, Tools, Tints, Guides, Parade, Loupe, Rays, Output, Screen,
+      Compare, Undo,
     ];
     this.parts = parts.map((Part) => new Part(this));
     this.keys = new Keys(this);

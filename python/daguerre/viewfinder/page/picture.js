@@ -12,7 +12,6 @@ export class Picture {
     this.context = canvas.getContext('2d', {willReadFrequently: true});
     this.head = null;
     this.countOf = new WeakMap();   // pictures side by side in a bitmap
-    this.last = null;   // bitmap of the picture before the last turn
     this.shows = {grid: false, horizon: false, zebra: false, peaking: false};
     this.tilt = null;
     this.whole = null;   // size of the picture at rest
@@ -22,7 +21,6 @@ export class Picture {
   async show(head, bytes) {
     const bitmap = await decoded(head.kind, bytes, head.size);
     if (this.head && head.picture < this.head.picture) return false;   // a newer one was faster
-    if (this.head && head.turn !== this.head.turn) this.last = this.bitmap;
     this.bitmap = bitmap;
     this.countOf.set(bitmap, head.panels.length || 1);
     this.head = head;
@@ -41,9 +39,9 @@ export class Picture {
     this.canvas.closest('.frame').style.setProperty('--ratio', width / height);
   }
 
-  compare(on) {
-    if (on && this.last) this.draw(this.last);
-    else if (this.bitmap) this.draw(this.bitmap);
+  /** Shows another picture instead; null: its own again. */
+  compare(bitmap) {
+    this.draw(bitmap ?? this.bitmap);
     this.overlay();
   }
 

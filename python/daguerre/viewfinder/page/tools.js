@@ -17,7 +17,6 @@ export class Tools {
         view.send({show: {...view.state.show, [button.dataset.show]: !pressed(button)}});
       });
     }
-    this.compare(view.find('compare'));
     view.find('level').addEventListener('click', () => view.tripod.level());
     view.find('reset').addEventListener('click', () => {
       view.tripod.forget();
@@ -34,15 +33,6 @@ export class Tools {
     press(button, on);
     remember(button.dataset.toggle, on);
     this.view.picture.toggle(button.dataset.toggle, on);
-  }
-
-  /** Shows the picture before the last turn while the button is held. */
-  compare(button) {
-    for (const [event, shows] of [['pointerdown', true], ['pointerup', false], ['pointerleave', false]]) {
-      button.addEventListener(event, () => this.view.picture.compare(shows));
-    }
-    button.addEventListener('keydown', (event) => event.key === ' ' && this.view.picture.compare(true));
-    button.addEventListener('keyup', () => this.view.picture.compare(false));
   }
 
   opened({denoises}) {

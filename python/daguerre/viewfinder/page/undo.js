@@ -1,0 +1,24 @@
+// undo.js -- undo and redo; what is dragged without letting go is one step.
+
+export class Undo {
+  constructor(view) {
+    this.view = view;
+    for (const name of ['undo', 'redo']) view.find(name).addEventListener('click', () => view.send({[name]: true}));
+    for (const id of ['rings', 'picture']) {
+      view.find(id).addEventListener('pointerdown', () => this.hold(true));
+      for (const end of ['pointerup', 'pointercancel']) view.find(id).addEventListener(end, () => this.hold(false));
+    }
+  }
+
+  /** Begins a gesture, or ends it after its last turn. */
+  hold(begins) {
+    if (!this.view.mine) return;
+    if (begins) this.view.send({hold: true});
+    else requestAnimationFrame(() => this.view.send({hold: false}));
+  }
+
+  update({undoes, redoes}) {
+    this.view.find('undo').disabled = !this.view.mine || !undoes;
+    this.view.find('redo').disabled = !this.view.mine || !redoes;
+  }
+}
