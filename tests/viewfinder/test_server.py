@@ -284,6 +284,21 @@ def test_slow_and_many_connections_leave_the_page_alone(server: Live) -> None:
         line.close()
 
 
+def test_messages_do_not_wait_for_each_other(server: Live, monkeypatch: pytest.MonkeyPatch) -> None:
+    delays = []
+    welcome = server.hub.welcome
+
+    async def spied(guest: Any) -> None:
+        sock = guest.line._connection.transport.get_extra_info("socket")
+        delays.append(not sock.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+        await welcome(guest)
+
+    monkeypatch.setattr(server.hub, "welcome", spied)
+    with page(server) as one:
+        one.step()
+    assert delays == [False]
+
+
 def test_pages_are_limited(server: Live) -> None:
     import contextlib
 

@@ -54,8 +54,10 @@ from .stage import Stage
 from .tev import Tev
 from .tint import legends
 
-#: Time between two signs of life, s: browsers show pages no pings of the protocol.
-_PING_S = 10
+#: Time between two looks at the scene's file, s.
+_LOOK_S = 2.5
+#: Looks from one sign of life to the next: browsers show pages no pings of the protocol.
+_LOOKS = 4
 
 
 class Line(Protocol):
@@ -288,14 +290,14 @@ class Hub:
         """Tells the pages when the scene's file changes, and at times that the server lives."""
         path = self._stage.scene.path
         known = _stamp(path)
-        for second in itertools.count(1):
-            await asyncio.sleep(1)
+        for look in itertools.count(1):
+            await asyncio.sleep(_LOOK_S)
             now = _stamp(path)
             if now not in (known, None):
                 known = now
                 await self._tell_all({"changed": "" if path is None else path.name})
-            if second % _PING_S == 0:
-                await self._tell_all({"ping": second})
+            if look % _LOOKS == 0:
+                await self._tell_all({"ping": look})
 
     def _value(self, x: int, y: int) -> dict[str, Any] | None:
         sheet = self._sheet  # the next one may come meanwhile

@@ -178,10 +178,15 @@ def free_socket(host: str, port: int) -> socket.socket:
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     for each in range(port, min(port + TRIES, 1 << 16) if port else 1):
         try:
-            return socket.create_server((host, each), family=family, backlog=128)
+            sock = socket.create_server((host, each), family=family, backlog=128)
         except OSError as error:
             if error.errno != errno.EADDRINUSE:
                 raise UsageError(f"--host {host}: {error.strerror or error}") from None
+            continue
+        # Connections inherit it. Without it, a picture waits until the page acknowledges the
+        # message before, which takes up to 40 ms; asyncio sets it only where a socket names TCP.
+        sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        return sock
     raise UsageError(f"--port {port}: no port from {port} to {port + TRIES - 1} is free")
 
 
