@@ -305,9 +305,8 @@ class Hub:
             return None
         drawn = sheet.drawn
         width, height = drawn.wish.shot.settings.film.resolution
-        frame = drawn.frame
-        found = value_at(frame, x * frame.width // width, y * frame.height // height)
-        own = drawn.session.prepared.setup.resolution
+        own, (left, top, *_) = drawn.session.prepared.setup.resolution, drawn.session.crop
+        found = value_at(drawn.frame, x * own[0] // width - left, y * own[1] // height - top)
         distance = distance_at(
             drawn.session, (x + 0.5) * own[0] / width, (y + 0.5) * own[1] / height
         )
@@ -351,6 +350,7 @@ class Hub:
             "legends": legends(),
             "dials": dict(self._first.texts),
             "resolution": settings.film.resolution,
+            "window": self._shot.window,
             "spp": settings.sampling.most,
         }
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import without_brightness
 from daguerre.rendering.photograph import Photograph
-from daguerre.rendering.pixels import at_size
+from daguerre.rendering.pixels import Box, at_size, crop_box
 from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene
 
@@ -48,12 +49,12 @@ class Shot:
     def smaller(self, divisor: int) -> Shot:
         """Returns a preview of the shot, smaller by a divisor, with one sample."""
         width, height = self.settings.film.resolution
-        divisor = max(1, min(divisor, min(width, height) // _LEAST))
-        if divisor == 1 and self.settings.film.crop is not None:
-            return self
+        left, top, right, bottom = self.window
+        divisor = max(1, min(divisor, min(right - left, bottom - top) // _LEAST))
         size = max(1, round(width / divisor)), max(1, round(height / divisor))
         few = RenderSettings.of(
             resolution=size,
+            crop=self._crop_at(size),
             spp=1,
             light_paths="off",
             seed=self.settings.sampling.seed,
@@ -68,10 +69,29 @@ class Shot:
         width, height = self.settings.film.resolution
         size = max(1, width // divisor), max(1, height // divisor)
         settings = self.settings.with_(
-            resolution=size, spp=samples, light_paths="off", noise=None, crop=None
+            resolution=size, spp=samples, light_paths="off", noise=None, crop=self._crop_at(size)
         )
         camera = self._camera_at(size).with_(lens_model=model)
         return replace(self, camera=camera, settings=settings)
+
+    @property
+    def window(self) -> Box:
+        """Pixels that are drawn of the whole picture: left, top, right and bottom."""
+        width, height = self.settings.film.resolution
+        return crop_box(self.settings.film.crop, (0, 0, width, height))
+
+    def _crop_at(self, size: tuple[int, int]) -> Box | None:
+        """Returns the crop for a picture of another size; None: all of it."""
+        if self.settings.film.crop is None:
+            return None
+        across, down = (b / a for a, b in zip(self.settings.film.resolution, size, strict=True))
+        left, top, right, bottom = self.window
+        return (
+            math.floor(left * across),
+            math.floor(top * down),
+            math.ceil(right * across),
+            math.ceil(bottom * down),
+        )
 
     def _camera_at(self, size: tuple[int, int]) -> Camera:
         """Returns the camera for a picture of another size."""

@@ -18,21 +18,21 @@ export class Loupe {
     const {open, picture} = this.view;
     if (!picture.shows.loupe || !open || !picture.head) return;
     this.element.hidden = false;
-    const pixel = picture.pixel(event, open.resolution);
+    const pixel = picture.pixel(event);
     const now = performance.now();
     if (now - this.probed > PROBE_MS) {
       this.probed = now;
       this.view.send({probe: pixel});
     }
-    this.draw(picture.canvas, pixel, picture.canvas.width / open.resolution[0]);
+    this.draw(picture, pixel);
   }
 
-  draw(canvas, [x, y], scale) {
+  draw({canvas, whole: {left, top}, size}, [x, y]) {
     const context = this.element.querySelector('canvas').getContext('2d');
-    const corner = (v) => Math.floor(v * scale) - (PIXELS - 1) / 2;
+    const scale = canvas.width / size[0], corner = (v) => Math.floor(v * scale) - (PIXELS - 1) / 2;
     context.imageSmoothingEnabled = false;
     context.clearRect(0, 0, SIDE, SIDE);
-    context.drawImage(canvas, corner(x), corner(y), PIXELS, PIXELS, 0, 0, SIDE, SIDE);
+    context.drawImage(canvas, corner(x - left), corner(y - top), PIXELS, PIXELS, 0, 0, SIDE, SIDE);
     context.strokeStyle = '#e8b84a';
     context.strokeRect(54.5, 54.5, 12, 12);
   }

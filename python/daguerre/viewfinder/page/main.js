@@ -133,7 +133,7 @@ class Viewfinder {
     this.find('scene').textContent = found.scene;
     if (this.root === document) document.title = `${found.scene}: Daguerre viewfinder`;
     this.find('changed').hidden = true;
-    this.picture.whole = found.resolution;
+    this.picture.fit(found.resolution, found.window);
     this.tell('opened', found);
   }
 
@@ -151,7 +151,7 @@ class Viewfinder {
   /** A click on the picture focuses there, unless a part wants the point. */
   clicked(event) {
     if (!this.open) return;
-    const pixel = this.picture.pixel(event, this.open.resolution);
+    const pixel = this.picture.pixel(event);
     if (this.parts.some((part) => part.clicked?.(pixel))) return;
     if (this.mine) this.turn({focus_at: pixel.join(',')});
   }

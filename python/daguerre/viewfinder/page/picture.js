@@ -14,7 +14,8 @@ export class Picture {
     this.countOf = new WeakMap();   // pictures side by side in a bitmap
     this.shows = {grid: false, horizon: false, zebra: false, peaking: false};
     this.tilt = null;
-    this.whole = null;   // size of the picture at rest
+    this.whole = null;   // size of the picture, px, and where the part that is drawn begins
+    this.size = null;    // of that part
   }
 
   /** Shows a picture; resolves when it is on the screen. */
@@ -29,14 +30,24 @@ export class Picture {
     return true;
   }
 
+  /** Takes the size of the picture in pixels, and the edges of the part that is drawn. */
+  fit([width, height], [left, top, right, bottom]) {
+    this.whole = {width, height, left, top};
+    this.size = [right - left, bottom - top];
+  }
+
   /** Draws a picture at the size of the one at rest; smaller ones look soft, not like blocks. */
   draw(bitmap) {
-    const {panels, whole} = this.head;
-    const [width, height] = panels.length || whole || !this.whole ? [bitmap.width, bitmap.height] : this.whole;
-    Object.assign(this.canvas, {width, height});
+    const count = this.countOf.get(bitmap), {columns, rows} = cells(count);
+    const part = bitmap.width / count;
+    const [width, height] = count === 1 && this.size ? this.size : [part, bitmap.height];
+    Object.assign(this.canvas, {width: width * columns, height: height * rows});
     this.context.imageSmoothingQuality = 'high';
-    this.context.drawImage(bitmap, 0, 0, width, height);
-    this.canvas.closest('.frame').style.setProperty('--ratio', width / height);
+    for (let i = 0; i < count; i++) {
+      const x = width * (i % columns), y = height * Math.floor(i / columns);
+      this.context.drawImage(bitmap, part * i, 0, part, bitmap.height, x, y, width, height);
+    }
+    this.canvas.closest('.frame').style.setProperty('--ratio', (width * columns) / (height * rows));
   }
 
   /** Shows another picture instead; null: its own again. */
@@ -71,16 +82,17 @@ export class Picture {
 
   /** The horizon as a pinhole sees it, gold where the camera is level. */
   horizon(context) {
-    const {width, height} = this.over, {roll, pitch, field} = this.tilt;
-    const down = (Math.tan(pitch) / Math.tan(field / 2)) * (height / 2);
+    const {roll, pitch, field} = this.tilt, {width, height, left, top} = this.whole;
+    const scale = this.over.width / this.size[0], long = 2 * Math.max(width, height) * scale;
+    const down = (Math.tan(pitch) / Math.tan(field / 2)) * (height / 2) * scale;
     context.save();
-    context.translate(width / 2, height / 2);
+    context.translate((width / 2 - left) * scale, (height / 2 - top) * scale);
     context.rotate(roll);
     context.strokeStyle = Math.abs(roll) < 0.002 ? '#e8b84a' : 'rgba(255,255,255,.8)';
-    context.lineWidth = Math.max(1, width / 480);
+    context.lineWidth = Math.max(1, this.over.width / 480);
     context.beginPath();
-    context.moveTo(-width, down);
-    context.lineTo(width, down);
+    context.moveTo(-long, down);
+    context.lineTo(long, down);
     context.stroke();
     context.restore();
   }
@@ -106,13 +118,13 @@ export class Picture {
   }
 
   /** Pixel of the whole picture under a pointer. */
-  pixel(event, [width, height]) {
+  pixel(event) {
     const box = this.canvas.getBoundingClientRect();
     const {columns, rows} = cells(this.head?.panels.length);
-    const part = (at, count) => (Math.min(INSIDE, Math.max(0, at)) * count) % 1;
-    const x = part((event.clientX - box.left) / box.width, columns) * width;
-    const y = part((event.clientY - box.top) / box.height, rows) * height;
-    return [Math.floor(x), Math.floor(y)];
+    const part = (at, count, size) => Math.floor(((Math.min(INSIDE, Math.max(0, at)) * count) % 1) * size);
+    const x = part((event.clientX - box.left) / box.width, columns, this.size[0]);
+    const y = part((event.clientY - box.top) / box.height, rows, this.size[1]);
+    return [this.whole.left + x, this.whole.top + y];
   }
 }
 
