@@ -1,4 +1,4 @@
-"""A part of the picture: its previews show that part, and its points are those of the whole picture."""
+"""A crop: previews show it, and its points are those of the whole picture."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ pytest.importorskip("websockets", reason="needs the extra view")
 pytest.importorskip("simplejpeg", reason="needs the extra view")
 SIZE = (320, 240)
 CROP = (160, 60, 280, 220)
-RESTS = "document.getElementById('frame').dataset.rests === 'true'"
+RESTS = "document.getElementById('frame')?.dataset.rests === 'true'"
 
 
 def stage() -> Stage:

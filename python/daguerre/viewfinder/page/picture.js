@@ -47,7 +47,8 @@ export class Picture {
       const x = width * (i % columns), y = height * Math.floor(i / columns);
       this.context.drawImage(bitmap, part * i, 0, part, bitmap.height, x, y, width, height);
     }
-    this.canvas.closest('.frame').style.setProperty('--ratio', (width * columns) / (height * rows));
+    const [across, down] = this.size ?? [width, height];
+    this.canvas.closest('.frame').style.setProperty('--ratio', (across * columns) / (down * rows));
   }
 
   /** Shows another picture instead; null: its own again. */
