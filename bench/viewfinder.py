@@ -1,12 +1,21 @@
 """Speed of the viewfinder through Chromium: from the turn of a ring to the picture on the canvas.
 
-    python bench/viewfinder.py [SCENE.glb] [--turns 60] [--lens double-gauss-50mm-f2]
+    python bench/viewfinder.py [SCENE.glb] [--turns 60] [--lens double-gauss-50mm-f2] [--json]
 
-Turns the rings of focus, iris and shutter with the keyboard, each turn after the last picture of
-the one before began to show, and prints median and 95th percentile of the time to the first new
-picture, in ms; the rate at which finished pictures of 960 x 540 arrive; the CPU time of server and
-page at rest; the time in which a new wish ends a render or a set-up; and the bytes of the page.
-Without a scene: the night table of ``script/demo``.
+Without a scene: the night table of ``script/demo``. At 240 x 135 (small) and 960 x 540 (large):
+
+* metered: the exposure at which a viewfinder starts, before the server listens;
+* open: from navigation to the first picture on the canvas, of the first page, and the median of
+  later ones;
+* turn: from a key to the first new picture, turning focus, iris and shutter, each turn after the
+  last picture of the one before began to show;
+* expose: the same at rest, turning ISO, compensation, white balance and look; ``draws`` counts the
+  times that samples were drawn for it, which must be none;
+* rest_cpu: CPU time at rest, of the server and of the whole browser;
+* stream: the rate at which finished pictures arrive.
+
+Then the time in which a new wish ends a render or a set-up, and the bytes of the page without
+photographs.
 """
 
 from __future__ import annotations
@@ -20,9 +29,10 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import numpy as np
 
@@ -40,7 +50,17 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from tests.viewfinder.chromium import Browser, browser
 from tests.viewfinder.live import TOKEN, live
 
-RINGS = ("focus_distance", "f_stop", "shutter_time")
+TURNED = ("#ring-focus_distance", "#ring-f_stop", "#ring-shutter_time")
+EXPOSED = ("#ring-iso", "#ring-exposure_compensation", "#ring-white_balance", "#look")
+#: Pages that are opened after the first one.
+AGAIN = 5
+#: Time of the measurement at rest, s: long enough to hold what the browser does now and then.
+REST_S = 20
+#: Notes in each page when its first picture is on the canvas.
+OPENING = """
+new MutationObserver(() => (window.opened ??= performance.now()))
+  .observe(document, {subtree: true, attributes: true, attributeFilter: ['data-picture']})
+"""
 #: Notes in the page when a key is pressed, and when a picture of a later turn is on the canvas.
 WATCH = """
 (() => {
@@ -70,19 +90,69 @@ def loaded(path: str | None) -> tuple[dg.Scene, dg.Camera]:
     return scene, scene.camera()
 
 
-def turned(page: Browser, count: int) -> list[float]:
+def open_page(page: Browser, host: str) -> float:
+    """Opens the page; returns the time from navigation to its first picture, ms."""
+    page.open(f"http://{host}/#{TOKEN}")
+    return float(page.until("window.opened", 120))
+
+
+def rests(page: Browser) -> None:
+    """Waits until the picture rests."""
+    page.until("document.getElementById('frame').dataset.rests === 'true'", 600)
+
+
+def turned(page: Browser, controls: Sequence[str], count: int) -> list[float]:
     """Times from a key to the first new picture, ms."""
     page.run(WATCH)
     for k in range(count):
-        ring = f"#ring-{RINGS[k % len(RINGS)]}"
-        page.run(f"document.querySelector({json.dumps(ring)}).focus()")
-        page.press("ArrowRight" if (k // len(RINGS)) % 4 < 2 else "ArrowLeft")
+        page.run(f"document.querySelector({json.dumps(controls[k % len(controls)])}).focus()")
+        page.press("ArrowRight" if (k // len(controls)) % 4 < 2 else "ArrowLeft")
         try:
             page.until(f"window.turns.length > {k}", 20)
         except AssertionError:  # the ring is at its end
-            page.run("window.turns.push(NaN)")
+            page.run("window.turns.push(null)")
         time.sleep(0.2)
     return [float(t) for t in page.run("window.turns") if t is not None]
+
+
+def summed(name: str, times: Sequence[float]) -> dict[str, float]:
+    """Median and 95th percentile of times, ms."""
+    return {
+        f"{name}_median_ms": float(np.median(times)),
+        f"{name}_p95_ms": float(np.percentile(times, 95)),
+    }
+
+
+def rest_cpu() -> dict[str, float]:
+    """CPU time at rest of this process, which serves, and of the browser, % of a core."""
+    own = os.getpid()
+    pids = {"server": [own], "browser": [pid for pid in children_of(own) if pid != own]}
+    before, began = {name: cpu_of(some) for name, some in pids.items()}, time.monotonic()
+    time.sleep(REST_S)
+    scale = 100 / (time.monotonic() - began)
+    return {f"rest_cpu_{n}_percent": scale * (cpu_of(pids[n]) - before[n]) for n in pids}
+
+
+def measured(stage: Stage, dials: Dials, page: Browser, turns: int) -> dict[str, float]:
+    """Measures a viewfinder in the browser."""
+    rows: dict[str, float] = {}
+    began = time.monotonic()
+    dials, _ = opened(stage, dials)
+    rows["metered_ms"] = 1e3 * (time.monotonic() - began)
+    with live(stage, dials) as server:
+        rows["open_first_ms"] = open_page(page, server.host)
+        rests(page)
+        rows["open_ms"] = float(np.median([open_page(page, server.host) for _ in range(AGAIN)]))
+        rows |= summed("turn", turned(page, TURNED, turns))
+        rests(page)
+        time.sleep(1)
+        with mock.patch.object(Session, "draw", autospec=True, side_effect=Session.draw) as draw:
+            rows |= summed("expose", turned(page, EXPOSED, turns))
+        rows["expose_draws"] = draw.call_count
+        time.sleep(1)
+        rows |= rest_cpu()
+        rows["stream_per_s"] = streamed(server, page)
+    return rows
 
 
 def cpu_of(pids: list[int]) -> float:
@@ -107,7 +177,7 @@ def children_of(pid: int) -> list[int]:
 
 
 def streamed(server: Any, page: Browser, seconds: float = 4.0) -> float:
-    """Pictures of 960 x 540 that arrive per second, when they need no drawing."""
+    """Pictures that arrive per second, when they need no drawing."""
     hub = server.hub
     end = time.monotonic() + seconds
     began = int(page.run("document.getElementById('frame').dataset.picture"))
@@ -155,39 +225,25 @@ def main() -> None:
     parser.add_argument("scene", nargs="?")
     parser.add_argument("--turns", type=int, default=60)
     parser.add_argument("--lens", default="double-gauss-50mm-f2")
+    parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
     scene, camera = loaded(options.scene)
     dials = Dials.of({"lens": options.lens})
     rows: dict[str, Any] = {"threads": os.cpu_count()}
     with tempfile.TemporaryDirectory() as folder, browser(Path(folder)) as page:
-        for size, key in (((240, 135), "small"), ((960, 540), "large")):
+        page.call("Page.addScriptToEvaluateOnNewDocument", source=OPENING)
+        for key, size in (("small", (240, 135)), ("large", (960, 540))):
             stage = Stage(scene, camera, dg.RenderSettings.of(resolution=size, spp=16))
-            began = time.monotonic()
-            first, _ = opened(stage, dials)
-            rows[f"{key}_metered_ms"] = 1e3 * (time.monotonic() - began)
-            with live(stage, first) as server:
-                began = time.monotonic()
-                page.open(f"http://{server.host}/#{TOKEN}")
-                page.until("document.getElementById('frame')?.dataset.picture > 0", 120)
-                rows[f"{key}_open_ms"] = 1e3 * (time.monotonic() - began)
-                times = turned(page, options.turns)
-                rows[f"{key}_turn_median_ms"] = float(np.nanmedian(times))
-                rows[f"{key}_turn_p95_ms"] = float(np.nanpercentile(times, 95))
-                page.until("document.getElementById('frame').dataset.rests === 'true'", 600)
-                time.sleep(1)
-                pids = children_of(os.getpid())
-                before, start = cpu_of(pids), time.monotonic()
-                time.sleep(20)  # long enough to hold what the browser does now and then
-                rows[f"{key}_rest_cpu_percent"] = (
-                    100 * (cpu_of(pids) - before) / (time.monotonic() - start)
-                )
-                if key == "large":
-                    rows["stream_per_s"] = streamed(server, page)
+            found = measured(stage, dials, page, options.turns)
+            rows |= {f"{key}_{name}": value for name, value in found.items()}
     ends = cancelled(scene, camera.with_(lens=options.lens))
     rows["cancel_median_ms"], rows["cancel_most_ms"] = float(np.median(ends)), max(ends)
     rows["page_bytes"] = sum(map(len, FILES.values()))
+    if options.json:
+        print(json.dumps(rows))
+        return
     for name, value in rows.items():
-        print(f"{name:24} {value:.4g}" if isinstance(value, float) else f"{name:24} {value}")
+        print(f"{name:32} {value:.4g}" if isinstance(value, float) else f"{name:32} {value}")
 
 
 if __name__ == "__main__":
