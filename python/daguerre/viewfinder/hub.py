@@ -8,7 +8,8 @@ import json
 import math
 import shlex
 from collections.abc import Collection, Coroutine, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -18,14 +19,16 @@ from daguerre.camera.ideal import IDEAL
 from daguerre.development.looks import LOOKS
 from daguerre.errors import DaguerreError, UsageError
 from daguerre.files import extras
+from daguerre.frame.frame import Frame
 from daguerre.lenses.errors import LensError
+from daguerre.rendering.denoise import denoise
 
 from . import lens_list
 from .dials import DIALS, Dials, texts_of_words
 from .drawn import Drawn, Wish
 from .glass import drawing_of, glass_at
 from .history import History, Steps
-from .image import image_of, value_at
+from .image import Image, image_of, value_at
 from .messages import (
     Draw,
     Drawing,
@@ -46,6 +49,7 @@ from .messages import (
     parse,
 )
 from .painter import Painter
+from .previews import Previews
 from .readings import readings_of
 from .rungs import MODELS
 from .saving import save, save_camera
@@ -122,7 +126,7 @@ class Hub:
         self._history = self._drawn_history = History(dials)
         self._steps = Steps()
         self._first = dials
-        self._show = Show(denoised=False, models=False)
+        self._show = Show(denoised=None, models=False)
         self._tev = tev
         self._readings: dict[str, Any] = {}
         self._read = -1
@@ -131,6 +135,7 @@ class Hub:
         self._guests: list[Guest] = []
         self._tasks: set[asyncio.Task[None]] = set()
         self._shot = stage.shot(dials)
+        self._previews = Previews()
         self._painter = Painter(self.publish, self._failed)
         self._wish()
         self._start(self._watch())
@@ -140,6 +145,7 @@ class Hub:
         for task in self._tasks:
             task.cancel()
         self._painter.close()
+        self._previews.close()
         if self._tev is not None:
             self._tev.close()
 
@@ -380,10 +386,50 @@ class Hub:
         """Develops a picture and sends it to the pages; may be called by any thread."""
         if self._tev is not None:
             self._tev.send(drawn)
-        readings = readings_of(drawn)
-        limits = readings["near_m"], readings["far_m"]
-        show = self._show
-        image = image_of(drawn, denoised=show.denoised, tint=show.tint, limits=limits)
+        show, readings = self._show, readings_of(drawn)
+        clean = denoise(drawn.frame) if show.denoised and drawn.whole else None
+        image = _image(drawn, clean, show, readings)
+        self._loop.call_soon_threadsafe(self._hand_out, drawn, image, show, readings)
+        if show.denoised is None:
+            self._previews.offer(drawn, partial(self._publish_preview, drawn, show, readings))
+
+    def _publish_preview(
+        self, drawn: Drawn, show: Show, readings: dict[str, Any], clean: Frame
+    ) -> None:
+        """Sends a picture on the way once more, denoised; called by the thread of previews."""
+        image = _image(drawn, clean, show, readings)
+        self._loop.call_soon_threadsafe(self._hand_out_preview, drawn, image, show)
+
+    def _failed(self, wish: Wish, error: Exception) -> None:
+        self._loop.call_soon_threadsafe(self._report, wish, _reason(error))
+
+    # The server's thread
+
+    def _hand_out(self, drawn: Drawn, image: Image, show: Show, readings: dict[str, Any]) -> None:
+        if drawn.wish.number != self.number:
+            return  # a newer wish came
+        self._drawn_history = self._history
+        self._sheet = self._sheet_of(
+            drawn, image, show, denoised=bool(show.denoised) and drawn.whole
+        )
+        for guest in self._guests:
+            self._start(self._offer(guest))  # before the numbers, which take the page longer
+        if (readings, self.number) != (self._readings, self._read):
+            self._readings, self._read = readings, self.number
+            self._start(self._tell_all(self._state()))
+
+    def _hand_out_preview(self, drawn: Drawn, image: Image, show: Show) -> None:
+        """Hands out a preview, unless the picture rests or another one is asked for."""
+        newest = None if self._sheet is None else self._sheet.drawn
+        if newest is None or newest.rests or show is not self._show:
+            return
+        if drawn.wish.number == newest.wish.number == self.number:
+            sheet = self._sheet_of(drawn, image, show, denoised=True)
+            self._sheet = replace(sheet, drawn=newest)  # values and files are never denoised
+            for guest in self._guests:
+                self._start(self._offer(guest))
+
+    def _sheet_of(self, drawn: Drawn, image: Image, show: Show, *, denoised: bool) -> Sheet:
         self._sheets += 1
         head = {
             "picture": self._sheets,
@@ -393,28 +439,14 @@ class Hub:
             "samples": drawn.samples,
             "rests": drawn.rests,
             "whole": drawn.whole,
+            "denoised": denoised,
+            "previews": show.denoised is None,
             "panels": [panel.model for panel in drawn.panels],
             "histogram": image.histogram,
             "tint": image.tint,
         }
         text = json.dumps(head).encode()
-        sheet = Sheet(self._sheets, drawn, len(text).to_bytes(4, "little") + text + image.bytes)
-        self._loop.call_soon_threadsafe(self._hand_out, sheet, readings)
-
-    def _failed(self, wish: Wish, error: Exception) -> None:
-        self._loop.call_soon_threadsafe(self._report, wish, _reason(error))
-
-    # The server's thread
-
-    def _hand_out(self, sheet: Sheet, readings: dict[str, Any]) -> None:
-        if sheet.drawn.wish.number != self.number:
-            return  # a newer wish came
-        self._sheet, self._drawn_history = sheet, self._history
-        for guest in self._guests:
-            self._start(self._offer(guest))  # before the numbers, which take the page longer
-        if (readings, self.number) != (self._readings, self._read):
-            self._readings, self._read = readings, self.number
-            self._start(self._tell_all(self._state()))
+        return Sheet(self._sheets, drawn, len(text).to_bytes(4, "little") + text + image.bytes)
 
     def _report(self, wish: Wish, text: str) -> None:
         """Says why a wish cannot be drawn, and puts the dials back to those that could."""
@@ -446,6 +478,12 @@ class Hub:
     async def _tell_all(self, message: dict[str, Any]) -> None:
         text = json.dumps(message)
         await asyncio.gather(*(guest.line.send(text) for guest in self._guests))
+
+
+def _image(drawn: Drawn, clean: Frame | None, show: Show, readings: Mapping[str, Any]) -> Image:
+    """Develops a picture as it is to be shown."""
+    limits = readings["near_m"], readings["far_m"]
+    return image_of(drawn, clean=clean, tint=show.tint, limits=limits)
 
 
 def _reason(error: Exception) -> str:

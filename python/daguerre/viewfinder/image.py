@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.frame.frame import Frame
-from daguerre.rendering.denoise import denoise
 
 from .drawn import Drawn
 from .shot import Shot
@@ -47,7 +46,7 @@ class Image:
 def image_of(
     drawn: Drawn,
     *,
-    denoised: bool = False,
+    clean: Frame | None = None,
     tint: str = NONE,
     limits: tuple[float | None, float | None] = (None, None),
 ) -> Image:
@@ -55,11 +54,11 @@ def image_of(
 
     Args:
         drawn: The picture.
-        denoised: Whether to denoise it.
+        clean: Its denoised frame, to show instead; the histogram stays as drawn.
         tint: How to tint it, too; see ``tint_of``, also for ``limits``.
         limits: Limits of the depth of field.
     """
-    frame = denoise(drawn.frame) if denoised and drawn.whole else drawn.frame
+    frame = drawn.frame if clean is None else clean
     parts = [shown(panel.frame, panel.shot) for panel in drawn.panels]
     pixels = np.ascontiguousarray(np.hstack(parts)) if parts else shown(frame, drawn.shot)
     height, width = pixels.shape[:2]
@@ -69,7 +68,8 @@ def image_of(
     else:
         tinted = tint_of(tint, frame, drawn.session, pixels, limits)
     head, more = _told(tinted)
-    return Image(kind, data + more, (width, height), _histogram(pixels), head)
+    noisy = pixels if clean is None else shown(drawn.frame, drawn.shot)
+    return Image(kind, data + more, (width, height), _histogram(noisy), head)
 
 
 def _told(tint: Tint | None) -> tuple[dict[str, Any] | None, bytes]:

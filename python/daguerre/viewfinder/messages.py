@@ -92,12 +92,12 @@ class Show:
     """Way in which pictures are shown.
 
     Attributes:
-        denoised: Whether they are denoised.
+        denoised: Whether they are denoised; None: those on the way are, if that is fast.
         models: Whether they are drawn by three models of the lens, side by side.
         tint: One of ``TINTS``: by exposure or distance.
     """
 
-    denoised: bool
+    denoised: bool | None
     models: bool
     tint: str = NONE
 
@@ -219,9 +219,14 @@ def _hold(value: Any) -> Hold:
 
 def _show(value: Any) -> Show:
     fits = isinstance(value, dict) and value.keys() == {"denoised", "models", "tint"}
-    if not fits or not all(isinstance(value[name], bool) for name in ("denoised", "models")):
+    if (
+        not fits
+        or not isinstance(value["denoised"], bool | None)
+        or not isinstance(value["models"], bool)
+    ):
         raise UsageError(
-            f"show: wanted denoised and models, true or false, and tint; got {short(value)}"
+            "show: wanted denoised: true, false or null, models: true or false, and tint; got "
+            f"{short(value)}"
         )
     if value["tint"] not in TINTS:
         raise UsageError(f"show: tint: wanted {', '.join(TINTS)}; got {short(value['tint'])}")

@@ -40,7 +40,7 @@ class Painter:
         self._closed = False
         self._work: Work | None = None
         self._pictures: Iterator[Drawn] = iter(())
-        self._hand = ThreadPoolExecutor(1, "viewfinder hand", _yield_to_others)
+        self._hand = ThreadPoolExecutor(1, "viewfinder hand", yield_to_others, (NICE,))
         self._thread = threading.Thread(target=self._run, name="viewfinder painter", daemon=True)
         self._thread.start()
 
@@ -147,8 +147,8 @@ def _under(token: CancelToken, step: Callable[[], Any]) -> Any:
         return step()
 
 
-def _yield_to_others() -> None:
+def yield_to_others(nice: int) -> None:
     """Lets the server and the browser go first: threads that draw inherit this one's priority."""
     if hasattr(os, "setpriority"):  # on Linux of this thread alone, elsewhere of the process
         now = os.getpriority(os.PRIO_PROCESS, 0)
-        os.setpriority(os.PRIO_PROCESS, 0, now + NICE)
+        os.setpriority(os.PRIO_PROCESS, 0, now + nice)

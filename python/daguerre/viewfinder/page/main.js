@@ -113,7 +113,8 @@ class Viewfinder {
     this.send({got: head.picture});
     if (!fresh) return;
     const [width, height] = head.size, most = this.open?.spp ?? head.samples;
-    this.status(head.rests ? `${head.samples} samples` : `${width} × ${height}, ${head.samples} of ${most} samples`);
+    const many = head.rests ? `${head.samples} samples` : `${width} × ${height}, ${head.samples} of ${most} samples`;
+    this.status(this.picture.denoised ? `${many}, denoised` : many);
     this.find('progress').value = head.rests ? 1 : head.samples / most;
     this.tell('shown', head);
     Object.assign(this.find('frame').dataset, {picture: head.picture, turn: head.turn, rests: head.rests});

@@ -12,6 +12,7 @@ export class Picture {
     this.context = canvas.getContext('2d', {willReadFrequently: true});
     this.head = null;
     this.countOf = new WeakMap();   // pictures side by side in a bitmap
+    this.clean = null;   // head of the picture on the screen, if it is denoised
     this.shows = {grid: false, horizon: false, zebra: false, peaking: false};
     this.tilt = null;
     this.whole = null;   // size of the picture, px, and where the part that is drawn begins
@@ -22,6 +23,11 @@ export class Picture {
   async show(head, bytes) {
     const bitmap = await decoded(head.kind, bytes, head.size);
     if (this.head && head.picture < this.head.picture) return false;   // a newer one was faster
+    if (keeps(this.clean, head)) {
+      this.head = head;
+      return true;
+    }
+    this.clean = head.denoised ? head : null;
     this.bitmap = bitmap;
     this.countOf.set(bitmap, head.panels.length || 1);
     this.head = head;
@@ -34,6 +40,11 @@ export class Picture {
   fit([width, height], [left, top, right, bottom]) {
     this.whole = {width, height, left, top};
     this.size = [right - left, bottom - top];
+  }
+
+  /** Whether the picture on the screen is denoised. */
+  get denoised() {
+    return this.clean !== null;
   }
 
   /** Draws a picture at the size of the one at rest; smaller ones look soft, not like blocks. */
@@ -127,6 +138,12 @@ export class Picture {
     const y = part((event.clientY - box.top) / box.height, rows, this.size[1]);
     return [this.whole.left + x, this.whole.top + y];
   }
+}
+
+/** Whether a denoised picture on the way stays until the next one is denoised, too: noise must not come and go. */
+function keeps(clean, head) {
+  return clean !== null && head.previews && !head.rests && !head.denoised && clean.turn === head.turn
+    && clean.tint?.kind === head.tint?.kind && head.samples <= 2 * clean.samples;
 }
 
 /** Columns and rows of pictures beside each other. */

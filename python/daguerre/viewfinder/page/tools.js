@@ -1,9 +1,16 @@
 // tools.js -- the buttons under the picture: what lies over it, how it is shown, where the camera stands.
 
-import {press, pressed} from './dom.js';
+import {press, pressed, title} from './dom.js';
 import {recall, remember} from './memory.js';
 
 const PLACE = ['place.position', 'place.look_at', 'place.roll'];
+
+/** Tooltips of Denoise: on, off, and before anyone pressed it. */
+const DENOISES = new Map([
+  [true, 'All pictures are denoised; press for none'],
+  [false, 'No picture is denoised; press for all'],
+  [null, 'Pictures on the way are denoised if that is fast; press to denoise the one at rest, too'],
+]);
 
 export class Tools {
   constructor(view) {
@@ -41,7 +48,8 @@ export class Tools {
 
   update({show}) {
     const {mine, find} = this.view;
-    for (const button of this.all('show')) press(button, show[button.dataset.show]);
+    for (const button of this.all('show')) press(button, Boolean(show[button.dataset.show]));
+    title(this.view.root.querySelector('[data-show=denoised]'), DENOISES.get(show.denoised));
     for (const button of [...this.all('show'), find('level'), find('reset')]) button.disabled = !mine;
   }
 
