@@ -61,6 +61,7 @@ def view(
 
     It takes the flags of `render` as positions of the rings. Ctrl-C ends it.
     """
+    from daguerre.viewfinder.background import in_background
     from daguerre.viewfinder.dials import DIALS, Dials
     from daguerre.viewfinder.opening import opened
     from daguerre.viewfinder.run import Listening, run
@@ -96,7 +97,7 @@ def view(
     (settings,) = crops.placed([settings], settings_flags.crop, tell=True)
     photograph = photograph_of({}, None, None, settings.sampling.seed)
     stage = Stage(scene, camera, settings, photograph, job_flags.tone, load)
-    stage.try_out(dials)
+    in_background(lambda: stage.try_out(dials))
     dials, said = opened(stage, dials)
     words = without(console.argv, [*DIALS])
     if job_flags.output is None:

@@ -9,6 +9,7 @@ from daguerre.camera.exposure_mode import LIGHT
 from daguerre.errors import InputError
 from daguerre.rendering.backdrop import shows_plate
 
+from .background import in_background
 from .dials import Dials, texts_of_words
 from .shot import Shot
 from .stage import Stage
@@ -31,7 +32,7 @@ def opened(stage: Stage, dials: Dials) -> tuple[Dials, str]:
     # The ring keeps its compensation, so the meter leaves it out.
     camera = shot.camera.with_(exposure="auto", exposure_compensation=0.0)
     try:
-        chosen = stage.exposed(replace(shot, camera=camera)).chosen
+        chosen = in_background(lambda: stage.exposed(replace(shot, camera=camera))).chosen
     except InputError as error:  # such as a frozen shutter
         return dials, f"{error}; so the exposure mode is light"
     assert chosen is not None

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor, wait
+from concurrent.futures import Future, wait
 from typing import Any
 
 from daguerre.rendering import Cancelled, CancelToken
 
+from .background import background_thread, under
 from .drawn import Drawn, Wish
 from .work import Work
-
-#: By how much the thread that draws is nicer than the rest.
-NICE = 10
 
 
 class Painter:
@@ -40,7 +37,7 @@ class Painter:
         self._closed = False
         self._work: Work | None = None
         self._pictures: Iterator[Drawn] = iter(())
-        self._hand = ThreadPoolExecutor(1, "viewfinder hand", yield_to_others, (NICE,))
+        self._hand = background_thread("viewfinder hand")
         self._thread = threading.Thread(target=self._run, name="viewfinder painter", daemon=True)
         self._thread.start()
 
@@ -110,7 +107,7 @@ class Painter:
         """Has the other thread do a step; meanwhile shows what is there as new wishes ask."""
         token, work = self._token, self._work
         assert work is not None
-        done = self._hand.submit(_under, token, step)
+        done = self._hand.submit(under, token, step)
         done.add_done_callback(self._wake)
         try:
             while (wish := self._next_during(done)) is not None:
@@ -140,15 +137,3 @@ class Painter:
     def _wake(self, _: Future[Any]) -> None:
         with self._changed:
             self._changed.notify()
-
-
-def _under(token: CancelToken, step: Callable[[], Any]) -> Any:
-    with token:
-        return step()
-
-
-def yield_to_others(nice: int) -> None:
-    """Lets the server and the browser go first: threads that draw inherit this one's priority."""
-    if hasattr(os, "setpriority"):  # on Linux of this thread alone, elsewhere of the process
-        now = os.getpriority(os.PRIO_PROCESS, 0)
-        os.setpriority(os.PRIO_PROCESS, 0, now + nice)

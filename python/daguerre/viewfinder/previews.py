@@ -7,15 +7,14 @@ import os
 import time
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 
 from daguerre.errors import DaguerreError
 from daguerre.files import extras
 from daguerre.frame.frame import Frame
 from daguerre.rendering.denoise import MODULE, check_available, preview
 
+from .background import background_thread
 from .drawn import Drawn
-from .painter import yield_to_others
 
 #: By how much the thread is nicer than the rest: drawing goes first, too.
 NICE = 19
@@ -36,7 +35,7 @@ class Previews:
         self._pause_end = -math.inf if able else math.inf
         self._turn, self._samples = -1, 0  # of the last one
         self._newest: deque[tuple[Drawn, Callable[[Frame], None]]] = deque(maxlen=1)
-        self._thread = ThreadPoolExecutor(1, "viewfinder previews", yield_to_others, (NICE,))
+        self._thread = background_thread("viewfinder previews", NICE)
 
     def offer(self, drawn: Drawn, show: Callable[[Frame], None]) -> None:
         """Takes a picture instead of those before, and returns at once.
