@@ -3,6 +3,7 @@
 
 import itertools
 import math
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -60,6 +61,7 @@ class Viewport:
         self._shot: translation.Shot | None = None
         self.newest: Drawn | None = None
         self.words = "Waiting"
+        self._lock = threading.Lock()  # of the wish that counts, its picture and its words
         self._painter = Painter(self._show, self._fail)
 
     def close(self) -> None:
@@ -89,8 +91,9 @@ class Viewport:
     def refuse(self, error: Exception) -> None:
         """Tells in the viewport why there is no picture, until the view or the scene changes."""
         self._painter.rest()
-        self._view = self._wished = self.newest = None
-        self.words = text_of(error)
+        with self._lock:
+            self._view = self._wished = self.newest = None
+            self.words = text_of(error)
 
     def ask(self, shot: translation.Shot, camera: Camera, size: tuple[int, int]) -> None:
         """Asks for a picture instead of all before."""
@@ -103,17 +106,20 @@ class Viewport:
         self._painter.wish(Wish(self._wished, self._stage, Dials(), wished))
 
     def _show(self, drawn: Drawn) -> None:
-        if drawn.wish.number != self._wished:
-            return
-        self.newest = drawn
         most = drawn.wish.shot.settings.sampling.most
-        self.words = f"{drawn.samples}/{most} spp" if drawn.whole else "Preview"
-        self._redraw()
+        words = f"{drawn.samples}/{most} spp" if drawn.whole else "Preview"
+        self._tell(drawn.wish, words, drawn)
 
     def _fail(self, wish: Wish, error: Exception) -> None:
-        if wish.number == self._wished:
-            self.words, self.newest = text_of(error), None
-            self._redraw()
+        self._tell(wish, text_of(error), None)
+
+    def _tell(self, wish: Wish, words: str, newest: Drawn | None) -> None:
+        """Takes over what the painter's thread found, unless another wish counts by now."""
+        with self._lock:
+            if wish.number != self._wished:
+                return
+            self.words, self.newest = words, newest
+        self._redraw()
 
 
 def view_of(context: Any, depsgraph: Any) -> View:
