@@ -51,6 +51,7 @@ def clean(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(previews, "check_available", lambda: None)
     monkeypatch.setattr(previews, "preview", grey)
     monkeypatch.setattr(previews, "MOST_S", math.inf)
+    monkeypatch.setattr(work, "LONGEST_S", 1e6)  # samples double at each step
     drawn = work._refined
 
     def slowly(session: Any) -> Iterator[tuple[int, bool]]:
@@ -164,7 +165,7 @@ def test_a_slow_denoiser_delays_nothing_and_is_left_alone(
 
     def slow(frame: Frame) -> Frame:
         calls.append(1)
-        assert held.wait(60)
+        assert held.wait(15)
         return grey(frame)
 
     monkeypatch.setattr(previews, "MOST_S", 0.01)
@@ -176,12 +177,27 @@ def test_a_slow_denoiser_delays_nothing_and_is_left_alone(
         assert [sheet for sheet in sheets if sheet[0] == 1] == [(1, n, False) for n in STEPS]
         assert calls == [1]
         held.set()
-        end = time.monotonic() + 30
+        end = time.monotonic() + 10
         while server.hub._previews._pause_end < time.monotonic() < end:
             time.sleep(0.01)
         turned(one, 2, f_stop="5.6")
         assert not any(denoised for turn, _, denoised in sheets if turn > 0)  # it came too late
         assert calls == [1]
+
+
+def test_one_picture_of_each_doubling_is_denoised(server: Live) -> None:
+    with page(server) as one:
+        one.until_rest(0)
+    last, made = server.hub.picture, previews.Previews()
+    assert last is not None
+    shown: list[Drawn] = []
+    for samples in (4, 5, 7, 8, 15, 16):
+        for rests in (True, False):
+            drawn = replace(last, samples=samples, rests=rests)
+            made.offer(drawn, lambda _, one=drawn: shown.append(one))
+            made._thread.submit(int).result(15)  # after that picture
+    made.close()
+    assert [(one.samples, one.rests) for one in shown] == [(4, False), (8, False), (16, False)]
 
 
 @pytest.mark.parametrize("cause", ["core", "extra", "fault"])
