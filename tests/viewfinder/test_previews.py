@@ -57,7 +57,7 @@ def clean(monkeypatch: pytest.MonkeyPatch) -> None:
     def slowly(session: Any) -> Iterator[tuple[int, bool]]:
         for step in drawn(session):
             yield step
-            time.sleep(0.2)
+            time.sleep(0.1)
 
     monkeypatch.setattr(work, "_refined", slowly)
 
