@@ -11,6 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from daguerre.viewfinder import tint
+from daguerre.viewfinder.bundle import bundled
 from daguerre.viewfinder.dials import Dials
 from daguerre.viewfinder.false_colour import false_colour, zone_colours
 
@@ -46,14 +47,19 @@ def finder(window: Browser, boards: Live) -> Browser:
     return shows(window, boards)
 
 
+def module(name: str) -> str:
+    """Expression of a module of the page, which serves all as one script."""
+    return f"(() => {{ {bundled(name)} return module_{name}; }})()"
+
+
 def marked(page: Browser, shown: NDArray[np.uint8], **which: bool) -> NDArray[np.uint8]:
     """Pixels that marks.js lays over a picture, (H, W, 4)."""
     height, width = shown.shape[:2]
     opaque = np.dstack([shown, np.full((height, width), 255, np.uint8)])
     shows = {"zebra": False, "peaking": False, **which}
     found = page.run(
-        f"import('/marks.js').then((m) => [...m.marks({opaque.ravel().tolist()}, {width}, {height},"
-        f"{json.dumps(shows)})])"
+        f"[...{module('marks')}.marks({opaque.ravel().tolist()}, {width}, {height},"
+        f"{json.dumps(shows)})]"
     )
     return np.array(found, np.uint8).reshape(height, width, 4)
 
@@ -179,8 +185,7 @@ def test_the_parade_shows_columns_of_each_channel(finder: Browser) -> None:
     half = np.zeros((8, 84, 4), np.uint8)
     half[:, :42, 0] = 255
     counts = finder.run(
-        f"import('/parade.js').then((m) => m.parade({half.ravel().tolist()}, 84, 8)"
-        ".map((one) => [...one]))"
+        f"{module('parade')}.parade({half.ravel().tolist()}, 84, 8).map((one) => [...one])"
     )
     red, green = (np.array(counts[c]).reshape(80, 84) for c in (0, 1))
     assert (red[0, :42] > 0).all()
