@@ -44,7 +44,7 @@ def page(server: Live, page: Browser) -> Browser:
 
 
 @pytest.mark.parametrize(("width", "height"), [(1280, 800), (390, 844)])
-@pytest.mark.parametrize("state", ["as it opens", "rays", "lenses"])
+@pytest.mark.parametrize("state", ["as it opens", "rays", "lenses", "beside"])
 def test_axe_finds_nothing(page: Browser, state: str, width: int, height: int) -> None:
     page.size(width, height, touch=width < 800)
     if state == "rays":
@@ -56,6 +56,12 @@ def test_axe_finds_nothing(page: Browser, state: str, width: int, height: int) -
         page.until("document.querySelectorAll('#lens-list [role=option]').length > 100")
         page.click("#lens-list [role=option]:nth-child(9)")
         page.until("document.getElementById('lens-drawing').naturalWidth > 100")
+    elif state == "beside":
+        page.run(
+            "(() => { const e = document.getElementById('beside'); e.selectedIndex = 2;"
+            "e.dispatchEvent(new Event('change')); })()"
+        )
+        page.until("!document.getElementById('divider').hidden")
     assert AXE is not None
     assert AXE.origin is not None
     page.run(Path(AXE.origin).with_name("axe.min.js").read_text("utf-8") + ";0")

@@ -156,12 +156,12 @@ def test_three_models_of_a_lens_side_by_side(seen: Seen, stage: Stage) -> None:
     dials = Dials().turned({"lens": "double-gauss-50mm-f2"})
     seen.wish(1, dials, models=True)
     last = seen.until_rest(1)[-1]
-    assert [panel.model for panel in last.panels] == list(MODELS)
+    assert [panel.name for panel in last.panels] == list(MODELS)
     assert last.samples == 8
     camera = dials.camera(stage.camera)
     for panel in last.panels:
         settings = stage.settings.with_(resolution=(40, 26))
-        alone = dg.render(scene(), camera.with_(lens_model=panel.model), settings=settings)
+        alone = dg.render(scene(), camera.with_(lens_model=panel.name), settings=settings)
         assert np.array_equal(panel.frame.rgb, alone.rgb)
 
 

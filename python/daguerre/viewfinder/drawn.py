@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from daguerre.camera.exposure_mode import RETAKEN, split_mode
@@ -23,6 +24,7 @@ class Wish:
         dials: Positions of the dials.
         shot: The picture that they ask for.
         models: Whether it compares models of the lens.
+        beside: Dial that differs in a second picture, and its text; None: there is one picture.
     """
 
     number: int
@@ -30,11 +32,17 @@ class Wish:
     dials: Dials
     shot: Shot
     models: bool = False
+    beside: Mapping[str, str] | None = None
 
     def is_lit_as(self, other: Wish) -> bool:
         """Whether the samples of another wish certainly show this one, too."""
-        same = self.stage is other.stage and self.models == other.models
-        return same and self.shot.is_lit_as(other.shot) and self._is_lit and other._is_lit
+        same = self.shows_as(other) and self.shot.is_lit_as(other.shot)
+        return same and self._is_lit and other._is_lit
+
+    def shows_as(self, other: Wish) -> bool:
+        """Whether it shows the same stage, with the same pictures beside each other."""
+        layouts = (self.models, self.beside), (other.models, other.beside)
+        return self.stage is other.stage and layouts[0] == layouts[1]
 
     @property
     def _is_lit(self) -> bool:
@@ -44,9 +52,9 @@ class Wish:
 
 @dataclass(frozen=True)
 class Panel:
-    """One of several pictures side by side: the model of its lens, its shot and its frame."""
+    """One of several pictures side by side: its name, its shot and its frame."""
 
-    model: str
+    name: str
     shot: Shot
     frame: Frame
 
@@ -64,6 +72,7 @@ class Drawn:
         rests: Whether nothing better follows.
         whole: Whether it has its full size.
         panels: Pictures to show instead, side by side; empty: this one.
+        note: Why there is no picture beside it, though one was asked for.
     """
 
     wish: Wish
@@ -74,3 +83,9 @@ class Drawn:
     rests: bool
     whole: bool = True
     panels: tuple[Panel, ...] = ()
+    note: str = ""
+
+    @property
+    def is_one(self) -> bool:
+        """Whether it is shown alone, at its full size."""
+        return self.whole and not self.panels

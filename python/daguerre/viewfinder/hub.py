@@ -20,7 +20,6 @@ from daguerre.development.looks import LOOKS
 from daguerre.errors import DaguerreError, UsageError
 from daguerre.files import extras
 from daguerre.frame.frame import Frame
-from daguerre.lenses.errors import LensError
 from daguerre.rendering.denoise import denoise
 
 from . import lens_list
@@ -51,6 +50,7 @@ from .messages import (
 from .painter import Painter
 from .previews import Previews
 from .readings import readings_of
+from .reasons import reason_of
 from .rungs import MODELS
 from .saving import save, save_camera
 from .sight import distance_at
@@ -176,7 +176,7 @@ class Hub:
         try:
             await self._act(guest, parse(text))
         except Exception as error:  # whatever it is, the page stays
-            await self._tell(guest, {"refused": _reason(error)})
+            await self._tell(guest, {"refused": reason_of(error)})
 
     @property
     def dials(self) -> Dials:
@@ -276,8 +276,10 @@ class Hub:
     def _wish(self) -> None:
         """Has the picture drawn anew."""
         self.number += 1
-        wish = Wish(self.number, self._stage, self.dials, self._shot, self._show.models)
-        self._painter.wish(wish)
+        show = self._show
+        self._painter.wish(
+            Wish(self.number, self._stage, self.dials, self._shot, show.models, show.beside)
+        )
 
     async def _change_show(self, show: Show) -> None:
         """Shows pictures in another way; denoising begins with the picture that is there."""
@@ -285,7 +287,8 @@ class Hub:
             extras.need("mitsuba_oidn", "denoise")
         if show.models and self._shot.camera.lens in IDEAL:
             raise UsageError("show: models can be compared only for a lens of the library")
-        redraws, self._show = show.models != self._show.models, show
+        before, self._show = self._show, show
+        redraws = (show.models, show.beside) != (before.models, before.beside)
         if redraws:
             self._wish()
         elif self._sheet is not None and self._sheet.drawn.wish.number == self.number:
@@ -387,7 +390,7 @@ class Hub:
         if self._tev is not None:
             self._tev.send(drawn)
         show, readings = self._show, readings_of(drawn)
-        clean = denoise(drawn.frame) if show.denoised and drawn.whole else None
+        clean = denoise(drawn.frame) if show.denoised and drawn.is_one else None
         image = _image(drawn, clean, show, readings)
         self._loop.call_soon_threadsafe(self._hand_out, drawn, image, show, readings)
         if show.denoised is None:
@@ -401,7 +404,7 @@ class Hub:
         self._loop.call_soon_threadsafe(self._hand_out_preview, drawn, image, show)
 
     def _failed(self, wish: Wish, error: Exception) -> None:
-        self._loop.call_soon_threadsafe(self._report, wish, _reason(error))
+        self._loop.call_soon_threadsafe(self._report, wish, reason_of(error))
 
     # The server's thread
 
@@ -410,7 +413,7 @@ class Hub:
             return  # a newer wish came
         self._drawn_history = self._history
         self._sheet = self._sheet_of(
-            drawn, image, show, denoised=bool(show.denoised) and drawn.whole
+            drawn, image, show, denoised=bool(show.denoised) and drawn.is_one
         )
         for guest in self._guests:
             self._start(self._offer(guest))  # before the numbers, which take the page longer
@@ -441,7 +444,9 @@ class Hub:
             "whole": drawn.whole,
             "denoised": denoised,
             "previews": show.denoised is None,
-            "panels": [panel.model for panel in drawn.panels],
+            "panels": [panel.name for panel in drawn.panels],
+            "part": image.part,
+            "divided": bool(drawn.panels) and drawn.wish.beside is not None,
             "histogram": image.histogram,
             "tint": image.tint,
         }
@@ -484,21 +489,6 @@ def _image(drawn: Drawn, clean: Frame | None, show: Show, readings: Mapping[str,
     """Develops a picture as it is to be shown."""
     limits = readings["near_m"], readings["far_m"]
     return image_of(drawn, clean=clean, tint=show.tint, limits=limits)
-
-
-def _reason(error: Exception) -> str:
-    """Message of an error; one that a user cannot correct says whose fault it is."""
-    match error:
-        case LensError(code="lens-focus-near"):
-            return "The lens does not focus that near: focus farther away, or move the camera back."
-        case DaguerreError():
-            return str(error)
-        case MemoryError():
-            return "out of memory: use a smaller picture"
-        case OSError(strerror=str(reason)):
-            return f"{error.filename}: {reason}"
-    what = f"{type(error).__name__}: {error}"
-    return f"internal error: {what}; this is a bug in daguerre: please report it"
 
 
 def _stamp(path: Path | None) -> tuple[int, int] | None:

@@ -22,6 +22,8 @@ TINT_QUALITY = 95
 #: wait for a core.
 FEW = 20_000
 _BINS = 128
+#: Pixels across a block of JPEG.
+_BLOCK = 8
 
 
 @dataclass(frozen=True)
@@ -34,13 +36,15 @@ class Image:
         size: Width and height, px.
         histogram: Share of pixels in each of 128 equal steps of brightness, for red, green, blue.
         tint: Kind and note of a tint; ``bytes`` of it follow those of the picture; None: none.
+        part: Width of one of several pictures side by side, px; each begins with a block of JPEG.
     """
 
     kind: str
     bytes: bytes
     size: tuple[int, int]
     histogram: list[list[float]]
-    tint: dict[str, Any] | None = None
+    tint: dict[str, Any] | None
+    part: int
 
 
 def image_of(
@@ -60,27 +64,35 @@ def image_of(
     """
     frame = drawn.frame if clean is None else clean
     parts = [shown(panel.frame, panel.shot) for panel in drawn.panels]
-    pixels = np.ascontiguousarray(np.hstack(parts)) if parts else shown(frame, drawn.shot)
+    pixels = side_by_side(parts) if parts else shown(frame, drawn.shot)
     height, width = pixels.shape[:2]
-    kind, data = _encoded(pixels, QUALITY)
+    kind, data = encoded(pixels, QUALITY)
     if parts and tint != NONE:
         tinted: Tint | None = Tint(tint, note="Pictures side by side are not tinted")
     else:
         tinted = tint_of(tint, frame, drawn.session, pixels, limits)
     head, more = _told(tinted)
     noisy = pixels if clean is None else shown(drawn.frame, drawn.shot)
-    return Image(kind, data + more, (width, height), _histogram(noisy), head)
+    part = parts[0].shape[1] if parts else width
+    return Image(kind, data + more, (width, height), _histogram(noisy), head, part)
+
+
+def side_by_side(parts: list[NDArray[np.uint8]]) -> NDArray[np.uint8]:
+    """Pictures in a row, each widened to whole blocks of JPEG: none bleeds into the next."""
+    more = -parts[0].shape[1] % _BLOCK
+    padded = [np.pad(part, ((0, 0), (0, more), (0, 0)), mode="edge") for part in parts]
+    return np.ascontiguousarray(np.hstack(padded))
 
 
 def _told(tint: Tint | None) -> tuple[dict[str, Any] | None, bytes]:
     """Head and bytes of a tint."""
     if tint is None:
         return None, b""
-    data = b"" if tint.pixels is None else _encoded(tint.pixels, TINT_QUALITY)[1]
+    data = b"" if tint.pixels is None else encoded(tint.pixels, TINT_QUALITY)[1]
     return {"kind": tint.kind, "note": tint.note, "bytes": len(data)}, data
 
 
-def _encoded(pixels: NDArray[np.uint8], quality: int) -> tuple[str, bytes]:
+def encoded(pixels: NDArray[np.uint8], quality: int) -> tuple[str, bytes]:
     """Kind and bytes of pixels on their way to the page."""
     import simplejpeg
 

@@ -12,7 +12,8 @@ from daguerre.checks import short
 from daguerre.errors import UsageError
 from daguerre.lenses.search import MOST
 
-from .dials import DIALS
+from .beside import NAMES as BESIDE
+from .dials import DIALS, Dials
 from .tint import NONE, TINTS
 
 #: Longest message, bytes.
@@ -95,11 +96,13 @@ class Show:
         denoised: Whether they are denoised; None: those on the way are, if that is fast.
         models: Whether they are drawn by three models of the lens, side by side.
         tint: One of ``TINTS``: by exposure or distance.
+        beside: Dial that differs in a second picture, and its text; None: there is none.
     """
 
     denoised: bool | None
     models: bool
     tint: str = NONE
+    beside: Mapping[str, str] | None = None
 
 
 @dataclass(frozen=True)
@@ -218,7 +221,7 @@ def _hold(value: Any) -> Hold:
 
 
 def _show(value: Any) -> Show:
-    fits = isinstance(value, dict) and value.keys() == {"denoised", "models", "tint"}
+    fits = isinstance(value, dict) and value.keys() - {"beside"} == {"denoised", "models", "tint"}
     if (
         not fits
         or not isinstance(value["denoised"], bool | None)
@@ -230,7 +233,20 @@ def _show(value: Any) -> Show:
         )
     if value["tint"] not in TINTS:
         raise UsageError(f"show: tint: wanted {', '.join(TINTS)}; got {short(value['tint'])}")
+    if value.get("beside") is not None:
+        _check_beside(value["beside"])
+        if value["models"]:
+            raise UsageError("show: wanted models or a picture beside, got both")
     return Show(**value)
+
+
+def _check_beside(value: Any) -> None:
+    fits = isinstance(value, dict) and len(value) == 1 and next(iter(value)) in BESIDE
+    if not fits or not all(isinstance(text, str) for text in value.values()):
+        raise UsageError(
+            f"show: beside: wanted one text, of {', '.join(BESIDE)}; got {short(value)}"
+        )
+    Dials().turned(value)
 
 
 def _drawing(value: Any) -> Drawing:

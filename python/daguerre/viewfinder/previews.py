@@ -45,7 +45,7 @@ class Previews:
             show: Called in the thread with the denoised frame, if the picture is worth it.
         """
         self._newest.clear()
-        if drawn.whole and not drawn.rests and time.monotonic() >= self._pause_end:
+        if drawn.is_one and not drawn.rests and time.monotonic() >= self._pause_end:
             self._newest.append((drawn, show))
             self._thread.submit(self._make)
 

@@ -17,6 +17,7 @@ from daguerre.rendering.session import Session
 from daguerre.setup.camera_facts import UNLIT, Facts, camera_warnings, facts_of, lit
 from daguerre.setup.resolved import ResolvedLens
 
+from .beside import models_beside
 from .drawn import Drawn
 from .sight import ring_offset_m
 
@@ -89,7 +90,8 @@ def _warnings(drawn: Drawn) -> list[str]:
     session, chosen = drawn.session, drawn.shot.chosen
     unlit = [] if lit(session.scene) else [UNLIT]
     dim = [chosen.warning] if chosen is not None and chosen.warning else []
-    return [*camera_warnings(session.camera), *unlit, *session.warnings, *dim]
+    alone = [drawn.note] if drawn.note else []
+    return [*camera_warnings(session.camera), *unlit, *session.warnings, *dim, *alone]
 
 
 def _meter(drawn: Drawn) -> dict[str, float] | None:
@@ -124,6 +126,7 @@ def _body(drawn: Drawn) -> dict[str, Any]:
         "white_k": white if isinstance(white, float | int) else None,
         "blades": camera.blades,
         "widest": None if lens.f_stop is None else lens.widest_stop,
+        "models": models_beside(lens),
         "spp": drawn.shot.settings.sampling.most,
         "time_s": session.scene.time,
         "place": {

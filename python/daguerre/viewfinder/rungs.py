@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from itertools import islice
 
+from daguerre.errors import DaguerreError
+
+from .beside import other_of
 from .drawn import Wish
+from .reasons import reason_of
 from .shot import Shot
+from .stage import Stage
 
 #: Divisors of the picture's size, before the whole picture with 1, 2, 4, ... samples.
 LADDER = (6, 3)
@@ -24,11 +29,15 @@ class Rung:
         shots: One, or several to show side by side.
         names: Names of those side by side; empty: there is one.
         last: Whether it is drawn with all samples, until it rests; others have one.
+        main: Number of the shot that the dials show.
+        note: Why the picture beside it that was asked for is not there.
     """
 
     shots: tuple[Shot, ...]
     names: tuple[str, ...] = ()
     last: bool = True
+    main: int = 0
+    note: str = ""
 
     def is_lit_as(self, other: Rung) -> bool:
         """Whether the samples of another rung show this one, too."""
@@ -43,7 +52,7 @@ def rungs_of(wish: Wish) -> Iterator[Rung]:
         shot = stage.exposed(wish.shot)
         samples = shot.settings.sampling.most
         shots = tuple(shot.by_model(model, BESIDE, samples) for model in MODELS)
-        yield Rung(shots, MODELS)
+        yield Rung(shots, MODELS, main=len(shots) - 1)
         return
     quick = stage.exposed(wish.shot, fresh=False)
     known = {quick.settings.film.resolution}
@@ -57,4 +66,14 @@ def rungs_of(wish: Wish) -> Iterator[Rung]:
 
 def rung_of(wish: Wish, index: int) -> Rung:
     """One rung of a wish."""
-    return next(islice(rungs_of(wish), index, None))
+    rung = next(islice(rungs_of(wish), index, None))
+    return rung if wish.beside is None else _paired(rung, wish.stage, wish.beside)
+
+
+def _paired(rung: Rung, stage: Stage, change: Mapping[str, str]) -> Rung:
+    """Returns a rung with the picture beside its own, or a note why there is none."""
+    try:
+        other = other_of(stage, rung.shots[0], change)
+    except DaguerreError as error:
+        return replace(rung, note=f"No picture beside this one: {reason_of(error)}")
+    return replace(rung, shots=(*rung.shots, other.shot), names=other.labels)

@@ -8,8 +8,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.camera.camera import Camera
 from daguerre.rendering.session import Session
 from daguerre.setup.near_clip import Directions, directions_of, view_begins
+from daguerre.setup.resolved import ResolvedLens
 
 #: View directions of sessions, which take a while to set up.
 _directions: WeakKeyDictionary[Session, Directions] = WeakKeyDictionary()
@@ -17,9 +19,13 @@ _directions: WeakKeyDictionary[Session, Directions] = WeakKeyDictionary()
 
 def ring_offset_m(session: Session) -> float:
     """Distance from the entrance pupil back to where the camera measures its focus, m."""
-    if session.camera.focus_from != "sensor":
+    return offset_m(session.camera, session.prepared.setup.lens)
+
+
+def offset_m(camera: Camera, lens: ResolvedLens) -> float:
+    """``ring_offset_m`` of a camera and its lens."""
+    if camera.focus_from != "sensor":
         return 0.0
-    lens = session.prepared.setup.lens
     return 1e-3 * (lens.entrance_pupil_offset_mm or lens.pinhole_focal_length_mm)
 
 

@@ -10,14 +10,16 @@ from typing import Any
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure import check_exposure, is_held
 from daguerre.camera.exposure_mode import CHOICES, chosen_by, is_automatic, split_mode
-from daguerre.errors import UsageError
+from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.rendering.backdrop import shows_plate
 from daguerre.rendering.photograph import Photograph
+from daguerre.rendering.prepare import prepare
 from daguerre.rendering.session import Session
 from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene
 from daguerre.sensors import Sensor
 from daguerre.setup.built_scene import BuiltScene
+from daguerre.setup.resolved import ResolvedLens
 
 from .dials import Dials
 from .light_meter import LightMeter
@@ -103,6 +105,17 @@ class Stage:
             if "shutter_time" not in chosen.changes:  # the meter exposes as long as the picture
                 self.built = built
         return replace(shot, camera=chosen.of(shot.camera), chosen=chosen)
+
+    def set_up(self, shot: Shot) -> ResolvedLens:
+        """Sets up the lens of a shot.
+
+        Raises:
+            DaguerreError: The shot cannot be drawn.
+        """
+        with core_errors(InputError, "render"):
+            one = prepare(shot.scene, shot.camera, shot.settings, self.built)
+        self.built = one.built
+        return one.setup.lens
 
     def try_out(self, dials: Dials) -> None:
         """Sets up a small picture, so that what cannot be drawn is an error before anyone looks.

@@ -49,7 +49,7 @@ class Tev:
 
     def send(self, drawn: Drawn) -> None:
         """Shows a picture at its full size."""
-        if self._line is None or not drawn.whole or drawn.panels:
+        if self._line is None or not drawn.whole:
             return
         frame, path = drawn.frame, drawn.shot.scene.path
         name = f"{'scene' if path is None else path.stem} (daguerre)"

@@ -10,6 +10,7 @@ import itertools
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import zip_longest
 from typing import Any, Protocol
 
 from daguerre.frame.frame import Frame
@@ -21,8 +22,6 @@ from .rungs import Rung, rung_of
 from .shot import Shot
 from .stage import Stage
 
-#: Samples of the steps of pictures side by side.
-_STEPS = (1, 4, 16, 64)
 #: Time between two pictures at full size, s, if samples are that fast.
 LONGEST_S = 1.0
 
@@ -51,7 +50,7 @@ class Work:
 
     def expose(self, wish: Wish) -> bool:
         """Goes on for another wish if that asks for the same light; returns whether it does."""
-        if wish.stage is not self.wish.stage or wish.models != self.wish.models:
+        if not wish.shows_as(self.wish):
             return False
         if self._rung is None:  # the first one is being set up
             fits = wish.is_lit_as(self.wish)
@@ -93,11 +92,18 @@ class Work:
 
     def _drawn(self, wish: Wish, frames: list[Frame], samples: int, rests: bool) -> Drawn:
         assert self._rung is not None
-        shots, names = self._rung.shots, self._rung.names
-        panels = tuple(map(Panel, names, shots, frames))
-        whole = self._rung.last and not panels
-        session = self._sessions[-1]
-        return Drawn(wish, shots[-1], session, frames[-1], samples, rests, whole, panels)
+        rung, main = self._rung, self._rung.main
+        return Drawn(
+            wish,
+            rung.shots[main],
+            self._sessions[main],
+            frames[main],
+            samples,
+            rests,
+            whole=rung.last and not wish.models,
+            panels=tuple(map(Panel, rung.names, rung.shots, frames)),
+            note=rung.note,
+        )
 
     def _exposed(self, drawn: Drawn, wish: Wish) -> Drawn:
         """Returns a picture of the rung with the brightness of another wish."""
@@ -126,40 +132,34 @@ def _expose(sessions: list[Session], rung: Rung) -> None:
 
 def _steps(rung: Rung, sessions: list[Session]) -> Iterator[tuple[int, bool]]:
     """Draws a rung step by step; yields the samples so far, and whether nothing better follows."""
-    if not rung.last:
-        sessions[0].draw(0, 1)
-        yield 1, False
-    elif rung.names:
-        yield from _together(sessions)
-    else:
-        yield from _refined(sessions[0])
+    if rung.last:
+        yield from _refined(sessions)
+        return
+    for session in sessions:
+        session.draw(0, 1)
+    yield 1, False
 
 
-def _together(sessions: list[Session]) -> Iterator[tuple[int, bool]]:
-    """Draws several sessions to their end, in equal steps."""
-    most = sessions[0].settings.sampling.most
-    begin = 0
-    for end in [step for step in _STEPS if step < most] + [most]:
-        for session in sessions:
-            session.draw(begin, end)
-        begin = end
-        yield end, end == most
-
-
-def _refined(session: Session) -> Iterator[tuple[int, bool]]:
-    """Draws a session to its end."""
-    sampling = session.settings.sampling
-    if sampling.noise is not None:
-        for _ in rounds(session, sampling.noise, sampling.most):
-            yield int(session.sample_counts().min()), False
-        yield int(session.sample_counts().min()), True
+def _refined(sessions: list[Session]) -> Iterator[tuple[int, bool]]:
+    """Draws sessions to their end, in turn."""
+    sampling = sessions[0].settings.sampling
+    if (noise := sampling.noise) is not None:
+        for _ in zip_longest(*(rounds(one, noise, sampling.most) for one in sessions)):
+            yield _fewest(sessions), False
+        yield _fewest(sessions), True
         return
     begin, per_sample = 0, 0.0
     while begin < sampling.most:
         fits = int(LONGEST_S / per_sample) if per_sample > 0 else 1
         end = min(max(1, 2 * begin), begin + max(1, fits), sampling.most)
         started = time.monotonic()
-        session.draw(begin, end)
+        for session in sessions:
+            session.draw(begin, end)
         per_sample = (time.monotonic() - started) / (end - begin)
         yield end, end == sampling.most
         begin = end
+
+
+def _fewest(sessions: list[Session]) -> int:
+    """Smallest number of samples of a pixel."""
+    return min(int(session.sample_counts().min()) for session in sessions)

@@ -12,13 +12,14 @@ const KEYS = [
   ['G', '[data-toggle=grid]'], ['H', '[data-toggle=horizon]'], ['Z', '[data-toggle=zebra]'],
   ['P', '[data-toggle=peaking]'], ['L', '[data-toggle=loupe]'], ['R', '[data-panel=rays]'],
   ['T', '[data-tint=false-colour]'], ['D', '[data-tint=depth]'], ['B', '[data-toggle=parade]'], ['A', '#guides'],
-  ['M', '[data-show=models]'], ['N', '[data-show=denoised]'], ['C', '#compare', HELD],
+  ['M', '[data-show=models]'], ['N', '[data-show=denoised]'], ['C', '#compare', HELD], ['X', '#beside'],
   ['V', '#level'], ['0', '#reset'], ['S', '[data-save=png]'],
   ['Ctrl+Y', '#redo'], ['Ctrl+Shift+Z', '#redo'], ['Ctrl+Z', '#undo'], ['F', '#full'], ['?', '#help'],
 ];
 /** Keys of a part of the page that has the focus; ring.js, tripod.js and browsers bind them. */
 const ELSEWHERE = {
   'In a ring': [['← →', 'A step'], ['PgUp PgDn', 'Five steps']],
+  'On the divider': [['← →', 'A step'], ['PgUp PgDn', 'Ten steps'], ['Home End', 'To an edge']],
   'In the picture': [['← → ↑ ↓', 'Orbit'], ['+ -', 'Dolly'], ['[ ]', 'Roll']],
 };
 const TYPED = 'input:not([type=range], [type=checkbox], [type=radio]), textarea';

@@ -20,7 +20,8 @@ export class LensPicker {
     this.filters = new LensFilters(view, () => this.search());
     const on = (id, event, act) => this.find(id).addEventListener(event, act);
     on('lens', 'click', () => this.open());
-    on('lens-take', 'click', () => this.use());
+    view.pickOther = () => this.open(true);
+    on('lens-take', 'click', () => this.take());
     on('lens-compare', 'click', () => this.compare());
     on('lens-back', 'click', () => this.openSheet(false));
     on('lens-search', 'keydown', (event) => this.leaveSearch(event));
@@ -69,7 +70,10 @@ export class LensPicker {
 
   // The list
 
-  open() {
+  /** Opens the dialog, to choose the camera's lens or one to compare with it. */
+  open(compares = false) {
+    this.compares = compares;
+    this.find('lens-take').hidden = compares;
     this.dialog.showModal();
     this.openSheet(false);
     this.find('lens-compare').hidden = !this.view.compareWith;
@@ -132,7 +136,7 @@ export class LensPicker {
     this.cards.photograph(this.find('lens-photograph'), lens);
     this.find('lens-drawing').removeAttribute('src');
     this.facts(lens, {});
-    this.find('lens-compare').disabled = lens.name === null;
+    this.find('lens-compare').disabled = lens.name === null || !this.view.mine;
     clearTimeout(this.asks);
     if (lens.photograph !== undefined) this.asks = setTimeout(() => this.view.send({drawing: lens.name}), DRAWING_MS);
   }
@@ -157,12 +161,18 @@ export class LensPicker {
   }
 
   use() {
+    if (this.compares) this.compare();
+    else this.take();
+  }
+
+  take() {
     if (this.find('lens-take').disabled) return;
     this.view.turn({lens: this.chosen});
     this.dialog.close();
   }
 
   compare() {
+    if (this.find('lens-compare').disabled) return;
     this.view.compareWith(this.chosen);
     this.dialog.close();
   }

@@ -7,6 +7,7 @@
 //   told(message)    any message of the server
 //   clicked(pixel)   a click on the picture; true: this part has taken it
 
+import {Beside} from './beside.js';
 import {Choices} from './choices.js';
 import {Compare} from './compare.js';
 import {Exposure} from './exposure.js';
@@ -50,7 +51,7 @@ class Viewfinder {
     this.panels = new Panels(root);
     const parts = [
       LensPicker, Choices, Exposure, Rings, Needle, Numbers, Tools, Tints, Guides, Parade, Loupe, Rays, Output, Screen,
-      Compare, Undo,
+      Compare, Beside, Undo,
     ];
     this.parts = parts.map((Part) => new Part(this));
     this.keys = new Keys(this);
@@ -112,7 +113,7 @@ class Viewfinder {
     const fresh = await this.picture.show(head, bytes);
     this.send({got: head.picture});
     if (!fresh) return;
-    const [width, height] = head.size, most = this.open?.spp ?? head.samples;
+    const {part: width, size: [, height]} = head, most = this.open?.spp ?? head.samples;
     const many = head.rests ? `${head.samples} samples` : `${width} × ${height}, ${head.samples} of ${most} samples`;
     this.status(this.picture.denoised ? `${many}, denoised` : many);
     this.find('progress').value = head.rests ? 1 : head.samples / most;

@@ -11,7 +11,8 @@ export class Picture {
     this.over = over;
     this.context = canvas.getContext('2d', {willReadFrequently: true});
     this.head = null;
-    this.countOf = new WeakMap();   // pictures side by side in a bitmap
+    this.layoutOf = new WeakMap();   // of the pictures in a bitmap: their count, width, and whether a divider parts them
+    this.divider = 0.5;   // share of the width on its left
     this.clean = null;   // head of the picture on the screen, if it is denoised
     this.shows = {grid: false, horizon: false, zebra: false, peaking: false};
     this.tilt = null;
@@ -29,7 +30,7 @@ export class Picture {
     }
     this.clean = head.denoised ? head : null;
     this.bitmap = bitmap;
-    this.countOf.set(bitmap, head.panels.length || 1);
+    this.layoutOf.set(bitmap, {count: head.panels.length || 1, part: head.part, divided: head.divided});
     this.head = head;
     this.draw(bitmap);
     this.overlay();
@@ -49,17 +50,34 @@ export class Picture {
 
   /** Draws a picture at the size of the one at rest; smaller ones look soft, not like blocks. */
   draw(bitmap) {
-    const count = this.countOf.get(bitmap), {columns, rows} = cells(count);
-    const part = bitmap.width / count;
-    const [width, height] = count === 1 && this.size ? this.size : [part, bitmap.height];
+    const {count, part, divided} = this.layoutOf.get(bitmap), {columns, rows} = cells(divided ? 1 : count);
+    const [width, height] = columns === 1 && this.size ? this.size : [part, bitmap.height];
     Object.assign(this.canvas, {width: width * columns, height: height * rows});
     this.context.imageSmoothingQuality = 'high';
     for (let i = 0; i < count; i++) {
-      const x = width * (i % columns), y = height * Math.floor(i / columns);
-      this.context.drawImage(bitmap, part * i, 0, part, bitmap.height, x, y, width, height);
+      const x = divided ? 0 : width * (i % columns), y = divided ? 0 : height * Math.floor(i / columns);
+      this.context.save();
+      if (divided) this.clip(i, width, height);
+      this.context.drawImage(bitmap, (bitmap.width / count) * i, 0, part, bitmap.height, x, y, width, height);
+      this.context.restore();
     }
     const [across, down] = this.size ?? [width, height];
     this.canvas.closest('.frame').style.setProperty('--ratio', (across * columns) / (down * rows));
+  }
+
+  /** Clips to the left (0) or right (1) side of the divider. */
+  clip(side, width, height) {
+    const at = Math.round(width * this.divider);
+    this.context.beginPath();
+    this.context.rect(side ? at : 0, 0, side ? width - at : at, height);
+    this.context.clip();
+  }
+
+  /** Moves the divider to a share of the width. */
+  divide(share) {
+    if (share === this.divider) return;
+    this.divider = share;
+    if (this.head?.divided) this.compare(null);
   }
 
   /** Shows another picture instead; null: its own again. */
@@ -132,7 +150,7 @@ export class Picture {
   /** Pixel of the whole picture under a pointer. */
   pixel(event) {
     const box = this.canvas.getBoundingClientRect();
-    const {columns, rows} = cells(this.head?.panels.length);
+    const {columns, rows} = cells(this.head?.divided ? 1 : this.head?.panels.length);
     const part = (at, count, size) => Math.floor(((Math.min(INSIDE, Math.max(0, at)) * count) % 1) * size);
     const x = part((event.clientX - box.left) / box.width, columns, this.size[0]);
     const y = part((event.clientY - box.top) / box.height, rows, this.size[1]);

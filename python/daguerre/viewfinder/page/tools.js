@@ -21,7 +21,8 @@ export class Tools {
     }
     for (const button of this.all('show')) {
       button.addEventListener('click', () => {
-        view.send({show: {...view.state.show, [button.dataset.show]: !pressed(button)}});
+        const show = {...view.state.show, [button.dataset.show]: !pressed(button)};
+        view.send({show: {...show, beside: show.models ? null : show.beside}});
       });
     }
     view.find('level').addEventListener('click', () => view.tripod.level());
