@@ -39,7 +39,8 @@ chromium_only = [
 def server() -> Iterator[Live]:
     made = scene()
     settings = dg.RenderSettings.of(resolution=(96, 64), spp=2)
-    with live(Stage(made, made.camera(), settings), Dials.of({"lens": LENS})) as running:
+    dials = Dials.of({"lens": LENS, "f_stop": "16"})  # which all lenses have
+    with live(Stage(made, made.camera(), settings), dials) as running:
         yield running
 
 
