@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import http.client
 import json
 import socket
@@ -149,6 +150,36 @@ def test_a_fault_of_any_kind_is_said_and_the_page_lives(
         assert one.refused[0].startswith(said)
         one.send(turn={"iso": "200"})
         one.until_rest(1)
+
+
+def test_no_state_from_before_a_turn_follows_it(server: Live) -> None:
+    """A page would put the ring back, and the next click would start from there."""
+    told: list[dict[str, Any]] = []
+
+    class Line:
+        async def send(self, message: str | bytes) -> None:
+            if isinstance(message, str):
+                told.append(json.loads(message))
+
+    async def tells_and_turns() -> int:
+        guest = server.hub.join(Line())
+        picture = server.hub.picture
+        assert picture is not None
+        server.hub._report(picture.wish, "")  # has the state told
+        await server.hub.hear(guest, json.dumps({"turn": {"f_stop": "8"}}))
+        number = server.hub.number
+        await asyncio.sleep(0)
+        await server.hub.leave(guest)
+        return number
+
+    with page(server) as one:
+        one.until_rest(0)
+    while server.hub._guests:
+        time.sleep(0.01)
+    number = asyncio.run_coroutine_threadsafe(tells_and_turns(), server.loop).result(30)
+    after = told[told.index({"heard": True}) :]
+    assert len([message for message in after if "state" in message]) >= 2
+    assert all(m["state"]["turn"] == number for m in after if "state" in m)
 
 
 def test_others_watch_and_take_over(server: Live) -> None:

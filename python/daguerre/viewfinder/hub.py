@@ -264,7 +264,7 @@ class Hub:
         self._wish()
         if guest is not None:
             await self._tell(guest, {"heard": True})
-        await self._tell_all(self._state())
+        await self._tell_state()
 
     def _kept(self, changes: Mapping[str, str | None]) -> dict[str, str | None]:
         """Settings that a meter chose, where an automatic mode ends in ``manual``."""
@@ -293,7 +293,7 @@ class Hub:
             self._wish()
         elif self._sheet is not None and self._sheet.drawn.wish.number == self.number:
             await asyncio.to_thread(self.publish, self._sheet.drawn)
-        await self._tell_all(self._state())
+        await self._tell_state()
 
     async def _watch(self) -> None:
         """Tells the pages when the scene's file changes, and at times that the server lives."""
@@ -419,7 +419,7 @@ class Hub:
             self._start(self._offer(guest))  # before the numbers, which take the page longer
         if (readings, self.number) != (self._readings, self._read):
             self._readings, self._read = readings, self.number
-            self._start(self._tell_all(self._state()))
+            self._start(self._tell_state())
 
     def _hand_out_preview(self, drawn: Drawn, image: Image, show: Show) -> None:
         """Hands out a preview, unless the picture rests or another one is asked for."""
@@ -462,7 +462,7 @@ class Hub:
             self._shot = self._sheet.drawn.wish.shot
             self._wish()
         self.error = text
-        self._start(self._tell_all(self._state()))
+        self._start(self._tell_state())
 
     def _start(self, work: Coroutine[Any, Any, None]) -> None:
         task = self._loop.create_task(work)
@@ -479,6 +479,10 @@ class Hub:
 
     async def _tell(self, guest: Guest, message: dict[str, Any]) -> None:
         await guest.line.send(json.dumps(message))
+
+    async def _tell_state(self) -> None:
+        """Tells all pages the state of the moment: one from before a turn would undo it there."""
+        await self._tell_all(self._state())
 
     async def _tell_all(self, message: dict[str, Any]) -> None:
         text = json.dumps(message)
