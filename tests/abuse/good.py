@@ -218,6 +218,7 @@ ARGS: dict[str, Make] = {
     "dg.Session.add": lambda w: {"sums": columns_of(w.state)},
     "dg.Session.draw": constant(begin=2, end=3),
     "dg.Session.draw_round": constant(until=4),
+    "dg.Session.expose": lambda w: {"camera": w.session.camera.with_(iso=800.0)},
     "dg.Session.object_ids": lambda w: {"moment": moment(w)},
     "dg.Session.relative_variance": constant(dark=0.01),
     "dg.Session.set_state": lambda w: {"state": w.state, "ranges": [(0, 2)]},

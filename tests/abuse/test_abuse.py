@@ -22,8 +22,6 @@ from .world import LENS
 FEW, MANY = 4, 60
 #: Good arguments that are refused all the same, and why.
 REFUSED = {
-    "dg.Session.expose": "a random camera sees other light",
-    "dg.ClusterSession.expose": "a random camera sees other light",
     "dg.Session.draw_round": "a round is planned by a driver",
     "dg.ClusterSession.draw_round": "a round is planned by a driver",
 }

@@ -118,7 +118,7 @@ def test_pictures_on_the_way_are_denoised_after_the_plain_ones(
     plain = [samples for samples, denoised in order if not denoised]
     clean = [samples for samples, denoised in order if denoised]
     assert plain == STEPS
-    assert clean
+    assert len(clean) >= 3
     assert clean == sorted(set(clean))
     assert all(order.index((n, False)) < order.index((n, True)) for n in clean)
     assert all(b >= 2 * a for a, b in itertools.pairwise(clean))
@@ -138,16 +138,24 @@ def test_the_picture_at_rest_has_the_bits_of_the_command(server: Live) -> None:
         assert one.heads[-1] is heads[-1]  # nothing follows it
 
 
-def test_previews_change_neither_histogram_nor_values(server: Live) -> None:
+def test_previews_change_neither_histogram_nor_values(
+    server: Live, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    histograms: dict[bool, dict[int, Any]] = {False: {}, True: {}}
+    make = hub.Hub._sheet_of
+
+    def noted(self: hub.Hub, drawn: Drawn, image: Any, show: Show, *, denoised: bool) -> hub.Sheet:
+        if drawn.whole and drawn.wish.number == 1:
+            histograms[denoised][drawn.samples] = image.histogram
+        return make(self, drawn, image, show, denoised=denoised)
+
+    monkeypatch.setattr(hub.Hub, "_sheet_of", noted)
     with page(server) as one:
         one.until_rest(0)
-        heads = turned(one, 1, f_stop="8")
-        by_samples = {head["samples"]: head for head in heads if not head["denoised"]}
-        for head in heads[heads.index(by_samples[2]) :]:
-            assert (
-                not head["denoised"]
-                or head["histogram"] == by_samples.get(head["samples"], head)["histogram"]
-            )
+        assert any(head["denoised"] for head in turned(one, 1, f_stop="8"))
+        plain, clean = histograms[False], histograms[True]
+        assert clean
+        assert clean == {samples: plain[samples] for samples in clean}
         one.send(turn={"f_stop": "4"})
         while not one.heads[-1]["denoised"]:
             one.step()
