@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import gc
 import http.client
 import json
 import socket
+import threading
 import time
+import warnings
 from collections.abc import Iterator
 from typing import Any
 
@@ -15,6 +19,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.viewfinder import hub
+from daguerre.viewfinder import server as serving
 from daguerre.viewfinder.server import FILES, MOST_GUESTS, PATIENCE_S
 
 from .live import TOKEN, Live, Page, live, page
@@ -26,12 +31,16 @@ pytest.importorskip("simplejpeg", reason="needs the extra view")
 
 @pytest.fixture
 def server() -> Iterator[Live]:
+    with served() as running:
+        yield running
+
+
+def served() -> contextlib.AbstractContextManager[Live]:
+    """A server of a small picture."""
     from daguerre.viewfinder.stage import Stage
 
     made = scene()
-    settings = dg.RenderSettings.of(resolution=(120, 80), spp=2)
-    with live(Stage(made, made.camera(), settings)) as running:
-        yield running
+    return live(Stage(made, made.camera(), dg.RenderSettings.of(resolution=(120, 80), spp=2)))
 
 
 def closed(server: Live, token: Any = TOKEN, **more: Any) -> int:
@@ -339,3 +348,26 @@ def test_pages_are_limited(server: Live) -> None:
         assert closed(server) == 4429
     with page(server) as one:
         one.until_rest(0)
+
+
+def test_connections_of_the_last_moment_are_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(serving, "PATIENCE_S", 0.2)
+    lines: list[socket.socket] = []
+    begun = threading.Event()
+
+    def connect(running: Live) -> None:
+        begun.set()
+        lines.extend(socket.create_connection(("127.0.0.1", running.port)) for _ in range(4))
+        time.sleep(0.3)  # meanwhile the server is asked to end
+
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        with served() as running:
+            running.loop.call_soon_threadsafe(connect, running)
+            assert begun.wait(30)
+        for line in lines:
+            line.close()
+        del running
+        gc.collect()
+    assert len(lines) == 4
+    assert [str(one.message) for one in found] == []

@@ -58,6 +58,8 @@ class Previews:
             drawn, show = self._newest.pop()
         except IndexError:  # another picture came instead
             return
+        if time.monotonic() < self._pause_end:  # the one before was slow
+            return
         if drawn.wish.number == self._turn and drawn.samples < 2 * self._samples:
             return
         self._turn, self._samples = drawn.wish.number, drawn.samples

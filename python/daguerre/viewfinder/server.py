@@ -208,7 +208,20 @@ async def serve(
             open_timeout=PATIENCE_S,
             server_header=None,
             **more,
-        ) as listening:
-            await listening.serve_forever()
+        ):
+            try:
+                await asyncio.Event().wait()
+            finally:
+                await _stop_accepting(sock)
     finally:
         server.hub.close()
+
+
+async def _stop_accepting(sock: socket.socket) -> None:
+    """Accepts no more connections, and lets those just accepted reach their handlers.
+
+    asyncio closes a server without them: their sockets would stay open.
+    """
+    asyncio.get_running_loop().remove_reader(sock)
+    for _ in ("transport", "handler"):  # each is made in a turn of the loop of its own
+        await asyncio.sleep(0)
