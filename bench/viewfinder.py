@@ -230,7 +230,9 @@ def main() -> None:
     scene, camera = loaded(options.scene)
     dials = Dials.of({"lens": options.lens})
     rows: dict[str, Any] = {"threads": os.cpu_count()}
-    with tempfile.TemporaryDirectory() as folder, browser(Path(folder)) as page:
+    # Chromium's last processes may still write while the folder is removed.
+    folders = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+    with folders as folder, browser(Path(folder)) as page:
         page.call("Page.addScriptToEvaluateOnNewDocument", source=OPENING)
         for key, size in (("small", (240, 135)), ("large", (960, 540))):
             stage = Stage(scene, camera, dg.RenderSettings.of(resolution=size, spp=16))

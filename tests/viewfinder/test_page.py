@@ -371,7 +371,9 @@ def test_a_lens_found_by_its_name(page: Browser, server: Live, tmp_path: Path) -
         "(() => { const s = document.getElementById('lens-search'); s.value = 'tessar';"
         "s.dispatchEvent(new Event('input')); })()"
     )
-    page.until("[1, 2, 3, 4].includes(document.querySelectorAll('#lens-list [role=option]').length)")
+    page.until(
+        "[1, 2, 3, 4].includes(document.querySelectorAll('#lens-list [role=option]').length)"
+    )
     assert "Tessar" in page.run("document.getElementById('lens-list').textContent")
     page.click("#lens-list [role=option]")
     page.until("document.getElementById('lens-drawing').naturalWidth > 100")
