@@ -136,7 +136,7 @@ def test_after_a_fault_of_any_kind_the_next_wish_is_drawn(
     seen.until_rest(2)
 
 
-@pytest.mark.parametrize(("size", "kind"), [((120, 80), "rgb"), ((240, 160), "jpeg")])
+@pytest.mark.parametrize(("size", "kind"), [((240, 160), "rgb"), ((300, 160), "jpeg")])
 def test_small_pictures_go_as_they_are(seen: Seen, stage: Stage, size: Any, kind: str) -> None:
     stage.settings = stage.settings.with_(resolution=size, spp=4)
     seen.wish(1)

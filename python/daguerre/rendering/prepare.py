@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 import daguerre._core as _core
 from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure import without_brightness
 from daguerre.camera.overscan import Overscan, check_overscan
 from daguerre.camera.settled import settled
 from daguerre.checks import short
-from daguerre.errors import UsageError
+from daguerre.errors import MismatchError, UsageError
 from daguerre.scene.scene import Scene
 from daguerre.setup.built_scene import BuiltScene
-from daguerre.setup.camera import set_up
+from daguerre.setup.camera import set_up, with_brightness_of
 from daguerre.setup.resolved import ResolvedCamera
 
 from . import diffraction
@@ -45,7 +46,7 @@ class Prepared:
         sensor: Sensor whose channels the film has, if the camera has one.
         pupils: Pupils for the kernels of diffraction, as JSON.
         mattes: Names of objects for mattes (``mattes.matte_facts``), if requested.
-        notes: Remarks for users.
+        overscan_notes: Remarks for users about the extra pixels.
     """
 
     scene: Scene
@@ -59,7 +60,12 @@ class Prepared:
     sensor: Sensor | None
     pupils: dict[str, Any] | None
     mattes: dict[str, Any] | None
-    notes: tuple[str, ...]
+    overscan_notes: tuple[str, ...]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Remarks for users."""
+        return (*self.setup.notes, *self.overscan_notes)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -80,6 +86,21 @@ class Prepared:
     def window(self) -> Box:
         """Part of the crop that lies in the picture."""
         return inside(self.crop, self.size)
+
+    def exposed(self, camera: Camera) -> Prepared:
+        """Returns the same picture as another camera exposes it.
+
+        Raises:
+            UsageError: Its exposure is wrong.
+            MismatchError: It sees other light.
+        """
+        camera = settled(camera, self.scene.time)
+        if without_brightness(camera) != without_brightness(self.camera):
+            raise MismatchError(
+                "expose: the camera must see the same light: only its exposure may differ"
+            )
+        check_backdrop(self.scene, self.settings, camera.exposure)
+        return replace(self, camera=camera, setup=with_brightness_of(self.setup, camera))
 
     def share(self, pixels: int) -> float:
         """Returns a number of pixels as a share of the picture's."""
@@ -109,7 +130,7 @@ def prepare(
     if built is None or not built.shows(scene, interval):
         built = BuiltScene(scene, interval)
     setup = set_up(scene, camera, size, built.core)
-    notes = list(setup.notes)
+    notes = []
     overscan = check_overscan(settings.film.overscan, size)
     if overscan is None:
         from daguerre.distortion import overscan as around

@@ -13,7 +13,7 @@ import numpy as np
 import daguerre._core as _core
 from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
-from daguerre.camera.exposure import exposure_notes
+from daguerre.camera.exposure import check_exposure
 from daguerre.camera.ideal import WITHOUT_IRIS
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.camera.projection import check_resolution
@@ -89,7 +89,6 @@ def set_up(
         motion = LensMotion(camera, of_lens, begin, end, lens, lens_of)
         notes += motion.apply(size, framing.pitch_mm)
     set_near_clip(lens.core, now, size)
-    notes += exposure_notes(now, lens.f_stop, shutter.shutter_time(now))
     return ResolvedCamera(
         camera=now,
         lens=lens,
@@ -99,8 +98,24 @@ def set_up(
         frame_size_mm=size,
         shift_mm=now.shift,
         changes=changing,
-        notes=tuple(notes),
+        light_notes=tuple(notes),
     )
+
+
+def with_brightness_of(setup: ResolvedCamera, camera: Camera) -> ResolvedCamera:
+    """Returns the set-up of a camera that sees the same light, whatever its brightness.
+
+    Args:
+        setup: A camera that is set up.
+        camera: The other one, settled.
+
+    Raises:
+        UsageError: Its exposure is wrong.
+    """
+    begin, end = setup.interval_s
+    now = camera.frozen_at(0.5 * (begin + end))
+    check_exposure(now)
+    return replace(setup, camera=now)
 
 
 def _picture_size(camera: Camera, resolution: tuple[int, int]) -> tuple[float, float]:

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 import daguerre._core as _core
 from daguerre.camera.camera import Camera
-from daguerre.camera.exposure import lens_h0
+from daguerre.camera.exposure import exposure_notes, lens_h0
+from daguerre.camera.shutter import shutter_time
 from daguerre.files.value import BriefRecord
 
 from .pose import Change
@@ -130,7 +131,7 @@ class ResolvedCamera(BriefRecord):
         frame_size_mm: Width and height of the picture on the film.
         shift_mm: Position of the picture's middle relative to the lens's axis, right and up.
         changes: Changes while the shutter is open, by the name of the parameter.
-        notes: Decisions made on the user's behalf, one sentence each.
+        light_notes: Decisions made on the user's behalf, one sentence each, except about exposure.
     """
 
     camera: Camera
@@ -141,7 +142,13 @@ class ResolvedCamera(BriefRecord):
     frame_size_mm: tuple[float, float]
     shift_mm: tuple[float, float]
     changes: Mapping[str, Change]
-    notes: tuple[str, ...] = ()
+    light_notes: tuple[str, ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Decisions made on the user's behalf, one sentence each."""
+        exposure = exposure_notes(self.camera, self.lens.f_stop, shutter_time(self.camera))
+        return (*self.light_notes, *exposure)
 
     @property
     def core(self) -> _core.Camera:

@@ -20,7 +20,7 @@ QUALITY = 88
 TINT_QUALITY = 95
 #: Pictures of so few pixels go as they are: a browser decodes others in a thread that may have to
 #: wait for a core.
-FEW = 20_000
+FEW = 40_000
 _BINS = 128
 #: Pixels across a block of JPEG.
 _BLOCK = 8
