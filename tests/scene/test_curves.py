@@ -17,6 +17,7 @@ from daguerre.labels.boxes import box_of
 from daguerre.scene.framing import bounds
 from daguerre.scene.parts import Curves
 from daguerre.setup import scene as setup
+from daguerre.setup.content_hash import content_hash
 from tests.support import scenes
 
 Array = NDArray[np.float64]
@@ -210,10 +211,10 @@ def test_curves_pickle_compare_and_print() -> None:
     assert again.meshes[0] != added(POINTS, widths=0.2, name="wire")
     assert repr(scene.meshes[0]) == "<Curves 'wire': 1 curves, 4 segments>"
     assert "curves" in scene._repr_html_()
-    assert setup.content_hash(again) == setup.content_hash(scene)
+    assert content_hash(again) == content_hash(scene)
     thick = dg.Scene()
     thick.add_instance(thick.add_curves(POINTS, [7], 0.2, name="wire"), name="wire")
-    assert setup.content_hash(thick) != setup.content_hash(scene)
+    assert content_hash(thick) != content_hash(scene)
 
 
 def test_boxes_hold_the_thickness() -> None:

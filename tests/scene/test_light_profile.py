@@ -15,7 +15,7 @@ import daguerre as dg
 from daguerre.errors import DaguerreError, InputError
 from daguerre.files import packing
 from daguerre.scene.light_profile import ProfileTable
-from daguerre.setup.scene import content_hash
+from daguerre.setup.content_hash import content_hash
 
 THETA, PHI = np.arange(0, 181, 10.0), np.arange(0, 361, 30.0)
 VALUES = np.random.default_rng(1).uniform(0.1, 2, (len(THETA), len(PHI)))

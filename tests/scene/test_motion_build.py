@@ -10,7 +10,9 @@ import pytest
 import daguerre as dg
 from daguerre.errors import InputError
 from daguerre.io.gltf import reader as gltf
-from daguerre.setup.scene import build, content_hash
+from daguerre.setup.built_scene import BuiltScene
+from daguerre.setup.content_hash import content_hash
+from daguerre.setup.scene import build
 from daguerre.setup.scene_motion import MovingParts
 from tests.support import scenes
 from tests.support.make_gltf import triangle
@@ -119,6 +121,17 @@ def test_the_hash_knows_the_motion():
     ends = [(0.0, np.eye(4)), (1.0, scenes.at(1, 0, 0) @ np.diag([-1.0, -1, 1, 1]))]
     ways = [hashed(dg.keys(ends, way)) for way in ("decomposed", "linear", "twist")]
     assert ways[0] != ways[1]
+
+
+def test_the_hash_of_another_interval_begins_with_what_does_not_move():
+    scene, other = dg.Scene(), dg.Scene()
+    for one, far in ((scene, 8), (other, 9)):
+        one.add_instance(one.add_mesh(SQUARE, FACES), transform=slide(0, far, 0))
+    first = BuiltScene(scene, (0.0, 1.0))
+    later = BuiltScene(scene, (0.0, 0.5), first)
+    assert first.hash == content_hash(scene, (0.0, 1.0))
+    assert later.hash == content_hash(scene, (0.0, 0.5)) != first.hash
+    assert BuiltScene(other, (0.0, 0.5), first).hash == content_hash(other, (0.0, 0.5))
 
 
 def test_a_file_that_moves_is_blurred(tmp_path):

@@ -18,7 +18,7 @@ import pytest
 import daguerre as dg
 from daguerre.checks import as_readonly
 from daguerre.rendering.session import Session
-from daguerre.setup.scene import content_hash
+from daguerre.setup.content_hash import content_hash
 from tests.support import motion_files, motion_scenes, scenes
 from tests.support.make_gltf import Builder, png
 

@@ -128,7 +128,7 @@ def prepare(
     size = settings.film.resolution
     interval = shutter.interval(camera, scene.time, size)
     if built is None or not built.shows(scene, interval):
-        built = BuiltScene(scene, interval)
+        built = BuiltScene(scene, interval, built)
     setup = set_up(scene, camera, size, built.core)
     notes = []
     overscan = check_overscan(settings.film.overscan, size)

@@ -6,7 +6,8 @@ import daguerre._core as _core
 from daguerre.cached import cached_property
 from daguerre.scene.scene import Scene
 
-from .scene import build, content_hash
+from .content_hash import ContentHash
+from .scene import build
 
 
 class BuiltScene:
@@ -15,14 +16,20 @@ class BuiltScene:
     Args:
         scene: The scene; it must not change while this object is in use.
         interval: Exposure interval, s.
+        before: Scene built for another interval; of the same scene, its hash need not begin anew.
 
     Attributes:
         core: Scene of the core.
         warnings: A sentence for each motion that is only approximated.
     """
 
-    def __init__(self, scene: Scene, interval: tuple[float, float]) -> None:
+    def __init__(
+        self, scene: Scene, interval: tuple[float, float], before: BuiltScene | None = None
+    ) -> None:
         self.scene, self.interval = scene, interval
+        self._content = ContentHash(scene)
+        if before is not None and before.scene is scene:
+            self._content = before._content
         self.warnings: list[str] = []
         self.core: _core.Scene = build(scene, interval, self.warnings)
 
@@ -33,4 +40,4 @@ class BuiltScene:
     @cached_property
     def hash(self) -> str:
         """Hash of everything that a picture can depend on."""
-        return content_hash(self.scene, self.interval)
+        return self._content.over(self.interval)

@@ -1,19 +1,11 @@
-"""Conversion of a scene to the core's scene, and a hash of its content."""
+"""Conversion of a scene to the core's scene."""
 
 from __future__ import annotations
-
-import dataclasses
-import functools
-import hashlib
-from typing import Any
-
-import numpy as np
 
 import daguerre._core as _core
 from daguerre import memory
 from daguerre.checks import as_readonly, short
 from daguerre.errors import InputError, UsageError, core_errors
-from daguerre.motion.subdivision import samples
 from daguerre.scene.catcher import EFFECTS
 from daguerre.scene.motion import Vertices
 from daguerre.scene.parts import Curves
@@ -95,61 +87,3 @@ def _add_curves(builder: _core.SceneBuilder, curves: Curves, vertices: Vertices)
         (curves.cubic, curves.closed),
         *(None if rows is None else as_readonly(rows) for rows in values),
     )
-
-
-def content_hash(scene: Scene, interval: tuple[float, float] | None = None) -> str:
-    """SHA-256 of everything that the picture can depend on.
-
-    Args:
-        scene: The scene.
-        interval: Exposure interval, s; motion is sampled at its ends, at keys and between.
-    """
-    digest = hashlib.sha256()
-    pending: list[str] = []
-
-    def flush() -> None:
-        digest.update("".join(pending).encode())
-        pending.clear()
-
-    def add(value: Any) -> None:
-        kind: Any = type(value)
-        if isinstance(value, np.ndarray):
-            pending.append(f"{value.dtype}{value.shape}")
-            flush()
-            digest.update(np.ascontiguousarray(value).data)
-        elif (names := _field_names(kind)) is not None:
-            for name in names:
-                pending.append(name)
-                add(getattr(value, name))
-        elif isinstance(value, (list, tuple)):
-            pending.append(f"[{len(value)}")
-            for item in value:
-                add(item)
-        else:
-            pending.append(repr(value))
-
-    for part in (
-        scene.meshes,
-        scene.textures,
-        scene.materials,
-        scene.instances,
-        scene.lights,
-        scene.environment,
-        scene.plate,
-        scene.fog,
-    ):
-        add(part)
-    if interval is not None:
-        for where, dynamic in scene.motion.parts():
-            add(where)
-            add(samples(dynamic, *interval))
-    flush()
-    return digest.hexdigest()
-
-
-@functools.cache
-def _field_names(kind: type) -> tuple[str, ...] | None:
-    """Names of the fields of a data class; None for other classes."""
-    if not dataclasses.is_dataclass(kind):
-        return None
-    return tuple(field.name for field in dataclasses.fields(kind))
