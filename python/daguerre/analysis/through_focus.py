@@ -11,10 +11,11 @@ from daguerre.files.value import BriefRecord
 
 from .mtf import diffraction_mtf, geometric_mtf
 from .pencils import Pencil
-from .psf import WHITE_NM, WHITE_WEIGHTS, Psf, geometric_psf, psf_of, waves_of
+from .psf import WHITE_NM, WHITE_WEIGHTS, Psf, binned, psf_of, waves_of
 from .spots import Spot, spot
 
 PIXELS = 96
+GRID = 240  # rays across, for each wavelength of a PSF of rays: few enough to see no grain
 
 
 @dataclass(frozen=True, repr=False)
@@ -53,14 +54,12 @@ def series(light: Pencil, count: int = 9) -> list[Step]:
     half = 1.1 * spread + 3 * airy
     waves = waves_of(light, WHITE_NM, half + spread, rays.centroid)
     shares = [w / sum(WHITE_WEIGHTS) for w in WHITE_WEIGHTS]
-    out = []
-    for dz in places:
-        if len(waves) == len(shares):
-            psf = psf_of(waves, shares, half, PIXELS, rays.centroid, dz)
-        else:
-            psf = geometric_psf(light, half_mm=half, pixels=PIXELS, dz=dz)
-        out.append(_step(light, rays.moved(dz), psf, dz))
-    return out
+    if len(waves) == len(shares):
+        psfs = [psf_of(waves, shares, half, PIXELS, rays.centroid, dz) for dz in places]
+    else:
+        white = spot(light, WHITE_NM, WHITE_WEIGHTS, grid=GRID, jitter=True)
+        psfs = [binned(white.moved(dz), half, PIXELS) for dz in places]
+    return [_step(light, rays.moved(dz), psf, dz) for dz, psf in zip(places, psfs, strict=True)]
 
 
 def _step(light: Pencil, rays: Spot, psf: Psf, dz: float) -> Step:
