@@ -3,6 +3,10 @@
 All figures come from exact rays through the prescription; docs/lens-bench.md has the formulas.
 """
 
+from typing import TYPE_CHECKING
+
+from daguerre.on_use import on_use
+
 from .bench import Bench, set_up
 from .chief import chief_rays, film_heights
 from .field import axial_colour, distortion, field_curvature, lateral_colour, spherical_aberration
@@ -17,9 +21,13 @@ from .seidel import SeidelSums, seidel_sums
 from .spots import Spot, best_film_z, spot
 from .wavefronts import Wavefront, wavefront
 
+if TYPE_CHECKING:
+    from .ghost_trace import GhostRays, ghost_rays, trace_ghost
+
 __all__ = [
     "Bench",
     "Figures",
+    "GhostRays",
     "Mtf",
     "Pencil",
     "Psf",
@@ -37,6 +45,7 @@ __all__ = [
     "film_heights",
     "geometric_mtf",
     "geometric_psf",
+    "ghost_rays",
     "lateral_colour",
     "modulation_transfer",
     "pencil",
@@ -50,5 +59,11 @@ __all__ = [
     "spherical_aberration",
     "spot",
     "strehl_ratio",
+    "trace_ghost",
     "wavefront",
 ]
+
+if not TYPE_CHECKING:  # checkers know the names above, and report all others
+    __getattr__, __dir__ = on_use(
+        __name__, dict.fromkeys(("GhostRays", "ghost_rays", "trace_ghost"), "ghost_trace")
+    )

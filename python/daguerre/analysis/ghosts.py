@@ -161,16 +161,39 @@ class Ghosts(Plotted):
 
     def picture(self, pixels: int = 600) -> NDArray[np.float64]:
         """All ghosts on the film, upright, shape (H, W): light per mm2, over the image's light."""
-        whole(pixels, "picture: pixels", 1, 8192)
-        width, height = self.film
-        columns, rows = pixels, max(1, round(pixels * height / width))
-        image = np.zeros((rows, columns))
+        image = blank(self.film, pixels)
         for ghost in self.all:
-            if ghost.light <= 0:
-                continue
-            x, y, share = ghost.points.T.astype(np.float64)
-            # The image on the film is upside down.
-            i = np.clip(((0.5 - x / width) * columns).astype(int), 0, columns - 1)
-            j = np.clip(((0.5 + y / height) * rows).astype(int), 0, rows - 1)
-            np.add.at(image, (j, i), ghost.light * share)
-        return image * (columns * rows / (width * height))
+            if ghost.light > 0:
+                points = ghost.points.astype(np.float64)
+                image += splat(points[:, :2], ghost.light * points[:, 2], self.film, image.shape)
+        width, height = self.film
+        return image * (image.size / (width * height))
+
+
+def blank(film: tuple[float, float], pixels: int) -> NDArray[np.float64]:
+    """A dark picture of a film (width and height, mm), ``pixels`` wide."""
+    whole(pixels, "picture: pixels", 1, 8192)
+    return np.zeros((max(1, round(pixels * film[1] / film[0])), pixels))
+
+
+def splat(
+    points: NDArray[np.float64],
+    light: NDArray[np.float64],
+    film: tuple[float, float],
+    shape: tuple[int, ...],
+) -> NDArray[np.float64]:
+    """Adds up light in the pixels of an upright picture of the film, shape (H, W).
+
+    Args:
+        points: Points on the film, mm, shape (N, 2); the image there is upside down.
+        light: Light of each point, shape (N,).
+        film: Width and height of the film, mm.
+        shape: Height and width of the picture, px.
+    """
+    (width, height), (rows, columns) = film, shape
+    edges = [
+        np.linspace(-height / 2, height / 2, rows + 1),
+        np.linspace(-width / 2, width / 2, columns + 1),
+    ]
+    held, _, _ = np.histogram2d(points[:, 1], -points[:, 0], bins=edges, weights=light)
+    return np.asarray(held)
