@@ -120,6 +120,14 @@ class World:
         return self.ghosts.all[0]
 
     @cached_property
+    def ghost_rays(self) -> Any:
+        return analysis.ghost_rays(self.bench, self.ghost.surfaces, (0.0, 0.1, 1.0), rays=64)
+
+    @cached_property
+    def polynomial_ghosts(self) -> Any:
+        return dg.polynomial.PolynomialGhosts(self.ghosts, 1, rays=64)
+
+    @cached_property
     def glare(self) -> Any:
         from daguerre.analysis.glare import VeilingGlare
 

@@ -15,7 +15,10 @@ The element on the right is applied first, as matrices are. ``fit`` makes a lens
 a camera can use.
 """
 
+from typing import TYPE_CHECKING
+
 from daguerre._core import Iris
+from daguerre.on_use import on_use
 
 from .elements import place, propagate, reflect, refract
 from .fitting import fit
@@ -26,11 +29,17 @@ from .system import System
 from .terms import SeidelTerms
 from .wavelengths import wavelength_nodes
 
+if TYPE_CHECKING:
+    from .ghosts import GhostError, GhostPolynomial, PolynomialGhosts, expand_ghost
+
 __all__ = [
     "ErrorZone",
     "Form",
+    "GhostError",
+    "GhostPolynomial",
     "Iris",
     "LensFit",
+    "PolynomialGhosts",
     "SceneRays",
     "SeidelTerms",
     "System",
@@ -38,6 +47,7 @@ __all__ = [
     "biconic",
     "conic",
     "cylinder",
+    "expand_ghost",
     "fit",
     "from_lens",
     "place",
@@ -49,3 +59,11 @@ __all__ = [
     "toroid",
     "wavelength_nodes",
 ]
+
+if not TYPE_CHECKING:  # checkers know the names above, and report all others
+    __getattr__, __dir__ = on_use(
+        __name__,
+        dict.fromkeys(
+            ("GhostError", "GhostPolynomial", "PolynomialGhosts", "expand_ghost"), "ghosts"
+        ),
+    )
