@@ -11,6 +11,7 @@ import pytest
 from daguerre.cli import main
 
 LENS = "tessar-50mm-f2.8"
+LIBRARY = Path(__file__).resolve().parents[2] / "python/daguerre/lenses/library"
 
 
 def test_json_has_every_figure(capsys: pytest.CaptureFixture[str]) -> None:
@@ -157,6 +158,7 @@ def test_a_wrong_export_is_refused(
         (["--drawing"], "section.svg"),
         (["--psf", "0,inf", "--plot"], "psf.png"),
         (["--flare", "15", "--plot"], "ghosts.png"),
+        (["--flare", "15", "--polynomial", "3", "--plot"], "both.png"),
         (["--flare", "15", "--drawing"], "ghost.svg"),
         (["--degree", "3", "--export"], "lens.json"),
     ],
@@ -171,3 +173,52 @@ def test_each_file_is_told(
     told = [line for line in capsys.readouterr().err.splitlines() if "wrote" in line]
     assert [line.partition(" (")[0] for line in told] == [f"daguerre: wrote {file}"]
     assert file.stat().st_size > 0
+
+
+POLYNOMIAL = ["lens", LENS, "--flare", "10", "--polynomial"]
+
+
+def test_polynomial_ghosts_have_their_errors_in_the_list(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Each row and the last lines have the numbers of --json."""
+    assert main([*POLYNOMIAL, "7", "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert main([*POLYNOMIAL, "7"]) == 0
+    out = capsys.readouterr().out
+    lit = [ghost for ghost in facts["ghosts"] if ghost["light"] > 0]
+    assert "error mm  of radius  centre off mm" in out
+    for ghost in lit[:20]:
+        error = ghost["polynomial"]
+        row = next(r for r in out.splitlines() if r.startswith("{}-{} ".format(*ghost["surfaces"])))
+        numbers = [f"{error[name]:.2g}" for name in ("error_mm", "error", "shift_mm")]
+        assert row.removesuffix("  diverges").split()[-3:] == numbers
+        assert row.endswith("  diverges") == error["diverges"]
+    assert any(ghost["polynomial"]["diverges"] for ghost in lit)
+    assert all(ghost["polynomial"] is None for ghost in facts["ghosts"][len(lit) :])
+    whole = facts["polynomial"]
+    assert (whole["degree"], whole["ghosts"]) == (7, len(lit))
+    assert f"median error {whole['median_error_mm']:.2g} mm" in out
+    assert f"{whole['diverging']} of {len(lit)} expansions diverge (degree 5 is better" in out
+    assert re.search(
+        rf"{whole['rays']} rays: polynomials [\d.]+ CPU s after [\d.]+ s of set-up, ", out
+    )
+
+
+def test_the_highest_degree_is_that_of_expansions() -> None:
+    from daguerre.cli.lens.flare import MAX_DEGREE
+    from daguerre.polynomial import elements
+
+    assert MAX_DEGREE == elements.MAX_DEGREE
+
+
+def test_a_surface_without_expansion_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lens = json.loads((LIBRARY / f"{LENS}.json").read_text())
+    lens["surfaces"][3] |= {"kind": "aspheric", "asphere": {"a5": 1e-8}}
+    odd = tmp_path / "odd.json"
+    odd.write_text(json.dumps(lens))
+    assert main(["lens", str(odd), "--flare", "0", "--polynomial", "3"]) != 0
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "surface 3: Taylor expansion" in line

@@ -22,8 +22,10 @@ if TYPE_CHECKING:
     from daguerre.analysis.ghosts import Ghost, Ghosts
 
     from .export import FileFlags
+    from .polynomial_ghosts import PolynomialReport
 
 SHOWN = 20
+MAX_DEGREE = 15  # that of polynomial.elements, which takes long to import
 
 
 def _angle(flag: str, text: str) -> float:
@@ -41,15 +43,7 @@ def _surfaces(flag: str, text: str) -> tuple[int, int]:
 
 
 # fmt: off
-_FLARE = Table(
-    Parameter(
-        "angle", "List the ghosts of light from this angle (deg), brightest first; --drawing draws "
-        "one, --plot all of them on the film", flags=("--flare",), metavar="ANGLE", parse=_angle,
-    ),
-    Parameter(
-        "ghost", "Reflecting surfaces of the ghost to draw", default_words="the brightest",
-        flags=("--ghost",), metavar="I,J", parse=_surfaces,
-    ),
+_BODY = (
     replace(
         CAMERA["cover_glass"],
         meaning="Cover glass in front of the sensor, for --flare: thickness and gap to the sensor, "
@@ -59,6 +53,23 @@ _FLARE = Table(
         CAMERA["sensor_reflectance"],
         meaning="Reflectance of the sensor, 0 to 1, for --flare",
     ),
+)
+_FLARE = Table(
+    Parameter(
+        "angle", "List the ghosts of light from this angle (deg), brightest first; --drawing draws "
+        "one, --plot all of them on the film", flags=("--flare",), metavar="ANGLE", parse=_angle,
+    ),
+    Parameter(
+        "ghost", "Reflecting surfaces of the ghost to draw", default_words="the brightest",
+        flags=("--ghost",), metavar="I,J", parse=_surfaces,
+    ),
+    Parameter(
+        "polynomial", "Expand each ghost of --flare as a Taylor polynomial of this degree, 1 to "
+        "15, and print its error against exact rays; --plot draws both", kind="whole", low=1,
+        high=MAX_DEGREE, flags=("--polynomial",), metavar="DEGREE",
+        explained=("flare.md#ghosts-as-polynomials",),
+    ),
+    _BODY,
 )
 # fmt: on
 
@@ -83,7 +94,12 @@ class FlareFlags(TableFlags):
         for row in _FLARE:
             if getattr(self, row.field) is not None and not self.wanted:
                 raise UsageError(f"{row.flag} needs --flare ANGLE")
-        self.given()
+        given = self.given()
+        degree = given.get("polynomial")
+        _FLARE["polynomial"].check(degree, "--polynomial")
+        for row in _BODY:
+            if degree is not None and row.name in given:
+                raise UsageError(f"--polynomial expands the lens alone: leave out {row.flag}")
 
     def show(self, bench: Bench, files: FileFlags, *, json: bool) -> int:
         """Prints the ghosts, and writes the requested drawings."""
@@ -93,16 +109,19 @@ class FlareFlags(TableFlags):
 
         given = self.given()
         angle, which = given.pop("angle"), given.pop("ghost", None)
+        degree = given.pop("polynomial", None)
         ghosts = Ghosts(bench, angle, film=files.film, stack=stack_of(Camera(**given)))
         shown = ghosts.find(which) if which else None
+        expanded = _expanded(ghosts, degree, drawn=files.plot is not None)
         if files.drawing is not None:
             _write_drawing(ghosts, shown or _brightest(ghosts), files.drawing)
         if files.plot is not None:
             from daguerre.plots.ghost_plot import plot_ghosts
 
-            write_drawing(files.plot, plot_ghosts(ghosts, files.plot.suffix.lower()[1:]))
+            panels = expanded.panels() if expanded else None
+            write_drawing(files.plot, plot_ghosts(ghosts, files.plot.suffix.lower()[1:], panels))
         if not json:
-            _print(ghosts)
+            _print(ghosts, expanded)
             return 0
         from json import dumps
 
@@ -114,8 +133,16 @@ class FlareFlags(TableFlags):
             "angle_deg": angle,
             "ghosts": ghosts.facts(),
         }
-        console.show(dumps(facts, indent=2))
+        console.show(dumps(expanded.added_to(facts) if expanded else facts, indent=2))
         return 0
+
+
+def _expanded(ghosts: Ghosts, degree: int | None, *, drawn: bool) -> PolynomialReport | None:
+    if degree is None:
+        return None
+    from .polynomial_ghosts import PolynomialReport
+
+    return PolynomialReport(ghosts, degree, drawn=drawn)
 
 
 def _brightest(ghosts: Ghosts) -> Ghost:
@@ -131,7 +158,7 @@ def _write_drawing(ghosts: Ghosts, ghost: Ghost, path: Path) -> None:
     write_drawing(path, drawn(ghost_section(ghosts, ghost), path.suffix.lower()))
 
 
-def _print(ghosts: Ghosts) -> None:
+def _print(ghosts: Ghosts, expanded: PolynomialReport | None) -> None:
     bench, width, height = ghosts.bench, *ghosts.film
     total = sum(g.light for g in ghosts.all)
     lit = sum(g.light > 0 for g in ghosts.all)
@@ -143,7 +170,8 @@ def _print(ghosts: Ghosts) -> None:
         f"{len(ghosts.all)} ghosts, {lit} reach the film, with {_share(total)} of the light of the "
         "picture of the same source straight ahead"
     )
-    console.show("surfaces      of picture   of ghosts   centre x, y mm    RMS radius mm")
+    head = "surfaces      of picture   of ghosts   centre x, y mm    RMS radius mm"
+    console.show(head + (expanded.head if expanded else ""))
     for g in ghosts.all[:SHOWN]:
         if g.light <= 0:
             break
@@ -151,9 +179,12 @@ def _print(ghosts: Ghosts) -> None:
         console.show(
             f"{'-'.join(str(i) for i in g.surfaces):12}  {_share(g.light):>10}   "
             f"{g.light / total:9.2%}   {x:7.2f} {y:7.2f}   {g.radius:13.3f}"
+            + (expanded.columns(g) if expanded else "")
         )
     if lit > SHOWN:
         console.show(f"... and {lit - SHOWN} more (--json shows all)")
+    for line in expanded.summary() if expanded else ():
+        console.show(line)
 
 
 def _share(value: float) -> str:
