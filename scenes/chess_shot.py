@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Photographs the Open Chess Set of USD as its stage says: lens, stop, focus, shutter, exposure.
+"""Photographs the Open Chess Set of USD with the lens, stop, focus and shutter of its stage.
 
     python scenes/chess_shot.py PICTURE CHESS_SET.usda [PANORAMA.hdr] [--spp N]
 
 Writes a stage beside PICTURE that has the chess set as a reference, a camera and a sky; renders
-it, exposes a sensor to it as the camera's ``exposure:*`` say, and develops the photograph. The
+it, exposes a sensor to it by the camera's ``exposure:*``, and develops the photograph. The
 chess set is full_assets/OpenChessSet/chess_set.usda of https://github.com/usd-wg/assets.
 """
 

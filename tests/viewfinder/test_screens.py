@@ -267,7 +267,7 @@ def test_a_page_that_watches_says_so(chromium: Browser, server: Live) -> None:
         first.step()
         page = shows(chromium, server, PHONE)
         text = page.until("!document.getElementById('watches').hidden && document.body.innerText")
-        assert "This page only watches: another one turns the rings." in text
+        assert "Read-only: another page controls the camera." in text
     page.until("document.getElementById('watches').hidden")
 
 

@@ -111,8 +111,8 @@ PICTURES = [
 PICTURES += [
     Picture(
         "chess_shot",
-        "The Open Chess Set of USD, with MaterialX and subdivision surfaces, photographed as its "
-        "stage says: double Gauss at f/2.8, 1/60 s at ISO 400.",
+        "The Open Chess Set of USD, with MaterialX and subdivision surfaces, photographed by "
+        "its stage's camera: double Gauss at f/2.8, 1/60 s at ISO 400.",
         "scenes/chess_shot.py",
         "DATA/OpenChessSet/chess_set.usda DATA/hdri/st_peters_square_night_1k.hdr",
         needs_data=True,

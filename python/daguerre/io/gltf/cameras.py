@@ -3,7 +3,7 @@
 glTF itself has only a field of view; other parameters come from ``EXT_camera_physical``
 ({focalLength mm, sensorSize mm, focusDistance m, fStop}) and ``extras.daguerre`` (parameters of
 ``Camera`` in camelCase, which take precedence). ``znear`` and ``zfar`` serve rasterizers and are
-not read: every file must have a ``znear``, and few mean it.
+not read: every file must have a ``znear``, but it is rarely meant.
 """
 
 from __future__ import annotations

@@ -59,8 +59,8 @@ class Looks:
             look = replace(look, opacity=_product(look.opacity, own))
         if material.profile is not None:
             self._notes.add(
-                "light profile of an emissive material is left out: it shines in "
-                "all directions alike"
+                "light profile of an emissive material is left out: it emits equally in "
+                "all directions"
             )
         inside = material.interior or look.inside
         look = replace(look, inside=inside, outside=material.exterior, two_sided=material.two_sided)

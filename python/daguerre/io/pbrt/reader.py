@@ -2,7 +2,7 @@
 
 Start reading here. The text is read first, as a whole (``interpreter``), then each kind of thing is
 made of it: one file each. Any fault in a file gives one ``InputError`` with file, line, column and
-directive; every directive is used, or told in a note (``ledger``).
+directive; each directive is applied or reported in a note (``ledger``).
 
 One unit of pbrt's radiance is 1 cd/m2; its lengths have no unit, and ``unit_m`` chooses one. pbrt's
 frame is left-handed: the scene is its mirror image in z, so that pictures are the same.

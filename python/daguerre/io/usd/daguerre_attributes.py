@@ -279,7 +279,7 @@ def _curve(read: Checked) -> Any:
     times = [t for t, _ in points]
     rises = all(a <= b for a, b in zip([0.0, *times], [*times, 1.0], strict=True))
     if not 2 <= len(points) <= shutter_curve.MAX_POINTS or not rises:
-        read.fail(PREFIX + CURVE, "points whose times rise from 0 to 1", short(points))
+        read.fail(PREFIX + CURVE, "points with times that increase from 0 to 1", short(points))
     if min(v for _, v in points) < 0 or not any(v > 0 for _, v in points):
         read.fail(PREFIX + CURVE, "openings of at least 0, one of them above 0", short(points))
     return points

@@ -94,7 +94,7 @@ export class Rings {
     const {state: {chosen, mode}, mine, open} = this.view;
     const metered = chosen.includes(dial) ? letterOf(mode) : '';
     const off = metered ? `The meter turns it in mode ${metered}; M lets you turn it`
-      : mine ? '' : 'Another page turns the rings';
+      : mine ? '' : 'Another page controls the camera';
     return {dial, texts: of(dials), opened: of(open.dials), off, metered};
   }
 
