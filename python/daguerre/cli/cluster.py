@@ -57,7 +57,7 @@ def worker(
         int, option("--threads", metavar="N", help="Number of threads; 0 uses all cores [0].")
     ] = 0,
     memory: Annotated[
-        str, option("--memory", metavar="8GB", help="Memory limit [that of the machine].")
+        str, option("--memory", metavar="8GB", help="Memory limit [the machine's memory].")
     ] = "auto",
     ca: Annotated[Path | None, _CA] = None,
     cert: Annotated[Path | None, _CERT] = None,

@@ -39,7 +39,7 @@ def export_camera(
         option(
             "--times",
             metavar="BEGIN,END",
-            help="Begin and end of motion, s [those of its keys].",
+            help="Begin and end of motion, s [from its keys].",
         ),
     ] = None,
 ) -> int:

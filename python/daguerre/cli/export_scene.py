@@ -37,7 +37,7 @@ def export_scene(
         option(
             "--res",
             metavar="WxH",
-            help="Size of the picture, px [that of the scene file, else 960x540].",
+            help="Size of the picture, px [the scene file's, else 960x540].",
         ),
     ] = None,
     spp: Annotated[int | None, option("--spp", metavar="N", help="Samples per pixel [64].")] = None,

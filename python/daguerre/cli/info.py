@@ -39,7 +39,7 @@ def info(
         option(
             "--res",
             metavar="WxH",
-            help="Picture size, px, for field of view and pixel pitch [that of the calibration "
+            help="Picture size, px, for field of view and pixel pitch [from the calibration "
             "or the scene file, else 960x540].",
         ),
     ] = None,

@@ -15,7 +15,7 @@ from .installing import SHELLS, install, of_user, remove, script
 
 def completion(
     shell: Annotated[
-        str | None, typer.Argument(metavar="|".join(SHELLS), help="Shell [that of $SHELL].")
+        str | None, typer.Argument(metavar="|".join(SHELLS), help="Shell [from $SHELL].")
     ] = None,
     install_it: Annotated[
         bool, option("--install", help="Install the script for you, not for other users.")

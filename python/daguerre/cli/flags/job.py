@@ -36,7 +36,7 @@ class JobFlags(ClusterFlags):
         option(
             "--res",
             metavar="WxH|50%",
-            help="Picture size, px, or percentage of the default [that of the calibration, "
+            help="Picture size, px, or percentage of the default [from the calibration, "
             f"--like-plate or the scene file, else {_WIDTH}x{_HEIGHT}].",
             panel=PICTURE,
         ),
