@@ -246,7 +246,7 @@ def main() -> int:
     for name, e in result["variants"].items():
         print(
             f"{name:8} {e['samples_per_pixel']:7.0f} spp  relMSE {e['rel_mse']:.3g}  "
-            f"{e['efficiency_against_guided']:.2f} x"
+            f"{e['efficiency_against_guided']:.2f} x  rays off by {e['ray_error']:.2g} rad RMS"
         )
     return 0
 

@@ -79,11 +79,12 @@ def landings(
     pair = (ghost.surfaces[0], ghost.surfaces[1])
     points = []
     for nm in CHANNEL_NM:
-        light = analysis.ghost_rays(bench, pair, toward, rays=RAYS, wavelength_nm=nm)
+        light = analysis.ghost_rays(bench, pair, toward, wavelength_nm=nm)
         if not light.passed.any():
             points.append(np.empty((0, 2)))
             continue
-        landed = po.expand_ghost(light, degree).points(light.rays[:, :2])
+        dense = analysis.ghost_rays(bench, pair, toward, rays=RAYS, wavelength_nm=nm)
+        landed = po.expand_ghost(light, degree).points(dense.rays[:, :2])
         points.append(landed[np.isfinite(landed[:, 0])])
     return points
 
