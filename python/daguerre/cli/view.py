@@ -95,6 +95,7 @@ def view(
     size = cameras.size(seen, job_flags.res, scene)
     settings = checks.settings_of(job_flags, settings_flags, [], size)
     (settings,) = crops.placed([settings], settings_flags.crop, tell=True)
+    settings = dials.before(settings)
     photograph = photograph_of({}, None, None, settings.sampling.seed)
     stage = Stage(scene, camera, settings, photograph, job_flags.tone, load)
     in_background(lambda: stage.try_out(dials))

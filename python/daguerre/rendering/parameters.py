@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import Any
 
@@ -310,3 +310,20 @@ TABLE = {row.name: row for row in ROWS}
 DEFAULT: dict[str, Any] = {row.name: row.default for row in ROWS}
 #: Those with flags, in the order of the help.
 FLAGS = Table(row for row in (*ROWS, *DIFFRACTION_ROWS) if row.flags)
+
+
+def of_flags(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters from values of flags: ``Diffraction`` from its switch, its bands and its zones.
+
+    Raises:
+        UsageError: There are bands or zones without diffraction.
+    """
+    found = dict(given)
+    waves = {
+        row.name: row.check(found.pop(row.name, row.default), row.flag) for row in DIFFRACTION_ROWS
+    }
+    if found.get("diffraction"):
+        found["diffraction"] = Diffraction(*waves.values())
+    elif any(waves[row.name] != row.default for row in DIFFRACTION_ROWS):
+        raise UsageError("--diffraction-bands and --diffraction-zones need --diffraction")
+    return found

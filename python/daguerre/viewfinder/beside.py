@@ -12,6 +12,7 @@ from .dials import Dials
 from .shot import Shot
 from .sight import offset_m
 from .stage import Stage
+from .switches import suited
 
 #: Dials that may differ.
 NAMES = ("lens", "f_stop", "lens_model")
@@ -56,7 +57,9 @@ def other_of(stage: Stage, first: Shot, change: Mapping[str, str]) -> Other:
             widest = open_.widest_stop if open_.glass else 0.0
             camera = camera.with_(f_stop=max(lens.f_stop, widest))
     shot = replace(first, camera=camera, chosen=None)
-    return Other(shot, _labels(lens, stage.set_up(shot)))
+    other = stage.set_up(shot)
+    shot = replace(shot, settings=suited(shot.settings, other.model))
+    return Other(shot, _labels(lens, other))
 
 
 def models_beside(lens: ResolvedLens) -> list[str]:

@@ -21,21 +21,23 @@ from daguerre.development.parameters import DEVELOP
 from daguerre.errors import UsageError
 from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
-from daguerre.rendering.parameters import TABLE as RENDERING
+from daguerre.rendering.parameters import DEFAULT, FLAGS, of_flags
 from daguerre.rendering.settings import RenderSettings
+
+from .switches import COMPANIONS, SWITCHES, is_on, possible, stranded, without
 
 #: Longest text of a dial.
 MAX_TEXT = 200
 TIME = Parameter("time", "Time in the scene's animation, s", "s", flags=("--time",))
 #: Parameters that read files, which no page may name.
 _FILES = ("aperture_image", "front_mask", "iris_mask")
-_PICTURE = ("spp", "seed", "max_depth", "light_paths", "flare", "scatter")
+_PICTURE = ("spp", "seed", "max_depth", "light_paths", *SWITCHES, *COMPANIONS)
 #: Dials that a new lens takes back.
 _OF_LENS = ("zoom", "decenter", "ripple", "focal_length", "aperture_diameter", "degree")
 
 DIALS = Table(
     (row for row in (*CAMERA_FLAGS, *SHUTTER) if row.flags and row.name not in _FILES),
-    (RENDERING[name] for name in _PICTURE),
+    (FLAGS[name] for name in _PICTURE),
     DEVELOP["look"],
     TIME,
 )
@@ -69,7 +71,8 @@ class Dials:
     def turned(self, changes: Mapping[str, str | None]) -> Dials:
         """Returns the dials after a turn; None puts one back to the scene's value.
 
-        A dial that excludes another one takes it back; an exposure mode, what it chooses.
+        A dial that excludes another one takes it back; an exposure mode, what it chooses; a lens
+        without surfaces, the light that surfaces add.
 
         Raises:
             UsageError: No such dial, or a text that its flag would not accept.
@@ -84,6 +87,10 @@ class Dials:
                 texts.pop(other, None)
             if text is not None:
                 texts[name] = text
+        lit = _lit(texts)
+        for name in stranded(lit):
+            if {*COMPANIONS[name]} & (_lit(self.texts) - lit):
+                texts.pop(name, None)
         return Dials(texts, self.given)
 
     def values(self) -> dict[str, Any]:
@@ -105,7 +112,13 @@ class Dials:
     def settings(self, settings: RenderSettings) -> RenderSettings:
         """Returns the settings with the dials."""
         values = {name: v for name, v in self.values().items() if name in _PICTURE}
-        return settings.with_(**values)
+        off = [name for name in SWITCHES if name in values and not is_on(name, values[name])]
+        return without(settings, off).with_(**of_flags(values))
+
+    @staticmethod
+    def before(settings: RenderSettings) -> RenderSettings:
+        """Returns the settings as they are without any dial."""
+        return settings.with_(**{name: DEFAULT[name] for name in _PICTURE if name in DEFAULT})
 
     def words(self) -> list[str]:
         """Words of the command line that has these dials."""
@@ -114,8 +127,8 @@ class Dials:
             if (text := self.texts.get(row.name)) is None:
                 continue
             if row.kind == "flag":
-                names = row.flags[0].split("/")
-                words.append(names[0] if _value(row, text) else names[-1])
+                on, *off = row.flags[0].split("/")
+                words += [on] if _value(row, text) else off
             else:
                 words.append(f"{row.flag}={text}")  # a minus in front would be another flag
         return words
@@ -131,7 +144,7 @@ class Dials:
         row.check(_value(row, text), row.flag)
 
 
-_CAMERA = {row.name for row in (*CAMERA_FLAGS, *SHUTTER)} - {"camera"}
+_CAMERA = {row.name for row in (*CAMERA_FLAGS, *SHUTTER)} - {"camera", *_PICTURE}
 
 
 def texts_of_words(words: str) -> dict[str, str]:
@@ -146,9 +159,18 @@ def _taken_back(row: Parameter, text: str | None) -> list[str]:
     taken = next((names for names in DIALS.rivals() if row.name in names), (row.name,))
     if row.name == "lens":
         taken = (*taken, *_OF_LENS)
+    if text in IDEAL and row.name in ("lens", "lens_model"):
+        taken = (*taken, *SWITCHES.keys() - possible(text))
     if row.name == "exposure" and text is not None:
         taken = (*taken, *chosen_by(text))
     return list(taken)
+
+
+def _lit(texts: Mapping[str, str]) -> set[str]:
+    """Switches that texts turn on."""
+    return {
+        name for name in SWITCHES if name in texts and is_on(name, _value(FLAGS[name], texts[name]))
+    }
 
 
 def _value(row: Parameter, text: str) -> Any:

@@ -55,6 +55,7 @@ from .rungs import MODELS
 from .saving import save, save_camera
 from .sight import distance_at
 from .stage import Stage
+from .switches import on_in
 from .tev import Tev
 from .tint import legends
 
@@ -360,7 +361,8 @@ class Hub:
             "dials": dict(self._first.texts),
             "resolution": settings.film.resolution,
             "window": self._shot.window,
-            "spp": settings.sampling.most,
+            "spp": self._shot.settings.sampling.most,
+            "lit": on_in(settings),
         }
 
     def _state(self) -> dict[str, Any]:
@@ -375,6 +377,7 @@ class Hub:
                 "pattern": pattern,
                 "chosen": list(chosen_by(mode)),
                 "command": self.command,
+                "lit": on_in(self._shot.settings),
                 "readings": self._readings,
                 "undoes": self._history.undone is not None,
                 "redoes": self._history.redone is not None,

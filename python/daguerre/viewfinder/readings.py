@@ -20,6 +20,7 @@ from daguerre.setup.resolved import ResolvedLens
 from .beside import models_beside
 from .drawn import Drawn
 from .sight import ring_offset_m
+from .switches import possible
 
 
 def readings_of(drawn: Drawn) -> dict[str, Any]:
@@ -127,6 +128,7 @@ def _body(drawn: Drawn) -> dict[str, Any]:
         "blades": camera.blades,
         "widest": None if lens.f_stop is None else lens.widest_stop,
         "models": models_beside(lens),
+        "switches": possible(lens.model),
         "spp": drawn.shot.settings.sampling.most,
         "time_s": session.scene.time,
         "place": {

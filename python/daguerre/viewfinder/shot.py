@@ -13,6 +13,8 @@ from daguerre.rendering.pixels import Box, at_size, crop_box
 from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene
 
+from .switches import suited
+
 if TYPE_CHECKING:
     from daguerre.rendering.auto_exposure import Chosen
 
@@ -68,7 +70,7 @@ class Shot:
         """Returns a smaller picture of the shot by another model of the lens."""
         width, height = self.settings.film.resolution
         size = max(1, width // divisor), max(1, height // divisor)
-        settings = self.settings.with_(
+        settings = suited(self.settings, model).with_(
             resolution=size, spp=samples, light_paths="off", noise=None, crop=self._crop_at(size)
         )
         camera = self._camera_at(size).with_(lens_model=model)

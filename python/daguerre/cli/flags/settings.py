@@ -4,7 +4,7 @@ from typing import Any
 
 from daguerre.errors import UsageError
 from daguerre.rendering.diffraction import Diffraction
-from daguerre.rendering.parameters import DEFAULT, DIFFRACTION_ROWS, FLAGS
+from daguerre.rendering.parameters import DEFAULT, FLAGS, of_flags
 from daguerre.rendering.settings import RenderSettings
 
 from .from_table import TableFlags, made_of
@@ -23,17 +23,9 @@ class SettingsFlags(TableFlags):
             UsageError: A value is wrong, or excludes another; the message names the flag.
         """
         given = self.given()
-        waves = {
-            row.name: row.check(given.pop(row.name, row.default), row.flag)
-            for row in DIFFRACTION_ROWS
-        }
-        bands, wanted = given.get("bands", DEFAULT["bands"]), waves["diffraction_bands"]
-        if bands and wanted not in (Diffraction.bands, bands):
+        bands, wanted = given.get("bands", DEFAULT["bands"]), given.get("diffraction_bands")
+        if bands and wanted not in (None, Diffraction.bands, bands):
             raise UsageError(
                 f"--bands and --diffraction-bands: wanted the same number, got {bands} and {wanted}"
             )
-        if given.get("diffraction"):
-            given["diffraction"] = Diffraction(*waves.values())
-        elif any(waves[row.name] != row.default for row in DIFFRACTION_ROWS):
-            raise UsageError("--diffraction-bands and --diffraction-zones need --diffraction")
-        return RenderSettings.read(given | more, FLAGS.flag)
+        return RenderSettings.read(of_flags(given) | more, FLAGS.flag)

@@ -9,6 +9,7 @@ const KEYS = [
   ['1', '#ring-focus_distance'], ['2', '#ring-f_stop'], ['3', '#ring-shutter_time'], ['4', '#ring-iso'],
   ['5', '#ring-exposure_compensation'], ['6', '#ring-white_balance'], ['7', '#ring-blades'], ['8', '#ring-zoom'],
   ['9', '#ring-time'], ['O', '#lens'], ['E', '#exposure'], ['K', '#lock'], ['Y', '#hyperfocal'],
+  ['J', '[data-switch=flare]'], ['I', '[data-switch=diffraction]'], ['U', '[data-switch=scatter]'],
   ['G', '[data-toggle=grid]'], ['H', '[data-toggle=horizon]'], ['Z', '[data-toggle=zebra]'],
   ['P', '[data-toggle=peaking]'], ['L', '[data-toggle=loupe]'], ['R', '[data-panel=rays]'],
   ['T', '[data-tint=false-colour]'], ['D', '[data-tint=depth]'], ['B', '[data-toggle=parade]'], ['A', '#guides'],

@@ -24,6 +24,7 @@ import {Picture} from './picture.js';
 import {Rays} from './rays.js';
 import {Rings} from './rings.js';
 import {Screen} from './screen.js';
+import {Switches} from './switches.js';
 import {Tints} from './tints.js';
 import {Tools} from './tools.js';
 import {Tripod} from './tripod.js';
@@ -51,7 +52,7 @@ class Viewfinder {
     this.panels = new Panels(root);
     const parts = [
       LensPicker, Choices, Exposure, Rings, Needle, Numbers, Tools, Tints, Guides, Parade, Loupe, Rays, Output, Screen,
-      Compare, Beside, Undo,
+      Compare, Beside, Undo, Switches,
     ];
     this.parts = parts.map((Part) => new Part(this));
     this.keys = new Keys(this);
