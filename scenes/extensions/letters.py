@@ -16,11 +16,13 @@ _DOT = 8
 
 def written(word: str, upright: bool = False) -> NDArray[np.float64]:
     """A board of lamps, brightness in [0, 1]; `upright` stands letter under letter."""
-    letters = []
-    for letter in word:
-        rows = [[int(row) >> bit & 1 for bit in (2, 1, 0)] for row in _LETTERS[letter]]
-        letters.append(np.pad(np.array(rows), 1))
+    letters = [np.pad(dots_of(letter), 1) for letter in word]
     dots = np.concatenate(letters, axis=0 if upright else 1).astype(float)
     y, x = (np.mgrid[0:_DOT, 0:_DOT] + 0.5) / _DOT * 2 - 1
     lamp = np.clip((0.92 - np.hypot(x, y)) * 4, 0, 1)
     return np.kron(dots, lamp)
+
+
+def dots_of(letter: str) -> NDArray[np.int64]:
+    """Dots of a letter, 1 where it has one, shape (5, 3)."""
+    return np.array([[int(row) >> bit & 1 for bit in (2, 1, 0)] for row in _LETTERS[letter]])

@@ -10,7 +10,7 @@ import pytest
 import daguerre as dg
 from tests.support.example_scenes import make
 
-SCENES = ("arcade", "lamps", "long_table", "photographer", "caustics")
+SCENES = ("arcade", "lamps", "long_table", "photographer", "caustics", "blocks")
 
 
 @pytest.fixture(scope="module")
@@ -45,3 +45,16 @@ def test_the_subject_of_the_arcade_lies_in_the_plane_of_focus(folder: Path) -> N
     places = {i.name: np.asarray(i.transform)[:3, 3] for i in scene.instances}
     for name in ("frame", "chart"):
         assert abs(places[name][2]) < 0.002
+
+
+def test_each_block_looks_equally_large(folder: Path) -> None:
+    """So that focus alone tells near from far; their fronts are at 0.5, 1 and 4 m."""
+    scene = dg.load(folder / "blocks.glb")
+    camera = scene.camera()
+    for letter, away in (("A", 0.5), ("B", 1.0), ("C", 4.0)):
+        block = next(i for i in scene.instances if i.name == f"block {letter}")
+        points = scene.meshes[block.mesh].positions @ block.transform[:3, :3].T
+        size = float(np.ptp(points[:, 1]))
+        front = camera.transform[2, 3] - block.transform[2, 3] - size / 2
+        assert front == pytest.approx(away, rel=0.02)
+        assert size / front == pytest.approx(0.16, rel=0.02)

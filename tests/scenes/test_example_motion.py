@@ -76,15 +76,19 @@ def test_propellers_agree_or_differ_as_their_interpolations_say(
     flags = ["--scene", folder / "plane.glb", "--size", "32", "--spp", "4"]
     subprocess.run([sys.executable, script, sheet, *flags], check=True, capture_output=True)
     pixels = decode(sheet.read_bytes(), "sheet").astype(float)
-    assert pixels.shape == (128, 128, 3)
-    cells = pixels.reshape(4, 32, 4, 32, 3).swapaxes(1, 2)  # angle, way
+    assert pixels.shape == (26 + 4 * 38, 96 + 6 + 4 * 38 - 6, 3)  # labels above and to the left
+    cells = pixels[26:, 102 - 6 :].reshape(4, 38, 4, 38, 3).swapaxes(1, 2)[:, :, :32, 6:]
 
     def unlike(row: int, a: int, b: int) -> float:
         return float(np.abs(cells[row, a] - cells[row, b]).mean())
 
     linear, twist, decomposed, spin = range(4)
-    for row in range(4):
+    rigid, shrinking, turns = (0, 1), 2, 3
+    for row in rigid:
         assert unlike(row, twist, decomposed) < 0.5  # of 255: the same times, the same poses
-    assert unlike(0, linear, twist) < unlike(1, linear, twist) < unlike(2, linear, twist)
-    assert unlike(2, twist, spin) < 0.5  # 170 degrees, said in two ways
-    assert unlike(3, twist, spin) > 4  # three turns: between keys nothing turns
+        assert unlike(row, twist, spin) < 0.5  # the same angle, said in two ways
+        assert unlike(row, linear, twist) > 4
+    assert cells[shrinking, twist].mean() > 150  # grey paper that says why there is no picture
+    assert unlike(shrinking, decomposed, spin) < 4 < unlike(shrinking, linear, decomposed)
+    assert unlike(turns, twist, spin) > 4  # three turns: between keys nothing turns
+    assert unlike(turns, linear, twist) < 0.5

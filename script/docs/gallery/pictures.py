@@ -44,6 +44,9 @@ class Picture:
         return made
 
 
+BLOCKS = "out/lens_scenes/blocks.glb"
+SMALL = "--res 600x400 --spp 48 --denoise"
+
 PICTURES = [
     Picture(
         "night_table",
@@ -56,19 +59,25 @@ PICTURES = [
     ),
     Picture(
         "focus_far",
-        "A thin lens at f/2, focused far away: the lights of the town, 5.6 m.",
-        NIGHT,
-        "--lens thin --f-stop 2 --focus 5.6 --spp 64 --denoise",
+        "A thin lens at f/2, focused far away: block C, 4 m.",
+        BLOCKS,
+        f"--lens thin --f-stop 2 --focus 4 {SMALL}",
     ),
     Picture(
         "focus_medium",
-        "The same, focused at medium distance: the garland, 2.4 m.",
-        NIGHT,
-        "--lens thin --f-stop 2 --focus 2.4 --spp 64 --denoise",
+        "The same, focused at medium distance: block B, 1 m.",
+        BLOCKS,
+        f"--lens thin --f-stop 2 --focus 1 {SMALL}",
     ),
     Picture(
         "focus_close",
-        "The same, focused close by: dice and bearings, 0.64 m.",
+        "The same, focused close by: block A, 0.5 m.",
+        BLOCKS,
+        f"--lens thin --f-stop 2 --focus 0.5 {SMALL}",
+    ),
+    Picture(
+        "thin",
+        "The table through a thin lens at f/2, focused on the dice.",
         NIGHT,
         "--lens thin --f-stop 2 --focus 0.64 --spp 64 --denoise",
     ),
@@ -120,7 +129,6 @@ PICTURES += [
 ]
 
 EXTENSIONS = "out/extensions"
-SMALL = "--res 600x400 --spp 48 --denoise"
 PICTURES += [
     Picture(
         "octopus",
@@ -204,13 +212,13 @@ MOTION = [
     ),
     Picture(
         "propellers",
-        "A propeller between two keys that are 10, 45 and 170 degrees and 3 turns apart (rows), "
-        "interpolated linearly, by twist, decomposed, and as a spin (columns). With linear "
-        "interpolation points move along straight lines, so the blades shrink, at 170 degrees "
-        "almost to the axis, and grow again. Keys that are whole turns apart are the same pose, so "
-        "such a rotation needs a spin.",
+        "A propeller blade between two keys: 90 degrees apart, 170 degrees, 90 degrees and half as "
+        "large, and 3 turns (rows), interpolated linearly, by twist, decomposed, and as a spin "
+        "(columns). The blade and its tip shine in the dark. With linear interpolation points move "
+        "along straight lines. A twist needs rigid matrices. Keys that are whole turns apart are "
+        "the same pose, so such a rotation needs a spin.",
         "script/docs/gallery/propellers.py",
-        "--spp 64",
+        "--spp 48",
     ),
     Picture(
         "shutters",

@@ -66,7 +66,7 @@ def grid(rows: list[list[NDArray[np.uint8]]]) -> NDArray[np.uint8]:
 
 def captioned(pixels: NDArray[np.uint8], caption: str) -> NDArray[np.uint8]:
     """A picture under its caption."""
-    return np.concatenate([_written(caption, pixels.shape[1], STRIP, 11, PAPER), pixels])
+    return np.concatenate([written(caption, pixels.shape[1], STRIP), pixels])
 
 
 def _window(row: tuple[Panel, ...], folder: Path) -> Box:
@@ -78,7 +78,7 @@ def _window(row: tuple[Panel, ...], folder: Path) -> Box:
 def _panel(panel: Panel, folder: Path, window: Box, exposure: float) -> NDArray[np.uint8]:
     """A picture under its caption."""
     if panel.none:
-        shown = _written(panel.none, window[2], window[3], 11, 235)
+        shown = written(panel.none, window[2], window[3], 235)
     else:
         planes, have = read(folder / f"{panel.file}.exr")
         image = cut(colours(planes, panel.layer), have, window)
@@ -99,11 +99,11 @@ def _padded(row: NDArray[np.uint8], wide: int) -> NDArray[np.uint8]:
     return np.concatenate([row, missing], axis=1)
 
 
-def _written(text: str, wide: int, high: int, points: float, paper: int) -> NDArray[np.uint8]:
+def written(text: str, wide: int, high: int, paper: int = PAPER) -> NDArray[np.uint8]:
     """Words on paper, in its middle."""
     figure = Figure(figsize=(wide / 100, high / 100), dpi=100, facecolor=str(paper / 255))
     canvas = FigureCanvasAgg(figure)
     shade = str(INK / 255)
-    figure.text(0.5, 0.5, text, fontsize=points, color=shade, ha="center", va="center")
+    figure.text(0.5, 0.5, text, fontsize=11, color=shade, ha="center", va="center")
     canvas.draw()
     return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
