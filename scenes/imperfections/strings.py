@@ -1,7 +1,8 @@
 """Strings of lamps far behind the focus and close before it, and a sign that is in focus.
 
 A lens that has spherical aberration draws discs of light with a bright rim on one side of the focus
-and with a bright middle on the other; what is in focus has a veil around it.
+and with a bright middle on the other; what is in focus has a veil around it. All of it fills a
+frame of 18 x 12 mm behind a lens of 90 mm.
 """
 
 from __future__ import annotations
@@ -16,17 +17,19 @@ from imperfections.glow import COOL, GOLD, PINK, TEAL, WARM, Glow
 from kit import shapes, textures
 
 FOCUS = 1.6  # of the sign, m
-NEAR, FAR = 0.62, 40.0  # of the lamps, m
-FOCAL_LENGTH = 50.0  # mm
+FOCAL_LENGTH = 90.0  # mm
+#: Strings: their distance, m; height on the film, mm; luminance of the lamps, cd/m2.
+STRINGS = ((40.0, 4.2, 50.0), (0.42, -4.2, 55.0))
+STEP, RADIUS = 3.0, 0.07  # from lamp to lamp, and of a lamp, mm on the film
 
 
 def make() -> Glb:
-    """The strings, the sign and their camera, 50 mm."""
+    """The strings, the sign and their camera."""
     glow = Glow()
     _backdrop(glow)
     _sign(glow)
     _strings(glow)
-    glow.camera((0, 0, 0), (0, 0, -FOCUS), FOCAL_LENGTH, 1.5, (0, 0, -FOCUS))
+    glow.camera((0, 0, 0), (0, 0, -FOCUS), FOCAL_LENGTH, 4.8, (0, 0, -FOCUS))
     return glow.glb
 
 
@@ -41,23 +44,21 @@ def _sign(glow: Glow) -> None:
     """A board of small round lamps in the plane of focus."""
     lamps = written("CAFE")
     rows, columns = lamps.shape
-    high = 0.085
+    high = 0.072
     wide = high * columns / rows
-    glow.show("board", shapes.square(wide, high), COOL, 0.004, (0, -0.01, -FOCUS - 0.003))
+    glow.show("board", shapes.square(wide, high), COOL, 0.004, (0, 0, -FOCUS - 0.003))
     dots = lamps.reshape(rows // 8, 8, columns // 8, 8).max(axis=(1, 3))
     step = high / len(dots)
     for row, column in np.argwhere(dots > 0):
-        x, y = (column + 0.5) * step - wide / 2, high / 2 - 0.01 - (row + 0.5) * step
-        glow.lamp((float(x), float(y), -FOCUS), 0.34 * step, GOLD, 1.6)
+        x, y = (column + 0.5) * step - wide / 2, high / 2 - (row + 0.5) * step
+        glow.lamp((float(x), float(y), -FOCUS), 0.3 * step, GOLD, 2.4)
 
 
 def _strings(glow: Glow) -> None:
-    """Three rows far behind the focus, above, and two before it, below; all look equally large."""
-    for depth, rows, luminance in ((FAR, (5.1, 3.7, 2.3), 14.0), (NEAR, (-3.0, -5.0), 38.0)):
-        for row, high in enumerate(rows):
-            for k in range(-4, 5):
-                x = 2.15 * (k + 0.5 * (row % 2)) + 0.2 * math.sin(5.0 * k + row)
-                y = high + 0.25 * math.cos(2.2 * k + 3.0 * row)
-                color = (WARM, GOLD, TEAL, WARM, COOL, PINK)[(k + 3 * row) % 6]
-                scale = depth / FOCAL_LENGTH
-                glow.lamp((scale * x, scale * y, -depth), 0.075 * scale, color, luminance)
+    """A string far behind the focus, above, and one before it, below; both look equally large."""
+    for away, high, luminance in STRINGS:
+        scale = away / FOCAL_LENGTH
+        for k in range(-3, 4):
+            y = high + 0.25 * math.cos(2.2 * k)
+            color = (WARM, TEAL, GOLD, PINK, COOL)[k % 5]
+            glow.lamp((scale * STEP * k, scale * y, -away), RADIUS * scale, color, luminance)

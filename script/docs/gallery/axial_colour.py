@@ -2,6 +2,7 @@
 """Colour along the axis in 2D: the depth of field of red, green and blue, each with its own focus.
 
     python script/docs/gallery/axial_colour.py IN.exr OUT.exr --lens NAME [--f-stop N] [--focus M]
+        [--sensor-width MM]
 
 IN.exr was rendered through a pinhole, with depth: `daguerre render SCENE --lens NAME
 --lens-model pinhole --aov depth --gt-time mid -o IN.exr`. Shows `dg.post` from Python.
@@ -29,13 +30,14 @@ def main() -> None:
     parser.add_argument("--lens", required=True)
     parser.add_argument("--f-stop", type=float)
     parser.add_argument("--focus", type=float, default=3.0, help="m")
+    parser.add_argument("--sensor-width", type=float, default=36.0, help="of the whole frame, mm")
     given = parser.parse_args()
     bench = analysis.set_up(dg.lenses.load(given.lens), f_stop=given.f_stop, focus_m=given.focus)
 
     file = oiio.ImageBuf(str(given.picture))
     spec, pixels = file.spec(), file.get_pixels(oiio.FLOAT)
     depth = np.ascontiguousarray(pixels[:, :, spec.channelnames.index("depth.Z")])
-    sensor = 36.0 * spec.width / spec.full_width
+    sensor = given.sensor_width * spec.width / spec.full_width
     blurred = [
         dg.post.depth_of_field(
             np.ascontiguousarray(pixels[:, :, spec.channelnames.index(name)][:, :, None]),

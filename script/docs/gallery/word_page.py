@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 from agreement import Figures, agreement
+from rays import DIAGRAMS, draw
 from sheet import compose
 from ways import OUT, Panel, Word
 from words import WORDS
@@ -30,8 +31,9 @@ Each sheet shows, from left to right:
 - **2D**: the picture of a pinhole with effects of the darkroom added
   ([The darkroom](../darkroom.md), [Diffraction](../diffraction.md)).
 
-Nothing is denoised. Everything in the scenes emits light (`--max-depth 1`), so that only the lens
-differs; all panels of a sheet have the same exposure. To make the scenes:
+The bench draws the rays behind most sheets. Nothing is denoised. Everything in the scenes emits
+light (`--max-depth 1`), so that only the lens differs; all panels of a sheet have the same
+exposure. To make the scenes:
 
 ```
 python scenes/imperfections.py
@@ -59,6 +61,8 @@ def make(word: Word, run: Callable[[str], None]) -> None:
     for panel in panels(word):
         for command in panel.commands:
             run(command)
+    if word.name in DIAGRAMS:
+        draw(word.name, PAGES / f"rays_{word.name}.svg")
     pixels = oiio.ImageBuf(np.ascontiguousarray(compose(word, ROOT / OUT)))
     pixels.specmod().attribute("Compression", f"jpeg:{word.quality}")
     if not pixels.write(str(PAGES / f"{word.name}.jpg")):
@@ -83,6 +87,10 @@ def page() -> str:
 def section(word: Word, figures: list[Figures]) -> str:
     """A sheet with its text, commands and figures."""
     parts = [f"## {word.heading}\n", f"![{word.heading}]({word.name}.jpg)\n", f"{word.text}\n"]
+    if word.name in DIAGRAMS:
+        alt, file = DIAGRAMS[word.name][0], f"rays_{word.name}.svg"
+        command = f"python script/docs/gallery/rays.py {word.name} docs/gallery/{file}"
+        parts.append(f"![{alt}]({file})\n\n{alt}:\n\n```\n{command}\n```\n")
     for panel in panels(word):
         if panel.commands:
             typed = "\n".join(panel.commands)

@@ -5,14 +5,13 @@ from __future__ import annotations
 from ways import OUT, Panel, Ways, Word, post, render
 
 DARK = "--max-depth 1"
-STRINGS, WHEEL, CHART, FAIR = (
-    f"{OUT}/{name}.glb" for name in ("strings", "wheel", "chart", "fair")
+STRINGS, STARRY, WHEEL, CHART, FAIR = (
+    f"{OUT}/{name}.glb" for name in ("strings", "starry", "wheel", "chart", "fair")
 )
-WALL, TREES, DUSK = (f"{OUT}/{name}.glb" for name in ("wall", "trees", "dusk"))
-NOKTON = "voigtlander-nokton-50mm-f1.5"
-PANCOLAR = "zeiss-jena-pancolar-50mm-f2"
+WALL, TREES, RULE, DUSK = (f"{OUT}/{name}.glb" for name in ("wall", "trees", "rule", "dusk"))
+ELCAN = "leica-elcan-50mm-f2"
 PETZVAL = "petzval-100mm-f2.2"
-ROKKOR = "minolta-mc-rokkor-58mm-f1.2"
+MASTER, OLYMPUS = "zeiss-master-prime-100mm-f1.24", "olympus-xa-35mm-f2.8"
 BIOTAR = "zeiss-biotar-50mm-f1.4"
 ZOOM, FISHEYE = "nikon-z-14-30mm-f4", "canon-ef-15mm-f2.8-fisheye"
 HOLOGON, CANON = "zeiss-hologon-15mm-f8", "canon-50mm-f0.95"
@@ -35,76 +34,74 @@ def flat(lens: str, f_stop: float, at: str, zones: int = 9) -> tuple[str, ...]:
     )
 
 
+_NARROW = f"--sensor 18x12 --res 480x320 {DARK}"
 SPHERICAL = Word(
     "spherical",
     "Spherical aberration",
     """\
-Rays through the rim of the lens focus nearer than those through its centre. The lens here is a
-Nokton of 1953, wide open. A lamp behind the focus becomes a bubble with a bright edge, a lamp in
-front of it a soft disc with a bright core, and the sign in focus has a veil. The 2D depth of field
-uses one flat disc for all distances; `lens-psf` adds the lens's veil around the sign, but also
-softens the rims of discs, which is wrong.""",
+Rays through the rim of the lens focus nearer than those through its centre. A soft-focus portrait
+lens has much of it. Lamps far behind the focus have a bright core in a weak disc; lamps in front of
+it become soap bubbles, discs with a bright rim; and the sign, in focus, is soft. The 2D depth of
+field uses one flat disc for all, and its sign is sharp.""",
     (
         Ways(
             "spherical",
             STRINGS,
-            f"--lens {NOKTON} --focus 1.6",
-            "--f-stop 1.5",
-            f"--res 960x640 --crop left=240,top=160,right=720,bottom=480 {DARK} --spp 48",
+            f"--lens {SOFT} --focus 1.6",
+            "--focus-by best --f-stop 4.8",
+            f"{_NARROW} --spp 24",
             (
-                "depth-of-field:f_stop=1.5,focus=1.6m",
-                f"lens-psf:lens={NOKTON},f_stop=1.5,focus=1.6m,zones=3,waves=0",
-                f"vignetting:model=lens,lens={NOKTON},f_stop=1.5,focus=1.6m",
+                "depth-of-field:f_stop=4.8,focus=1.6m",
+                f"vignetting:model=lens,lens={SOFT},f_stop=4.8,focus=1.6m",
             ),
-            wide=f"--res 960x640 --crop left=200,top=120,right=760,bottom=520 {DARK} --spp 48",
-            more="--light-paths 300000",
+            more="--light-paths 200000",
             needs="--aov depth --gt-time mid",
         ).panels(),
     ),
 )
 
+_CORNER = f"--res 1440x960 --crop left=30,top=30,right=510,bottom=350 {DARK}"
 COMA = Word(
     "coma",
     "Coma",
     """\
-Off the axis each zone of the pupil images a point as a circle, and the circles are displaced: a
+Off the axis each ring of the pupil images a point as a circle, and the circles are displaced: a
 star gets the tail of a comet, toward the centre of the frame or away from it. The picture is the
-upper left of a fair at night through the first Pancolar at f/2. All lights are far away, so the 2D
-effect can use the lens's point spread function at each place. It gives nearly the same picture,
-with less noise, because a pinhole has no lens to sample. It would be wrong for lamps at other
-distances.""",
+upper left of a starry sky through an Elcan at f/2. All stars are far away, so the 2D effect can use
+the lens's point spread function at each place. It would be wrong for lamps at other distances.""",
     (
         Ways(
             "coma",
-            FAIR,
-            f"--lens {PANCOLAR} --focus 60",
+            STARRY,
+            f"--lens {ELCAN} --focus 200",
             "--f-stop 2",
-            f"--res 1440x960 --crop left=40,top=80,right=520,bottom=400 {DARK} --spp 32",
-            flat(PANCOLAR, 2, "focus=60m"),
-            wide=wide(f"--res 1440x960 --crop left=0,top=0,right=620,bottom=480 {DARK} --spp 32"),
-            more="--light-paths 300000",
+            f"{_CORNER} --spp 16",
+            flat(ELCAN, 2, "focus=200m"),
+            wide=wide(f"--res 1440x960 --crop left=0,top=0,right=600,bottom=460 {DARK} --spp 48"),
+            more="--light-paths 400000",
         ).panels(),
     ),
 )
 
+_CLOSE = f"--sensor 9x6 --res 480x320 {DARK}"
 AXIAL = Word(
     "axial_colour",
     "Chromatic aberration along the axis",
     """\
-Blue, green and red focus at different distances. Thin dark twigs against white show it best: they
-are black in focus, of one colour in front of the focus and of another behind it. The 2D version
+Colours focus at different distances. Lines of light on a dark board run away from the camera; the
+long one is in focus. Through this lens green focuses nearer to the lens than red and blue, so
+lines in front of the focus have magenta edges, and lines behind it green ones. The 2D version
 applies one depth of field each for red, green and blue, with the focus that the lens has at 650,
 545 and 443 nm (script/docs/gallery/axial_colour.py). Real channels are broad, so its hues are too
-strong; twigs thinner than a pixel break, and the warm green of the single-layer coatings is
-missing.""",
+strong.""",
     (
         (
             *Ways(
                 "axial",
-                TREES,
-                f"--lens {ROKKOR} --focus 3",
-                "--f-stop 1.2",
-                f"--res 960x640 --crop left=240,top=160,right=720,bottom=480 {DARK} --spp 56",
+                RULE,
+                f"--lens {MASTER} --focus 1.5",
+                "--f-stop 1.3",
+                f"{_CLOSE} --spp 48",
                 (),
                 more="--light-paths off",
             ).panels()[:2],
@@ -113,18 +110,18 @@ missing.""",
                 "axial_2d",
                 (
                     render(
-                        TREES,
-                        f"--lens {ROKKOR} --focus 3 --lens-model pinhole --res 960x640 "
-                        f"--crop left=180,top=100,right=780,bottom=540 {DARK} "
-                        "--spp 32 --aov depth --gt-time mid",
+                        RULE,
+                        f"--lens {MASTER} --focus 1.5 --lens-model pinhole {_CLOSE} "
+                        "--spp 48 --light-paths off --aov depth --gt-time mid",
                         "axial_pinhole",
                     ),
                     f"python script/docs/gallery/axial_colour.py {OUT}/axial_pinhole.exr "
-                    f"{OUT}/axial_blurred.exr --lens {ROKKOR} --f-stop 1.2 --focus 3",
+                    f"{OUT}/axial_blurred.exr --lens {MASTER} --f-stop 1.3 --focus 1.5 "
+                    "--sensor-width 9",
                     post(
                         "axial_blurred",
                         "axial_2d",
-                        f"vignetting:model=lens,lens={ROKKOR},f_stop=1.2,focus=3m,sensor=36x24",
+                        f"vignetting:model=lens,lens={MASTER},f_stop=1.3,focus=1.5m,sensor=9x6",
                     ),
                 ),
             ),
@@ -138,21 +135,22 @@ LATERAL = Word(
     """\
 All colours are in focus, but the blue image is larger than the red one (or smaller). Edges that
 run around the centre get a blue and a yellow side, more so toward the corner. The picture is the
-upper left of the frame through a Biotar of 1927 at f/8. The table gives the distance of red and
+upper left of the frame through an Olympus XA at f/8. The table gives the distance of red and
 blue from green. It is the one aberration that is easy to correct, with
 `lateral-colour:...,inverse=1`.""",
     (
         Ways(
             "lateral",
             TREES,
-            f"--lens {BIOTAR} --focus 3",
+            f"--lens {OLYMPUS} --focus 3",
             "--f-stop 8",
             f"--res 1920x1280 --crop left=48,top=60,right=528,bottom=380 {DARK} --spp 40",
-            flat(BIOTAR, 8, "focus=3m", 3),
+            flat(OLYMPUS, 8, "focus=3m", 3),
             wide=wide(f"--res 1920x1280 --crop left=0,top=0,right=720,bottom=520 {DARK} --spp 24"),
             more="--light-paths off",
         ).panels(),
     ),
+    exposure=2.0,
     fringes=True,
 )
 
