@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 import typer.main
 
 from daguerre import cli
+from daguerre.io.images import decode
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -85,3 +88,64 @@ def test_links_between_pages_lead_somewhere():
         for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text()):
             if "://" not in target:
                 assert (page.parent / target).exists(), f"{page.name}: {target}"
+
+
+@pytest.fixture
+def gallery(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """Pictures and sheets of the gallery, by the place that a link to them names."""
+    monkeypatch.syspath_prepend(str(ROOT / "script" / "docs" / "gallery"))
+    pictures, words, thumbnails = (
+        importlib.import_module(name) for name in ("pictures", "words", "thumbnails")
+    )
+    shown = [*pictures.PICTURES, *pictures.GLASS, *pictures.LIGHT, *pictures.MOTION]
+    places = {f"README.md#{picture.name}": picture for picture in shown}
+    return places | {f"imperfections.md#{thumbnails.slug(w.heading)}": w for w in words.WORDS}
+
+
+def commands_of(shown: Any) -> list[str]:
+    """Commands of a picture of the gallery; of a sheet, those of the traced pictures."""
+    if hasattr(shown, "commands"):
+        return [command for command, _ in shown.commands("out")]
+    return [row[0].commands[0] for row in shown.rows if row[0].commands]
+
+
+def bare(command: str) -> str:
+    """A command without its output, and without what only makes it visible."""
+    return re.sub(r" (-o \S+|--tone soft|--ev \S+)", "", command)
+
+
+def test_the_lecture_has_the_commands_of_its_pictures(gallery: dict[str, Any]) -> None:
+    text = (DOCS / "for-teachers.md").read_text().split("## Papers")[0]
+    typed = {bare(line) for line in text.splitlines()}
+    places = re.findall(r"\[!\[[^\]]*\]\(gallery/(\w+)\.jpg\)\]\(gallery/([^)]+)\)", text)
+    assert len(places) > 30
+    for file, place in places:
+        assert gallery[place].name == file
+        assert {bare(command) for command in commands_of(gallery[place])} <= typed, place
+
+
+def test_pictures_of_the_gallery_have_the_size_that_their_commands_say(
+    gallery: dict[str, Any],
+) -> None:
+    for picture in gallery.values():
+        if not hasattr(picture, "commands") or picture.scene.endswith(".py"):
+            continue
+        sizes = [panels_of(command) for command, _ in picture.commands("out")]
+        count = sum(n for n, _, _ in sizes)
+        _, wide, high = sizes[0]
+        pixels = decode((DOCS / "gallery" / f"{picture.name}.jpg").read_bytes(), picture.name)
+        rows = round(round(high / picture.squeeze) * count / picture.columns)
+        assert pixels.shape[:2] == (rows, wide * picture.columns), picture.name
+
+
+def panels_of(command: str) -> tuple[int, int, int]:
+    """How many pictures a command writes, and their width and height."""
+    frames = re.search(r"--frames (\d+)-(\d+)", command)
+    count = int(frames[2]) - int(frames[1]) + 1 if frames else 1
+    crop = re.search(r"--crop left=(\d+),top=(\d+),right=(\d+),bottom=(\d+)", command)
+    if crop:
+        left, top, right, bottom = map(int, crop.groups())
+        return count, right - left, bottom - top
+    size = re.search(r"--res (\d+)x(\d+)", command)
+    assert size is not None, command
+    return count, int(size[1]), int(size[2])
