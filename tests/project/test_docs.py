@@ -118,7 +118,7 @@ def test_the_lecture_has_the_commands_of_its_pictures(gallery: dict[str, Any]) -
     text = (DOCS / "for-teachers.md").read_text().split("## Papers")[0]
     typed = {bare(line) for line in text.splitlines()}
     places = re.findall(r"\[!\[[^\]]*\]\(gallery/(\w+)\.jpg\)\]\(gallery/([^)]+)\)", text)
-    assert len(places) > 30
+    assert len(places) >= 30
     for file, place in places:
         assert gallery[place].name == file
         assert {bare(command) for command in commands_of(gallery[place])} <= typed, place
