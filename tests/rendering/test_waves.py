@@ -93,6 +93,21 @@ def test_diffraction_keeps_the_light_and_makes_the_star_of_the_iris() -> None:
     assert along > 1.3 * across  # spikes stand across edges, at 30 degrees and so on
 
 
+def test_a_session_makes_its_kernels_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    made, make = [], waves._kernels
+    monkeypatch.setattr(waves, "_kernels", lambda *given: made.append(given) or make(*given))
+    one = session(lamps(), camera(), light_paths="off")
+    one.draw(0, 1)
+    first = one.frame()
+    one.draw(1, 2)
+    second = one.frame()
+    assert len(made) == 1
+    assert not np.array_equal(second.rgb, first.rgb)
+    fresh = session(lamps(), camera(), light_paths="off")
+    fresh.draw(0, 2)
+    assert np.array_equal(fresh.frame().rgb, second.rgb)
+
+
 @pytest.mark.parametrize("light_paths", ["off", (4.0, 0.0)])
 def test_passes_with_bands_add_up_to_the_bits_of_one(tmp_path: Path, light_paths: Any) -> None:
     def draw(begin: int, end: int) -> Session:

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 MOST_ZONES = 9
 LEAST_WAVELENGTHS = 24  # of all bands together
 ONE_ZONE, MANY_ZONES = 2049, 1025  # maximum width of kernels, px
+#: Kernels of all bands of one picture, by their size and the wavelengths; at most one entry.
+Kernels = dict[tuple[int, bytes], NDArray[np.float32]]
 DARK = 2e-4  # of the brightest band's colour: darker bands have no kernel of their own
 
 
@@ -134,7 +136,14 @@ class Developed(BriefRecord):
     bands: NDArray[np.float32] | None = None
 
 
-def developed(film: Any, planned: Any, *, keep: bool = False, threads: int = 0) -> Developed:
+def developed(
+    film: Any,
+    planned: Any,
+    *,
+    keep: bool = False,
+    threads: int = 0,
+    kernels: Kernels | None = None,
+) -> Developed:
     """Computes the diffracted picture of a film with bands.
 
     Args:
@@ -142,6 +151,7 @@ def developed(film: Any, planned: Any, *, keep: bool = False, threads: int = 0) 
         planned: Plan from ``plan``.
         keep: Whether to return the bands, too.
         threads: Number of threads; 0: all cores.
+        kernels: Kernels from the frame before of the same plan; takes those that are made.
 
     Raises:
         InputError: The plan comes from a damaged file.
@@ -169,24 +179,29 @@ def developed(film: Any, planned: Any, *, keep: bool = False, threads: int = 0) 
     if not len(bright):
         return Developed(*(np.asarray(mean()) for mean, _ in sums))
     nm = band_wavelengths(bands.shape[2], -(-LEAST_WAVELENGTHS // bands.shape[2]))[bright]
-    kernels = _kernels(pupils, nm, pitch, _size(pupils, pitch, bands.shape[:2]), threads)
+    size = _size(pupils, pitch, bands.shape[:2])
+    known = {} if kernels is None else kernels
+    if (key := (size, nm.tobytes())) not in known:
+        known.clear()
+        known[key] = _kernels(pupils, nm, pitch, size, threads)
+    found = known[key]
     pictures = [np.zeros((*bands.shape[:2], c.shape[1]), np.float32) for _, c in sums]
     kept = np.empty_like(bands) if keep else None
     plane, made = (np.empty((*bands.shape[:2], 1), np.float32) for _ in range(2))
-    for b, half in zip(bright, kernels, strict=True):
+    for b, half in zip(bright, found, strict=True):
         plane[:] = bands[:, :, b, None]
         spread(plane, _whole(half), threads=threads, out=made)
         for picture, (_, colours) in zip(pictures, sums, strict=True):
             _add(picture, made, colours[b])
         if kept is not None:
             kept[:, :, b] = made[:, :, 0]
-    mean = _whole(np.tensordot(light[bright] / light[bright].sum(), kernels, 1))
-    del kernels, half  # the loop's last one is a view of them all
+    mean = _whole(np.tensordot(light[bright] / light[bright].sum(), found, 1))
+    del known, found, half  # the loop's last one is a view of them all
     for picture, (all_of, colours) in zip(pictures, sums, strict=True):
         rest = all_of()  # a new array at each call
         colours[dark] = 0
-        for row, known in zip(rest, bands, strict=True):
-            row -= known @ colours  # what bands do not tell
+        for row, told in zip(rest, bands, strict=True):
+            row -= told @ colours  # what bands do not tell
         for k, unit in enumerate(np.eye(rest.shape[2], dtype=np.float32)):
             plane[:] = rest[:, :, k, None]
             spread(plane, mean, threads=threads, out=made)

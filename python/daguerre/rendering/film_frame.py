@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,9 @@ from daguerre.frame.catcher import layers
 from daguerre.frame.frame import Frame
 
 from .mattes import mattes_of
+
+if TYPE_CHECKING:
+    from .diffraction import Kernels
 
 #: Part of the sums that is lists: shape (H, entries of the longest row, 4).
 OBJECTS = "objects"
@@ -55,6 +58,7 @@ def frame_of(
     *,
     aovs: bool,
     waves: bool = True,
+    kernels: Kernels | None = None,
 ) -> Frame:
     """Makes the frame of a film: means, variance and counts as plain arrays.
 
@@ -64,6 +68,7 @@ def frame_of(
         aovs: Whether the film has auxiliary channels.
         waves: Whether to add diffraction if the film has bands; variance is always that before
             diffraction.
+        kernels: Kernels of diffraction from the frame before of the same picture.
     """
     planes: dict[str, NDArray[Any]] = {}
     if aovs:
@@ -73,7 +78,7 @@ def frame_of(
     if waves and "bands" in parts and ("pupils" in metadata or not keep):
         from .diffraction import developed, rgb_of
 
-        made = developed(film, metadata.get("pupils"), keep=keep)
+        made = developed(film, metadata.get("pupils"), keep=keep, kernels=kernels)
         xyz, channels, bands = made.xyz, made.channels, made.bands
         rgb = rgb_of(xyz)
     else:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,9 @@ from .prepare import prepare
 from .ranges import join_ranges
 from .settings import RenderSettings
 from .truth import GroundTruth, Moment
+
+if TYPE_CHECKING:
+    from .diffraction import Kernels
 
 Progress = Callable[[float], bool]
 
@@ -99,6 +102,7 @@ class Session:
         self.round: Round | None = None  # of adaptive sampling, instead of more ranges
         self._film = new_film(one, self.light_plan)
         self._plate: NDArray[np.float32] | None = None  # behind every frame, once there is one
+        self._kernels: Kernels = {}  # of diffraction, kept from frame to frame
         self._torn = False  # a pass was stopped midway: the sums are of no use
 
     @property
@@ -205,7 +209,9 @@ class Session:
             plate: Whether to composite over the plate, if that is the background.
         """
         aovs = self.settings.film.aovs
-        frame = frame_of(self._whole_film(), self.metadata, aovs=aovs, waves=waves)
+        frame = frame_of(
+            self._whole_film(), self.metadata, aovs=aovs, waves=waves, kernels=self._kernels
+        )
         frame = self.over_plate(frame) if plate else frame
         return self.with_truth(frame) if truth else frame
 
