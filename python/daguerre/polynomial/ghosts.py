@@ -27,6 +27,8 @@ from .system import System
 
 FloatArray = NDArray[np.float64]
 
+_BLOCK = 4096  # places at a time: their powers stay in the cache
+
 #: Ray about which a ghost is expanded: in the middle of its light, or the axis.
 About = Literal["light", "axis"]
 
@@ -110,12 +112,15 @@ def _for_parallel_light(
     """Points (N, 2) of parallel light: sums of x^a y^b, with the powers of dx and dy constant."""
     powers, size = system.monomials, system.degree + 1
     constant = np.prod((np.array(direction) - system.base[2:]) ** powers[:, 2:], axis=1)
-    x, y = (np.vander(v, size, increasing=True) for v in (places - system.base[:2]).T)
-    out = np.empty((len(places), 2))
-    for k, coefficients in enumerate(system.coefficients[:2] * constant):
-        table = np.zeros((size, size))
+    tables = np.zeros((2, size, size))
+    for table, coefficients in zip(tables, system.coefficients[:2] * constant, strict=True):
         np.add.at(table, (powers[:, 0], powers[:, 1]), coefficients)
-        out[:, k] = ((x @ table) * y).sum(axis=1)
+    out = np.empty((len(places), 2))
+    for begin in range(0, len(places), _BLOCK):
+        block = slice(begin, begin + _BLOCK)
+        x, y = (np.vander(v, size, increasing=True) for v in (places[block] - system.base[:2]).T)
+        for k, table in enumerate(tables):
+            out[block, k] = ((x @ table) * y).sum(axis=1)
     return out
 
 
