@@ -16,7 +16,7 @@ from daguerre.viewfinder import tint
 from daguerre.viewfinder.dials import Dials
 from daguerre.viewfinder.false_colour import REACH, false_colour, stops_from_grey, zone_colours
 from daguerre.viewfinder.image import image_of
-from daguerre.viewfinder.readings import readings_of
+from daguerre.viewfinder.readings import limits_of, readings_of
 from daguerre.viewfinder.sight import depths_m, distance_at
 from daguerre.viewfinder.stage import Stage
 
@@ -205,7 +205,7 @@ def test_the_tinted_picture_follows_the_picture(kind: str, size: tuple[int, int]
     one = stage()
     one.settings = one.settings.with_(resolution=size)
     found = drawn(one, Dials())
-    plain, more = image_of(found), image_of(found, tint=kind, limits=(1.5, 3.0))
+    plain, more = image_of(found), image_of(found, tint=kind)
     assert plain.tint is None
     assert more.tint is not None
     assert more.histogram == plain.histogram
@@ -214,7 +214,7 @@ def test_the_tinted_picture_follows_the_picture(kind: str, size: tuple[int, int]
     assert len(data) == more.tint["bytes"]
     shape = (size[1], size[0], 3)
     wanted = found.shot.photograph.shown(found.frame, found.shot.tone)
-    made = tint.tint_of(kind, found.frame, found.session, wanted, (1.5, 3.0))
+    made = tint.tint_of(kind, found.frame, found.session, wanted, limits_of(found.session))
     assert made is not None
     assert made.pixels is not None
     if more.kind == "rgb":

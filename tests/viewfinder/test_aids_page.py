@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -19,7 +20,7 @@ from .chromium import Browser, browser, program
 from .colour_blind import SEEN_BY, contrast, seen
 from .live import Live, live
 from .test_aids import stage
-from .test_page import pixels, shows
+from .test_page import pixels, shows, turns
 
 pytest.importorskip("websockets", reason="needs the extra view")
 pytestmark = [
@@ -117,15 +118,16 @@ def test_guides_stand_at_the_right_pixels(finder: Browser, name: str) -> None:
     assert finder.run("getComputedStyle(document.getElementById('guide')).boxShadow") != "none"
 
 
+TINT = """(() => { const c = document.getElementById('tint');
+    return [...c.getContext('2d').getImageData(0, 0, c.width, c.height).data]; })()"""
+
+
 def tinted(page: Browser, kind: str) -> NDArray[np.uint8]:
     """Turns a tint on; returns its pixels."""
     page.click(f"[data-tint={kind}]")
     page.until("!document.getElementById('tint').hidden")
     page.until(f"document.querySelector('[data-tint={kind}]').ariaPressed === 'true'")
-    found = page.run(
-        "(() => { const c = document.getElementById('tint');"
-        "return [...c.getContext('2d').getImageData(0, 0, c.width, c.height).data]; })()"
-    )
+    found = page.run(TINT)
     return np.array(found, np.uint8).reshape(60, 90, 4)[..., :3]
 
 
@@ -166,6 +168,32 @@ def test_the_depth_of_field_has_a_legend_in_metres(finder: Browser) -> None:
     assert all(" m (" in text and " ft)" in text for text in texts[:2])
     assert colours == [list(one) for one in (tint.NEAR, tint.SHARP, tint.FAR)]
     assert finder.errors == []
+
+
+def test_the_picture_before_is_shown_with_its_own_tint(finder: Browser, boards: Live) -> None:
+    def over() -> bytes | None:
+        """Pixels of the tint; None: there is none."""
+        if finder.run("document.getElementById('tint').hidden"):
+            return None
+        return bytes(finder.run(TINT))
+
+    def turned() -> bytes | None:
+        turns(finder, boards, "#ring-exposure_compensation", "ArrowRight")
+        return over()
+
+    plain = [over(), turned()]
+    tinted(finder, tint.FALSE_COLOUR)
+    first = over()
+    time.sleep(1.1)  # a picture that stays for less was on the way to another
+    second = turned()
+    assert plain == [None, None]
+    assert None not in (first, second)
+    assert first != second
+    for key, wanted, legend in [("keyDown", first, True), ("keyUp", second, False)]:
+        finder.call("Input.dispatchKeyEvent", type=key, key="c", code="KeyC")
+        assert over() == wanted
+        hidden = "!document.getElementById('legend').checkVisibility()"
+        assert finder.run(hidden) == legend
 
 
 def test_the_loupe_tells_how_far_the_point_is(finder: Browser) -> None:

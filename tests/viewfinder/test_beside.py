@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,10 +14,11 @@ from numpy.typing import NDArray
 import daguerre as dg
 from daguerre import lenses
 from daguerre.frame.frame import Frame
-from daguerre.viewfinder import image
+from daguerre.viewfinder import image, tint
 from daguerre.viewfinder.dials import Dials, texts_of_words
 from daguerre.viewfinder.drawn import Drawn, Wish
-from daguerre.viewfinder.readings import readings_of
+from daguerre.viewfinder.false_colour import false_colour
+from daguerre.viewfinder.readings import limits_of, readings_of
 from daguerre.viewfinder.stage import Stage
 
 from .chromium import Browser, program
@@ -147,6 +149,56 @@ def test_pictures_do_not_bleed_into_each_other() -> None:
         assert np.abs(halves[side][:, :100].astype(int) - 120).max() <= 1
 
 
+def test_the_histogram_is_that_of_the_picture_of_the_dials(stage: Stage) -> None:
+    dials = Dials().turned({"lens": LENS, "exposure": "manual", "iso": "100"})
+    both = drawn(stage, dials, {"f_stop": "22"})[-1]
+    own = image.image_of(replace(both, panels=()))
+    assert image.image_of(both).histogram == own.histogram
+    other = replace(both, frame=both.panels[1].frame, panels=())
+    assert image.image_of(other).histogram != own.histogram
+
+
+def halves(data: bytes, width: int) -> list[NDArray[np.uint8]]:
+    """Two pictures of 60 x 40, each in a half of their rows."""
+    rows = np.frombuffer(data, np.uint8).reshape(40, width, 3)
+    return [half[:, :60] for half in np.hsplit(rows, 2)]
+
+
+def test_each_side_is_tinted_by_its_own_exposure(stage: Stage) -> None:
+    dials = Dials().turned({"lens": LENS, "exposure": "manual", "iso": "102400"})
+    both = drawn(stage, dials, {"f_stop": "22"})[-1]
+    made = image.image_of(both, tint=tint.FALSE_COLOUR)
+    assert made.tint is not None
+    assert made.tint["note"] == ""
+    found = halves(made.bytes[-made.tint["bytes"] :], made.size[0])
+    wanted = [false_colour(panel.frame) for panel in both.panels]
+    assert all(map(np.array_equal, found, wanted))
+    assert not np.array_equal(*wanted)
+
+
+def test_each_side_is_tinted_by_its_own_depth_of_field(stage: Stage) -> None:
+    both = drawn(stage, Dials().turned({"lens": LENS, "f_stop": "2.1"}), {"f_stop": "22"})[-1]
+    made = image.image_of(both, tint=tint.DEPTH)
+    assert made.tint is not None
+    found = halves(made.bytes[-made.tint["bytes"] :], made.size[0])
+    for pixels, panel in zip(found, both.panels, strict=True):
+        shown = image.shown(panel.frame, panel.shot)
+        wanted = tint.tint_of(
+            tint.DEPTH, panel.frame, panel.session, shown, limits_of(panel.session)
+        )
+        assert wanted is not None
+        assert np.array_equal(pixels, wanted.pixels)
+    assert limits_of(both.panels[0].session) != limits_of(both.panels[1].session)
+
+
+def test_a_side_without_a_tint_says_why(stage: Stage) -> None:
+    dials = Dials().turned({"lens": "thin", "tilt": "5,0"})
+    both = drawn(stage, dials, {"lens": LENS})[-1]
+    made = image.image_of(both, tint=tint.DEPTH)
+    assert made.tint is not None
+    assert "tilted" in made.tint["note"]
+
+
 def test_a_wish_for_another_picture_beside_shows_other_light(stage: Stage) -> None:
     dials = Dials()
     shot = stage.shot(dials)
@@ -188,6 +240,24 @@ def test_the_picture_at_rest_has_both_at_full_size(server: Live) -> None:
         assert one.state["show"]["beside"] == {"lens": SLOWER}
         assert one.state["command"] == command
         assert not one.state["undoes"]
+
+
+def test_values_are_those_of_the_side_under_the_pointer(server: Live) -> None:
+    with guest(server) as one:
+        one.until_rest(0)
+        one.send(show=showing(beside={"f_stop": "8"}))
+        one.until_rest(1)
+        picture = server.hub.picture
+        assert picture is not None
+        for part, panel in enumerate(picture.panels):
+            one.send(probe=[31, 22, part])
+            count = len(one.values)
+            while len(one.values) == count:
+                one.step()
+            assert one.values[-1]["rgb"] == [float(v) for v in panel.frame.rgb[22, 31]]
+        one.send(probe=[31, 22, 2])
+        while one.values[-1] is not None:
+            one.step()
 
 
 @pytest.mark.parametrize(
@@ -285,6 +355,51 @@ class TestPage:
         finder.click("#picture", 0.26 * width, 0.31 * height)
         finder.until(f"document.getElementById('frame').dataset.turn > {number}")
         assert server.hub.dials.texts["focus_at"] == "45,32"
+
+    def test_the_loupe_tells_the_values_of_its_side(self, finder: Browser, server: Live) -> None:
+        choose(finder, {"f_stop": "8"})
+        finder.click("[data-toggle=loupe]")
+        picture = server.hub.picture
+        assert picture is not None
+        x, y = finder.place("#picture")
+        box = finder.run("document.getElementById('picture').getBoundingClientRect().width")
+        text = "document.querySelector('#loupe p').textContent"
+        for share, part in [(0.25, 0), (0.75, 1)]:
+            finder.run("document.querySelector('#loupe p').textContent = ''")
+            finder.mouse("mouseMoved", x + (share - 0.5) * box, y + 20)
+            finder.run("new Promise((done) => setTimeout(done, 60))")
+            finder.mouse("mouseMoved", x + (share - 0.5) * box + 1, y + 20)
+            column, row = (int(v) for v in finder.until(text).split("\n")[0].split(","))
+            red = float(finder.run(text).split("\n")[1].removeprefix("R "))
+            value = float(picture.panels[part].frame.rgb[row, column, 0])
+            assert red == pytest.approx(value, rel=1e-3)
+            other = float(picture.panels[1 - part].frame.rgb[row, column, 0])
+            assert red != pytest.approx(other, rel=1e-3)
+
+    def test_the_parade_is_that_of_the_picture_of_the_dials(
+        self, finder: Browser, server: Live
+    ) -> None:
+        finder.click("[data-toggle=parade]")
+        parade = (
+            "document.getElementById('parade').getContext('2d').getImageData(0, 0, 256, 80)"
+            ".data.join()"
+        )
+        own = finder.run(parade)
+        choose(finder, {"f_stop": "22"})
+        assert finder.run(parade) == own
+
+    def test_stops_are_offered_by_how_far_they_are(self, finder: Browser, server: Live) -> None:
+        texts = "[...document.querySelectorAll('#beside option')].map((one) => one.textContent)"
+        stops = [text for text in finder.run(texts) if text.startswith("f/")]
+        assert stops[:2] == ["f/2.8, 0.7 stops narrower", "f/4, 2 stops narrower"]
+        choose(finder, {"f_stop": "4"})
+        before = server.hub.number
+        server.turn({"f_stop": "8"})
+        finder.until(
+            f"document.getElementById('frame').dataset.turn > {before} && "
+            "document.getElementById('beside').selectedOptions[0].textContent"
+            " === 'f/4, 2 stops wider'"
+        )
 
     def test_the_lens_picker_chooses_the_other_lens(self, finder: Browser, server: Live) -> None:
         before = server.hub.dials

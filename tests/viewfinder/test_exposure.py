@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from pathlib import Path
 from typing import Any
@@ -93,6 +94,14 @@ def test_compensation_stays_on_its_ring() -> None:
     assert more.texts == {**plain.texts, "exposure_compensation": "1"}
 
 
+def test_what_the_opening_cannot_expose_is_said_of_the_mode_on_the_dial() -> None:
+    dials, said = opened(bright(0.01), Dials())
+    assert dials.texts["exposure"] == "manual"
+    assert re.fullmatch(
+        r"ISO 100 \.\. 6400 cannot expose this: the picture is \S+ EV too dark", said
+    )
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [({"light": 0.0}, "no light to meter"), ({"shutter_time": 0.0}, "the shutter was frozen")],
@@ -118,7 +127,7 @@ def test_the_page_says_what_the_opening_found() -> None:
     dials, said = opened(stage, Dials())
     with live(stage, dials, said=said) as server, page(server) as one:
         one.until_rest(0)
-        assert one.state["error"].startswith("no light to meter")
+        assert one.state["note"].startswith("no light to meter")
         assert one.state["mode"] == "light"
 
 

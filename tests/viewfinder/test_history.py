@@ -232,6 +232,39 @@ def test_a_turn_that_fails_is_no_step(server: Live) -> None:
         assert not one.state["undoes"]
 
 
+@pytest.mark.parametrize("stop", [{"f_stop": "2"}, {"t_stop": "2.1"}])
+def test_a_lens_that_opens_less_goes_to_its_widest_stop(server: Live, stop: Any) -> None:
+    with page(server) as one:
+        one.until_rest(0)
+        does(one, server, turn={"lens": GAUSS, **stop})
+        one.send(turn={"lens": TESSAR})
+        until(one, lambda: one.state["note"])
+        rests(one, server)
+        assert one.state["note"] == (
+            "This lens opens no wider than f/2.8, so the aperture is there now."
+        )
+        assert one.state["error"] == ""
+        assert one.state["dials"] == {"lens": TESSAR, "f_stop": "2.8"}
+        assert "--f-stop=2.8" in one.state["command"]
+        does(one, server, undo=True)
+        assert one.state["dials"] == {"lens": GAUSS, **stop}
+        assert one.state["note"] == ""
+
+
+def test_a_stop_of_the_scene_gives_way_to_a_lens_that_opens_less() -> None:
+    made = scene()
+    settings = dg.RenderSettings.of(resolution=(60, 40), spp=1)
+    with (
+        live(Stage(made, made.camera().with_(f_stop=1.2), settings)) as server,
+        page(server) as one,
+    ):
+        one.until_rest(0)
+        one.send(turn={"lens": TESSAR})
+        until(one, lambda: one.state["note"])
+        rests(one, server)
+        assert one.state["dials"] == {"lens": TESSAR, "f_stop": "2.8"}
+
+
 def test_a_step_that_was_never_drawn_and_cannot_be_is_passed_by(server: Live) -> None:
     with page(server) as one:
         one.until_rest(0)

@@ -27,21 +27,18 @@ def reading(pattern: str, luminance: float, ev: float, words: str) -> str:
     )
 
 
-def missing(mode: str, ends: str, share: float) -> str:
+def missing(ends: str, share: float) -> str:
     """Note on an exposure that the limits of a mode do not allow; empty: they do.
 
     Args:
-        mode: Exposure mode.
-        ends: Its limits, such as ``ISO 100 .. 6400``.
+        ends: Limits of the mode, such as ``ISO 100 .. 6400``.
         share: Exposure over the wanted one.
     """
     stops = math.log2(share)
     if abs(stops) <= _SLIGHT:
         return ""
-    return (
-        f"exposure {mode}: {ends} cannot expose this: the picture is {abs(stops):.1f} EV too "
-        f"{'dark' if stops < 0 else 'bright'}"
-    )
+    side = "dark" if stops < 0 else "bright"
+    return f"{ends} cannot expose this: the picture is {abs(stops):.1f} EV too {side}"
 
 
 def distance(mode: str, stops: float | None, part: str = "") -> str:

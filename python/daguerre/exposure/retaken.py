@@ -77,7 +77,8 @@ def _metered(frame: Frame, pattern: str, ev: float, sensor: str | Sensor | None)
     own = compensation_ev(frame.metadata)
     words = f"--exposure manual --iso {iso:g}{f' --ev {-own:g}' if own else ''}"
     ends = f"ISO {limits[0]:g} .. {limits[1]:g}"
-    notes = [reading(pattern, luminance, ev, words), missing("auto", ends, iso / wanted)]
+    left = missing(ends, iso / wanted)
+    notes = [reading(pattern, luminance, ev, words), left and f"exposure auto: {left}"]
     changes = {"exposure": "auto", "metering": pattern, "isoSpeed": iso}
     changed = _changed(frame, {**changes, "exposure_compensation": None})
     return Retaken(changed, [text for text in notes if text])

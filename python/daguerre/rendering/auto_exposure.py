@@ -56,7 +56,8 @@ class Chosen:
         facts: Metadata for frames.
         ev: Compensation that the choice includes, EV.
         note: Reading and choice of the meter, in words.
-        warning: Stops that the limits leave missing, in words.
+        missing: Stops that the limits leave missing, in words.
+        warning: The same with the mode, or why another mode was chosen.
     """
 
     changes: Mapping[str, Any]
@@ -64,6 +65,7 @@ class Chosen:
     facts: Mapping[str, Any] = field(default_factory=dict)
     ev: float = 0.0
     note: str = ""
+    missing: str = ""
     warning: str = ""
 
     def of(self, camera: Camera) -> Camera:
@@ -140,13 +142,15 @@ class _Meter:
             changes, words, got = choice(wanted_lux_s(self.luminance, ev))
         iso = changes.get("iso", self.camera.iso)
         told = f"--exposure manual --iso {iso:g}{words}{' --ev 0' if ev else ''}"
+        left = missing(self._ends(), got / wanted_lux_s(self.luminance, ev))
         return Chosen(
             {"exposure": "manual", **changes},
             told,
             {"exposure": self.mode, "metering": self.pattern},
             ev,
             reading(self.pattern, self.luminance, ev, told),
-            missing(self.mode, self._ends(), got / wanted_lux_s(self.luminance, ev)),
+            left,
+            left and f"exposure {self.mode}: {left}",
         )
 
     def _ends(self) -> str:

@@ -52,10 +52,11 @@ class Wish:
 
 @dataclass(frozen=True)
 class Panel:
-    """One of several pictures side by side: its name, its shot and its frame."""
+    """One of several pictures side by side: its name, its shot, its session and its frame."""
 
     name: str
     shot: Shot
+    session: Session
     frame: Frame
 
 
@@ -84,6 +85,12 @@ class Drawn:
     whole: bool = True
     panels: tuple[Panel, ...] = ()
     note: str = ""
+
+    @property
+    def main(self) -> int:
+        """Number of the panel that the dials show."""
+        frames = [panel.frame for panel in self.panels] or [self.frame]
+        return next(i for i, frame in enumerate(frames) if frame is self.frame)
 
     @property
     def is_one(self) -> bool:

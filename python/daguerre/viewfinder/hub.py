@@ -58,6 +58,7 @@ from .stage import Stage
 from .switches import on_in
 from .tev import Tev
 from .tint import legends
+from .widest import opened_as_wide
 
 #: Time between two looks at the scene's file, s.
 _LOOK_S = 2.5
@@ -123,7 +124,7 @@ class Hub:
         said: str = "",
     ) -> None:
         self._stage, self._words, self._loop, self._folder = stage, words, loop, folder
-        self.number, self.error = -1, said
+        self.number, self.error, self._note = -1, "", said
         self._history = self._drawn_history = History(dials)
         self._steps = Steps()
         self._first = dials
@@ -202,8 +203,8 @@ class Hub:
                 if guest.busy == number:
                     guest.busy = None
                     await self._offer(guest)
-            case Probe(x, y):
-                await self._tell(guest, {"value": await asyncio.to_thread(self._value, x, y)})
+            case Probe():
+                await self._tell(guest, {"value": await asyncio.to_thread(self._value, message)})
             case Section(x, y):
                 found = await asyncio.to_thread(self._section, x, y)
                 await self._tell(guest, {"section": found})
@@ -261,7 +262,7 @@ class Hub:
     async def _go(self, history: History, guest: Guest | None = None) -> None:
         """Takes other dials; the page that asked hears so before the state, and updates once."""
         shot = self._stage.shot(history.now)  # or an error, and everything stays as it is
-        self._shot, self._history, self.error = shot, history, ""
+        self._shot, self._history, self.error, self._note = shot, history, "", ""
         self._wish()
         if guest is not None:
             await self._tell(guest, {"heard": True})
@@ -309,16 +310,18 @@ class Hub:
             if look % _LOOKS == 0:
                 await self._tell_all({"ping": look})
 
-    def _value(self, x: int, y: int) -> dict[str, Any] | None:
+    def _value(self, probe: Probe) -> dict[str, Any] | None:
+        """Values under the pointer, of the picture that is there."""
         sheet = self._sheet  # the next one may come meanwhile
-        if sheet is None or sheet.drawn.panels:
+        if sheet is None or probe.part >= max(1, len(sheet.drawn.panels)):
             return None
-        drawn = sheet.drawn
+        x, y, drawn = probe.x, probe.y, sheet.drawn
+        shown = drawn.panels[probe.part] if drawn.panels else drawn
         width, height = drawn.wish.shot.settings.film.resolution
-        own, (left, top, *_) = drawn.session.prepared.setup.resolution, drawn.session.crop
-        found = value_at(drawn.frame, x * own[0] // width - left, y * own[1] // height - top)
+        own, (left, top, *_) = shown.session.prepared.setup.resolution, shown.session.crop
+        found = value_at(shown.frame, x * own[0] // width - left, y * own[1] // height - top)
         distance = distance_at(
-            drawn.session, (x + 0.5) * own[0] / width, (y + 0.5) * own[1] / height
+            shown.session, (x + 0.5) * own[0] / width, (y + 0.5) * own[1] / height
         )
         return found and {
             **found,
@@ -383,6 +386,7 @@ class Hub:
                 "redoes": self._history.redone is not None,
                 "show": asdict(self._show),
                 "error": self.error,
+                "note": self._note,
             }
         }
 
@@ -394,20 +398,26 @@ class Hub:
             self._tev.send(drawn)
         show, readings = self._show, readings_of(drawn)
         clean = denoise(drawn.frame) if show.denoised and drawn.is_one else None
-        image = _image(drawn, clean, show, readings)
+        image = image_of(drawn, clean=clean, tint=show.tint)
         self._loop.call_soon_threadsafe(self._hand_out, drawn, image, show, readings)
         if show.denoised is None:
-            self._previews.offer(drawn, partial(self._publish_preview, drawn, show, readings))
+            self._previews.offer(drawn, partial(self._publish_preview, drawn, show))
 
-    def _publish_preview(
-        self, drawn: Drawn, show: Show, readings: dict[str, Any], clean: Frame
-    ) -> None:
+    def _publish_preview(self, drawn: Drawn, show: Show, clean: Frame) -> None:
         """Sends a picture on the way once more, denoised; called by the thread of previews."""
-        image = _image(drawn, clean, show, readings)
+        image = image_of(drawn, clean=clean, tint=show.tint)
         self._loop.call_soon_threadsafe(self._hand_out_preview, drawn, image, show)
 
     def _failed(self, wish: Wish, error: Exception) -> None:
-        self._loop.call_soon_threadsafe(self._report, wish, reason_of(error))
+        before = wish.dials if self._sheet is None else self._sheet.drawn.wish.dials
+        try:
+            widest = opened_as_wide(wish, error, before)
+        except DaguerreError as other:
+            widest, error = None, other
+        if widest:
+            self._loop.call_soon_threadsafe(self._open_less, wish, widest)
+        else:
+            self._loop.call_soon_threadsafe(self._report, wish, reason_of(error))
 
     # The server's thread
 
@@ -448,6 +458,7 @@ class Hub:
             "denoised": denoised,
             "previews": show.denoised is None,
             "panels": [panel.name for panel in drawn.panels],
+            "main": drawn.main,
             "part": image.part,
             "divided": bool(drawn.panels) and drawn.wish.beside is not None,
             "histogram": image.histogram,
@@ -465,6 +476,17 @@ class Hub:
             self._shot = self._sheet.drawn.wish.shot
             self._wish()
         self.error = text
+        self._start(self._tell_state())
+
+    def _open_less(self, wish: Wish, dials: Dials) -> None:
+        """Goes on at a smaller stop, in the same step, and says so."""
+        if wish.number != self.number:
+            return
+        self._history = replace(self._history, now=dials)
+        self._shot = self._stage.shot(dials)
+        stop = dials.texts["f_stop"]
+        self._note = f"This lens opens no wider than f/{stop}, so the aperture is there now."
+        self._wish()
         self._start(self._tell_state())
 
     def _start(self, work: Coroutine[Any, Any, None]) -> None:
@@ -490,12 +512,6 @@ class Hub:
     async def _tell_all(self, message: dict[str, Any]) -> None:
         text = json.dumps(message)
         await asyncio.gather(*(guest.line.send(text) for guest in self._guests))
-
-
-def _image(drawn: Drawn, clean: Frame | None, show: Show, readings: Mapping[str, Any]) -> Image:
-    """Develops a picture as it is to be shown."""
-    limits = readings["near_m"], readings["far_m"]
-    return image_of(drawn, clean=clean, tint=show.tint, limits=limits)
 
 
 def _stamp(path: Path | None) -> tuple[int, int] | None:

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from daguerre.frame.frame import Frame
 
-from .drawn import Drawn
+from .drawn import Drawn, Panel
+from .readings import limits_of
 from .shot import Shot
-from .tint import NONE, Tint, tint_of
+from .tint import DEPTH, NONE, Tint, joined, tint_of
 
 #: JPEG quality of pictures on their way to the page.
 QUALITY = 88
@@ -37,6 +38,7 @@ class Image:
         histogram: Share of pixels in each of 128 equal steps of brightness, for red, green, blue.
         tint: Kind and note of a tint; ``bytes`` of it follow those of the picture; None: none.
         part: Width of one of several pictures side by side, px; each begins with a block of JPEG.
+            The histogram is that of the one that the dials show.
     """
 
     kind: str
@@ -52,33 +54,36 @@ def image_of(
     *,
     clean: Frame | None = None,
     tint: str = NONE,
-    limits: tuple[float | None, float | None] = (None, None),
 ) -> Image:
     """Develops a picture, or those side by side, and encodes it.
 
     Args:
         drawn: The picture.
         clean: Its denoised frame, to show instead; the histogram stays as drawn.
-        tint: How to tint it, too; see ``tint_of``, also for ``limits``.
-        limits: Limits of the depth of field.
+        tint: How to tint it, too; see ``tint_of``.
     """
-    frame = drawn.frame if clean is None else clean
-    parts = [shown(panel.frame, panel.shot) for panel in drawn.panels]
-    pixels = side_by_side(parts) if parts else shown(frame, drawn.shot)
+    panels = drawn.panels or (Panel("", drawn.shot, drawn.session, clean or drawn.frame),)
+    parts = [shown(panel.frame, panel.shot) for panel in panels]
+    pixels = side_by_side(parts)
     height, width = pixels.shape[:2]
     kind, data = encoded(pixels, QUALITY)
-    if parts and tint != NONE:
-        tinted: Tint | None = Tint(tint, note="Pictures side by side are not tinted")
-    else:
-        tinted = tint_of(tint, frame, drawn.session, pixels, limits)
-    head, more = _told(tinted)
-    noisy = pixels if clean is None else shown(drawn.frame, drawn.shot)
-    part = parts[0].shape[1] if parts else width
-    return Image(kind, data + more, (width, height), _histogram(noisy), head, part)
+    tints = [_tinted(tint, *one) for one in zip(panels, parts, strict=True)]
+    head, more = _told(joined(tints, side_by_side))
+    own = parts[drawn.main] if clean is None else shown(drawn.frame, drawn.shot)
+    part = parts[0].shape[1]
+    return Image(kind, data + more, (width, height), _histogram(own), head, part)
+
+
+def _tinted(kind: str, panel: Panel, pixels: NDArray[np.uint8]) -> Tint | None:
+    """Tint of one picture, by its own limits of the depth of field."""
+    limits = limits_of(panel.session) if kind == DEPTH else (None, None)
+    return tint_of(kind, panel.frame, panel.session, pixels, limits)
 
 
 def side_by_side(parts: list[NDArray[np.uint8]]) -> NDArray[np.uint8]:
     """Pictures in a row, each widened to whole blocks of JPEG: none bleeds into the next."""
+    if len(parts) == 1:
+        return parts[0]
     more = -parts[0].shape[1] % _BLOCK
     padded = [np.pad(part, ((0, 0), (0, more), (0, 0)), mode="edge") for part in parts]
     return np.ascontiguousarray(np.hstack(padded))

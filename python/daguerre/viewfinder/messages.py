@@ -18,6 +18,8 @@ from .tint import NONE, TINTS
 
 #: Longest message, bytes.
 MAX_BYTES = 64 << 10
+#: Highest number of a picture side by side with others.
+MOST_PARTS = 9
 #: File types that a page may save.
 SAVED = ("exr", "png", "jpg", "dng", "json")
 
@@ -38,10 +40,17 @@ class Got:
 
 @dataclass(frozen=True)
 class Probe:
-    """Pixel of the whole picture whose values the page asks for."""
+    """Pixel of the whole picture whose values the page asks for.
+
+    Attributes:
+        x: From the left.
+        y: From the top.
+        part: Number of the picture, of those side by side.
+    """
 
     x: int
     y: int
+    part: int = 0
 
 
 @dataclass(frozen=True)
@@ -195,8 +204,11 @@ def _got(value: Any) -> Got:
 
 
 def _probe(value: Any) -> Probe:
+    part = 0
+    if isinstance(value, list) and len(value) == 3:
+        part = _whole(value.pop(), "probe: picture", 0, MOST_PARTS)
     x, y = _pair(value, "probe")
-    return Probe(int(x), int(y))
+    return Probe(int(x), int(y), part)
 
 
 def _section(value: Any) -> Section:

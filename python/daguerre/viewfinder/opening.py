@@ -37,7 +37,9 @@ def opened(stage: Stage, dials: Dials) -> tuple[Dials, str]:
         return dials, f"{error}; so the exposure mode is light"
     assert chosen is not None
     texts = texts_of_words(chosen.words)
-    return (dials if texts["exposure"] == LIGHT else dials.turned(texts)), chosen.warning
+    if texts["exposure"] == LIGHT:
+        return dials, chosen.warning
+    return dials.turned(texts), chosen.missing  # the dial is not at the mode that metered
 
 
 def _only_light(shot: Shot) -> bool:

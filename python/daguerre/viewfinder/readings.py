@@ -26,9 +26,7 @@ from .switches import possible
 def readings_of(drawn: Drawn) -> dict[str, Any]:
     """Numbers of the camera that drew a picture, as JSON values; infinity is null."""
     session = drawn.session
-    facts = facts_of(
-        session.prepared.setup, session.camera, session.scene.time, session.prepared.size
-    )
+    facts = _facts(session)
     return {
         "lens": facts.lens,
         "focal_length_mm": facts.focal_length_mm,
@@ -45,6 +43,18 @@ def readings_of(drawn: Drawn) -> dict[str, Any]:
         "meter": _meter(drawn),
         **_body(drawn),
     }
+
+
+def limits_of(session: Session) -> tuple[float | None, float | None]:
+    """Limits of the depth of field on the focus ring, m; None: infinity."""
+    distances = _distances(session, _facts(session))
+    return distances["near_m"], distances["far_m"]
+
+
+def _facts(session: Session) -> Facts:
+    return facts_of(
+        session.prepared.setup, session.camera, session.scene.time, session.prepared.size
+    )
 
 
 def _distances(session: Session, facts: Facts) -> dict[str, float | None]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -62,6 +63,17 @@ def tint_of(
     far = Frame(frame.rgb, aovs={"depth": depths_m(session)}, metadata=frame.metadata)
     depth = far.without_overscan().aovs["depth"] + ring_offset_m(session)
     return Tint(kind, by_depth(pixels, depth, limits))
+
+
+def joined(
+    tints: Sequence[Tint | None], join: Callable[[list[NDArray[np.uint8]]], NDArray[np.uint8]]
+) -> Tint | None:
+    """Tint of pictures side by side; if one has none, the note on it."""
+    found = [tint for tint in tints if tint is not None]
+    pixels = [tint.pixels for tint in found if tint.pixels is not None]
+    if not found or len(pixels) < len(found):
+        return next((tint for tint in found if tint.pixels is None), None)
+    return Tint(found[0].kind, join(pixels))
 
 
 def by_depth(

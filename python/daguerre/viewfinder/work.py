@@ -101,7 +101,7 @@ class Work:
             samples,
             rests,
             whole=rung.last and not wish.models,
-            panels=tuple(map(Panel, rung.names, rung.shots, frames)),
+            panels=tuple(map(Panel, rung.names, rung.shots, self._sessions, frames)),
             note=rung.note,
         )
 

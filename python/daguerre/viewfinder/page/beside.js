@@ -1,9 +1,9 @@
 // beside.js -- another lens, stop or model beside the picture, behind a divider.
 
 import {fill} from './dom.js';
-import {fNumber} from './scales.js';
+import {irisScale} from './scales.js';
 
-const STOPS = 2;   // between the two pictures of one lens
+const SAME = 0.2;   // stops that nobody would compare
 const PICK = 'pick';   // the option that opens the lens picker
 const KEYS = {ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10, Home: -100, End: 100};
 const MODELS = {exact: 'Exact lens', polynomial: 'Polynomial', thin: 'Thin lens', pinhole: 'Pinhole'};
@@ -44,9 +44,11 @@ export class Beside {
     this.select.disabled = !this.view.mine;
   }
 
-  options({f_stop: stop, models}) {
-    const down = stop && fNumber(stop * 2 ** (STOPS / 2));
-    return [[PICK, 'Another lens …'], ...(down ? [[JSON.stringify({f_stop: down}), `f/${down}, two stops down`]] : []),
+  options({f_stop: stop, widest, models}) {
+    const stops = stop ? irisScale(widest, 1, 'f').marks.map(({value}) => value) : [];
+    return [[PICK, 'Another lens …'],
+      ...stops.filter((other) => Math.abs(stopsOver(other, stop)) > SAME)
+        .map((other) => [JSON.stringify({f_stop: `${other}`}), `f/${other}, ${apart(other, stop)}`]),
       ...(models ?? []).map((model) => [JSON.stringify({lens_model: model}), MODELS[model]])];
   }
 
@@ -84,4 +86,12 @@ export class Beside {
     this.divider.setAttribute('aria-valuetext', `${told} % ${this.names?.join(', then ') ?? ''}`);
     this.view.picture.divide(this.percent / 100);
   }
+}
+
+const stopsOver = (other, stop) => 2 * Math.log2(other / stop);
+
+/** How far a stop is from another, in thirds, such as "2 stops narrower". */
+function apart(other, stop) {
+  const thirds = Math.round(3 * stopsOver(other, stop)), count = Number((Math.abs(thirds) / 3).toFixed(1));
+  return `${count} ${count === 1 ? 'stop' : 'stops'} ${thirds > 0 ? 'narrower' : 'wider'}`;
 }

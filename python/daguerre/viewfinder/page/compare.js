@@ -7,7 +7,7 @@ const PAUSE_MS = 1000;   // a picture that stays for less was on the way to anot
 export class Compare {
   constructor(view) {
     this.view = view;
-    this.rest = null;     // the newest picture at rest: its turn, bitmap, and settings in words
+    this.rest = null;     // the newest picture at rest: its turn, sheet, and settings in words
     this.before = null;   // the one at rest before
     this.button = view.find('compare');
     const on = (names, act) => names.forEach((name) => this.button.addEventListener(name, act));
@@ -24,7 +24,7 @@ export class Compare {
   }
 
   show(on) {
-    if (on && this.before) this.view.picture.compare(this.before.bitmap);
+    if (on && this.before) this.view.picture.compare(this.before.sheet);
     else if (this.shows) this.view.picture.compare(null);
     this.say(on && this.before ? `Before: ${this.before.words}` : '');
   }
@@ -42,7 +42,8 @@ export class Compare {
       if (!this.before || now - rest.since > PAUSE_MS) this.before = rest;
       this.rest = null;
     }
-    if (rests) this.rest = {turn, since: now, bitmap: this.view.picture.bitmap, words: ''};
+    const since = this.rest?.since ?? now;   // also if the same picture comes once more, with a tint
+    if (rests) this.rest = {turn, since, sheet: this.view.picture.sheet, words: ''};
     this.update(this.view.state);
     this.button.disabled = !this.before;
   }

@@ -18,21 +18,21 @@ export class Loupe {
     const {open, picture} = this.view;
     if (!picture.shows.loupe || !open || !picture.head) return;
     this.element.hidden = false;
-    const pixel = picture.pixel(event);
+    const {pixel, part, spot} = picture.at(event);
     const now = performance.now();
     if (now - this.probed > PROBE_MS) {
       this.probed = now;
-      this.view.send({probe: pixel});
+      this.view.send({probe: [...pixel, part]});
     }
-    this.draw(picture, pixel);
+    this.draw(picture.canvas, spot);
   }
 
-  draw({canvas, whole: {left, top}, size}, [x, y]) {
+  draw(canvas, [x, y]) {
     const context = this.element.querySelector('canvas').getContext('2d');
-    const scale = canvas.width / size[0], corner = (v) => Math.floor(v * scale) - (PIXELS - 1) / 2;
+    const corner = (v) => v - (PIXELS - 1) / 2;
     context.imageSmoothingEnabled = false;
     context.clearRect(0, 0, SIDE, SIDE);
-    context.drawImage(canvas, corner(x - left), corner(y - top), PIXELS, PIXELS, 0, 0, SIDE, SIDE);
+    context.drawImage(canvas, corner(x), corner(y), PIXELS, PIXELS, 0, 0, SIDE, SIDE);
     context.strokeStyle = '#e8b84a';
     context.strokeRect(54.5, 54.5, 12, 12);
   }

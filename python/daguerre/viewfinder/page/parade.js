@@ -14,9 +14,9 @@ export class Parade {
   shown() {
     const {picture} = this.view;
     this.canvas.hidden = !picture.shows.parade;
-    if (this.canvas.hidden || !picture.head) return;
-    const {width, height} = picture.canvas;
-    draw(this.canvas, parade(picture.context.getImageData(0, 0, width, height).data, width, height));
+    if (this.canvas.hidden || !picture.sheet) return;
+    const {data, width, height} = picture.dialled();
+    draw(this.canvas, parade(data, width, height));
   }
 }
 

@@ -6,12 +6,13 @@ const INSIDE = 1 - 1e-9;
 const COLUMNS = 2;   // of pictures side by side
 
 export class Picture {
-  constructor(canvas, over) {
+  constructor(canvas, over, tint) {
     this.canvas = canvas;
     this.over = over;
+    this.tint = tint;
     this.context = canvas.getContext('2d', {willReadFrequently: true});
     this.head = null;
-    this.layoutOf = new WeakMap();   // of the pictures in a bitmap: their count, width, and whether a divider parts them
+    this.sheet = null;   // what is shown: a bitmap, its tint, and how many pictures it has side by side
     this.divider = 0.5;   // share of the width on its left
     this.clean = null;   // head of the picture on the screen, if it is denoised
     this.shows = {grid: false, horizon: false, zebra: false, peaking: false};
@@ -22,17 +23,18 @@ export class Picture {
 
   /** Shows a picture; resolves when it is on the screen. */
   async show(head, bytes) {
-    const bitmap = await decoded(head.kind, bytes, head.size);
+    const decode = (data) => (data?.length ? decoded(head.kind, data, head.size) : null);
+    const [bitmap, tint] = await Promise.all([decode(bytes), decode(head.tint?.bytes)]);
     if (this.head && head.picture < this.head.picture) return false;   // a newer one was faster
     if (keeps(this.clean, head)) {
       this.head = head;
       return true;
     }
     this.clean = head.denoised ? head : null;
-    this.bitmap = bitmap;
-    this.layoutOf.set(bitmap, {count: head.panels.length || 1, part: head.part, divided: head.divided});
+    const {panels, part, divided, main} = head;
+    this.sheet = {bitmap, tint, count: panels.length || 1, part, divided, main};
     this.head = head;
-    this.draw(bitmap);
+    this.draw(this.sheet);
     this.overlay();
     return true;
   }
@@ -49,28 +51,43 @@ export class Picture {
   }
 
   /** Draws a picture at the size of the one at rest; smaller ones look soft, not like blocks. */
-  draw(bitmap) {
-    const {count, part, divided} = this.layoutOf.get(bitmap), {columns, rows} = cells(divided ? 1 : count);
-    const [width, height] = columns === 1 && this.size ? this.size : [part, bitmap.height];
-    Object.assign(this.canvas, {width: width * columns, height: height * rows});
-    this.context.imageSmoothingQuality = 'high';
-    for (let i = 0; i < count; i++) {
-      const x = divided ? 0 : width * (i % columns), y = divided ? 0 : height * Math.floor(i / columns);
-      this.context.save();
-      if (divided) this.clip(i, width, height);
-      this.context.drawImage(bitmap, (bitmap.width / count) * i, 0, part, bitmap.height, x, y, width, height);
-      this.context.restore();
-    }
-    const [across, down] = this.size ?? [width, height];
+  draw(sheet) {
+    const {columns, rows} = cells(sheet.divided ? 1 : sheet.count);
+    this.paint(this.context, sheet.bitmap, sheet, columns, rows);
+    this.tint.hidden = !sheet.tint;
+    if (sheet.tint) this.paint(this.tint.getContext('2d'), sheet.tint, sheet, columns, rows);
+    const [across, down] = this.size ?? [sheet.part, sheet.bitmap.height];
     this.canvas.closest('.frame').style.setProperty('--ratio', (across * columns) / (down * rows));
   }
 
+  paint(context, bitmap, {count, part, divided}, columns, rows) {
+    const [width, height] = columns === 1 && this.size ? this.size : [part, bitmap.height];
+    Object.assign(context.canvas, {width: width * columns, height: height * rows});
+    context.imageSmoothingQuality = 'high';
+    for (let i = 0; i < count; i++) {
+      const x = divided ? 0 : width * (i % columns), y = divided ? 0 : height * Math.floor(i / columns);
+      context.save();
+      if (divided) this.clip(context, i, width, height);
+      context.drawImage(bitmap, (bitmap.width / count) * i, 0, part, bitmap.height, x, y, width, height);
+      context.restore();
+    }
+  }
+
   /** Clips to the left (0) or right (1) side of the divider. */
-  clip(side, width, height) {
+  clip(context, side, width, height) {
     const at = Math.round(width * this.divider);
-    this.context.beginPath();
-    this.context.rect(side ? at : 0, 0, side ? width - at : at, height);
-    this.context.clip();
+    context.beginPath();
+    context.rect(side ? at : 0, 0, side ? width - at : at, height);
+    context.clip();
+  }
+
+  /** Pixels of the picture that the dials show, of those side by side. */
+  dialled() {
+    const {bitmap, count, part, main} = this.sheet, canvas = document.createElement('canvas');
+    Object.assign(canvas, {width: part, height: bitmap.height});
+    const context = canvas.getContext('2d', {willReadFrequently: true});
+    context.drawImage(bitmap, -(bitmap.width / count) * main, 0);
+    return context.getImageData(0, 0, part, bitmap.height);
   }
 
   /** Moves the divider to a share of the width. */
@@ -80,9 +97,9 @@ export class Picture {
     if (this.head?.divided) this.compare(null);
   }
 
-  /** Shows another picture instead; null: its own again. */
-  compare(bitmap) {
-    this.draw(bitmap ?? this.bitmap);
+  /** Shows another sheet instead; null: its own again. */
+  compare(sheet) {
+    this.draw(sheet ?? this.sheet);
     this.overlay();
   }
 
@@ -147,14 +164,18 @@ export class Picture {
     context.stroke();
   }
 
-  /** Pixel of the whole picture under a pointer. */
-  pixel(event) {
-    const box = this.canvas.getBoundingClientRect();
-    const {columns, rows} = cells(this.head?.divided ? 1 : this.head?.panels.length);
-    const part = (at, count, size) => Math.floor(((Math.min(INSIDE, Math.max(0, at)) * count) % 1) * size);
-    const x = part((event.clientX - box.left) / box.width, columns, this.size[0]);
-    const y = part((event.clientY - box.top) / box.height, rows, this.size[1]);
-    return [this.whole.left + x, this.whole.top + y];
+  /** Under a pointer: pixel of the whole picture, number of the one of several pictures, pixel of the canvas. */
+  at({clientX, clientY}) {
+    const {canvas, head, whole} = this, box = canvas.getBoundingClientRect();
+    const {columns, rows} = cells(head?.divided ? 1 : head?.panels.length);
+    const inside = (share) => Math.min(INSIDE, Math.max(0, share));
+    const x = inside((clientX - box.left) / box.width), y = inside((clientY - box.top) / box.height);
+    const [across, down] = [(x * columns) % 1, (y * rows) % 1].map((share, i) => Math.floor(share * this.size[i]));
+    return {
+      pixel: [whole.left + across, whole.top + down],
+      part: head?.divided ? Number(x >= this.divider) : Math.floor(x * columns) + columns * Math.floor(y * rows),
+      spot: [Math.floor(x * canvas.width), Math.floor(y * canvas.height)],
+    };
   }
 }
 

@@ -47,11 +47,6 @@ const ISOS = [
   5000, 6400, 8000, 10000, 12800, 16000, 20000, 25600, 32000, 40000, 51200, 64000, 80000, 102400,
 ];
 
-/** The engraved f-number of a stop. */
-export function fNumber(stop) {
-  return String(pick(F_NUMBERS, stop));
-}
-
 export function shutterLabel(seconds) {
   if (seconds === 0) return '0 s';
   if (seconds >= 0.3) return `${round(seconds, 2)} s`;

@@ -1,7 +1,6 @@
-// tints.js -- the picture by exposure or by distance, over the picture itself, with its legend.
+// tints.js -- the picture by exposure or by distance: its buttons and its legend.
 
 import {press} from './dom.js';
-import {decoded} from './picture.js';
 import {feet, metres} from './scales.js';
 
 const TINTS = {'false-colour': 'false colour', depth: 'depth of field'};
@@ -9,7 +8,6 @@ const TINTS = {'false-colour': 'false colour', depth: 'depth of field'};
 export class Tints {
   constructor(view) {
     this.view = view;
-    this.canvas = view.find('tint');
     this.legend = view.find('legend');
     this.buttons = [...view.root.querySelectorAll('[data-tint]')];
     for (const button of this.buttons) {
@@ -25,25 +23,19 @@ export class Tints {
     this.explain();
   }
 
-  async shown(head) {
+  shown(head) {
     this.head = head;
-    const bitmap = head.tint?.bytes.length ? await decoded(head.kind, head.tint.bytes, head.size) : null;
-    if (head !== this.head) return;   // a newer one was faster
-    this.canvas.hidden = !bitmap;
-    if (bitmap) {
-      [this.canvas.width, this.canvas.height] = head.size;
-      this.canvas.getContext('2d').drawImage(bitmap, 0, 0);
-    }
     this.explain();
   }
 
   /** Draws the legend of the tint that is shown. */
   explain() {
-    const {tint} = this.head ?? {}, {open, state: {readings}} = this.view;
+    const {tint, panels} = this.head ?? {}, {open, state: {readings}} = this.view;
     this.legend.hidden = !tint || !readings.lens;
     if (this.legend.hidden) return;
     const {note, kind} = tint;
-    const rows = note ? [] : kind === 'depth' ? parts(open.legends[kind], readings) : zones(open.legends[kind]);
+    const colours = open.legends[kind];
+    const rows = note ? [] : kind !== 'depth' ? zones(colours) : panels.length ? sides(colours) : parts(colours, readings);
     const title = note || (kind === 'depth' ? '' : 'EV from 18 % grey');
     this.legend.setAttribute('aria-label', `Legend of ${TINTS[kind]}: ${title || rows.map(([, text]) => text).join('; ')}`);
     this.legend.replaceChildren(made('b', title), ...rows.map(([colour, text]) => {
@@ -58,6 +50,11 @@ export class Tints {
 function zones(colours) {
   const ends = {0: '≤', [colours.length - 1]: '≥'};
   return colours.map(([ev, colour], i) => [colour, `${ends[i] ?? ''}${ev > 0 ? '+' : ''}${ev}`.replace('-', '−')]);
+}
+
+/** Pictures side by side have limits of their own. */
+function sides([near, sharp, far]) {
+  return [[near, 'nearer'], [sharp, 'sharp'], [far, 'farther']];
 }
 
 function parts([near, sharp, far], {near_m: from, far_m: to, f_stop: stop}) {
