@@ -19,6 +19,8 @@ from PIL import Image
 import daguerre as dg
 from daguerre import cli
 from daguerre.viewfinder.dials import Dials
+from daguerre.viewfinder.drawn import Drawn
+from daguerre.viewfinder.history import PAUSE_S
 from daguerre.viewfinder.opening import opened
 from daguerre.viewfinder.stage import Stage
 from tests.faults.scene import write_scene
@@ -199,6 +201,18 @@ def test_a_click_focuses_there(page: Browser, server: Live, tmp_path: Path) -> N
     rests(page, before)
     assert "--focus-at=" in command_of(page)
     check_bits(page, server, tmp_path)
+
+
+def test_a_frame_shows_where_it_focuses(page: Browser, server: Live) -> None:
+    page.click("#picture", 40, 30)
+    off = page.run(
+        "(() => { const [a, b] = ['focus-mark', 'picture'].map((id) =>"
+        "document.getElementById(id).getBoundingClientRect());"
+        "return [a.left + a.width / 2 - b.left - b.width / 2,"
+        "a.top + a.height / 2 - b.top - b.height / 2]; })()"
+    )
+    assert off == pytest.approx([40, 30], abs=1)
+    page.until("document.getElementById('focus-mark').hidden")
 
 
 def test_a_key_held_down_turns_a_step_each_time(page: Browser, server: Live) -> None:
@@ -495,6 +509,52 @@ def test_metered_exposure_is_locked(page: Browser, server: Live, tmp_path: Path)
     rests(page, before)
     assert "--exposure=P" in command_of(page)
     assert np.array_equal(pixels(server), metered)
+
+
+LOCK = "document.getElementById('lock')"
+
+
+def test_the_lock_is_off_where_no_meter_was_locked(page: Browser, server: Live) -> None:
+    assert page.run(f"{LOCK}.ariaPressed") == "false"
+    assert page.run(f"{LOCK}.disabled")
+    assert page.run(f"{LOCK}.title") == "No meter sets anything in M (K)"
+    set_mode(page, "P")
+    page.until(f"!{LOCK}.disabled")
+    set_mode(page, "manual")
+    assert page.run(f"{LOCK}.ariaPressed") == "false"
+
+
+def test_the_lock_outlives_the_page(page: Browser, server: Live) -> None:
+    set_mode(page, "A")
+    before = turn_of(page)
+    page.click("#lock")
+    rests(page, before)
+    shows(page, server)
+    page.until(f"{LOCK}.ariaPressed === 'true' && !{LOCK}.disabled")
+    before = turn_of(page)
+    page.click("#lock")
+    rests(page, before)
+    assert mode_of(page) == "A"
+    page.until(f"{LOCK}.ariaPressed === 'false'")
+
+
+def test_a_play_is_one_step(page: Browser, server: Live, monkeypatch: pytest.MonkeyPatch) -> None:
+    def slow(drawn: Drawn) -> None:
+        time.sleep(PAUSE_S + 0.2)  # what parts two steps else
+        server.hub.publish(drawn)
+
+    began = command_of(page)
+    monkeypatch.setattr(server.hub._painter, "_show", slow)
+    page.click("#play")
+    page.until(f"document.getElementById('ring-time').value > {2.5 / 24}")
+    page.click("#play")
+    monkeypatch.setattr(server.hub._painter, "_show", server.hub.publish)
+    settled(page, server)
+    assert "--time=" in command_of(page)
+    before = turn_of(page)
+    page.click("#undo")
+    rests(page, before)
+    assert command_of(page) == began
 
 
 def test_the_needle_follows_the_rings(page: Browser, server: Live) -> None:

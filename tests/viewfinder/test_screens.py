@@ -83,9 +83,14 @@ COVERED = """(() => {
     const b = e.getBoundingClientRect();
     const [x, y] = [b.left + b.width / 2, b.top + b.height / 2];
     return !e.contains(document.elementFromPoint(x, y)); })()"""
+#: What a finger hits 21 px off the middle is the control itself; its label is as large.
 SMALL = """(() => {
-    const b = (e.closest('.barrel') ?? e).getBoundingClientRect();
-    return b.width < 44 || b.height < 44; })()"""
+    const own = e.matches('[type=radio], [type=checkbox]') ? [e, ...e.labels] : [e];
+    const b = e.getBoundingClientRect(), [x, y] = [b.left + b.width / 2, b.top + b.height / 2];
+    const hits = (dx, dy) => own.some((o) => o.contains(document.elementFromPoint(x + dx, y + dy)));
+    const boxes = own.map((one) => (one.closest('.barrel') ?? one).getBoundingClientRect());
+    return boxes.some((box) => box.width < 44 || box.height < 44)
+        || [[-21, 0], [21, 0], [0, -21], [0, 21]].some(([dx, dy]) => !hits(dx, dy)); })()"""
 CUT = """[...document.querySelectorAll('.viewfinder *')].filter((e) => e.checkVisibility()
     && [...e.childNodes].some((one) => one.nodeType === 3 && one.data.trim())
     && !e.closest('svg, option, [role=listbox]') && getComputedStyle(e).display !== 'inline'
@@ -150,6 +155,27 @@ def test_targets_of_touch_are_large(page: Browser, size: tuple[int, int]) -> Non
         assert controls(page, f"e.id !== 'picture' && {SMALL}") == []
 
 
+@pytest.mark.parametrize("small", ["#exposure label", "#exposure label:first-child", "#lens"])
+def test_a_small_target_would_be_found(chromium: Browser, server: Live, small: str) -> None:
+    page = shows(chromium, server, PHONE)
+    page.run(
+        "document.styleSheets[0].insertRule("
+        f"'{small} {{ min-height: 30px; height: 30px; align-self: start }}',"
+        "document.styleSheets[0].cssRules.length)"
+    )
+    assert controls(page, f"e.id !== 'picture' && {SMALL}")
+
+
+@pytest.mark.parametrize("size", [DESK, WIDE], indirect=True)
+def test_the_tools_are_in_one_row_on_a_desk(page: Browser) -> None:
+    tops = page.run(
+        "[...document.querySelectorAll('.tools :is(button, select)')]"
+        ".filter((e) => e.checkVisibility()).map((e) => e.getBoundingClientRect().top)"
+    )
+    assert len(tops) > 10
+    assert max(tops) - min(tops) < 4
+
+
 def test_every_control_has_a_tooltip(page: Browser) -> None:
     assert controls(page, "!e.title") == []
 
@@ -181,6 +207,39 @@ def test_the_picture_fills_what_it_can(page: Browser) -> None:
     assert width / height == pytest.approx(1.5, rel=0.01)
     assert max(width / frame_width, height / frame_height) == pytest.approx(1, abs=0.01)
     assert frame_height > 0.7 * page.run("innerHeight")
+
+
+@pytest.mark.parametrize("size", [PHONE, ASIDE, TABLET], indirect=True)
+def test_save_is_a_tap_away_on_a_touch_screen(page: Browser) -> None:
+    page.click("#to-save")
+    in_view = """(() => {
+        const b = document.querySelector('[data-save=png]').getBoundingClientRect();
+        return b.top > 0 && b.bottom <= innerHeight; })()"""
+    assert page.run(in_view)
+    assert page.run("document.activeElement.dataset.save") == "png"
+
+
+def test_what_was_saved_moves_nothing(chromium: Browser, server: Live) -> None:
+    page = shows(chromium, server, DESK)
+    box = "JSON.stringify(document.getElementById('picture').getBoundingClientRect())"
+    before = page.run(box)
+    page.run("document.getElementById('saved').textContent = 'Saved desk-1.png'")
+    assert page.run(box) == before
+
+
+@pytest.mark.parametrize(("size", "word"), [(PHONE, "Tap"), (DESK, "Click")], indirect=["size"])
+def test_a_hint_stays_until_the_picture_is_touched(page: Browser, word: str) -> None:
+    page.run("sessionStorage.clear()")
+    page.run("location.reload()")
+    hint = "document.getElementById('hint')"
+    page.until(f"{hint}?.checkVisibility() && {RESTS}")
+    assert page.run(f"{hint}.textContent").startswith(f"{word} to focus")
+    page.click("#picture")
+    page.until(f"{hint}.hidden")
+    page.run("location.reload()")
+    page.until(RESTS)
+    assert page.run(f"{hint}.hidden")
+    page.run("sessionStorage.clear()")
 
 
 def test_models_keep_the_size_of_the_picture(chromium: Browser, server: Live) -> None:

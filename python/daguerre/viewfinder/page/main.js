@@ -5,13 +5,15 @@
 //   update(state)    the dials, the readings and the right to turn have changed
 //   shown(head)      a picture is on the screen
 //   told(message)    any message of the server
-//   clicked(pixel)   a click on the picture; true: this part has taken it
+//   clicked(pixel, event)   a click on the picture; true: this part has taken it
 
 import {Beside} from './beside.js';
 import {Choices} from './choices.js';
 import {Compare} from './compare.js';
 import {Exposure} from './exposure.js';
+import {Focus} from './focus.js';
 import {Guides} from './guides.js';
+import {Hint} from './hint.js';
 import {Keys} from './keys.js';
 import {LensPicker} from './lens_picker.js';
 import {Loupe} from './loupe.js';
@@ -46,13 +48,13 @@ class Viewfinder {
     this.sent = false;   // whether some were sent in this frame
     this.unheard = 0;    // turns that the server has not taken yet
     const canvas = this.find('picture');
-    this.picture = new Picture(canvas, this.find('over'));
+    this.picture = new Picture(canvas, this.find('over'), this.find('tint'));
     this.tripod = new Tripod(canvas, (dials) => this.turn(dials));
     this.tripod.clicked = (event) => this.clicked(event);
     this.panels = new Panels(root);
     const parts = [
       LensPicker, Choices, Exposure, Rings, Needle, Numbers, Tools, Tints, Guides, Parade, Loupe, Rays, Output, Screen,
-      Compare, Beside, Undo, Switches,
+      Compare, Beside, Undo, Switches, Focus, Hint,
     ];
     this.parts = parts.map((Part) => new Part(this));
     this.keys = new Keys(this);
@@ -141,8 +143,8 @@ class Viewfinder {
   }
 
   update() {
-    const {readings, error} = this.state;
-    this.complain([error, ...(readings.warnings ?? [])].filter(Boolean).join('; '));
+    const {readings, error, note} = this.state;
+    this.complain([error, note, ...(readings.warnings ?? [])].filter(Boolean).join('; '));
     if (readings.lens) {
       this.open.spp = readings.spp;
       this.tripod.stand(readings.place, readings.focus_m, this.current);
@@ -151,11 +153,10 @@ class Viewfinder {
     this.tell('update', this.state);
   }
 
-  /** A click on the picture focuses there, unless a part wants the point. */
+  /** Offers a click on the picture to the parts, until one takes it. */
   clicked(event) {
     if (!this.open) return;
-    const pixel = this.picture.pixel(event);
-    if (this.parts.some((part) => part.clicked?.(pixel))) return;
-    if (this.mine) this.turn({focus_at: pixel.join(',')});
+    const {pixel} = this.picture.at(event);
+    this.parts.some((part) => part.clicked?.(pixel, event));
   }
 }

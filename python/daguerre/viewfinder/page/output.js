@@ -8,6 +8,10 @@ export class Output {
     this.saves = [...view.root.querySelectorAll('[data-save]')];
     const {find} = view;
     find('copy').addEventListener('click', () => this.copy());
+    find('to-save').addEventListener('click', () => {
+      view.root.querySelector('.out').scrollIntoView({block: 'end'});
+      this.saves[0].focus();
+    });
     find('spp').addEventListener('change', () => view.send({draw: Number(find('spp').value)}));
     for (const button of this.saves) {
       button.addEventListener('click', () => view.send({save: button.dataset.save}));
@@ -23,7 +27,7 @@ export class Output {
   }
 
   told({saved}) {
-    if (saved) this.view.find('saved').textContent = `Saved ${saved}`;
+    if (saved) this.view.find('saved').textContent = `Saved ${saved} in the folder where Daguerre was started`;
   }
 
   async copy() {

@@ -101,8 +101,10 @@ export class Rings {
   /** Plays the animation as fast as pictures come. */
   play(on) {
     clearInterval(this.player);
+    const {view} = this;
+    view.holdPlay(on);   // all of it is one step
     if (!on) return;
-    const {view} = this, {duration_s: duration} = view.open, {fps} = view.state.readings;
+    const {duration_s: duration} = view.open, {fps} = view.state.readings;
     let shown = -1;
     this.player = setInterval(() => {
       const turn = Number(view.find('frame').dataset.turn);

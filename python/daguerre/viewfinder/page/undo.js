@@ -3,6 +3,8 @@
 export class Undo {
   constructor(view) {
     this.view = view;
+    this.plays = false;
+    view.holdPlay = (on) => this.holdPlay(on);
     for (const name of ['undo', 'redo']) view.find(name).addEventListener('click', () => view.send({[name]: true}));
     for (const id of ['rings', 'picture']) {
       view.find(id).addEventListener('pointerdown', () => this.hold(true));
@@ -12,9 +14,16 @@ export class Undo {
 
   /** Begins a gesture, or ends it after its last turn. */
   hold(begins) {
-    if (!this.view.mine) return;
+    if (!this.view.mine || this.plays) return;
     if (begins) this.view.send({hold: true});
     else requestAnimationFrame(() => this.view.send({hold: false}));
+  }
+
+  /** What plays is one gesture, also if something else is dragged meanwhile. */
+  holdPlay(on) {
+    this.plays = false;
+    this.hold(on);
+    this.plays = on;
   }
 
   update({undoes, redoes}) {
