@@ -269,7 +269,7 @@ def test_a_step_that_was_never_drawn_and_cannot_be_is_passed_by(server: Live) ->
     with page(server) as one:
         one.until_rest(0)
         does(one, server, turn={"iso": "400"})
-        one.send(turn={"lens": GAUSS, "f_stop": "0.7"})
+        one.send(turn={"lens": "telephoto-200mm-f1.8", "focus_distance": "0.6"})
         one.send(turn={"lens": "thin"})
         until(one, lambda: one.state["dials"].get("lens") == "thin")
         rests(one, server)

@@ -214,6 +214,7 @@ class Walk:
 
     def check(self, folder: Path) -> None:
         """The screen shows the bits of the command shown."""
+        self.trail.append(f"look {self.server.hub.number} {self.server.hub.error}")
         self.plain()
         check_bits(self.page, self.server, folder)
         shown, wanted = canvas(self.page), pixels(self.server)
@@ -279,7 +280,10 @@ def test_random_turns_of_the_page(
         assert not page.errors, (page.errors, walk.trail)
         assert not faults, (faults, walk.trail)
         if number % LOOK == LOOK - 1 or number == count - 1:
-            walk.check(tmp_path)
+            try:
+                walk.check(tmp_path)
+            except AssertionError as error:
+                raise AssertionError(f"after {number} turns: {[*walk.trail]}") from error
             server_mb.append(memory_mb())
         if number % RELOAD in (WARM, RELOAD - 1):
             heap_mb.append(walk.heap_mb())

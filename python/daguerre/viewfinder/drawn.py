@@ -41,8 +41,12 @@ class Wish:
 
     def shows_as(self, other: Wish) -> bool:
         """Whether it shows the same stage, with the same pictures beside each other."""
-        layouts = (self.models, self.beside), (other.models, other.beside)
-        return self.stage is other.stage and layouts[0] == layouts[1]
+        return self.stage is other.stage and self.asks[1:] == other.asks[1:]
+
+    @property
+    def asks(self) -> tuple[Dials, bool, Mapping[str, str] | None]:
+        """All that a page can ask of it: dials, models, and what is beside it."""
+        return self.dials, self.models, self.beside
 
     @property
     def _is_lit(self) -> bool:

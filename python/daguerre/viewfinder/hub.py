@@ -412,7 +412,7 @@ class Hub:
         before = wish.dials if self._sheet is None else self._sheet.drawn.wish.dials
         try:
             widest = opened_as_wide(wish, error, before)
-        except DaguerreError as other:
+        except Exception as other:  # whatever it is, the painter goes on
             widest, error = None, other
         if widest:
             self._loop.call_soon_threadsafe(self._open_less, wish, widest)
@@ -468,12 +468,15 @@ class Hub:
         return Sheet(self._sheets, drawn, len(text).to_bytes(4, "little") + text + image.bytes)
 
     def _report(self, wish: Wish, text: str) -> None:
-        """Says why a wish cannot be drawn, and puts the dials back to those that could."""
+        """Says why a wish cannot be drawn, and goes back to what could: dials, models, beside."""
         if wish.number != self.number:
             return
-        if self._sheet is not None and self._sheet.drawn.wish.dials != self.dials:
-            self._history = self._drawn_history.without(self.dials)
-            self._shot = self._sheet.drawn.wish.shot
+        before = None if self._sheet is None else self._sheet.drawn.wish
+        if before is not None and before.asks != wish.asks:
+            if before.dials != wish.dials:
+                self._history = self._drawn_history.without(wish.dials)
+            self._show = replace(self._show, models=before.models, beside=before.beside)
+            self._shot = before.shot
             self._wish()
         self.error = text
         self._start(self._tell_state())

@@ -27,7 +27,7 @@ export class Output {
   }
 
   told({saved}) {
-    if (saved) this.view.find('saved').textContent = `Saved ${saved} in the folder where Daguerre was started`;
+    if (saved) this.view.find('saved').textContent = `Saved ${saved} where Daguerre was started`;
   }
 
   async copy() {
