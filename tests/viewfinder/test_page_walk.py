@@ -227,6 +227,10 @@ class Walk:
 
     def plain(self) -> None:
         """Shows one picture, not denoised, as models and denoised pictures have other bits."""
+        self.page.run(  # a panel over it may have taken the click that ends it
+            "(() => { const e = document.getElementById('play');"
+            "if (e.ariaPressed === 'true') e.click(); })()"
+        )
         settled(self.page, self.server)
         for name in ("models", "denoised"):
             button = f"document.querySelector('[data-show={name}]')"
