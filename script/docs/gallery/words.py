@@ -399,11 +399,10 @@ camera is turned until the sun is at the very edge, just outside a pinhole's fra
 still in the picture.
 
 The polynomial ghosts follow the construction kit of Hullin, Hanika and Heidrich
-(script/docs/gallery/polynomial_ghosts.py): a Taylor series for each pair and colour, about the
-centre of its light. They include the front rim and the iris but no other mounts, and take the
-light of each ghost from `daguerre lens NAME --flare`. They leave out ghosts that have no series
-there, such as the crescent at the right edge of the third row; the thin streaks are series beyond
-their range of validity. The 2D effect uses neither lens nor sun: its ghosts are invented, and
+(script/docs/gallery/polynomial_ghosts.py): a Taylor series of degree 7 for each pair and colour,
+about the middle of its light. They include the iris but no other mounts, and take the light of
+each ghost from `daguerre lens NAME --flare`; with `--polynomial 7` that command prints the error of
+each series. The 2D effect uses neither lens nor sun: its ghosts are invented, and
 vanish with the sun. [Scatter](../scatter.md) covers another part of flare: light that barrel,
 blades and glass scatter.""",
     (
