@@ -83,7 +83,7 @@ COVERED = """(() => {
     const b = e.getBoundingClientRect();
     const [x, y] = [b.left + b.width / 2, b.top + b.height / 2];
     return !e.contains(document.elementFromPoint(x, y)); })()"""
-#: What a finger hits 21 px off the middle is the control itself; its label is as large.
+#: A finger that is 21 px off the middle still hits the control; its label is as large.
 SMALL = """(() => {
     const own = e.matches('[type=radio], [type=checkbox]') ? [e, ...e.labels] : [e];
     const b = e.getBoundingClientRect(), [x, y] = [b.left + b.width / 2, b.top + b.height / 2];
