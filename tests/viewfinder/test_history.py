@@ -12,6 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 import daguerre as dg
+from daguerre.viewfinder import rungs
 from daguerre.viewfinder.dials import Dials
 from daguerre.viewfinder.history import MOST, PAUSE_S, History, Steps
 from daguerre.viewfinder.stage import Stage
@@ -263,6 +264,18 @@ def test_a_stop_of_the_scene_gives_way_to_a_lens_that_opens_less() -> None:
         until(one, lambda: one.state["note"])
         rests(one, server)
         assert one.state["dials"] == {"lens": TESSAR, "f_stop": "2.8"}
+
+
+def test_models_that_cannot_be_drawn_go_back(server: Live, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rungs, "MODELS", ("pinhole", "none", "exact"))
+    with page(server) as one:
+        one.until_rest(0)
+        does(one, server, turn={"lens": GAUSS})
+        one.send(show={"denoised": False, "models": True, "tint": "none"})
+        until(one, lambda: one.state["error"])
+        rests(one, server)
+        assert not one.state["show"]["models"]
+        assert one.state["dials"] == {"lens": GAUSS}
 
 
 def test_a_step_that_was_never_drawn_and_cannot_be_is_passed_by(server: Live) -> None:
