@@ -233,7 +233,7 @@ def field_curvature(figure: Figure) -> None:
 
 
 def distortion(figure: Figure) -> None:
-    """What becomes of a square grid through three lenses."""
+    """A square grid through three lenses."""
     shown = (
         ("barrel", bench_of(ZOOM, zoom_mm=14.5, f_stop=8, focus_m=5.6)),
         ("pincushion", bench_of(ZOOM, zoom_mm=29, f_stop=8, focus_m=13)),
@@ -279,7 +279,7 @@ def flares(figure: Figure) -> None:
         axes.set_title(f"Reflected by surface {far}, then by surface {near}")
 
 
-#: What each diagram shows, and the function that draws it.
+#: Each diagram's topic, and the function that draws it.
 DIAGRAMS: dict[str, tuple[str, Callable[[Figure], None]]] = {
     "spherical": ("Rays through the rim cross the axis before those through the centre", spherical),
     "coma": ("Rings of the pupil land on the film as circles, displaced along a tail", coma),
