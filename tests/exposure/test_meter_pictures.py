@@ -224,3 +224,9 @@ def test_a_metered_picture_is_as_metered(
     words = ("--exposure", mode, "--lens", lens, *given)
     assert render(*words, "-o", "a.exr", quick=("--res", "96x64", "--spp", "16")) == 0
     assert f"{mode}, as metered\n" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("mode", ["bright", "", 3, None, {1: None}, bytearray(b"auto")], ids=repr)
+def test_an_exposure_mode_that_does_not_exist_is_named(mode: object) -> None:
+    with pytest.raises(dg.UsageError, match="camera: exposure: wanted light, manual, auto, A, S"):
+        dg.render(dg.Scene(), dg.Camera(exposure=mode), resolution=(8, 8), spp=1)  # type: ignore[arg-type]

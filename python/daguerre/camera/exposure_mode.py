@@ -78,8 +78,12 @@ def split_mode(exposure: str, meter: str = "") -> tuple[str, str]:
 
 
 def is_automatic(exposure: str) -> bool:
-    """Whether a meter chooses the exposure in a mode."""
-    return split_mode(exposure)[0] in AUTOMATIC
+    """Whether a meter chooses the exposure in a mode of a camera.
+
+    Raises:
+        UsageError: There is no such mode.
+    """
+    return split_mode(mode_of("camera: exposure", exposure))[0] in AUTOMATIC
 
 
 def chosen_by(exposure: str) -> tuple[str, ...]:
