@@ -83,6 +83,12 @@ class Browser:
         self.call("Page.navigate", url="about:blank")
         self.call("Page.navigate", url=url)
 
+    def reload(self) -> None:
+        """Reloads the page, and waits until the one before is gone."""
+        self.run("window.isBefore = true")
+        self.call("Page.reload")
+        self.until("!window.isBefore && document.readyState === 'complete'")
+
     def run(self, script: str) -> Any:
         """Value of a JavaScript expression, promises awaited."""
         found = self.call(

@@ -230,13 +230,13 @@ def test_what_was_saved_moves_nothing(chromium: Browser, server: Live) -> None:
 @pytest.mark.parametrize(("size", "word"), [(PHONE, "Tap"), (DESK, "Click")], indirect=["size"])
 def test_a_hint_stays_until_the_picture_is_touched(page: Browser, word: str) -> None:
     page.run("sessionStorage.clear()")
-    page.run("location.reload()")
+    page.reload()
     hint = "document.getElementById('hint')"
     page.until(f"{hint}?.checkVisibility() && {RESTS}")
     assert page.run(f"{hint}.textContent").startswith(f"{word} to focus")
     page.click("#picture")
     page.until(f"{hint}.hidden")
-    page.run("location.reload()")
+    page.reload()
     page.until(RESTS)
     assert page.run(f"{hint}.hidden")
     page.run("sessionStorage.clear()")
