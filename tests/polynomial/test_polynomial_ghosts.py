@@ -248,3 +248,8 @@ def test_reflections_of_the_body_have_no_polynomials(bench: Bench) -> None:
 def test_light_comes_toward_the_film(bench: Bench) -> None:
     with pytest.raises(UsageError, match="wanted z > 0"):
         ghost_rays(bench, (8, 6), (0, 0.1, -1))
+
+
+def test_surfaces_that_do_not_exist_are_named(bench: Bench) -> None:
+    with pytest.raises(InputError, match=r"ghost: wanted surfaces of 0 \.\. "):
+        trace_ghost(bench, (-8, 2), np.zeros((1, 4)))

@@ -17,7 +17,7 @@ import daguerre._core as _core
 from daguerre.cached import cached_property
 from daguerre.checks import number, numbers, rows, whole
 from daguerre.doors import guarded
-from daguerre.errors import InputError, UsageError
+from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.files.value import BriefRecord
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM, check_wavelength
 
@@ -166,9 +166,10 @@ def trace_ghost(
     origins = np.hstack([rays[:, :2], np.zeros_like(dz)])
     directions = np.hstack([rays[:, 2:], dz])
     nm = np.full(len(rays), float(wavelength_nm))
-    points, out, _, _, _, stopped = _stopped_down(bench).rays(
-        origins, directions, nm, True, True, (int(surfaces[0]), int(surfaces[1]))
-    )
+    with core_errors(InputError):
+        points, out, _, _, _, stopped = _stopped_down(bench).rays(
+            origins, directions, nm, True, True, (int(surfaces[0]), int(surfaces[1]))
+        )
     with np.errstate(divide="ignore", invalid="ignore"):
         landed = points[:, :2] + ((bench.film_z - points[:, 2:]) / out[:, 2:]) * out[:, :2]
     landed[(stopped >= 0) | ~(out[:, 2] > 0)] = np.nan
