@@ -64,8 +64,13 @@ def alone(stage: Stage, dials: Dials) -> Frame:
         ({"f_stop": "8"}, {"lens": SLOWER}, {"lens": SLOWER, "f_stop": "8", "focus_distance": "3"}),
         ({"iso": "400"}, {"f_stop": "4"}, {"f_stop": "4"}),
         ({}, {"lens_model": "thin"}, {"lens_model": "thin"}),
+        (
+            {"f_stop": None, "t_stop": "2.2"},
+            {"lens": SLOWER},
+            {"lens": SLOWER, "f_stop": repr(WIDEST), "focus_distance": "3"},
+        ),
     ],
-    ids=["as wide as it can", "same stop", "stop", "model"],
+    ids=["as wide as it can", "same stop", "stop", "model", "from a T-stop"],
 )
 @pytest.mark.parametrize("mode", ["light", "auto"])
 def test_each_picture_has_the_bits_of_that_drawn_alone(

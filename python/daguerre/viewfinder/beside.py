@@ -13,6 +13,7 @@ from .shot import Shot
 from .sight import offset_m
 from .stage import Stage
 from .switches import suited
+from .widest import widest_stop
 
 #: Dials that may differ.
 NAMES = ("lens", "f_stop", "lens_model")
@@ -53,8 +54,7 @@ def other_of(stage: Stage, first: Shot, change: Mapping[str, str]) -> Other:
             distance = lens.focus_distance_m + offset_m(first.camera, lens)
             camera = camera.with_(focus_distance=distance)
         if lens.f_stop is not None:
-            open_ = stage.set_up(replace(first, camera=camera.with_(f_stop=None)))
-            widest = open_.widest_stop if open_.glass else 0.0
+            widest = widest_stop(stage, replace(first, camera=camera))
             camera = camera.with_(f_stop=max(lens.f_stop, widest))
     shot = replace(first, camera=camera, chosen=None)
     other = stage.set_up(shot)

@@ -1,4 +1,4 @@
-"""Widest: the stop of a lens that does not open as wide as the dials are set."""
+"""Widest: the smallest f-stop of a lens, and dials at it."""
 
 from __future__ import annotations
 
@@ -8,9 +8,18 @@ from daguerre.lenses.errors import LensError
 
 from .dials import Dials
 from .drawn import Wish
+from .shot import Shot
+from .stage import Stage
 
 #: Dials that set the opening.
 _STOPS = ("f_stop", "t_stop", "aperture_diameter")
+
+
+def widest_stop(stage: Stage, shot: Shot) -> float:
+    """Smallest f-stop of the lens of a shot; 0: an ideal lens, which opens as wide as asked."""
+    camera = shot.camera.with_(f_stop=None, t_stop=None)
+    lens = stage.set_up(replace(shot, camera=camera))
+    return lens.widest_stop if lens.glass else 0.0
 
 
 def opened_as_wide(wish: Wish, error: Exception, before: Dials) -> Dials | None:
@@ -27,6 +36,4 @@ def opened_as_wide(wish: Wish, error: Exception, before: Dials) -> Dials | None:
     stops = [[dials.texts.get(name) for name in _STOPS] for dials in (before, wish.dials)]
     if not isinstance(error, LensError) or error.code != "lens-f-stop" or stops[0] != stops[1]:
         return None
-    camera = wish.shot.camera.with_(f_stop=None, t_stop=None)
-    widest = wish.stage.set_up(replace(wish.shot, camera=camera)).widest_stop
-    return wish.dials.turned({"f_stop": f"{widest:.3g}"})
+    return wish.dials.turned({"f_stop": f"{widest_stop(wish.stage, wish.shot):.3g}"})
