@@ -51,15 +51,10 @@ def key(session: Drawn) -> dict[str, str]:
     one = session.prepared
     return {
         "scene": one.built.hash,
-        "camera": camera_hash(one),
+        "camera": _hash_json(without_exposure(facts_of(one.setup))),
         "settings": _hash_json(_settings_facts(session)),
         "build": f"{build()} {one.core_scene.intersector}",
     }
-
-
-def camera_hash(one: Prepared) -> str:
-    """Hash of all of a camera that changes the light of its frames."""
-    return _hash_json(without_exposure(facts_of(one.setup)))
 
 
 def build() -> str:
