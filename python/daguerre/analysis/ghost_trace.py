@@ -26,12 +26,12 @@ from .bench import Bench
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-_LOOKS = 6  # most steps of the search for where light enters
-_NARROW, _WIDE = 32, 160  # rays across the search, and where it finds little
-_FEW = 16  # so few rays that pass may miss some of the light
-_FULL = 0.25  # share of rays that pass: the window needs no closer look
-_SHIFTS = (0.754877666, 0.569840291)  # of the places in their cells: even in two dimensions
-_STEP = 0.02  # of the window: the middle is as exact as that, and on the axis by symmetry
+_LOOKS = 6  # maximum number of steps of the search for where light enters
+_NARROW, _WIDE = 32, 160  # rays across a step of the search, and across a repeated step
+_FEW = 16  # with fewer rays that pass, the step is repeated with more rays
+_FULL = 0.25  # the search ends once this share of the rays passes
+_SHIFTS = (0.754877666, 0.569840291)  # low-discrepancy sequence (R2) for places within cells
+_STEP = 0.02  # the middle is rounded to this share of the window: symmetry puts it on the axis
 
 
 @guarded

@@ -151,7 +151,7 @@ def developed(
         planned: Plan from ``plan``.
         keep: Whether to return the bands, too.
         threads: Number of threads; 0: all cores.
-        kernels: Kernels from the frame before of the same plan; takes those that are made.
+        kernels: Cache of the kernels of this plan, which is filled; None: they are not kept.
 
     Raises:
         InputError: The plan comes from a damaged file.
@@ -196,7 +196,7 @@ def developed(
         if kept is not None:
             kept[:, :, b] = made[:, :, 0]
     mean = _whole(np.tensordot(light[bright] / light[bright].sum(), found, 1))
-    del known, found, half  # the loop's last one is a view of them all
+    del known, found, half  # frees kernels that no cache keeps; half is a view of them all
     for picture, (all_of, colours) in zip(pictures, sums, strict=True):
         rest = all_of()  # a new array at each call
         colours[dark] = 0

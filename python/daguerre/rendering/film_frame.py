@@ -68,7 +68,7 @@ def frame_of(
         aovs: Whether the film has auxiliary channels.
         waves: Whether to add diffraction if the film has bands; variance is always that before
             diffraction.
-        kernels: Kernels of diffraction from the frame before of the same picture.
+        kernels: Cache of the kernels of diffraction of this picture; None: they are not kept.
     """
     planes: dict[str, NDArray[Any]] = {}
     if aovs:

@@ -10,13 +10,13 @@ from daguerre.camera.parameters.needs import GHOSTS, SCATTER, TRACED
 from daguerre.rendering.parameters import DEFAULT
 from daguerre.rendering.settings import RenderSettings
 
-#: Settings that add it, and the models of lenses that can.
+#: Settings that add such light, and the lens models that support each.
 SWITCHES = {
     "flare": GHOSTS.kinds,
     "diffraction": (*TRACED, "thick", *WITH_IRIS),
     "scatter": SCATTER.kinds,
 }
-#: Settings that are refused unless one of others is on.
+#: Settings that need one of these switches to be on.
 COMPANIONS = {
     "flare_order": ("flare",),
     "flare_highlights": ("flare", "scatter"),

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .polynomial_ghosts import PolynomialReport
 
 SHOWN = 20
-MAX_DEGREE = 15  # that of polynomial.elements, which takes long to import
+MAX_DEGREE = 15  # as in polynomial.elements, which takes long to import
 
 
 def _angle(flag: str, text: str) -> float:
