@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from daguerre.checks import shown
 from daguerre.errors import UsageError, suggest
-from daguerre.files.html_table import html_table, shown_numbers
 from daguerre.files.value import Value, changed
 from daguerre.motion.values import Composite, Dynamic, is_dynamic, moves
 
@@ -236,6 +235,8 @@ class Camera(Value):
         return f"<Camera {', '.join(told + moving) or 'at the origin'}>"
 
     def _repr_html_(self) -> str:
+        from daguerre.files.html_table import html_table, shown_numbers
+
         rows = {
             "stands at": f"{shown_numbers(self.transform[:3, 3])} m",
             "looks along": shown_numbers(-self.transform[:3, 2]),

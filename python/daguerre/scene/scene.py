@@ -31,7 +31,6 @@ from daguerre.checks import number as check_number
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files import formats
-from daguerre.files.html_table import html_table
 from daguerre.files.value import Value
 from daguerre.motion.values import Composite, Dynamic, at, is_dynamic, moves
 from daguerre.parameters.keywords import takes
@@ -105,6 +104,8 @@ class Scene(Value):
         return f"<Scene {self.path.name if self.path else 'of arrays'}: {', '.join(words)}>"
 
     def _repr_html_(self) -> str:
+        from daguerre.files.html_table import html_table
+
         triangles = [len(mesh.indices) for mesh in self.meshes]
         placed = sum(triangles[instance.mesh] for instance in self.instances)
         lights = Counter(type(light).__name__ for light, _ in self.lights)
