@@ -230,7 +230,7 @@ def test_tints_change_neither_the_command_nor_the_picture() -> None:
         one.until_rest(0)
         own, command = one.bytes, one.state["command"]
         for kind in (*tint.TINTS[1:], tint.NONE):
-            one.send(show={"denoised": False, "models": False, "tint": kind})
+            one.send(show={"tint": kind})
             while (one.heads[-1]["tint"] or {"kind": "none"})["kind"] != kind:
                 one.step()
             while one.state["show"]["tint"] != kind:

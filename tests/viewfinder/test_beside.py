@@ -222,15 +222,11 @@ def server(stage: Stage) -> Iterator[Live]:
         yield running
 
 
-def showing(**changes: Any) -> dict[str, Any]:
-    return {"denoised": False, "models": False, "tint": "none", "beside": None, **changes}
-
-
 def test_the_picture_at_rest_has_both_at_full_size(server: Live) -> None:
     with guest(server) as one:
         one.until_rest(0)
         command = one.state["command"]
-        one.send(show=showing(beside={"lens": SLOWER}))
+        one.send(show={"beside": {"lens": SLOWER}})
         head = one.until_rest(1)
         assert (head["divided"], head["part"], head["size"][1]) == (True, 60, 40)
         width = head["size"][0]
@@ -250,7 +246,7 @@ def test_the_picture_at_rest_has_both_at_full_size(server: Live) -> None:
 def test_values_are_those_of_the_side_under_the_pointer(server: Live) -> None:
     with guest(server) as one:
         one.until_rest(0)
-        one.send(show=showing(beside={"f_stop": "8"}))
+        one.send(show={"beside": {"f_stop": "8"}})
         one.until_rest(1)
         picture = server.hub.picture
         assert picture is not None
@@ -278,7 +274,7 @@ def test_values_are_those_of_the_side_under_the_pointer(server: Live) -> None:
 )
 def test_others_are_refused(server: Live, beside: Any, told: str) -> None:
     with guest(server) as one:
-        one.send(show=showing(beside=beside))
+        one.send(show={"beside": beside})
         while not one.refused:
             one.step()
         assert told in one.refused[0]
@@ -287,10 +283,27 @@ def test_others_are_refused(server: Live, beside: Any, told: str) -> None:
 
 def test_models_and_a_picture_beside_exclude_each_other(server: Live) -> None:
     with guest(server) as one:
-        one.send(show=showing(models=True, beside={"f_stop": "4"}))
+        one.send(show={"models": True, "beside": {"f_stop": "4"}})
         while not one.refused:
             one.step()
         assert one.refused == ["show: wanted models or a picture beside, got both"]
+
+
+def test_models_end_a_picture_beside_and_it_ends_them(server: Live) -> None:
+    beside = {"f_stop": "4"}
+    with guest(server) as one:
+        one.until_rest(0)
+        for change, models, other in (
+            ({"beside": beside}, False, beside),
+            ({"models": True}, True, None),
+            ({"tint": "depth"}, True, None),
+            ({"beside": beside}, False, beside),
+        ):
+            one.send(show=change)
+            while (one.state["show"]["models"], one.state["show"]["beside"]) != (models, other):
+                one.step()
+        assert one.state["show"]["tint"] == "depth"
+        assert one.refused == []
 
 
 # The page

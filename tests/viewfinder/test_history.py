@@ -271,7 +271,7 @@ def test_models_that_cannot_be_drawn_go_back(server: Live, monkeypatch: pytest.M
     with page(server) as one:
         one.until_rest(0)
         does(one, server, turn={"lens": GAUSS})
-        one.send(show={"denoised": False, "models": True, "tint": "none"})
+        one.send(show={"models": True})
         until(one, lambda: one.state["error"])
         rests(one, server)
         assert not one.state["show"]["models"]

@@ -261,6 +261,7 @@ def turns(page: Browser, server: Live, selector: str, key: str, count: int = 3) 
         page.press(key)
     rests(page, before)
     settled(page, server)
+    settled(page, server)
 
 
 def test_the_focus_ring_goes_back_to_the_point_that_was_clicked(
@@ -422,6 +423,14 @@ def test_three_models_side_by_side(page: Browser) -> None:
     before = turn_of(page)
     page.click("[data-show=models]")
     rests(page, before)
+
+
+def test_two_ways_to_show_asked_for_at_once_both_hold(page: Browser) -> None:
+    buttons = "[...document.querySelectorAll('[data-tint=depth], [data-show=models]')]"
+    page.run(f"{buttons}.forEach((button) => button.click())")
+    page.until(f"{buttons}.every((button) => button.ariaPressed === 'true')")
+    page.run(f"{buttons}.forEach((button) => button.click())")
+    page.until(f"{buttons}.every((button) => button.ariaPressed === 'false')")
 
 
 def test_the_loupe_tells_linear_values(page: Browser, server: Live) -> None:
@@ -591,7 +600,8 @@ def test_a_scene_without_light_is_said(chromium: Browser) -> None:
     dark.environment = None
     with live(Stage(dark, dark.camera(), dg.RenderSettings.of(resolution=(60, 40), spp=1))) as one:
         chromium.open(f"http://{one.host}/#{TOKEN}")
-        text = chromium.until("document.getElementById('error')?.textContent")
+        text = chromium.until("document.getElementById('note')?.textContent")
+        assert chromium.run("document.getElementById('error').hidden")
     assert text.startswith("the scene has no lights")
 
 

@@ -20,7 +20,7 @@ from daguerre.frame.frame import Frame
 from daguerre.viewfinder import hub, previews, work
 from daguerre.viewfinder.drawn import Drawn
 from daguerre.viewfinder.image import image_of
-from daguerre.viewfinder.messages import Show
+from daguerre.viewfinder.show import Show
 from daguerre.viewfinder.stage import Stage
 
 from .chromium import browser, program
@@ -93,7 +93,7 @@ def turned(one: Page, turn: int, **changes: str) -> list[dict[str, Any]]:
 
 def shown(one: Page, denoised: bool | None) -> None:
     """Presses Denoise, and waits until the server says so."""
-    one.send(show={"denoised": denoised, "models": False, "tint": "none"})
+    one.send(show={"denoised": denoised})
     while one.state["show"]["denoised"] is not denoised:
         one.step()
 

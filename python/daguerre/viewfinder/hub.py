@@ -42,7 +42,7 @@ from .messages import (
     Reload,
     Save,
     Section,
-    Show,
+    ShowOtherwise,
     Turn,
     Undo,
     parse,
@@ -53,6 +53,7 @@ from .readings import readings_of
 from .reasons import reason_of
 from .rungs import MODELS
 from .saving import save, save_camera
+from .show import Show
 from .sight import distance_at
 from .stage import Stage
 from .switches import on_in
@@ -231,8 +232,8 @@ class Hub:
             case Save(kind):
                 path = await asyncio.to_thread(self._save, kind)
                 await self._tell_all({"saved": str(path)})
-            case Show():
-                await self._change_show(message)
+            case ShowOtherwise(changes):
+                await self._show_otherwise(self._show.changed(changes))
             case Reload():
                 self._stage = await asyncio.to_thread(self._stage.reload)
                 await self._go(self._history)
@@ -283,7 +284,7 @@ class Hub:
             Wish(self.number, self._stage, self.dials, self._shot, show.models, show.beside)
         )
 
-    async def _change_show(self, show: Show) -> None:
+    async def _show_otherwise(self, show: Show) -> None:
         """Shows pictures in another way; denoising begins with the picture that is there."""
         if show.denoised:
             extras.need("mitsuba_oidn", "denoise")

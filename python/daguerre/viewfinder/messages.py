@@ -12,9 +12,8 @@ from daguerre.checks import short
 from daguerre.errors import UsageError
 from daguerre.lenses.search import MOST
 
-from .beside import NAMES as BESIDE
-from .dials import DIALS, Dials
-from .tint import NONE, TINTS
+from .dials import DIALS
+from .show import check_changes
 
 #: Longest message, bytes.
 MAX_BYTES = 64 << 10
@@ -98,20 +97,10 @@ class Reload:
 
 
 @dataclass(frozen=True)
-class Show:
-    """Way in which pictures are shown.
+class ShowOtherwise:
+    """Changes of the way in which pictures are shown: attributes of ``Show`` and their values."""
 
-    Attributes:
-        denoised: Whether they are denoised; None: those on the way are, if that is fast.
-        models: Whether they are drawn by three models of the lens, side by side.
-        tint: One of ``TINTS``: by exposure or distance.
-        beside: Dial that differs in a second picture, and its text; None: there is none.
-    """
-
-    denoised: bool | None
-    models: bool
-    tint: str = NONE
-    beside: Mapping[str, str] | None = None
+    changes: Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -151,7 +140,7 @@ Message = (
     | Hold
     | Section
     | Reload
-    | Show
+    | ShowOtherwise
     | Drawing
     | Facts
     | Photograph
@@ -232,33 +221,8 @@ def _hold(value: Any) -> Hold:
     return Hold(value)
 
 
-def _show(value: Any) -> Show:
-    fits = isinstance(value, dict) and value.keys() - {"beside"} == {"denoised", "models", "tint"}
-    if (
-        not fits
-        or not isinstance(value["denoised"], bool | None)
-        or not isinstance(value["models"], bool)
-    ):
-        raise UsageError(
-            "show: wanted denoised: true, false or null, models: true or false, and tint; got "
-            f"{short(value)}"
-        )
-    if value["tint"] not in TINTS:
-        raise UsageError(f"show: tint: wanted {', '.join(TINTS)}; got {short(value['tint'])}")
-    if value.get("beside") is not None:
-        _check_beside(value["beside"])
-        if value["models"]:
-            raise UsageError("show: wanted models or a picture beside, got both")
-    return Show(**value)
-
-
-def _check_beside(value: Any) -> None:
-    fits = isinstance(value, dict) and len(value) == 1 and next(iter(value)) in BESIDE
-    if not fits or not all(isinstance(text, str) for text in value.values()):
-        raise UsageError(
-            f"show: beside: wanted one text, of {', '.join(BESIDE)}; got {short(value)}"
-        )
-    Dials().turned(value)
+def _show(value: Any) -> ShowOtherwise:
+    return ShowOtherwise(check_changes(value))
 
 
 def _drawing(value: Any) -> Drawing:

@@ -29,7 +29,7 @@ export class Beside {
   }
 
   show(beside) {
-    this.view.send({show: {...this.view.state.show, models: false, beside: beside || null}});
+    this.view.send({show: {beside: beside || null}});
   }
 
   // The choice

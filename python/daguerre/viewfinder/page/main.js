@@ -104,7 +104,7 @@ class Viewfinder {
     if (message.role) this.find('watches').hidden = this.mine;
     if (message.state) this.state = message.state;
     if (this.open && this.state && (message.state || message.refused)) this.update();
-    if (message.refused) this.complain(message.refused);
+    if (message.refused) this.say('error', message.refused);
     if (message.changed) {
       this.find('changed').hidden = false;
       this.find('changed').firstElementChild.textContent = `${message.changed} has changed.`;
@@ -128,9 +128,10 @@ class Viewfinder {
     this.find('status').textContent = text;
   }
 
-  complain(text) {
-    this.find('error').textContent = text;
-    this.find('error').hidden = !text;
+  /** Shows a line below the picture; none if the text is empty. */
+  say(line, text) {
+    this.find(line).textContent = text;
+    this.find(line).hidden = !text;
   }
 
   opened(found) {
@@ -144,7 +145,8 @@ class Viewfinder {
 
   update() {
     const {readings, error, note} = this.state;
-    this.complain([error, note, ...(readings.warnings ?? [])].filter(Boolean).join('; '));
+    this.say('error', error);
+    this.say('note', [note, ...(readings.warnings ?? [])].filter(Boolean).join('; '));
     if (readings.lens) {
       this.open.spp = readings.spp;
       this.tripod.stand(readings.place, readings.focus_m, this.current);

@@ -12,8 +12,8 @@ export class Tints {
     this.buttons = [...view.root.querySelectorAll('[data-tint]')];
     for (const button of this.buttons) {
       button.addEventListener('click', () => {
-        const {show} = view.state, {tint} = button.dataset;
-        view.send({show: {...show, tint: show.tint === tint ? 'none' : tint}});
+        const {tint} = button.dataset;
+        view.send({show: {tint: view.state.show.tint === tint ? 'none' : tint}});
       });
     }
   }

@@ -20,10 +20,7 @@ export class Tools {
       if (recall(button.dataset.toggle)) this.toggle(button, true);
     }
     for (const button of this.all('show')) {
-      button.addEventListener('click', () => {
-        const show = {...view.state.show, [button.dataset.show]: !pressed(button)};
-        view.send({show: {...show, beside: show.models ? null : show.beside}});
-      });
+      button.addEventListener('click', () => view.send({show: {[button.dataset.show]: !pressed(button)}}));
     }
     view.find('level').addEventListener('click', () => view.tripod.level());
     view.find('reset').addEventListener('click', () => {
