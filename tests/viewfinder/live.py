@@ -13,7 +13,8 @@ from typing import Any
 
 from daguerre.viewfinder.dials import Dials
 from daguerre.viewfinder.door import Door
-from daguerre.viewfinder.hub import Guest, Hub
+from daguerre.viewfinder.guests import Guest
+from daguerre.viewfinder.hub import Hub
 from daguerre.viewfinder.server import free_socket, serve
 from daguerre.viewfinder.stage import Stage
 

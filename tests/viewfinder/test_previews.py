@@ -20,6 +20,7 @@ from daguerre.frame.frame import Frame
 from daguerre.viewfinder import hub, previews, work
 from daguerre.viewfinder.drawn import Drawn
 from daguerre.viewfinder.image import image_of
+from daguerre.viewfinder.sheet import Sheet
 from daguerre.viewfinder.show import Show
 from daguerre.viewfinder.stage import Stage
 
@@ -75,7 +76,7 @@ def sheets(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int, bool]]:
     found: list[tuple[int, int, bool]] = []
     make = hub.Hub._sheet_of
 
-    def noted(self: hub.Hub, drawn: Drawn, *rest: Any, denoised: bool) -> hub.Sheet:
+    def noted(self: hub.Hub, drawn: Drawn, *rest: Any, denoised: bool) -> Sheet:
         if drawn.whole:
             found.append((drawn.wish.number, drawn.samples, denoised))
         return make(self, drawn, *rest, denoised=denoised)
@@ -144,7 +145,7 @@ def test_previews_change_neither_histogram_nor_values(
     histograms: dict[bool, dict[int, Any]] = {False: {}, True: {}}
     make = hub.Hub._sheet_of
 
-    def noted(self: hub.Hub, drawn: Drawn, image: Any, show: Show, *, denoised: bool) -> hub.Sheet:
+    def noted(self: hub.Hub, drawn: Drawn, image: Any, show: Show, *, denoised: bool) -> Sheet:
         if drawn.whole and drawn.wish.number == 1:
             histograms[denoised][drawn.samples] = image.histogram
         return make(self, drawn, image, show, denoised=denoised)

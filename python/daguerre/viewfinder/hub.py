@@ -3,31 +3,27 @@
 from __future__ import annotations
 
 import asyncio
-import itertools
-import json
-import math
 import shlex
 from collections.abc import Collection, Coroutine, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
-from daguerre import sensors, units
-from daguerre.camera.exposure_mode import METERS, MODES, chosen_by, split_mode
+from daguerre.camera.exposure_mode import chosen_by, split_mode
 from daguerre.camera.ideal import IDEAL
-from daguerre.development.looks import LOOKS
 from daguerre.errors import DaguerreError, UsageError
 from daguerre.files import extras
 from daguerre.frame.frame import Frame
 from daguerre.rendering.denoise import denoise
 
 from . import lens_list
-from .dials import DIALS, Dials, texts_of_words
+from .dials import Dials, texts_of_words
 from .drawn import Drawn, Wish
-from .glass import drawing_of, glass_at
+from .glass import drawing_of
+from .guests import Guest, Guests, Line
 from .history import History, Steps
-from .image import Image, image_of, value_at
+from .image import Image, image_of
 from .messages import (
     Draw,
     Drawing,
@@ -47,57 +43,19 @@ from .messages import (
     Undo,
     parse,
 )
+from .offers import offers
 from .painter import Painter
 from .previews import Previews
 from .readings import readings_of
 from .reasons import reason_of
-from .rungs import MODELS
 from .saving import save, save_camera
+from .sheet import Sheet
 from .show import Show
-from .sight import distance_at
 from .stage import Stage
 from .switches import on_in
 from .tev import Tev
-from .tint import legends
+from .watch import watch
 from .widest import opened_as_wide
-
-#: Time between two looks at the scene's file, s.
-_LOOK_S = 2.5
-#: Looks from one sign of life to the next: browsers show pages no pings of the protocol.
-_LOOKS = 4
-
-
-class Line(Protocol):
-    """Connection to a page."""
-
-    async def send(self, message: str | bytes) -> None:
-        """Sends a message."""
-
-
-@dataclass(eq=False)
-class Guest:
-    """A page that is connected.
-
-    Attributes:
-        line: Its connection.
-        turns: Whether it may turn the dials.
-        busy: Number of the picture that is on its way; None: none.
-        sent: Number of the newest picture that was sent.
-    """
-
-    line: Line
-    turns: bool
-    busy: int | None = None
-    sent: int = 0
-
-
-@dataclass(frozen=True)
-class Sheet:
-    """A picture as it goes to pages: its number, its head and its bytes."""
-
-    number: int
-    drawn: Drawn
-    bytes: bytes
 
 
 class Hub:
@@ -135,13 +93,13 @@ class Hub:
         self._read = -1
         self._sheet: Sheet | None = None
         self._sheets = 0
-        self._guests: list[Guest] = []
+        self._guests = Guests()
         self._tasks: set[asyncio.Task[None]] = set()
         self._shot = stage.shot(dials)
         self._previews = Previews()
         self._painter = Painter(self.publish, self._failed)
         self._wish()
-        self._start(self._watch())
+        self._start(watch(stage.scene.path, self._guests))
 
     def close(self) -> None:
         """Ends the painter."""
@@ -154,32 +112,27 @@ class Hub:
 
     def join(self, line: Line) -> Guest:
         """Lets a page in; the first one turns."""
-        guest = Guest(line, not any(other.turns for other in self._guests))
-        self._guests.append(guest)
-        return guest
+        return self._guests.join(line)
 
     async def leave(self, guest: Guest) -> None:
         """Forgets a page; if it turned, the next one does."""
-        self._guests.remove(guest)
         if guest.turns:
             self._steps.let_go(self._loop.time())
-        if guest.turns and self._guests:
-            self._guests[0].turns = True
-            await self._tell(self._guests[0], {"role": "turns"})
+        await self._guests.leave(guest)
 
     async def welcome(self, guest: Guest) -> None:
         """Sends a page all that it shows at first."""
-        await self._tell(guest, {"role": "turns" if guest.turns else "watches"})
-        await self._tell(guest, {"open": self._opened()})
-        await self._tell(guest, self._state())
-        await self._offer(guest)
+        await guest.tell({"role": "turns" if guest.turns else "watches"})
+        await guest.tell({"open": self._opened()})
+        await guest.tell(self._state())
+        await guest.offer(self._sheet)
 
     async def hear(self, guest: Guest, text: str | bytes) -> None:
         """Acts on a message of a page; a wrong one is answered by its reason."""
         try:
             await self._act(guest, parse(text))
         except Exception as error:  # whatever it is, the page stays
-            await self._tell(guest, {"refused": reason_of(error)})
+            await guest.tell({"refused": reason_of(error)})
 
     @property
     def dials(self) -> Dials:
@@ -203,20 +156,22 @@ class Hub:
             case Got(number):
                 if guest.busy == number:
                     guest.busy = None
-                    await self._offer(guest)
+                    await guest.offer(self._sheet)
             case Probe():
-                await self._tell(guest, {"value": await asyncio.to_thread(self._value, message)})
+                sheet = self._sheet
+                value = None if sheet is None else await asyncio.to_thread(sheet.value, message)
+                await guest.tell({"value": value})
             case Section(x, y):
-                found = await asyncio.to_thread(self._section, x, y)
-                await self._tell(guest, {"section": found})
+                found = await asyncio.to_thread(self._newest("section").section, x, y)
+                await guest.tell({"section": found})
             case Drawing(name):
-                await self._tell(guest, {"drawing": await asyncio.to_thread(drawing_of, name)})
+                await guest.tell({"drawing": await asyncio.to_thread(drawing_of, name)})
             case Facts():
-                await self._tell(guest, {"facts": await asyncio.to_thread(lens_list.facts)})
+                await guest.tell({"facts": await asyncio.to_thread(lens_list.facts)})
             case Photograph(name):
-                await self._tell(guest, {"photograph": lens_list.photograph(name)})
+                await guest.tell({"photograph": lens_list.photograph(name)})
             case Find(words):
-                await self._tell(guest, {"found": lens_list.found(words)})
+                await guest.tell({"found": lens_list.found(words)})
             case _ if not guest.turns:
                 raise UsageError("view: read-only: another page controls the camera")
             case Turn(changes):
@@ -231,13 +186,13 @@ class Hub:
                 (self._steps.hold if begins else self._steps.let_go)(self._loop.time())
             case Save(kind):
                 path = await asyncio.to_thread(self._save, kind)
-                await self._tell_all({"saved": str(path)})
+                await self._guests.tell({"saved": str(path)})
             case ShowOtherwise(changes):
                 await self._show_otherwise(self._show.changed(changes))
             case Reload():
                 self._stage = await asyncio.to_thread(self._stage.reload)
                 await self._go(self._history)
-                await self._tell_all({"open": self._opened()})
+                await self._guests.tell({"open": self._opened()})
 
     async def _turn(
         self,
@@ -266,7 +221,7 @@ class Hub:
         self._shot, self._history, self.error, self._note = shot, history, "", ""
         self._wish()
         if guest is not None:
-            await self._tell(guest, {"heard": True})
+            await guest.tell({"heard": True})
         await self._tell_state()
 
     def _kept(self, changes: Mapping[str, str | None]) -> dict[str, str | None]:
@@ -298,76 +253,20 @@ class Hub:
             await asyncio.to_thread(self.publish, self._sheet.drawn)
         await self._tell_state()
 
-    async def _watch(self) -> None:
-        """Tells the pages when the scene's file changes, and at times that the server lives."""
-        path = self._stage.scene.path
-        known = _stamp(path)
-        for look in itertools.count(1):
-            await asyncio.sleep(_LOOK_S)
-            now = _stamp(path)
-            if now not in (known, None):
-                known = now
-                await self._tell_all({"changed": "" if path is None else path.name})
-            if look % _LOOKS == 0:
-                await self._tell_all({"ping": look})
-
-    def _value(self, probe: Probe) -> dict[str, Any] | None:
-        """Values under the pointer, of the picture that is there."""
-        sheet = self._sheet  # the next one may come meanwhile
-        if sheet is None or probe.part >= max(1, len(sheet.drawn.panels)):
-            return None
-        x, y, drawn = probe.x, probe.y, sheet.drawn
-        shown = drawn.panels[probe.part] if drawn.panels else drawn
-        width, height = drawn.wish.shot.settings.film.resolution
-        own, (left, top, *_) = shown.session.prepared.setup.resolution, shown.session.crop
-        found = value_at(shown.frame, x * own[0] // width - left, y * own[1] // height - top)
-        distance = distance_at(
-            shown.session, (x + 0.5) * own[0] / width, (y + 0.5) * own[1] / height
-        )
-        return found and {
-            **found,
-            "picture": sheet.number,
-            "samples": drawn.samples,
-            "distance_m": distance if math.isfinite(distance) else None,
-        }
-
-    def _section(self, x: float, y: float) -> dict[str, Any]:
+    def _newest(self, use: str) -> Sheet:
+        """The picture that is there, for a use that needs one."""
         if self._sheet is None:
-            raise UsageError("section: the picture is not drawn yet; try again in a moment")
-        drawn = self._sheet.drawn
-        width, height = drawn.wish.shot.settings.film.resolution
-        own = drawn.session.prepared.setup.resolution
-        return glass_at(drawn.session, x * own[0] / width, y * own[1] / height) | {"x": x, "y": y}
+            raise UsageError(f"{use}: the picture is not drawn yet; try again in a moment")
+        return self._sheet
 
     def _save(self, kind: str) -> Path:
-        if self._sheet is None:
-            raise UsageError("save: the picture is not drawn yet; try again in a moment")
+        drawn = self._newest("save").drawn
         if kind == "json":
-            return save_camera(self._sheet.drawn, self._folder, self.command, self.dials.texts)
-        return save(self._sheet.drawn, self._folder, kind)
+            return save_camera(drawn, self._folder, self.command, self.dials.texts)
+        return save(drawn, self._folder, kind)
 
     def _opened(self) -> dict[str, Any]:
-        """All that the rings can choose from."""
-        scene, settings = self._stage.scene, self._stage.settings
-        return {
-            "scene": "scene" if scene.path is None else scene.path.name,
-            "lenses": lens_list.offered(),
-            "shutter_types": list(DIALS["shutter_type"].choices),
-            "sensors": [*units.SENSORS, *sensors.names()],
-            "looks": list(LOOKS),
-            "cameras": list(scene.cameras),
-            "duration_s": scene.duration,
-            "denoises": not extras.missing("mitsuba_oidn"),
-            "models": list(MODELS),
-            "modes": list(MODES),
-            "meters": list(METERS),
-            "legends": legends(),
-            "dials": dict(self._first.texts),
-            "resolution": settings.film.resolution,
-            "window": self._shot.window,
-            "spp": self._shot.settings.sampling.most,
-            "lit": on_in(settings),
-        }
+        return offers(self._stage, self._first, self._shot)
 
     def _state(self) -> dict[str, Any]:
         camera = self._shot.camera
@@ -430,7 +329,7 @@ class Hub:
             drawn, image, show, denoised=bool(show.denoised) and drawn.is_one
         )
         for guest in self._guests:
-            self._start(self._offer(guest))  # before the numbers, which take the page longer
+            self._start(guest.offer(self._sheet))  # before the numbers, which take the page longer
         if (readings, self.number) != (self._readings, self._read):
             self._readings, self._read = readings, self.number
             self._start(self._tell_state())
@@ -444,29 +343,11 @@ class Hub:
             sheet = self._sheet_of(drawn, image, show, denoised=True)
             self._sheet = replace(sheet, drawn=newest)  # values and files are never denoised
             for guest in self._guests:
-                self._start(self._offer(guest))
+                self._start(guest.offer(self._sheet))
 
     def _sheet_of(self, drawn: Drawn, image: Image, show: Show, *, denoised: bool) -> Sheet:
         self._sheets += 1
-        head = {
-            "picture": self._sheets,
-            "turn": drawn.wish.number,
-            "size": image.size,
-            "kind": image.kind,
-            "samples": drawn.samples,
-            "rests": drawn.rests,
-            "whole": drawn.whole,
-            "denoised": denoised,
-            "previews": show.denoised is None,
-            "panels": [panel.name for panel in drawn.panels],
-            "main": drawn.main,
-            "part": image.part,
-            "divided": bool(drawn.panels) and drawn.wish.beside is not None,
-            "histogram": image.histogram,
-            "tint": image.tint,
-        }
-        text = json.dumps(head).encode()
-        return Sheet(self._sheets, drawn, len(text).to_bytes(4, "little") + text + image.bytes)
+        return Sheet.of(self._sheets, drawn, image, show, denoised=denoised)
 
     def _report(self, wish: Wish, text: str) -> None:
         """Says why a wish cannot be drawn, and goes back to what could: dials, models, beside."""
@@ -498,30 +379,6 @@ class Hub:
         self._tasks.add(task)  # the loop itself keeps no hold of it
         task.add_done_callback(self._tasks.discard)
 
-    async def _offer(self, guest: Guest) -> None:
-        """Sends a page the newest picture, unless one is on its way."""
-        sheet = self._sheet
-        if sheet is None or guest.busy is not None or guest.sent == sheet.number:
-            return
-        guest.busy = guest.sent = sheet.number
-        await guest.line.send(sheet.bytes)
-
-    async def _tell(self, guest: Guest, message: dict[str, Any]) -> None:
-        await guest.line.send(json.dumps(message))
-
     async def _tell_state(self) -> None:
         """Tells all pages the state of the moment: one from before a turn would undo it there."""
-        await self._tell_all(self._state())
-
-    async def _tell_all(self, message: dict[str, Any]) -> None:
-        text = json.dumps(message)
-        await asyncio.gather(*(guest.line.send(text) for guest in self._guests))
-
-
-def _stamp(path: Path | None) -> tuple[int, int] | None:
-    """Time and size of a file; None: there is none."""
-    try:
-        facts = None if path is None else path.stat()
-    except OSError:
-        return None
-    return None if facts is None else (facts.st_mtime_ns, facts.st_size)
+        await self._guests.tell(self._state())

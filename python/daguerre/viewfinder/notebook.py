@@ -15,7 +15,8 @@ from daguerre.scene.scene import Scene
 
 from .bundle import PAGE, bundled
 from .dials import Dials
-from .hub import Guest, Hub
+from .guests import Guest
+from .hub import Hub
 from .opening import opened
 from .stage import Stage
 

@@ -1,0 +1,67 @@
+"""Pages that are connected: one turns the dials, the others watch."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from .sheet import Sheet
+
+
+class Line(Protocol):
+    """Connection to a page."""
+
+    async def send(self, message: str | bytes) -> None:
+        """Sends a message."""
+
+
+@dataclass(eq=False)
+class Guest:
+    """A page that is connected.
+
+    Attributes:
+        line: Its connection.
+        turns: Whether it may turn the dials.
+        busy: Number of the picture that is on its way; None: none.
+        sent: Number of the newest picture that was sent.
+    """
+
+    line: Line
+    turns: bool
+    busy: int | None = None
+    sent: int = 0
+
+    async def tell(self, message: dict[str, Any]) -> None:
+        """Sends the page a message."""
+        await self.line.send(json.dumps(message))
+
+    async def offer(self, sheet: Sheet | None) -> None:
+        """Sends the page a picture, unless it has it or another one is on its way."""
+        if sheet is None or self.busy is not None or self.sent == sheet.number:
+            return
+        self.busy = self.sent = sheet.number
+        await self.line.send(sheet.bytes)
+
+
+class Guests(list[Guest]):
+    """All pages, in the order in which they came."""
+
+    def join(self, line: Line) -> Guest:
+        """Lets a page in; the first one turns."""
+        guest = Guest(line, not any(other.turns for other in self))
+        self.append(guest)
+        return guest
+
+    async def leave(self, guest: Guest) -> None:
+        """Forgets a page; if it turned, the next one does."""
+        self.remove(guest)
+        if guest.turns and self:
+            self[0].turns = True
+            await self[0].tell({"role": "turns"})
+
+    async def tell(self, message: dict[str, Any]) -> None:
+        """Sends all pages a message."""
+        text = json.dumps(message)
+        await asyncio.gather(*(guest.line.send(text) for guest in self))
