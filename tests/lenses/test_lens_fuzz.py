@@ -103,6 +103,7 @@ def check(data: bytes, suffix: str) -> str:
 @example((b"SURF 0\nSURF 1\nSURF 2\n", ".zmx"))
 @example((b"SO 0 1e14;S 0 0;SI 0 0", ".seq"))
 @example((b"0 0 0 0", ".dat"))
+@example((SEEDS[-1][0].replace('"a4"', r'"\u007f\u202e"').encode(), ".json"))
 def test_broken_files_are_lenses_or_errors(case: tuple[bytes, str]) -> None:
     check(*case)
 

@@ -34,7 +34,8 @@ def clean(name: str) -> str:
 
 def _named(key: str, limit: int = 60) -> str:
     """Formats a key of an untrusted file for a message."""
-    return key if len(key) <= limit else f"{key[: limit - 20]}... ({len(key)} long)"
+    short_key = key if len(key) <= limit else f"{key[: limit - 20]}... ({len(key)} long)"
+    return clean(short_key)
 
 
 class Item:
