@@ -1,25 +1,49 @@
-"""Composes the pictures of a word into one sheet."""
+#!/usr/bin/env python3
+"""Composes the pictures of an imperfection into one sheet.
+
+    python script/docs/gallery/sheet.py NAME OUT.png
+
+Reads the OpenEXR pictures that the commands of docs/gallery/imperfections.md write.
+"""
 
 from __future__ import annotations
 
+import argparse
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 import OpenImageIO as oiio
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from ways import Panel, Word
+from ways import OUT, Panel, Word
+from words import WORDS
 
 import daguerre as dg
 
-matplotlib.rcParams["font.family"] = "DejaVu Sans"
 Floats = NDArray[np.float32]
 Box = tuple[int, int, int, int]
 STRIP = 26  # px, for the caption
 GAP = 6  # px between panels
 INK, PAPER = 40, 255
+
+
+def main() -> None:
+    """Writes the sheet of one word."""
+    parser = argparse.ArgumentParser(description="Composes the pictures of an imperfection.")
+    words = {word.name: word for word in WORDS}
+    parser.add_argument("name", choices=words)
+    parser.add_argument("output", type=Path)
+    given = parser.parse_args()
+    write(compose(words[given.name], Path(OUT)), given.output)
+
+
+def write(pixels: NDArray[np.uint8], file: Path, quality: int = 90) -> None:
+    """Writes a picture; the quality counts for a JPEG."""
+    picture = oiio.ImageBuf(np.ascontiguousarray(pixels))
+    picture.specmod().attribute("Compression", f"jpeg:{quality}")
+    if not picture.write(str(file)):
+        raise SystemExit(picture.geterror())
 
 
 def read(file: Path, layer: str = "") -> tuple[dict[str, Floats], Box]:
@@ -104,6 +128,12 @@ def written(text: str, wide: int, high: int, paper: int = PAPER) -> NDArray[np.u
     figure = Figure(figsize=(wide / 100, high / 100), dpi=100, facecolor=str(paper / 255))
     canvas = FigureCanvasAgg(figure)
     shade = str(INK / 255)
-    figure.text(0.5, 0.5, text, fontsize=11, color=shade, ha="center", va="center")
+    figure.text(
+        0.5, 0.5, text, family="DejaVu Sans", fontsize=11, color=shade, ha="center", va="center"
+    )
     canvas.draw()
     return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+
+
+if __name__ == "__main__":
+    main()

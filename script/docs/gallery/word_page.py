@@ -7,11 +7,9 @@ import math
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-import numpy as np
-import OpenImageIO as oiio
 from agreement import Figures, agreement
 from rays import DIAGRAMS, draw
-from sheet import compose
+from sheet import compose, write
 from ways import OUT, Panel, Word
 from words import WORDS
 
@@ -63,10 +61,7 @@ def make(word: Word, run: Callable[[str], None]) -> None:
             run(command)
     if word.name in DIAGRAMS:
         draw(word.name, PAGES / f"rays_{word.name}.svg")
-    pixels = oiio.ImageBuf(np.ascontiguousarray(compose(word, ROOT / OUT)))
-    pixels.specmod().attribute("Compression", f"jpeg:{word.quality}")
-    if not pixels.write(str(PAGES / f"{word.name}.jpg")):
-        raise SystemExit(pixels.geterror())
+    write(compose(word, ROOT / OUT), PAGES / f"{word.name}.jpg", word.quality)
     known = json.loads(FIGURES.read_text()) if FIGURES.exists() else {}
     known[word.name] = [_rounded(figures) for figures in agreement(word, ROOT / OUT)]
     FIGURES.write_text(json.dumps(known, indent=1, sort_keys=True) + "\n")
