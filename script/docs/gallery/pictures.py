@@ -318,7 +318,7 @@ MOTION = [
 
 LAMPS, ARCADE = "out/lens_scenes/lamps.glb", "out/lens_scenes/arcade.glb"
 DISCS = "--max-depth 1 --spp 4 --light-paths 6000000 --denoise"
-FINE_DISCS = "--max-depth 1 --spp 512"  # the denoiser would draw cracks into them
+ENLARGED = "--sensor 18x12 --res 375x250 --max-depth 1"
 FROM_LAMPS = "--res 375x250 --max-depth 1 --spp 48"
 PANEL = "--res 375x250 --spp 32 --denoise"
 TABLE = "--lens canon-ts-e-90mm-f2.8-macro --f-stop 2.8 --focus-at 187,137"
@@ -374,10 +374,10 @@ GLASS = [
         "undercorrected spherical aberration.",
         LAMPS,
         (
-            f"--lens zeiss-biotar-50mm-f1.4 --f-stop 1.4 --focus 0.6 --res 1125x750 "
-            f"--crop left=375,top=250,right=750,bottom=500 {FINE_DISCS}",
-            f"--lens nikon-fuwatto-soft-90mm-f4.8 --f-stop 4.8 --res 1125x750 "
-            f"--crop left=375,top=250,right=750,bottom=500 {FINE_DISCS}",
+            "--lens zeiss-biotar-50mm-f1.4 --f-stop 1.4 --focus 0.6 "
+            f"{ENLARGED} --spp 4 --light-paths 4000000",
+            "--lens nikon-fuwatto-soft-90mm-f4.8 --f-stop 4.8 --shift 0,8.6 "
+            f"{ENLARGED} --spp 4 --light-paths 4000000",
         ),
         columns=2,
     ),
