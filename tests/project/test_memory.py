@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -165,3 +166,18 @@ def test_memory_that_ends_within_a_pass_is_one_error(
     Path("a.exr").unlink()
     assert main(command) == 0
     assert np.array_equal(resumed.rgb, dg.load_frame("a.exr").rgb)
+
+
+def test_a_thread_that_cannot_start_is_no_bug(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def start(self: threading.Thread) -> None:
+        raise RuntimeError("can't start new thread")
+
+    scene = str(triangle().glb(tmp_path / "one.glb"))
+    monkeypatch.setattr(threading.Thread, "start", start)
+    out = str(tmp_path / "a.png")
+    assert main(["render", scene, "--res", "40x30", "--sky", "1,1,1", "-q", "-o", out]) == 3
+    told = capsys.readouterr().err
+    assert told.startswith("daguerre: error: cannot start another thread: memory, or")
+    assert told.count("\n") == 1

@@ -88,6 +88,12 @@ def _run(arguments: Sequence[str]) -> int:
             return _fail(f"standard output: cannot write: {reason}", OutputError.exit_code)
         if isinstance(error, OSError) and error.errno == errno.ENOMEM:
             return _out_of_memory()
+        if str(error) == "can't start new thread":  # Python's RuntimeError has no code
+            return _fail(
+                "cannot start another thread: memory, or the number of processes of this user "
+                "(ulimit -u), is at its limit",
+                InputError.exit_code,
+            )
         return _internal(error)
 
 
