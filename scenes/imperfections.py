@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes nine scenes for the imperfections of lenses: stars for coma, a wall for distortion, ...
+"""Makes eight scenes for the imperfections of lenses: stars for coma, a wall for distortion, ...
 
     python scenes/imperfections.py [-o FOLDER] [--only NAME]     (default: out/imperfections)
 
@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from kit.command import write_scenes
 
-SCENES = ("wheel", "chart", "fair", "strings", "wall", "trees", "dusk", "starry", "rule")
+SCENES = ("wheel", "chart", "fair", "strings", "wall", "dusk", "starry", "rule")
 
 if __name__ == "__main__":
     write_scenes("imperfections", SCENES, __doc__ or "")

@@ -31,7 +31,7 @@ from sheet import compose  # noqa: E402
 from ways import Panel, Word  # noqa: E402
 from words import WEAK, WORDS  # noqa: E402
 
-SCENES = ("wheel", "chart", "fair", "strings", "wall", "trees", "dusk", "starry", "rule")
+SCENES = ("wheel", "chart", "fair", "strings", "wall", "dusk", "starry", "rule")
 COMMANDS = [c for word in WORDS for panel in word_page.panels(word) for c in panel.commands]
 
 

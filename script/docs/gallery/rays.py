@@ -24,7 +24,6 @@ from words import (
     ELCAN,
     FISHEYE,
     MASTER,
-    OLYMPUS,
     PETZVAL,
     SOFT,
     WEAK,
@@ -158,7 +157,7 @@ def axial_colour(figure: Figure) -> None:
 def lateral_colour(figure: Figure) -> None:
     """Chief rays of three colours, and their heights over the field."""
     left, right = figure.subplots(1, 2)
-    bench = bench_of(OLYMPUS, f_stop=8, focus_m=3)
+    bench = bench_of(CANON, f_stop=8, focus_m=2.2)
     light = light_of(bench, 18.0)
     for nm, colour in CHANNELS.items():
         near_film(left, light, fan(light, 1, 5), (-0.4, 0.2), [colour] * 5, nm=nm)

@@ -8,10 +8,10 @@ DARK = "--max-depth 1"
 STRINGS, STARRY, WHEEL, CHART, FAIR = (
     f"{OUT}/{name}.glb" for name in ("strings", "starry", "wheel", "chart", "fair")
 )
-WALL, TREES, RULE, DUSK = (f"{OUT}/{name}.glb" for name in ("wall", "trees", "rule", "dusk"))
+WALL, RULE, DUSK = (f"{OUT}/{name}.glb" for name in ("wall", "rule", "dusk"))
 ELCAN = "leica-elcan-50mm-f2"
 PETZVAL = "petzval-100mm-f2.2"
-MASTER, OLYMPUS = "zeiss-master-prime-100mm-f1.24", "olympus-xa-35mm-f2.8"
+MASTER = "zeiss-master-prime-100mm-f1.24"
 BIOTAR = "zeiss-biotar-50mm-f1.4"
 ZOOM, FISHEYE = "nikon-z-14-30mm-f4", "canon-ef-15mm-f2.8-fisheye"
 HOLOGON, CANON = "zeiss-hologon-15mm-f8", "canon-50mm-f0.95"
@@ -129,28 +129,35 @@ strong.""",
     ),
 )
 
+_STAR = f"--res 3600x2400 --crop left={{}},top={{}},right={{}},bottom={{}} {DARK}"
 LATERAL = Word(
     "lateral_colour",
     "Lateral chromatic aberration",
     """\
 All colours are in focus, but the blue image is larger than the red one (or smaller). Edges that
-run around the centre get a blue and a yellow side, more so toward the corner. The picture is the
-upper left of the frame through an Olympus XA at f/8. The table gives the distance of red and
-blue from green. It is the one aberration that is easy to correct, with
+run around the centre get a blue and a yellow side, more so toward the corner. The pictures are
+stars of a test chart through a Canon 50 mm f/0.95 stopped down to f/8: above in the lower left
+corner of the frame, 16 mm off the axis, and below near the centre, which has no fringes. The table
+gives the distance of red and blue from green. Polynomials of degree 9 lose some light at the edge
+of the field. It is the one aberration that is easy to correct, with
 `lateral-colour:...,inverse=1`.""",
-    (
+    tuple(
         Ways(
-            "lateral",
-            TREES,
-            f"--lens {OLYMPUS} --focus 3",
+            f"lateral_{where}",
+            CHART,
+            f"--lens {CANON} --focus 2.2",
             "--f-stop 8",
-            f"--res 1920x1280 --crop left=48,top=60,right=528,bottom=380 {DARK} --spp 40",
-            flat(OLYMPUS, 8, "focus=3m", 3),
-            wide=wide(f"--res 1920x1280 --crop left=0,top=0,right=720,bottom=520 {DARK} --spp 24"),
+            f"{_STAR.format(*seen)} --spp 40",
+            flat(CANON, 8, "focus=2.2m", 3),
+            wide=wide(f"{_STAR.format(*reach)} --spp 24"),
             more="--light-paths off",
-        ).panels(),
+            note=f", {where}",
+        ).panels()
+        for where, seen, reach in (
+            ("corner", (112, 1760, 592, 2080), (100, 1690, 730, 2090)),
+            ("centre", (1920, 1040, 2400, 1360), (1800, 950, 2450, 1450)),
+        )
     ),
-    exposure=2.0,
     fringes=True,
 )
 
