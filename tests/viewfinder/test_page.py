@@ -496,6 +496,11 @@ def test_a_mode_that_the_scene_forbids_goes_back(page: Browser, server: Live) ->
         "exposure S chooses the f-stop, but the scene sets it (f_stop): choose another mode"
     )
     assert mode_of(page) == "manual"
+    page.click("[data-tint=depth]")  # has the state told anew
+    page.until("document.querySelector('[data-tint=depth]').ariaPressed === 'true'")
+    assert page.run(f"{error}.textContent") == text
+    set_mode(page, "A")
+    page.until(f"{error}.hidden")
 
 
 def test_metered_exposure_is_locked(page: Browser, server: Live, tmp_path: Path) -> None:

@@ -223,7 +223,8 @@ def test_what_was_saved_moves_nothing(chromium: Browser, server: Live) -> None:
     page = shows(chromium, server, DESK)
     box = "JSON.stringify(document.getElementById('picture').getBoundingClientRect())"
     before = page.run(box)
-    page.run("document.getElementById('saved').textContent = 'Saved desk-1.png'")
+    text = "Saved open_chess_set_512-1.png where Daguerre was started"
+    page.run(f"document.getElementById('saved').textContent = '{text}'")
     assert page.run(box) == before
 
 

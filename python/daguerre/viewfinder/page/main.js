@@ -103,8 +103,8 @@ class Viewfinder {
     if (message.role) this.mine = message.role === 'turns';
     if (message.role) this.find('watches').hidden = this.mine;
     if (message.state) this.state = message.state;
+    if (message.refused) this.refused = {why: message.refused, turn: this.state?.turn};
     if (this.open && this.state && (message.state || message.refused)) this.update();
-    if (message.refused) this.say('error', message.refused);
     if (message.changed) {
       this.find('changed').hidden = false;
       this.find('changed').firstElementChild.textContent = `${message.changed} has changed.`;
@@ -144,8 +144,8 @@ class Viewfinder {
   }
 
   update() {
-    const {readings, error, note} = this.state;
-    this.say('error', error);
+    const {readings, error, note, turn} = this.state;
+    this.say('error', error || (this.refused?.turn === turn ? this.refused.why : ''));   // until the next turn
     this.say('note', [note, ...(readings.warnings ?? [])].filter(Boolean).join('; '));
     if (readings.lens) {
       this.open.spp = readings.spp;

@@ -27,7 +27,9 @@ export class Output {
   }
 
   told({saved}) {
-    if (saved) this.view.find('saved').textContent = `Saved ${saved} where Daguerre was started`;
+    if (!saved) return;
+    const line = this.view.find('saved');
+    line.textContent = line.title = `Saved ${saved} where Daguerre was started`;
   }
 
   async copy() {
