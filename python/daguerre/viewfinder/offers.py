@@ -19,7 +19,7 @@ from .tint import legends
 
 
 def offers(stage: Stage, first: Dials, shot: Shot) -> dict[str, Any]:
-    """What a page needs to know of a scene, before any picture.
+    """Facts of a scene that a page needs before any picture.
 
     Args:
         stage: Scene, camera and settings.
