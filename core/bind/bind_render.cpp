@@ -16,6 +16,7 @@
 #include "bind/record.h"
 #include "bind/unlocked.h"
 #include "math/error.h"
+#include "render/flare/live/live_flare.h"
 #include "render/pilot.h"
 #include "render/render.h"
 
@@ -143,6 +144,26 @@ void bind_render(nb::module_& m) {
           },
           "scene"_a, "camera"_a, "film"_a, "settings"_a, "begin"_a, "end"_a, "progress"_a.none() = nb::none(),
           "Draws samples [begin, end) of every pixel. Returns whether all of them were, and counters.");
+
+    nb::class_<LiveFlare>(m, "LiveFlare", "Ghosts of the brightest small sources for pictures that pass by.")
+        .def(nb::init<>())
+        .def("draw",
+             [](LiveFlare& live, const Scene& scene, const Camera& camera, const RenderSettings& settings) {
+                 const dg::Sensor& sensor = settings.sensor;
+                 std::vector<float> rgb;
+                 {
+                     dg::bind::Unlocked release;
+                     rgb = live.draw(scene, camera, settings);
+                 }
+                 return dg::bind::to_numpy(std::move(rgb), {std::size_t(sensor.height), std::size_t(sensor.width), 3});
+             },
+             "scene"_a, "camera"_a, "settings"_a, "Their light, linear Rec.709 (H, W, 3), some per cent off.")
+        .def_prop_ro("sources", [](const LiveFlare& live) { return live.facts().sources; },
+                     "Sources of the last picture; 0: all of it is black.")
+        .def_prop_ro("ghosts", [](const LiveFlare& live) { return live.facts().ghosts; }, "Ghosts of the last picture.")
+        .def_prop_ro("rays", [](const LiveFlare& live) { return live.facts().rays; }, "Exact rays of the last picture.")
+        .def_prop_ro("arrivals", [](const LiveFlare& live) { return live.facts().arrivals; },
+                     "Places at which light of the last picture landed.");
 
     m.def("pilot",
           [](const Scene& scene, const Camera& camera, const RenderSettings& settings) {

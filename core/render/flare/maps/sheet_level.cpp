@@ -39,9 +39,9 @@ SheetSmooth SheetSmooth::of(std::vector<CellLight> cells) {
             without_sharpest(cells, kSharpest * sum, &CellBlur::even_px)};
 }
 
-SheetLevel::SheetLevel(const GhostMap& map, const GhostLens& lens, const Sensor& sensor, float filled,
+SheetLevel::SheetLevel(int crossings, const GhostLens& lens, const Sensor& sensor, float filled,
                        const SheetSmooth& smooth)
-    : map_(&map), smooth_(smooth), filled_(filled), apothem_(float(lens.iris_radius() * lens.iris().inner_radius())),
+    : crossings_(crossings), smooth_(smooth), filled_(filled), apothem_(float(lens.iris_radius() * lens.iris().inner_radius())),
       most_(std::min(kCoarsest, CoarseLight::widest(sensor))) {}
 
 float SheetLevel::pitch(const CellBlur& blur) const { return 2 * blur.edge * filled_ / kPitches; }
@@ -52,23 +52,23 @@ float SheetLevel::of_rays() const {
 }
 
 /// px; below 0 behind it.
-float SheetLevel::from_edge(const GhostMap::Cell& cell, const MapBatch& b, int i) const {
-    float far = cell.blur.beyond_per_px > 0 ? -b.beyond[i] / cell.blur.beyond_per_px : 1e9f;
-    for (int k = 0; k < map_->crossings(); ++k) {
+float SheetLevel::from_edge(const CellBlur& blur, const MapBatch& b, int i) const {
+    float far = blur.beyond_per_px > 0 ? -b.beyond[i] / blur.beyond_per_px : 1e9f;
+    for (int k = 0; k < crossings_; ++k) {
         const float r = std::sqrt(b.iris_x[k][i] * b.iris_x[k][i] + b.iris_y[k][i] * b.iris_y[k][i]);
-        far = std::min(far, (apothem_ * b.opening[i] - r) * cell.blur.px_per_mm[std::size_t(k)]);
+        far = std::min(far, (apothem_ * b.opening[i] - r) * blur.px_per_mm[std::size_t(k)]);
     }
     return far;
 }
 
 /// By the blur; or by how far it is to an edge and how even the light is, as where edges are far away a ghost is smooth
 /// however sharp it is. One goes over into the other without a bend.
-float SheetLevel::of(const GhostMap::Cell& cell, const MapBatch& batch, int i) const {
+float SheetLevel::of(const CellBlur& blur, const MapBatch& batch, int i) const {
     const auto squared = [](float x) { return x * x; };
-    const float edge = std::min(cell.blur.edge, smooth_.edge), even = std::min(cell.blur.even_px, smooth_.even);
+    const float edge = std::min(blur.edge, smooth_.edge), even = std::min(blur.even_px, smooth_.even);
     const float blurred = kVariance * squared(2 * edge * filled_ / kPitches);
     const float most = std::min(kVariance * squared(even / kEvenPitches), most_) - blurred;
-    const float far = variance_at(from_edge(cell, batch, i));
+    const float far = variance_at(from_edge(blur, batch, i));
     return level_of(blurred + (most > 0 ? far * most / (far + most) : 0));
 }
 

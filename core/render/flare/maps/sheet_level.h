@@ -25,20 +25,20 @@ class SheetLevel {
   public:
     static constexpr int kMost = 4;   // 16 px from node to node
 
-    /// The map outlives this. `filled`: of the source's circle.
-    SheetLevel(const GhostMap& map, const GhostLens& lens, const Sensor& sensor, float filled, const SheetSmooth& smooth);
-    /// Level of one of a batch of landings of a cell: 2^l px is the pitch, and the part after the point the chance of the
-    /// next coarser one, with which v is right in the mean.
-    float of(const GhostMap::Cell& cell, const MapBatch& batch, int i) const;
+    /// `crossings`: of the iris; `filled`: of the source's circle.
+    SheetLevel(int crossings, const GhostLens& lens, const Sensor& sensor, float filled, const SheetSmooth& smooth);
+    /// Level of one of a batch of landings in a cell with that blur: 2^l px is the pitch, and the part after the point the
+    /// chance of the next coarser one, with which v is right in the mean.
+    float of(const CellBlur& blur, const MapBatch& batch, int i) const;
     /// Level of light of which there is no map: half the pitch of most of the rest.
     float of_rays() const;
     /// Pitch for the blur of a cell's edges, px.
     float pitch(const CellBlur& blur) const;
 
   private:
-    float from_edge(const GhostMap::Cell& cell, const MapBatch& batch, int i) const;
+    float from_edge(const CellBlur& blur, const MapBatch& batch, int i) const;
 
-    const GhostMap* map_;
+    int crossings_;
     SheetSmooth smooth_;
     float filled_, apothem_;   // mm
     float most_;               // px2, of a kernel

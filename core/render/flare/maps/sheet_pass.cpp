@@ -126,7 +126,7 @@ void SheetPass::draw_map(Work& work, const Sheet& s, const SheetPiece& piece, co
             const SmallSource::Point& p = *work.from[i];
             const Vec2f px{b.x[i], b.y[i]};
             const float times = weight * exposed(small, p, px);
-            const int level = drawn_level(levels.of(cell, b, i), u[CellNumbers::kLevel][i]);
+            const int level = drawn_level(levels.of(cell.blur, b, i), u[CellNumbers::kLevel][i]);
             if (!hidden) {
                 arrive(work, level, px, color.of(b, i, p.light, times));
                 continue;

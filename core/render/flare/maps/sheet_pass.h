@@ -88,7 +88,7 @@ class SheetPass final : public Pass {
     float exposed(const SmallSource& source, const SmallSource::Point& from, Vec2f px) const;
     void arrive(Work& work, int level, Vec2f px, const FilmColor& light, const Taken* map = nullptr);
     SheetLevel levels(const Sheet& s) const {
-        return {s.map, s.rays.ghosts(), picture_.settings.sensor, source(s).filled, s.smooth};
+        return {s.map.crossings(), s.rays.ghosts(), picture_.settings.sensor, source(s).filled, s.smooth};
     }
     const CellColor& color_of(Work& work, const Sheet& sheet, const SheetPiece& piece) const;
     const SmallSource& source(const Sheet& s) const { return guide_->sheets().sources()[std::size_t(s.source)]; }

@@ -53,7 +53,7 @@ std::vector<MapRay> rays_of(const GhostMap& map, const GhostMap::Cell& cell, con
 SheetPieces::SheetPieces(const MapRays& rays, const GhostMap& map, const SmallSource& source, const Sensor& sensor,
                          std::uint64_t key)
     : rays_(rays), map_(map), source_(source), sensor_(sensor), key_(key),
-      smooth_(smoothness()), level_(map, rays.ghosts(), sensor, source.filled, smooth_),
+      smooth_(smoothness()), level_(map.crossings(), rays.ghosts(), sensor, source.filled, smooth_),
       spread_(map.cells().size(), -1.f), unseen_(map.cells().size()) {
     for (std::uint32_t c = 0; c < map.cells().size(); ++c) wrong_.push_back(map.cells()[c].exact ? 0.f : wrong(c));
     for (std::uint32_t c = 0; c < map.cells().size(); ++c) divide({c, {0, 0}, 1, 0}, 0, nullptr);
@@ -126,7 +126,7 @@ void SheetPieces::look_at_map(const SheetPiece& piece, int count, Looked& to) co
     draw(batch, piece, count);
     map_.landings(map_.cells()[piece.cell], batch, count);
     for (int i = 0; i < count; ++i) {
-        to.level += level_.of(map_.cells()[piece.cell], batch, i) / float(count);
+        to.level += level_.of(map_.cells()[piece.cell].blur, batch, i) / float(count);
         const float seen = seen_light(batch.nm[i]);
         see(to, {batch.x[i], batch.y[i]}, seen * batch.glass[i], seen * batch.pass[i],
             rays_.stopped(batch.landing(i, map_.crossings())));
@@ -202,7 +202,7 @@ float SheetPieces::wrong(std::uint32_t c) const {
     for (int i = 0; i < kTests; ++i) {
         const double seen = seen_light(batch.nm[i]);
         const double a = seen * batch.pass[i], b = seen * rays_.passed(exact[i], batch.opening[i]);
-        const double moved = length(exact[i].px - Vec2f{batch.x[i], batch.y[i]}) * std::exp2(-level_.of(cell, batch, i));
+        const double moved = length(exact[i].px - Vec2f{batch.x[i], batch.y[i]}) * std::exp2(-level_.of(cell.blur, batch, i));
         squares += std::pow(a - b, 2) + a * b * std::pow(std::min(1.0, kMoved * moved), 2);
         light += std::max(a * a, b * b);
     }

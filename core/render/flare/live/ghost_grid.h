@@ -1,0 +1,40 @@
+// ghost_grid.h -- the part of the front through which a ghost of a small source comes to the frame, and rays of the source's
+// middle from a grid over it.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "render/flare/flare_cells.h"
+#include "render/flare/maps/map_rays.h"
+
+namespace dg {
+
+struct GhostGrid {
+    static constexpr int kSquares = 16, kSide = kSquares + 1;   // across
+
+    FlareRectangle region;             // of the square that holds the front
+    std::vector<MapLanding> nodes;     // row by row; none: no light comes to the frame
+    std::vector<bool> lit;             // squares through which light may come
+    std::size_t rays = 0;              // that it took
+
+    /// `reach`: px beside the frame that count.
+    GhostGrid(const MapRays& rays, const Sensor& sensor, float reach);
+
+    bool empty() const { return nodes.empty(); }
+    /// Of a node in squares, which may be between nodes.
+    Vec2f at(Vec2f node) const { return region.at(node * (1.f / kSquares)); }
+
+    static float middle_nm();
+
+  private:
+    struct Looks {
+        const MapRays& rays;
+        const Sensor& sensor;
+        float reach;
+    };
+    static bool passes(const Looks& by, const MapLanding& landing);
+    void mark(const Looks& by);
+
+};
+
+}  // namespace dg

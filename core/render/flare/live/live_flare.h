@@ -1,0 +1,29 @@
+// live_flare.h -- ghosts of the brightest small sources for a picture that follows a hand: some per cent off, and drawn anew
+// for each picture in a tenth of a second. FlareSheets and the passes draw the same exactly.
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "render/render.h"
+
+namespace dg {
+
+class LiveFlare {
+  public:
+    /// Light, row by row, R, G and B of each pixel of the sensor. Of the settings: sensor, shutter and threads. Error for a
+    /// lens that is not traced. The same bits on any number of threads.
+    std::vector<float> draw(const Scene& scene, const Camera& camera, RenderSettings settings);
+
+    struct Facts {
+        int sources = 0;         // that shine on the lens; 0: all is black
+        int ghosts = 0;          // that were drawn
+        std::size_t rays = 0, arrivals = 0;
+    };
+    /// Of the last picture.
+    const Facts& facts() const { return facts_; }
+
+  private:
+    Facts facts_;
+};
+
+}  // namespace dg

@@ -1,0 +1,173 @@
+#include "render/flare/live/live_ghost.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/thread_scratch.h"
+#include "render/flare/live/node_fill.h"
+#include "render/flare/live/spread_numbers.h"
+#include "render/flare/maps/coarse_light.h"
+
+namespace dg {
+namespace {
+
+constexpr int kLooks = 8;               // of a square
+constexpr float kUnseen = 0.3f;         // looks that count as having seen light, of a square where none did
+constexpr float kLostUnseen = 0.5f;     // the same where rays are lost
+constexpr double kWorthMore = 4000;     // arrivals of a ghost that more nodes for its colours pay for
+constexpr double kWorthFine = 12;       // arrivals of a square that a finer grid pays for
+constexpr float kBend = 0.7f;           // px, from straight between nodes, that is worth one
+constexpr int kGlassNodes = 4;          // at which transmittances are asked for
+constexpr float kAlmost = 0.1f;         // beyond an edge: what is beside it may be lit
+constexpr int kBands = LiveSource::kBands;
+
+/// Fields of all nodes, one field after the other.
+std::vector<float> planes_of(const std::vector<MapLanding>& nodes, int crossings) {
+    const int count = int(nodes.size());
+    std::vector<float> planes(std::size_t(3 + 2 * crossings) * count);
+    for (int n = 0; n < count; ++n) put_fields(planes.data() + n, count, nodes[n], crossings);
+    return planes;
+}
+
+}  // namespace
+
+LiveGhost::LiveGhost(const MapRays& rays, const LiveSource& source, const Sensor& sensor, std::uint64_t key)
+    : rays_(rays), source_(source), sensor_(sensor), first_(std::uint32_t(hash64(key))),
+      grid_(rays, sensor, CoarseLight::reach(LightLayer::kLevels - 1)) {
+    traced_ = grid_.rays;
+    if (grid_.empty()) return;
+    std::vector<MapLanding> nodes = grid_.nodes;
+    fill_landings(nodes, kSide);
+    planes_ = planes_of(nodes, rays_.crossings());
+    look_around();
+}
+
+void LiveGhost::look_around() {
+    float most = 0;
+    for (int i = 0; i < int(grid_.lit.size()); ++i) {
+        if (!grid_.lit[i]) continue;
+        squares_.push_back({i % GhostGrid::kSquares, i / GhostGrid::kSquares});
+        look(squares_.back());
+        most = std::max(most, squares_.back().light);
+    }
+    const float glass = most > 0 ? this->glass() : 0;
+    for (Square& s : squares_) s.light *= glass;
+    if (!(glass > 0)) squares_.clear();
+}
+
+/// Transmittance in the mean, about, over wavelengths as they are seen: at nodes that let light through.
+float LiveGhost::glass() {
+    std::vector<int> open;
+    for (int n = 0; n < kNodes; ++n)
+        if (grid_.nodes[n].sound && rays_.stopped(grid_.nodes[n]) < 0) open.push_back(n);
+    if (open.empty())
+        for (int n = 0; n < kNodes; ++n)
+            if (grid_.nodes[n].sound && grid_.nodes[n].beyond < kAlmost) open.push_back(n);
+    if (open.empty()) return 0;
+    std::vector<MapRay> rays;
+    for (int i = 0; i < kGlassNodes; ++i) {
+        const int n = open[(2 * std::size_t(i) + 1) * open.size() / (2 * kGlassNodes)];
+        for (int k = 0; k < kBands; ++k)
+            rays.push_back({grid_.at({float(n % kSide), float(n / kSide)}), {0, 0}, LiveSource::nm((float(k) + 0.5f) / kBands)});
+    }
+    float sum = 0;
+    for (const MapLanding& l : trace(rays)) sum += l.pass / float(rays.size());
+    return sum;
+}
+
+/// By the grid alone, as if the source were a point of one colour.
+void LiveGhost::look(Square& s) {
+    MapBatch& b = thread_scratch<MapBatch>([] {});
+    for (int i = 0; i < kLooks; ++i) {
+        const SpreadNumbers u{std::uint32_t(i + 1)};
+        b.set(i, {u[0], u[1]}, {0, 0}, GhostGrid::middle_nm(), 1);
+    }
+    patch(s).land(rays_.ghosts().tables().iris, b, kLooks);
+    int seen = 0;
+    Vec2f px{0, 0};
+    const float reach = CoarseLight::reach(LightLayer::kLevels - 1);
+    for (int i = 0; i < kLooks; ++i) {
+        px = px + Vec2f{b.x[i], b.y[i]} * (1.f / kLooks);
+        const bool near = b.x[i] > -reach && b.y[i] > -reach && b.x[i] < float(sensor_.width) + reach &&
+                          b.y[i] < float(sensor_.height) + reach;
+        if (!near || !(b.left[i] > 0)) continue;
+        ++seen, s.light += b.left[i] / kLooks;
+    }
+    s.px = px, s.edge = seen < kLooks;
+    for (int k = 0; k < 4; ++k) s.lost |= !node(s.x + (k & 1), s.y + (k >> 1)).sound;
+    if (seen == 0) s.light = 0;
+}
+
+void LiveGhost::add_to(FlareTiles& tiles) const {
+    const double area = source_.light * grid_.region.area() / (GhostGrid::kSquares * GhostGrid::kSquares);
+    for (const Square& s : squares_)
+        if (sensor_.holds(s.px)) tiles.add(s.px, area * s.light);
+}
+
+double LiveGhost::weigh(const FlareTiles& tiles) {
+    const double area = source_.light * grid_.region.area() / (GhostGrid::kSquares * GhostGrid::kSquares);
+    float most = 0;
+    for (const Square& s : squares_) most = std::max(most, s.light);
+    double sum = 0;
+    for (Square& s : squares_) {
+        const float light = std::max(s.light, most * (s.lost ? kLostUnseen : s.light > 0 ? 0 : kUnseen) / kLooks);
+        s.worth = area * light * tiles.importance(s.px), sum += s.worth;
+    }
+    return sum;
+}
+
+void LiveGhost::refine(double arrivals) {
+    double all = 0;
+    for (const Square& s : squares_) all += s.worth;
+    step_ = all * arrivals > kWorthMore ? 2 : 4, few_side_ = GhostGrid::kSquares / step_ + 1;
+    few_.resize(std::size_t(few_side_) * few_side_);
+    trace_few();
+    find_blur();
+    for (Square& s : squares_) {
+        s.worth *= arrivals;
+        if (!s.lost && s.worth > kWorthFine && (s.edge || bends(s))) refine(s);
+    }
+}
+
+/// Landings are not straight from node to node.
+bool LiveGhost::bends(const Square& s) const {
+    const auto off = [&](int x, int y, int dx, int dy) {
+        if (x < dx || y < dy || x + dx >= kSide || y + dy >= kSide) return 0.f;
+        const MapLanding &a = node(x - dx, y - dy), &b = node(x, y), &c = node(x + dx, y + dy);
+        return a.sound && b.sound && c.sound ? length(a.px - 2 * b.px + c.px) / 8 : 0.f;
+    };
+    float most = 0;
+    for (int k = 0; k < 4; ++k) {
+        const int x = s.x + (k & 1), y = s.y + (k >> 1);
+        most = std::max({most, off(x, y, 1, 0), off(x, y, 0, 1)});
+    }
+    return most > kBend;
+}
+
+void LiveGhost::refine(Square& s) {
+    std::vector<MapRay> rays;
+    for (int n = 0; n < kSubNodes; ++n)
+        rays.push_back({grid_.at({float(s.x) + float(n % kSubSide) / kSub, float(s.y) + float(n / kSubSide) / kSub}),
+                        {0, 0}, GhostGrid::middle_nm()});
+    std::vector<MapLanding> nodes = trace(rays);
+    if (std::ranges::none_of(nodes, [](const MapLanding& l) { return l.sound; })) {
+        s.worth = 0;
+        return;
+    }
+    fill_landings(nodes, kSubSide);
+    s.fine = int(fine_.size());
+    const std::vector<float> planes = planes_of(nodes, rays_.crossings());
+    fine_.insert(fine_.end(), planes.begin(), planes.end());
+}
+
+MeshPatch LiveGhost::patch(const Square& s) const {
+    MeshPatch p;
+    p.crossings = rays_.crossings();
+    if (s.fine >= 0)
+        p.nodes = &fine_[s.fine], p.plane = kSubNodes, p.row = kSubSide, p.squares = kSub;
+    else
+        p.nodes = &planes_[std::size_t(s.y) * kSide + s.x], p.plane = kNodes, p.row = kSide;
+    return p;
+}
+
+}  // namespace dg

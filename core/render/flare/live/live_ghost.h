@@ -1,0 +1,94 @@
+// live_ghost.h -- a ghost of a small source for a picture that passes by: a mesh of exact rays, drawn by many arrivals that
+// cost an interpolation each.
+//
+// A grid of rays finds the part of the front that the ghost comes through, and about how much light it brings. What
+// wavelengths and points of the source change is known at some of its nodes; squares that hold an edge or that bend, and that
+// bring enough light to be worth it, have a finer grid of their own.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "render/flare/flare_tiles.h"
+#include "render/flare/live/ghost_grid.h"
+#include "render/flare/live/light_layer.h"
+#include "render/flare/live/live_source.h"
+#include "render/flare/live/mesh_patch.h"
+#include "render/flare/maps/sheet_level.h"
+
+namespace dg {
+
+class LiveGhost {
+  public:
+    /// All but the sensor outlives this.
+    LiveGhost(const MapRays& rays, const LiveSource& source, const Sensor& sensor, std::uint64_t key);
+
+    bool empty() const { return squares_.empty(); }
+    /// Adds its light, about.
+    void add_to(FlareTiles& tiles) const;
+    /// How many arrivals it is worth beside other ghosts.
+    double weigh(const FlareTiles& tiles);
+    /// What drawing takes, for so many arrivals for each unit of weigh().
+    void refine(double arrivals);
+    /// `unit`: light of a pixel for light and unit areas of the front's square.
+    void draw(LightLayer& layer, float unit);
+
+    std::size_t rays() const { return traced_; }
+    std::size_t arrivals() const { return arrived_; }
+
+  private:
+    static constexpr int kSide = GhostGrid::kSide, kNodes = kSide * kSide;
+    static constexpr int kSub = 4, kSubSide = kSub + 1, kSubNodes = kSubSide * kSubSide;   // squares of a finer grid
+    struct Square {
+        int x, y;
+        float light = 0;       // mean of what looks saw
+        bool edge = false, lost = false;   // some rays are stopped; some have no landing
+        Vec2f px{};            // where it lands, about
+        double worth = 0;      // arrivals
+        int fine = -1;         // first value of its own nodes
+        CellBlur blur{};
+    };
+    struct Few {               // at one of few nodes of the grid
+        MeshPatch::Sets sets{};
+        std::array<float, LiveSource::kBands> spectrum{};   // transmittance of bands
+        CellBlur blur{};
+        bool sound = false, blurs = false;
+    };
+
+    std::vector<MapLanding> trace(const std::vector<MapRay>& rays) {
+        traced_ += rays.size();
+        return rays_.trace(rays);
+    }
+    void look(Square& square);
+    void draw(LightLayer& layer, const SheetLevel& levels, const Square& square, std::uint32_t from, int count, float times);
+    void look_around();
+    float glass();
+    std::optional<int> sound_near(int few) const;
+    bool matters(int few) const;
+    void trace_few();
+    void find_blur();
+    const CellBlur& blur_near(const Square& square) const;
+    bool bends(const Square& square) const;
+    void refine(Square& square);
+    MeshPatch patch(const Square& square) const;
+    void land_by_rays(const Square& square, MapBatch& batch, int count);
+    float least_level(const Square& square) const;
+    Few few_at(Vec2f node) const;
+    const MapLanding& node(int x, int y) const { return grid_.nodes[std::size_t(y) * kSide + x]; }
+
+    const MapRays& rays_;
+    const LiveSource& source_;
+    Sensor sensor_;
+    std::uint32_t first_;              // of its numbers
+    GhostGrid grid_;
+    std::vector<float> planes_;        // of the grid's nodes, field by field
+    std::vector<float> fine_;          // of the nodes of finer grids
+    std::vector<Square> squares_;
+    int step_ = 0, few_side_ = 0;      // squares from one of few nodes to the next; nodes across
+    std::vector<Few> few_;
+    SheetSmooth smooth_{};
+    std::size_t traced_ = 0, arrived_ = 0;
+};
+
+}  // namespace dg

@@ -1,0 +1,142 @@
+// live_ghost_colors.cpp -- what wavelengths and points of the source change of a ghost, at few nodes of its grid.
+#include <algorithm>
+
+#include "render/flare/live/live_ghost.h"
+#include "render/flare/live/node_fill.h"
+#include "render/flare/maps/ghost_map_nodes.h"
+
+namespace dg {
+namespace {
+
+constexpr int kBands = LiveSource::kBands;
+
+/// Means over bands, by parabolas through the values in their middles.
+std::array<float, kBands> means(const std::array<float, kBands>& middles) {
+    std::array<float, kBands> mean{};
+    for (int k = 0; k < kBands; ++k) {
+        const int at = std::clamp(k, 1, kBands - 2);
+        mean[k] = std::max(middles[k] + (middles[at - 1] - 2 * middles[at] + middles[at + 1]) / 24, 0.f);
+    }
+    return mean;
+}
+
+}  // namespace
+
+/// The sound node nearest to one of few, rather one that lets light through; nothing: there is none beside it.
+std::optional<int> LiveGhost::sound_near(int few) const {
+    std::optional<int> best;
+    int least = 1 << 20;
+    const int x = few % few_side_ * step_, y = few / few_side_ * step_;
+    for (int v = std::max(y - step_, 0); v <= std::min(y + step_, kSide - 1); ++v)
+        for (int u = std::max(x - step_, 0); u <= std::min(x + step_, kSide - 1); ++u) {
+            const MapLanding& l = node(u, v);
+            const int far = (u - x) * (u - x) + (v - y) * (v - y) + (l.beyond < 0 ? 0 : step_ * step_);
+            if (l.sound && far < least) best = v * kSide + u, least = far;
+        }
+    return best;
+}
+
+/// A square beside it brings light.
+bool LiveGhost::matters(int few) const {
+    const int x = 2 * (few % few_side_) * step_, y = 2 * (few / few_side_) * step_;
+    return std::ranges::any_of(squares_, [&](const Square& s) {
+        return std::abs(2 * s.x + 1 - x) <= 2 * step_ && std::abs(2 * s.y + 1 - y) <= 2 * step_;
+    });
+}
+
+/// The change over wavelengths and source, and spectra: at few nodes.
+void LiveGhost::trace_few() {
+    const int crossings = rays_.crossings();
+    std::vector<MapRay> rays;
+    std::vector<int> of, from;
+    for (int n = 0; n < int(few_.size()); ++n) {
+        const auto own = sound_near(n);
+        if (!own || !matters(n)) continue;
+        of.push_back(n), from.push_back(*own);
+        const Vec2f at = grid_.at({float(*own % kSide), float(*own / kSide)});
+        rays.push_back({at, {0, 0}, lambda_node(0)}), rays.push_back({at, {0, 0}, lambda_node(2)});
+        rays.push_back({at, {1, 0}, GhostGrid::middle_nm()}), rays.push_back({at, {0, 1}, GhostGrid::middle_nm()});
+        for (int k = 0; k < kBands; ++k) rays.push_back({at, {0, 0}, LiveSource::nm((float(k) + 0.5f) / kBands)});
+    }
+    const std::vector<MapLanding> landings = trace(rays);
+    std::vector<bool> sound(int(few_.size()));
+    for (std::size_t i = 0; i < of.size(); ++i) {
+        Few& f = few_[of[i]];
+        const MapLanding& own = grid_.nodes[std::size_t(from[i])];
+        const MapLanding* const l = &landings[i * (MeshPatch::kSets + kBands)];
+        f.sound = sound[of[i]] = true;
+        for (int k = 0; k < MeshPatch::kSets; ++k) {
+            if (!l[k].sound) continue;
+            std::array<float, MeshPatch::kMostFields> from{}, to{};
+            put_fields(from.data(), 1, own, crossings), put_fields(to.data(), 1, l[k], crossings);
+            for (int j = 0; j < 3 + 2 * crossings; ++j) f.sets[k][j] = to[j] - from[j];
+        }
+        for (int k = 0; k < kBands; ++k)
+            f.spectrum[k] = l[MeshPatch::kSets + k].sound ? l[MeshPatch::kSets + k].pass : own.pass;
+        f.spectrum = means(f.spectrum);
+    }
+    fill_from_beside(sound, few_side_, [&](int n, const std::vector<int>& beside) {
+        const float w = 1 / float(beside.size());
+        for (const int m : beside) {
+            for (int k = 0; k < MeshPatch::kSets; ++k)
+                for (int j = 0; j < MeshPatch::kMostFields; ++j) few_[n].sets[k][j] += w * few_[m].sets[k][j];
+            for (int k = 0; k < kBands; ++k) few_[n].spectrum[k] += w * few_[m].spectrum[k];
+        }
+    });
+}
+
+LiveGhost::Few LiveGhost::few_at(Vec2f node) const {
+    const float x = node.x / float(step_), y = node.y / float(step_);
+    const int u = std::min(int(x), few_side_ - 2), v = std::min(int(y), few_side_ - 2);
+    const float fx = x - float(u), fy = y - float(v);
+    Few sum;
+    for (int k = 0; k < 4; ++k) {
+        const float w = (k & 1 ? fx : 1 - fx) * (k & 2 ? fy : 1 - fy);
+        const Few& f = few_[(v + (k >> 1)) * few_side_ + u + (k & 1)];
+        for (int s = 0; s < MeshPatch::kSets; ++s)
+            for (int j = 0; j < MeshPatch::kMostFields; ++j) sum.sets[s][j] += w * f.sets[s][j];
+        for (int b = 0; b < kBands; ++b) sum.spectrum[b] += w * f.spectrum[b];
+    }
+    return sum;
+}
+
+/// By the blur of edges and light about the few nodes.
+void LiveGhost::find_blur() {
+    std::vector<SheetSmooth::CellLight> cells;
+    for (int n = 0; n < int(few_.size()); ++n) {
+        if (!few_[n].sound) continue;
+        const int x = std::clamp(n % few_side_ * step_ - 1, 0, kSide - 4), y = std::clamp(n / few_side_ * step_ - 1, 0, kSide - 4);
+        std::array<MapLanding, 16> nodes;
+        for (int k = 0; k < 16; ++k) nodes[k] = node(x + k % 4, y + k / 4);
+        std::array<MapLanding, 2> rim;
+        for (int r = 0; r < 2; ++r) {
+            const auto& set = few_[n].sets[MeshPatch::kAcross + r];
+            rim[r] = nodes[kRimNode];
+            rim[r].px = rim[r].px + Vec2f{set[0], set[1]}, rim[r].beyond += set[2];
+            for (int k = 0; k < rays_.crossings(); ++k)
+                rim[r].iris[k] = rim[r].iris[k] + Vec2f{set[3 + 2 * k], set[4 + 2 * k]};
+        }
+        if (!std::ranges::all_of(nodes, &MapLanding::sound)) continue;
+        few_[n].blurs = true;
+        few_[n].blur = cell_blur({nodes.data(), rim.data(), rays_.crossings()}, rays_.ghosts().iris(), rays_.ghosts().iris_radius());
+    }
+    for (Square& s : squares_) {
+        s.blur = blur_near(s);
+        if (s.light > 0) cells.push_back({&s.blur, s.light});
+    }
+    smooth_ = SheetSmooth::of(cells);
+}
+
+/// Of the nearest of few nodes that have one.
+const CellBlur& LiveGhost::blur_near(const Square& s) const {
+    static const CellBlur sharp{};
+    const CellBlur* best = &sharp;
+    int least = 1 << 20;
+    for (int n = 0; n < int(few_.size()); ++n) {
+        const int x = 2 * (n % few_side_) * step_ - 2 * s.x - 1, y = 2 * (n / few_side_) * step_ - 2 * s.y - 1;
+        if (few_[n].blurs && x * x + y * y < least) least = x * x + y * y, best = &few_[n].blur;
+    }
+    return *best;
+}
+
+}  // namespace dg

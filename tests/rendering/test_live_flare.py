@@ -1,0 +1,105 @@
+"""Ghosts for pictures that follow a hand are the exact ones, but for some per cent."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import daguerre as dg
+import daguerre._core as _core
+from daguerre.rendering.session import Session
+
+SIZE = (240, 136)
+BLOCK = 8
+LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
+SUN = 1000 * math.tan(math.radians(0.265))
+
+Picture = NDArray[np.float64]
+
+
+def sun(x: float, y: float, light: tuple[float, float, float]) -> tuple[dg.SphereLight, Picture]:
+    """As many degrees to the right and up."""
+    toward = np.array((math.tan(math.radians(x)), math.tan(math.radians(y)), -1.0))
+    pose = np.eye(4)
+    pose[:3, 3] = 1000 * toward / np.linalg.norm(toward)
+    return dg.SphereLight(light, SUN), pose
+
+
+WHITE = sun(9, 5, (1.6e4, 1.6e4, 1.6e4))
+RED = sun(-6, 3, (3e4, 2e3, 1e3))
+
+
+def session(lens: str, *suns: tuple[dg.SphereLight, Picture], threads: int = 0) -> Session:
+    """A session of suns alone."""
+    scene = dg.Scene()
+    for light, pose in suns:
+        scene.add_light(light, pose)
+    camera = dg.Camera(lens=lens, f_stop=5.6, focus_distance=math.inf, blades=7)
+    return Session(
+        scene, camera, resolution=SIZE, flare=3e5, light_paths="off", seed=1, threads=threads
+    )
+
+
+def live(made: Session) -> Picture:
+    """Live ghosts of its picture."""
+    one = made.prepared
+    rgb = _core.LiveFlare().draw(one.core_scene, one.setup.core, made.light_plan.core)
+    return np.asarray(rgb, float)
+
+
+def exact(made: Session) -> Picture:
+    """Exact ghosts of its picture."""
+    made.draw(0, 1)
+    return np.asarray(made.frame().flare, float)
+
+
+def blocks(light: Picture) -> Picture:
+    """Means of blocks."""
+    rows, columns = SIZE[1] // BLOCK, SIZE[0] // BLOCK
+    return light.reshape(rows, BLOCK, columns, BLOCK, 3).mean((1, 3))
+
+
+def off(light: Picture, other: Picture) -> float:
+    """RMS of the errors of bright blocks."""
+    a, b = blocks(light) @ LUMINANCE, blocks(other) @ LUMINANCE
+    lit = b > 0.02 * b.max()
+    assert lit.sum() > 40
+    return float(np.sqrt((((a - b) / b)[lit] ** 2).mean()))
+
+
+@pytest.mark.parametrize("lens", ["tessar-50mm-f2.8", "double-gauss-50mm-f2"])
+def test_live_ghosts_are_the_exact_ones_but_for_some_per_cent(lens: str) -> None:
+    """In every block, and in the light of each colour."""
+    made = session(lens, WHITE)
+    ghosts, reference = live(made), exact(made)
+    assert off(ghosts, reference) < 0.07
+    assert ghosts.sum((0, 1)) == pytest.approx(reference.sum((0, 1)), rel=0.05)
+
+
+def test_two_lamps_have_the_ghosts_of_each() -> None:
+    """Of its own colour, however many arrivals each gets."""
+    lens = "double-gauss-50mm-f2"
+    both = live(session(lens, WHITE, RED))
+    each = live(session(lens, WHITE)) + live(session(lens, RED))
+    assert off(both, each) < 0.06
+    assert both.sum((0, 1)) == pytest.approx(each.sum((0, 1)), rel=0.02)
+
+
+def test_live_ghosts_have_the_same_bits_on_any_number_of_threads() -> None:
+    """Pictures of a scene that stands still do not flicker."""
+    lens = "tessar-50mm-f2.8"
+    one, three = (live(session(lens, WHITE, threads=threads)) for threads in (1, 3))
+    assert np.array_equal(one, three)
+
+
+def test_without_a_small_lamp_there_is_no_light() -> None:
+    """All is black, and no lamp is counted."""
+    made = session("tessar-50mm-f2.8")
+    drawer, one = _core.LiveFlare(), made.prepared
+    rgb = drawer.draw(one.core_scene, one.setup.core, made.light_plan.core)
+    assert drawer.sources == 0
+    assert rgb.shape == (SIZE[1], SIZE[0], 3)
+    assert not rgb.any()
