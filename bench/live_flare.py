@@ -88,7 +88,7 @@ def errors(light: Picture, other: Picture, reference: Picture) -> Picture:
     """Of bright blocks, relative."""
     bright = blocks(reference)
     lit = bright > 0.02 * bright.max()
-    return np.asarray(((blocks(light) - blocks(other)) / bright)[lit])
+    return np.asarray((blocks(light) - blocks(other))[lit] / bright[lit])
 
 
 def measured(

@@ -76,7 +76,8 @@ def test_live_ghosts_are_the_exact_ones_but_for_some_per_cent(lens: str) -> None
     made = session(lens, WHITE)
     ghosts, reference = live(made), exact(made)
     assert off(ghosts, reference) < 0.07
-    assert ghosts.sum((0, 1)) == pytest.approx(reference.sum((0, 1)), rel=0.05)
+    wrong = ghosts.sum((0, 1)) - reference.sum((0, 1))
+    assert np.abs(wrong).max() < 0.03 * reference.sum()
 
 
 def test_two_lamps_have_the_ghosts_of_each() -> None:

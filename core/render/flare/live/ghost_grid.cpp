@@ -40,8 +40,7 @@ bool GhostGrid::passes(const Looks& by, const MapLanding& l) {
     return l.sound && here && by.rays.stopped(l) < 0;
 }
 
-/// Squares within two nodes of where light was seen; where there is hardly any, also by looks between nodes; where there is
-/// none, wherever it may be.
+/// Squares within two nodes of where light was seen; where there is hardly any, also by looks between nodes.
 void GhostGrid::mark(const Looks& by) {
     std::vector<bool> may(kSquares * kSquares), near(kSquares * kSquares);
     int seen = 0;
@@ -67,7 +66,7 @@ void GhostGrid::mark(const Looks& by) {
             if (passes(by, landings[k])) see(of[k] % kSquares, of[k] / kSquares), see(of[k] % kSquares + 1, of[k] / kSquares + 1);
     }
     lit.assign(kSquares * kSquares, false);
-    for (int i = 0; i < kSquares * kSquares; ++i) lit[i] = may[i] && (seen == 0 || near[i]);
+    for (int i = 0; i < kSquares * kSquares; ++i) lit[i] = may[i] && near[i];
 }
 
 float GhostGrid::middle_nm() { return lambda_node(1); }

@@ -12,8 +12,8 @@ namespace dg {
 namespace {
 
 constexpr double kShare = 0.15;       // of all light, that a source must bring
-constexpr double kArrivals = 5e5;
-constexpr double kDim = 0.001;         // share of all that the ghosts that are left out are worth, at most
+constexpr double kArrivals = 4e5;
+constexpr double kDim = 0.0015;        // share of all that the ghosts that are left out are worth, at most
 constexpr int kShadows = 64, kSequence = -7;
 constexpr int kLayers = 4;            // which tasks draw on, and which are added in order: no bit depends on threads
 constexpr float kMm2 = 1e6f;          // in 1 m2
