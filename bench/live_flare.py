@@ -85,7 +85,7 @@ def blocks(light: Picture) -> Picture:
 
 
 def errors(light: Picture, other: Picture, reference: Picture) -> Picture:
-    """Of bright blocks, relative."""
+    """Relative errors of bright blocks."""
     bright = blocks(reference)
     lit = bright > 0.02 * bright.max()
     return np.asarray((blocks(light) - blocks(other))[lit] / bright[lit])

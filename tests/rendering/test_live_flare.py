@@ -21,7 +21,7 @@ Picture = NDArray[np.float64]
 
 
 def sun(x: float, y: float, light: tuple[float, float, float]) -> tuple[dg.SphereLight, Picture]:
-    """As many degrees to the right and up."""
+    """A sun so many degrees to the right and up."""
     toward = np.array((math.tan(math.radians(x)), math.tan(math.radians(y)), -1.0))
     pose = np.eye(4)
     pose[:3, 3] = 1000 * toward / np.linalg.norm(toward)
@@ -81,7 +81,7 @@ def test_live_ghosts_are_the_exact_ones_but_for_some_per_cent(lens: str) -> None
 
 
 def test_two_lamps_have_the_ghosts_of_each() -> None:
-    """Of its own colour, however many arrivals each gets."""
+    """Each in its own colour, however many arrivals it gets."""
     lens = "double-gauss-50mm-f2"
     both = live(session(lens, WHITE, RED))
     each = live(session(lens, WHITE)) + live(session(lens, RED))

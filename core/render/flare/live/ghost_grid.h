@@ -21,7 +21,7 @@ struct GhostGrid {
     GhostGrid(const MapRays& rays, const Sensor& sensor, float reach);
 
     bool empty() const { return nodes.empty(); }
-    /// Of a node in squares, which may be between nodes.
+    /// The place of a node, in squares, or of one between nodes.
     Vec2f at(Vec2f node) const { return region.at(node * (1.f / kSquares)); }
 
     static float middle_nm();

@@ -19,7 +19,7 @@ class LiveFlare {
         int ghosts = 0;          // that were drawn
         std::size_t rays = 0, arrivals = 0;
     };
-    /// Of the last picture.
+    /// Figures of the last picture.
     const Facts& facts() const { return facts_; }
 
   private:

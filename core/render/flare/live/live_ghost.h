@@ -29,7 +29,7 @@ class LiveGhost {
     void add_to(FlareTiles& tiles) const;
     /// How many arrivals it is worth beside other ghosts.
     double weigh(const FlareTiles& tiles);
-    /// What drawing takes, for so many arrivals for each unit of weigh().
+    /// Finds all that drawing takes, for so many arrivals for each unit of weigh().
     void refine(double arrivals);
     /// `unit`: light of a pixel for light and unit areas of the front's square.
     void draw(LightLayer& layer, float unit);

@@ -127,7 +127,7 @@ void LiveGhost::find_blur() {
     smooth_ = SheetSmooth::of(cells);
 }
 
-/// Of the nearest of few nodes that have one.
+/// The blur at the nearest of few nodes that have one.
 const CellBlur& LiveGhost::blur_near(const Square& s) const {
     static const CellBlur sharp{};
     const CellBlur* best = &sharp;
