@@ -59,11 +59,12 @@ void GhostGrid::mark(const Looks& by) {
         for (int i = 0; i < kSquares * kSquares; ++i)
             for (const Vec2f u : {Vec2f{0.5f, 0}, {0, 0.5f}, {0.5f, 0.5f}})
                 if (may[i])
-                    looks.push_back({at(Vec2f{float(i % kSquares), float(i / kSquares)} + u), {0, 0}, middle_nm()}), of.push_back(i);
+                    of.push_back(i),
+                        looks.push_back({at(Vec2f{float(i % kSquares), float(i / kSquares)} + u), {0, 0}, middle_nm()});
         const std::vector<MapLanding> landings = by.rays.trace(looks);
         rays += looks.size();
         for (std::size_t k = 0; k < looks.size(); ++k)
-            if (passes(by, landings[k])) see(of[k] % kSquares, of[k] / kSquares), see(of[k] % kSquares + 1, of[k] / kSquares + 1);
+            if (const int x = of[k] % kSquares, y = of[k] / kSquares; passes(by, landings[k])) see(x, y), see(x + 1, y + 1);
     }
     lit.assign(kSquares * kSquares, false);
     for (int i = 0; i < kSquares * kSquares; ++i) lit[i] = may[i] && near[i];

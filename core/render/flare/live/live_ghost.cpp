@@ -67,8 +67,8 @@ float LiveGhost::glass() {
     std::vector<MapRay> rays;
     for (int i = 0; i < kGlassNodes; ++i) {
         const int n = open[(2 * std::size_t(i) + 1) * open.size() / (2 * kGlassNodes)];
-        for (int k = 0; k < kBands; ++k)
-            rays.push_back({grid_.at({float(n % kSide), float(n / kSide)}), {0, 0}, LiveSource::nm((float(k) + 0.5f) / kBands)});
+        const Vec2f at = grid_.at({float(n % kSide), float(n / kSide)});
+        for (int k = 0; k < kBands; ++k) rays.push_back({at, {0, 0}, LiveSource::nm((float(k) + 0.5f) / kBands)});
     }
     float sum = 0;
     for (const MapLanding& l : trace(rays)) sum += l.pass / float(rays.size());

@@ -1,9 +1,9 @@
 // live_ghost.h -- a ghost of a small source for a picture that passes by: a mesh of exact rays, drawn by many arrivals that
 // cost an interpolation each.
 //
-// A grid of rays finds the part of the front that the ghost comes through, and about how much light it brings. What
-// wavelengths and points of the source change is known at some of its nodes; squares that hold an edge or that bend, and that
-// bring enough light to be worth it, have a finer grid of their own.
+// A grid of rays finds the part of the front that the ghost comes through, and about how much light it brings. Some of its
+// nodes know how wavelength and point of the source change the landing. Squares with an edge, or in which landings bend,
+// have a finer grid if they bring enough light.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -105,7 +105,8 @@ void LiveGhost::find_blur() {
     std::vector<SheetSmooth::CellLight> cells;
     for (int n = 0; n < int(few_.size()); ++n) {
         if (!few_[n].sound) continue;
-        const int x = std::clamp(n % few_side_ * step_ - 1, 0, kSide - 4), y = std::clamp(n / few_side_ * step_ - 1, 0, kSide - 4);
+        const int x = std::clamp(n % few_side_ * step_ - 1, 0, kSide - 4);
+        const int y = std::clamp(n / few_side_ * step_ - 1, 0, kSide - 4);
         std::array<MapLanding, 16> nodes;
         for (int k = 0; k < 16; ++k) nodes[k] = node(x + k % 4, y + k / 4);
         std::array<MapLanding, 2> rim;
@@ -118,7 +119,8 @@ void LiveGhost::find_blur() {
         }
         if (!std::ranges::all_of(nodes, &MapLanding::sound)) continue;
         few_[n].blurs = true;
-        few_[n].blur = cell_blur({nodes.data(), rim.data(), rays_.crossings()}, rays_.ghosts().iris(), rays_.ghosts().iris_radius());
+        const GhostLens& ghosts = rays_.ghosts();
+        few_[n].blur = cell_blur({nodes.data(), rim.data(), rays_.crossings()}, ghosts.iris(), ghosts.iris_radius());
     }
     for (Square& s : squares_) {
         s.blur = blur_near(s);

@@ -21,14 +21,17 @@ void LiveGhost::draw(LightLayer& layer, float unit) {
     double sum = 0;
     for (const Square& s : squares_) {
         const auto first = std::uint32_t(sum), last = std::uint32_t(sum += s.worth);
-        for (std::uint32_t from = first; from < last; from += MapBatch::kSize)
-            draw(layer, levels, s, first_ + from, int(std::min<std::uint32_t>(last - from, MapBatch::kSize)), unit * area / float(s.worth));
+        for (std::uint32_t from = first; from < last; from += MapBatch::kSize) {
+            const auto count = int(std::min<std::uint32_t>(last - from, MapBatch::kSize));
+            draw(layer, levels, s, first_ + from, count, unit * area / float(s.worth));
+        }
         arrived_ += last - first;
     }
 }
 
 /// Arrivals of a square. Colours that land apart are a few groups of wavelengths, each in its place.
-void LiveGhost::draw(LightLayer& layer, const SheetLevel& levels, const Square& s, std::uint32_t from, int count, float times) {
+void LiveGhost::draw(LightLayer& layer, const SheetLevel& levels, const Square& s, std::uint32_t from, int count,
+                     float times) {
     MapBatch& b = thread_scratch<MapBatch>([] {});
     const auto points = std::uint32_t(source_.small.points.size());
     for (int i = 0; i < count; ++i) {

@@ -1,5 +1,5 @@
-// mesh_patch.h -- squares of a grid of rays by a ghost: between nodes everything is bilinear, and what the wavelength and the
-// point of the source change of it is the same in all of a patch.
+// mesh_patch.h -- squares of a grid of rays by a ghost: bilinear between nodes. Wavelength and point of the source change
+// all landings of a patch alike.
 #pragma once
 #include <array>
 
