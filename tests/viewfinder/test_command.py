@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from daguerre import cli
+from daguerre.viewfinder import run
 from tests.faults.scene import write_scene
 
 pytest.importorskip("websockets", reason="needs the extra view")
@@ -105,11 +106,20 @@ def test_the_command_has_the_flags_given(file: Path) -> None:
         (["--tev", "nowhere"], "--tev", 2),
         (["--proxy", "hub.example/x"], "--proxy", 2),
         (["--port", "99999"], "--port", 2),
+        (["--lens", "thin", "--flare", "auto"], "flare (--flare)", 2),
+        (["--lens", "thin", "--scatter", "auto"], "scatter (--scatter)", 2),
+        (["--lens", "pinhole", "--diffraction"], "diffraction (--diffraction)", 2),
     ],
 )
 def test_wrong_flags_are_one_error(
-    file: Path, words: list[str], wanted: str, code: int, capsys: pytest.CaptureFixture[str]
+    file: Path,
+    words: list[str],
+    wanted: str,
+    code: int,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setattr(run, "asyncio", None)  # no server starts
     assert cli.main(["view", str(file), *QUICK, *words]) == code
     said = capsys.readouterr().err
     assert said.count("daguerre: error:") == 1

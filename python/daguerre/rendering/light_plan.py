@@ -65,11 +65,10 @@ def plan_light(one: Prepared, piloted: Plan | None = None) -> LightPlan:
         one: The picture.
         piloted: Result of a pilot render of the same picture; None: automatic numbers need one.
     """
-    with core_errors(UsageError):
-        core = _settings(one, one.setup, NONE)
+    check_light(one)
+    core = core_settings_of(one)
     wanted = check_light_paths(one.settings.light.light_paths)
-    if one.scene.has_catchers or one.scene.plate is not None:
-        _check_catchers(one)
+    if _is_over_plate(one):
         wanted = OFF
     if piloted is not None:
         piloted = check_light_paths(piloted, "piloted")
@@ -93,6 +92,25 @@ def plan_light(one: Prepared, piloted: Plan | None = None) -> LightPlan:
         times = one.share(outer) if wanted is None else grown
         parts.append(_around(one, (plan[0] * times, plan[1] * times), paths, outer))
     return LightPlan(parts, light_paths, **paths, notes=tuple(notes), piloted=piloted, core=core)
+
+
+def check_light(one: Prepared) -> None:
+    """Checks that lens and scene allow the light that is asked for, before anything is set up.
+
+    Raises:
+        UsageError: The message names the parameter.
+    """
+    if _is_over_plate(one):
+        _check_catchers(one)
+    for name in DARK:
+        if check_paths(getattr(one.settings.light, name), name) != 0:
+            check_surfaces(one.setup.lens.model, name)
+
+
+def core_settings_of(one: Prepared) -> _core.RenderSettings:
+    """Settings of the core for a picture, before any paths are planned."""
+    with core_errors(UsageError):
+        return _settings(one, one.setup, NONE)
 
 
 def new_film(one: Prepared, plan: LightPlan) -> _core.Film:
@@ -120,6 +138,10 @@ def new_film(one: Prepared, plan: LightPlan) -> _core.Film:
     if curves is not None:
         made.set_responses(curves)
     return made
+
+
+def _is_over_plate(one: Prepared) -> bool:
+    return one.scene.has_catchers or one.scene.plate is not None
 
 
 def _check_catchers(one: Prepared) -> None:
@@ -169,7 +191,6 @@ def _prepare(one: Prepared, core: _core.RenderSettings, name: str, notes: list[s
     paths = check_paths(getattr(one.settings.light, name), name)
     if paths == 0:
         return 0.0
-    check_surfaces(one.setup.lens.model, name)
     with core_errors(InputError, name):
         shines = getattr(core, f"prepare_{name}")(one.core_scene, one.setup.core)
     if not shines:

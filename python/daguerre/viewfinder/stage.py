@@ -12,8 +12,9 @@ from daguerre.camera.exposure import check_exposure, is_held
 from daguerre.camera.exposure_mode import CHOICES, chosen_by, is_automatic, split_mode
 from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.rendering.backdrop import shows_plate
+from daguerre.rendering.light_plan import check_light
 from daguerre.rendering.photograph import Photograph
-from daguerre.rendering.prepare import prepare
+from daguerre.rendering.prepare import Prepared, prepare
 from daguerre.rendering.session import Session
 from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene
@@ -112,10 +113,7 @@ class Stage:
         Raises:
             DaguerreError: The shot cannot be drawn.
         """
-        with core_errors(InputError, "render"):
-            one = prepare(shot.scene, shot.camera, shot.settings, self.built)
-        self.built = one.built
-        return one.setup.lens
+        return self._prepared(shot).setup.lens
 
     def try_out(self, dials: Dials) -> None:
         """Sets up a small picture, so that what cannot be drawn is an error before anyone looks.
@@ -123,9 +121,17 @@ class Stage:
         Raises:
             DaguerreError: The scene, the lens or a setting cannot be drawn.
         """
-        small = self.exposed(self.shot(dials)).smaller(_SMALLEST)
+        shot = self.exposed(self.shot(dials))
+        small = shot.smaller(_SMALLEST)
         session = Session(small.scene, small.camera, settings=small.settings, built=self.built)
         self.built = session.built
+        check_light(self._prepared(shot))
+
+    def _prepared(self, shot: Shot) -> Prepared:
+        with core_errors(InputError, "render"):
+            one = prepare(shot.scene, shot.camera, shot.settings, self.built)
+        self.built = one.built
+        return one
 
     def _scene_at(self, time: float | None) -> Scene:
         """The scene at a time, s, kept with what was built of it; None: at its own time."""
