@@ -32,6 +32,9 @@ import {Tools} from './tools.js';
 import {Tripod} from './tripod.js';
 import {Undo} from './undo.js';
 
+/** Longest wait for a picture until the next turn is sent, which ends the work on it. */
+const PATIENCE_MS = 1000;
+
 /** Runs the page in a document or shadow root; `makeLink(handlers)` connects it. */
 export function mount(root, makeLink) {
   return new Viewfinder(root, makeLink);
@@ -45,7 +48,8 @@ class Viewfinder {
     this.state = null;   // dials and readings
     this.mine = false;   // whether this page may turn
     this.wish = null;     // turns to send
-    this.sent = false;   // whether some were sent in this frame
+    this.sent = false;   // whether some were sent whose picture has not come
+    this.newest = -1;    // turn of the newest picture
     this.unheard = 0;    // turns that the server has not taken yet
     const canvas = this.find('picture');
     this.picture = new Picture(canvas, this.find('over'), this.find('tint'));
@@ -66,24 +70,29 @@ class Viewfinder {
     this.find('reload').addEventListener('click', () => this.send({reload: true}));
   }
 
+  /** Sends a message, after what was turned before. */
   send(message) {
+    if (this.wish && !message.got && !message.probe) this.sendTurn();
     this.link.send(message);
   }
 
-  /** Sends turns at once, and further ones at most once a frame, the newest of each dial. */
+  /**
+   * Sends turns at once, and further ones when a picture of those has come, the newest of each dial: a turn ends
+   * the work on the one before, so that faster ones would leave a hand that moves without pictures.
+   */
   turn(dials) {
     this.wish = {...this.wish, ...dials};
-    if (this.sent) return;
-    this.sendTurn();
+    if (!this.sent) this.sendTurn();
   }
 
   sendTurn() {
+    clearTimeout(this.patience);
     this.sent = this.wish !== null;
     if (!this.sent) return;
-    this.send({turn: this.wish});
+    this.link.send({turn: this.wish});
     this.unheard++;
     this.wish = null;
-    requestAnimationFrame(() => this.sendTurn());
+    this.patience = setTimeout(() => this.sendTurn(), PATIENCE_MS);
   }
 
   /** Whether the readings are those of all that was turned; if not, what was turned stays where it is. */
@@ -100,6 +109,7 @@ class Viewfinder {
     if (message.open) this.opened(message.open);
     if (message.heard) this.unheard--;
     if (message.role || message.refused) this.unheard = 0;
+    if (message.role || message.refused || message.state?.error) this.sendTurn();   // no picture comes
     if (message.role) this.mine = message.role === 'turns';
     if (message.role) this.find('watches').hidden = this.mine;
     if (message.state) this.state = message.state;
@@ -115,6 +125,10 @@ class Viewfinder {
   async shown(head, bytes) {
     const fresh = await this.picture.show(head, bytes);
     this.send({got: head.picture});
+    if (head.turn > this.newest) {
+      this.newest = head.turn;
+      this.sendTurn();
+    }
     if (!fresh) return;
     const {part: width, size: [, height]} = head, most = this.open?.spp ?? head.samples;
     const many = head.rests ? `${head.samples} samples` : `${width} × ${height}, ${head.samples} of ${most} samples`;
@@ -136,6 +150,7 @@ class Viewfinder {
 
   opened(found) {
     this.open = found;
+    this.newest = -1;   // another server counts anew
     this.find('scene').textContent = found.scene;
     if (this.root === document) document.title = `${found.scene}: Daguerre viewfinder`;
     this.find('changed').hidden = true;
