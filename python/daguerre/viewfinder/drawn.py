@@ -56,12 +56,21 @@ class Wish:
 
 @dataclass(frozen=True)
 class Panel:
-    """One of several pictures side by side: its name, its shot, its session and its frame."""
+    """One of several pictures side by side.
+
+    Attributes:
+        name: Its name.
+        shot: Its shot.
+        session: Session that drew it.
+        frame: Its linear values.
+        sharp: The same larger, to be shown with sharp ghosts; None: there is no such frame.
+    """
 
     name: str
     shot: Shot
     session: Session
     frame: Frame
+    sharp: Frame | None = None
 
 
 @dataclass(frozen=True)
@@ -77,6 +86,7 @@ class Drawn:
         rests: Whether nothing better follows.
         whole: Whether it has its full size.
         panels: Pictures to show instead, side by side; empty: this one.
+        sharp: The frame larger, to be shown with sharp ghosts; None: there is no such frame.
         note: Why there is no picture beside it, though one was asked for.
     """
 
@@ -88,6 +98,7 @@ class Drawn:
     rests: bool
     whole: bool = True
     panels: tuple[Panel, ...] = ()
+    sharp: Frame | None = None
     note: str = ""
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -62,8 +63,10 @@ def image_of(
         clean: Its denoised frame, to show instead; the histogram stays as drawn.
         tint: How to tint it, too; see ``tint_of``.
     """
-    panels = drawn.panels or (Panel("", drawn.shot, drawn.session, clean or drawn.frame),)
-    parts = [shown(panel.frame, panel.shot) for panel in panels]
+    alone = Panel("", drawn.shot, drawn.session, clean or drawn.frame, drawn.sharp)
+    panels = drawn.panels or (alone,)
+    frames = _frames(panels, tint)
+    parts = [shown(frame, one.shot) for frame, one in zip(frames, panels, strict=True)]
     pixels = side_by_side(parts)
     height, width = pixels.shape[:2]
     kind, data = encoded(pixels, QUALITY)
@@ -72,6 +75,14 @@ def image_of(
     own = parts[drawn.main] if clean is None else shown(drawn.frame, drawn.shot)
     part = parts[0].shape[1]
     return Image(kind, data + more, (width, height), _histogram(own), head, part)
+
+
+def _frames(panels: Sequence[Panel], tint: str) -> list[Frame]:
+    """Frames to show, of one size; a tint needs the pixels of the session."""
+    sharp = [panel.sharp for panel in panels if panel.sharp is not None]
+    if tint == NONE and len(sharp) == len(panels):
+        return sharp
+    return [panel.frame for panel in panels]
 
 
 def _tinted(kind: str, panel: Panel, pixels: NDArray[np.uint8]) -> Tint | None:

@@ -30,6 +30,7 @@ class Rung:
         names: Names of those side by side; empty: there is one.
         last: Whether it is drawn with all samples, until it rests; others have one.
         main: Number of the shot that the dials show.
+        ghosts: Layers of live ghosts, one for each shot; empty: there are none.
         note: Why the picture beside it that was asked for is not there.
     """
 
@@ -37,12 +38,14 @@ class Rung:
     names: tuple[str, ...] = ()
     last: bool = True
     main: int = 0
+    ghosts: tuple[Shot, ...] = ()
     note: str = ""
 
     def is_lit_as(self, other: Rung) -> bool:
         """Whether the samples of another rung show this one, too."""
-        pairs = zip(self.shots, other.shots, strict=False)
-        return self.names == other.names and all(a.is_lit_as(b) for a, b in pairs)
+        if (self.names, len(self.ghosts)) != (other.names, len(other.ghosts)):
+            return False
+        return all(a.is_lit_as(b) for a, b in zip(self.shots, other.shots, strict=False))
 
 
 def rungs_of(wish: Wish) -> Iterator[Rung]:
@@ -55,18 +58,20 @@ def rungs_of(wish: Wish) -> Iterator[Rung]:
         yield Rung(shots, MODELS, main=len(shots) - 1)
         return
     quick = stage.exposed(wish.shot, fresh=False)
-    known = {quick.settings.film.resolution}
+    ghosts = () if (layer := quick.ghosts()) is None else (layer,)
+    # Exact ghosts take long to set up: a picture on the way must come first, however small.
+    known = set() if ghosts else {quick.settings.film.resolution}
     for divisor in LADDER:
         small = quick.smaller(divisor)
         if (size := small.settings.film.resolution) not in known:
             known.add(size)
-            yield Rung((small,), last=False)
+            yield Rung((small,), last=False, ghosts=ghosts)
     yield Rung((stage.exposed(wish.shot),))
 
 
 def rung_of(wish: Wish, index: int) -> Rung:
-    """One rung of a wish."""
-    rung = next(islice(rungs_of(wish), index, None))
+    """One rung of a wish, the last one if it has fewer."""
+    *_, rung = islice(rungs_of(wish), index + 1)
     return rung if wish.beside is None else _paired(rung, wish.stage, wish.beside)
 
 
@@ -76,4 +81,5 @@ def _paired(rung: Rung, stage: Stage, change: Mapping[str, str]) -> Rung:
         other = other_of(stage, rung.shots[0], change)
     except DaguerreError as error:
         return replace(rung, note=f"No picture beside this one: {reason_of(error)}")
-    return replace(rung, shots=(*rung.shots, other.shot), names=other.labels)
+    ghosts = (*rung.ghosts, *(layer.through(other.shot) for layer in rung.ghosts))
+    return replace(rung, shots=(*rung.shots, other.shot), names=other.labels, ghosts=ghosts)

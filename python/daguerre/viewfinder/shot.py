@@ -13,13 +13,15 @@ from daguerre.rendering.pixels import Box, at_size, crop_box
 from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene
 
-from .switches import suited
+from .switches import on_in, suited
 
 if TYPE_CHECKING:
     from daguerre.rendering.auto_exposure import Chosen
 
 #: A rung's picture has at least so many pixels on its shorter side, if the whole one has them.
 _LEAST = 40
+#: A layer of ghosts has at most so many pixels.
+_LAYER = 480 * 270
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,24 @@ class Shot:
         width, height = self.settings.film.resolution
         left, top, right, bottom = self.window
         divisor = max(1, min(divisor, min(right - left, bottom - top) // _LEAST))
-        size = max(1, round(width / divisor)), max(1, round(height / divisor))
+        return self._preview((max(1, round(width / divisor)), max(1, round(height / divisor))))
+
+    def ghosts(self) -> Shot | None:
+        """Returns the layer of live ghosts for previews of the shot; None: ghosts are off."""
+        if "flare" not in on_in(self.settings):
+            return None
+        width, height = self.settings.film.resolution
+        left, top, right, bottom = self.window
+        share = min(1.0, math.sqrt(_LAYER / ((right - left) * (bottom - top))))
+        return self._preview((max(1, round(width * share)), max(1, round(height * share))))
+
+    def through(self, other: Shot) -> Shot:
+        """Returns the shot by the camera of another one, which may have another size."""
+        size = self.settings.film.resolution
+        return replace(self, camera=other._camera_at(size), chosen=other.chosen)
+
+    def _preview(self, size: tuple[int, int]) -> Shot:
+        """Returns the shot at another size, with one sample and no light that takes long."""
         few = RenderSettings.of(
             resolution=size,
             crop=self._crop_at(size),

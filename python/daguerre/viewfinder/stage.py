@@ -23,6 +23,7 @@ from daguerre.setup.built_scene import BuiltScene
 from daguerre.setup.resolved import ResolvedLens
 
 from .dials import Dials
+from .ghosts import Layers
 from .light_meter import LightMeter
 from .shot import Shot
 
@@ -43,6 +44,7 @@ class Stage:
         load: Loads the scene again; None: it cannot be.
         built: Scene built for the core, kept between shots.
         meter: Light meter for automatic modes.
+        layers: Draws layers of live ghosts for pictures on the way.
         moment: The scene at the time of the last shot, if that is another one than the scene's.
         metering: Held while the meter is used.
     """
@@ -55,6 +57,7 @@ class Stage:
     load: Callable[[], tuple[Scene, Camera]] | None = None
     built: BuiltScene | None = None
     meter: LightMeter = field(default_factory=LightMeter)
+    layers: Layers = field(default_factory=Layers)
     moment: Scene | None = None
     metering: threading.Lock = field(default_factory=threading.Lock, repr=False, compare=False)
 

@@ -18,12 +18,15 @@ from daguerre.rendering.rounds import rounds
 from daguerre.rendering.session import Session
 
 from .drawn import Drawn, Panel, Wish
+from .ghosts import Layer
 from .rungs import Rung, rung_of
 from .shot import Shot
 from .stage import Stage
 
 #: Time between two pictures at full size, s, if samples are that fast.
 LONGEST_S = 1.0
+#: Linear values of a picture, and the same larger, if that shows ghosts sharper.
+View = tuple[Frame, Frame | None]
 
 
 class Do(Protocol):
@@ -47,6 +50,7 @@ class Work:
         self._index = 0
         self._rung: Rung | None = None
         self._sessions: list[Session] = []
+        self._layers: list[Layer | None] = []  # of live ghosts
 
     def expose(self, wish: Wish) -> bool:
         """Goes on for another wish if that asks for the same light; returns whether it does."""
@@ -57,7 +61,7 @@ class Work:
         else:
             rung = rung_of(wish, self._index)
             if fits := rung.is_lit_as(self._rung):
-                _expose(self._sessions, rung)
+                _expose(self._sessions, self._layers, rung)
                 self._rung = rung
                 self.drawn = self.drawn and self._exposed(self.drawn, wish)
         self.wish = wish if fits else self.wish
@@ -70,8 +74,9 @@ class Work:
             assert self._rung is not None
             steps = _steps(self._rung, self._sessions)
             while (step := do(partial(next, steps, None))) is not None:
-                frames = [session.frame(truth=False) for session in self._sessions]
-                self.drawn = self._drawn(self.wish, frames, *step)
+                plain = [session.frame(truth=False) for session in self._sessions]
+                views = list(map(_with_ghosts, plain, self._layers))
+                self.drawn = self._drawn(self.wish, views, *step)
                 yield self.drawn
                 if step[1]:
                     return
@@ -80,37 +85,60 @@ class Work:
         """Sets up a rung as the newest wish has it."""
         wish = self.wish
 
-        def make() -> tuple[Rung, list[Session]]:
+        def make() -> tuple[Rung, list[Session], list[Layer | None]]:
             rung = rung_of(wish, index)
-            return rung, [_session(wish.stage, shot) for shot in rung.shots]
+            sessions = [_session(wish.stage, shot) for shot in rung.shots]
+            return rung, sessions, self._layers_of(rung, wish.stage)
 
-        rung, sessions = do(make)
+        rung, sessions, layers = do(make)
         if self.wish is not wish:  # another brightness was asked for meanwhile
             rung = rung_of(self.wish, index)
-            _expose(sessions, rung)
-        self._index, self._rung, self._sessions = index, rung, sessions
+        _expose(sessions, layers, rung)
+        self._index, self._rung, self._sessions, self._layers = index, rung, sessions, layers
 
-    def _drawn(self, wish: Wish, frames: list[Frame], samples: int, rests: bool) -> Drawn:
+    def _layers_of(self, rung: Rung, stage: Stage) -> list[Layer | None]:
+        """Layers of live ghosts, one for each shot: those of the rung before if they fit."""
+        before = () if self._rung is None else self._rung.ghosts
+        pairs = zip_longest(rung.ghosts, before[: len(rung.ghosts)])
+        if rung.ghosts and all(old and new.is_lit_as(old) for new, old in pairs):
+            return self._layers
+        layers = [stage.layers.draw(_session(stage, shot)) for shot in rung.ghosts]
+        return layers or [None] * len(rung.shots)
+
+    def _drawn(self, wish: Wish, views: list[View], samples: int, rests: bool) -> Drawn:
         assert self._rung is not None
         rung, main = self._rung, self._rung.main
+        frame, sharp = views[main]
+        parts = zip(rung.names, rung.shots, self._sessions, views, strict=False)
         return Drawn(
             wish,
             rung.shots[main],
             self._sessions[main],
-            frames[main],
+            frame,
             samples,
             rests,
             whole=rung.last and not wish.models,
-            panels=tuple(map(Panel, rung.names, rung.shots, self._sessions, frames)),
+            panels=tuple(Panel(name, shot, session, *view) for name, shot, session, view in parts),
+            sharp=sharp,
             note=rung.note,
         )
 
     def _exposed(self, drawn: Drawn, wish: Wish) -> Drawn:
         """Returns a picture of the rung with the brightness of another wish."""
-        before = [panel.frame for panel in drawn.panels] or [drawn.frame]
-        pairs = zip(self._sessions, before, strict=True)
-        frames = [session.exposed(frame) for session, frame in pairs]
-        return self._drawn(wish, frames, drawn.samples, drawn.rests)
+        before = [(one.frame, one.sharp) for one in drawn.panels or (drawn,)]
+        parts = zip(self._sessions, self._layers, before, strict=True)
+        views = [_view_exposed(*part) for part in parts]
+        return self._drawn(wish, views, drawn.samples, drawn.rests)
+
+
+def _view_exposed(session: Session, layer: Layer | None, view: View) -> View:
+    frame, sharp = view
+    larger = None if layer is None or sharp is None else layer.session.exposed(sharp)
+    return session.exposed(frame), larger
+
+
+def _with_ghosts(frame: Frame, layer: Layer | None) -> View:
+    return (frame, None) if layer is None else (layer.added(frame), layer.sharp(frame))
 
 
 def _session(stage: Stage, shot: Shot) -> Session:
@@ -125,9 +153,12 @@ def _metering(shot: Shot) -> Any:
     return {} if shot.chosen is None else shot.chosen.facts
 
 
-def _expose(sessions: list[Session], rung: Rung) -> None:
+def _expose(sessions: list[Session], layers: list[Layer | None], rung: Rung) -> None:
     for session, shot in zip(sessions, rung.shots, strict=True):
         session.expose(shot.camera, _metering(shot))
+    for layer, shot in zip(layers, rung.ghosts, strict=False):
+        if layer is not None:
+            layer.session.expose(shot.camera, _metering(shot))
 
 
 def _steps(rung: Rung, sessions: list[Session]) -> Iterator[tuple[int, bool]]:
