@@ -14,6 +14,11 @@ Without a scene: the night table of ``script/demo``. At 240 x 135 (small) and 96
 * rest_cpu: CPU time at rest, of the server and of the whole browser;
 * stream: the rate at which finished pictures arrive.
 
+At 480 x 270 with ghosts, while a mouse drags the picture until 100 turns have shown:
+
+* ghosts: time from one picture of a turn to that of the next; CPU time for each, of the server and
+  of the browser; how many pictures had a layer of live ghosts.
+
 Then the time in which a new wish ends a render or a set-up, and the bytes of the page without
 photographs.
 """
@@ -24,6 +29,7 @@ import argparse
 import contextlib
 import itertools
 import json
+import math
 import os
 import sys
 import tempfile
@@ -41,6 +47,7 @@ from daguerre.cli.demo import write_scene
 from daguerre.rendering import Cancelled, CancelToken
 from daguerre.rendering.session import Session
 from daguerre.viewfinder.dials import Dials
+from daguerre.viewfinder.ghosts import Layer
 from daguerre.viewfinder.opening import opened
 from daguerre.viewfinder.server import FILES
 from daguerre.viewfinder.stage import Stage
@@ -60,6 +67,18 @@ REST_S = 20
 OPENING = """
 new MutationObserver(() => (window.opened ??= performance.now()))
   .observe(document, {subtree: true, attributes: true, attributeFilter: ['data-picture']})
+"""
+#: Notes in the page when the first picture of each turn is on the canvas.
+FOLLOW = """
+(() => {
+  const frame = document.getElementById('frame');
+  let turn = Number(frame.dataset.turn);
+  window.followed = [];
+  new MutationObserver(() => {
+    if (Number(frame.dataset.turn) > turn) window.followed.push(performance.now());
+    turn = Number(frame.dataset.turn);
+  }).observe(frame, {attributes: true});
+})()
 """
 #: Notes in the page when a key is pressed, and when a picture of a later turn is on the canvas.
 WATCH = """
@@ -115,6 +134,44 @@ def turned(page: Browser, controls: Sequence[str], count: int) -> list[float]:
     return [float(t) for t in page.run("window.turns") if t is not None]
 
 
+def followed(stage: Stage, dials: Dials, page: Browser, turns: int) -> dict[str, float]:
+    """Measures pictures that follow a hand with ghosts."""
+    dials, _ = opened(stage, dials.turned({"flare": "auto"}))
+    with live(stage, dials) as server:
+        open_page(page, server.host)
+        rests(page)
+        page.run(FOLLOW)
+        with mock.patch.object(Layer, "added", autospec=True, side_effect=Layer.added) as layers:
+            cpus = drag(page, turns)
+        times = page.run("window.followed")
+        rests(page)
+    found = summed("ghosts", np.diff(times))
+    each = {f"ghosts_{name}_cpu_ms": 1e3 * cpu / len(times) for name, cpu in cpus.items()}
+    return {**found, **each, "ghosts_share": layers.call_count / len(times)}
+
+
+def drag(page: Browser, turns: int) -> dict[str, float]:
+    """Drags the picture at 60 moves a second until turns have shown; returns CPU time, s."""
+    pids = processes()
+    x, y = page.place("#picture")
+    before = {name: cpu_of(some) for name, some in pids.items()}
+    page.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+    for k in itertools.count(1):
+        at = x + 60 * math.sin(0.03 * k), y + 20 * math.sin(0.02 * k)
+        page.mouse("mouseMoved", *at, button="left", buttons=1)
+        if k % 10 == 0 and page.run("window.followed.length") > turns:
+            break
+        time.sleep(1 / 60)
+    page.mouse("mouseReleased", *at, button="left", buttons=0, clickCount=1)
+    return {name: cpu_of(some) - before[name] for name, some in pids.items()}
+
+
+def processes() -> dict[str, list[int]]:
+    """Processes of the server, which is this one, and of the browser."""
+    own = os.getpid()
+    return {"server": [own], "browser": [pid for pid in children_of(own) if pid != own]}
+
+
 def summed(name: str, times: Sequence[float]) -> dict[str, float]:
     """Median and 95th percentile of times, ms."""
     return {
@@ -125,8 +182,7 @@ def summed(name: str, times: Sequence[float]) -> dict[str, float]:
 
 def rest_cpu() -> dict[str, float]:
     """CPU time at rest of this process, which serves, and of the browser, % of a core."""
-    own = os.getpid()
-    pids = {"server": [own], "browser": [pid for pid in children_of(own) if pid != own]}
+    pids = processes()
     before, began = {name: cpu_of(some) for name, some in pids.items()}, time.monotonic()
     time.sleep(REST_S)
     scale = 100 / (time.monotonic() - began)
@@ -238,6 +294,8 @@ def main() -> None:
             stage = Stage(scene, camera, dg.RenderSettings.of(resolution=size, spp=16))
             found = measured(stage, dials, page, options.turns)
             rows |= {f"{key}_{name}": value for name, value in found.items()}
+        stage = Stage(scene, camera, dg.RenderSettings.of(resolution=(480, 270), spp=16))
+        rows |= followed(stage, dials, page, 100)
     ends = cancelled(scene, camera.with_(lens=options.lens))
     rows["cancel_median_ms"], rows["cancel_most_ms"] = float(np.median(ends)), max(ends)
     rows["page_bytes"] = sum(map(len, FILES.values()))
