@@ -16,10 +16,7 @@ from .session import Session
 
 
 class LiveGhosts:
-    """Draws the ghosts by two reflections of the brightest small lamps, and nothing else.
-
-    It keeps what it learns about a lens from picture to picture.
-    """
+    """Draws the ghosts by two reflections of the brightest small lamps, and nothing else."""
 
     def __init__(self) -> None:
         self._core = _core.LiveFlare()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, reduce
 from typing import Any
 
 import numpy as np
@@ -15,8 +15,8 @@ from daguerre.frame.frame import Frame
 from daguerre.rendering.live_ghosts import LiveGhosts
 from daguerre.rendering.session import Session
 
-#: Longest time to draw a layer, s: twice the time between two pictures that follow a hand.
-MOST_S = 0.2
+#: Longest time to draw a layer, s: two pictures a second still follow a hand.
+MOST_S = 0.5
 #: Time without layers by a lens after one that took longer, s.
 PAUSE_S = 10.0
 
@@ -88,16 +88,25 @@ def _split(frame: Frame, values: NDArray[np.float32]) -> Frame:
 
 def resized(values: NDArray[np.float32], width: int, height: int) -> NDArray[np.float32]:
     """Resizes values, (H, W, N), by a triangle filter, as wide as the larger pixels."""
-    rows, columns = values.shape[:2]
-    if (columns, rows) == (width, height):
+    return _along(_along(values, 0, height), 1, width)
+
+
+def _along(values: NDArray[np.float32], axis: int, after: int) -> NDArray[np.float32]:
+    """Resizes an axis; a matrix would wake the threads of BLAS, which take longer to sleep."""
+    if values.shape[axis] == after:
         return values
-    return _weights(columns, width) @ np.tensordot(_weights(rows, height), values, 1)
+    shape = (-1, 1, 1) if axis == 0 else (-1, 1)
+    taps = zip(*_taps(values.shape[axis], after), strict=True)
+    parts = (values.take(places, axis) * weights.reshape(shape) for places, weights in taps)
+    return np.asarray(reduce(np.add, parts), np.float32)
 
 
 @lru_cache(16)
-def _weights(before: int, after: int) -> NDArray[np.float32]:
-    """Weights of pixels in a row for each new one, (after, before)."""
+def _taps(before: int, after: int) -> tuple[NDArray[np.intp], NDArray[np.float32]]:
+    """Pixels that each new one is made of, and their weights, both (taps, after)."""
     reach = max(1.0, before / after)
     centres = (np.arange(after) + 0.5) * (before / after) - 0.5
-    weights = np.clip(1 - np.abs(np.arange(before) - centres[:, None]) / reach, 0, None)
-    return np.asarray(weights / weights.sum(axis=1, keepdims=True), np.float32)
+    places = np.floor(centres - reach).astype(int) + np.arange(1, math.ceil(2 * reach) + 1)[:, None]
+    weights = np.clip(1 - np.abs(places - centres) / reach, 0, None)
+    weights[(places < 0) | (places >= before)] = 0
+    return np.clip(places, 0, before - 1), np.asarray(weights / weights.sum(axis=0), np.float32)

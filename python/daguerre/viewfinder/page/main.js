@@ -123,12 +123,12 @@ class Viewfinder {
   }
 
   async shown(head, bytes) {
-    const fresh = await this.picture.show(head, bytes);
-    this.send({got: head.picture});
-    if (head.turn > this.newest) {
+    if (head.turn > this.newest) {   // the server draws the next one while this one is decoded
       this.newest = head.turn;
       this.sendTurn();
     }
+    const fresh = await this.picture.show(head, bytes);
+    this.send({got: head.picture});
     if (!fresh) return;
     const {part: width, size: [, height]} = head, most = this.open?.spp ?? head.samples;
     const many = head.rests ? `${head.samples} samples` : `${width} × ${height}, ${head.samples} of ${most} samples`;
