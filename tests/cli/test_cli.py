@@ -24,6 +24,7 @@ from daguerre.cli.help import EXAMPLES
 from daguerre.files import extras
 from daguerre.rendering.schedule import pass_size
 from tests.support import fake_denoiser, fake_session
+from tests.support.pseudo_terminal import open_terminal
 
 SMALL = ["--res", "8x6"]
 
@@ -501,11 +502,7 @@ def test_a_log_gets_plain_lines(
 
 
 def test_a_terminal_gets_a_bar() -> None:
-    pty = pytest.importorskip("pty")
-    try:
-        leader, follower = pty.openpty()
-    except OSError as error:
-        pytest.skip(f"no pseudo-terminal here: {error}")
+    leader, follower = open_terminal()
     root = Path(__file__).parents[2]
     paths = os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH", "")]))
     process = subprocess.Popen(

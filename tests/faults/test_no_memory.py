@@ -23,6 +23,8 @@ pytestmark = pytest.mark.skipif(
 RENDER = "--res 96x64 --spp 2 --threads 1 --quiet -o a.exr"
 #: numpy and Python say this where they forget to report that memory ended.
 FORGOTTEN = re.compile("SystemError: .*(without (setting an )?exception|with an exception set)")
+#: The C library ends the process where a new thread has no memory for its own data.
+ABORTED = "cannot allocate memory for thread-local data: ABORT"
 
 
 def _ends(folder: Path, least: int, most: int, words: str) -> list[dict[str, Any]]:
@@ -44,6 +46,9 @@ def _check(ends: list[dict[str, Any]]) -> None:
     assert len(ends) > 10
     late = 0
     for end in ends[1:]:
+        if end["said"][-1:] == [ABORTED]:
+            assert end["files"].keys() <= {"a.checkpoint.exr"}, end
+            continue
         errors = [line for line in end["said"] if line.startswith("daguerre: error: ")]
         if end["code"] == 0:
             assert end["files"] == whole["files"], end

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.machinery
 import importlib.util
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -65,6 +66,8 @@ def test_a_promise_is_found(promise: str) -> None:
 def test_nothing_else_promises_an_index(program: ModuleType) -> None:
     if program.ON_INDEX:
         pytest.skip("an index has Daguerre")
+    if shutil.which("git") is None:
+        pytest.skip("needs git")
     listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True)
     if listed.returncode:
         pytest.skip("no checkout here")

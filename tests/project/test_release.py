@@ -17,6 +17,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.skipif(shutil.which("git") is None, reason="needs git")
+
 ROOT = Path(__file__).resolve().parents[2]
 FILES = (
     *("core/version.h", "CHANGELOG.md", "CITATION.cff", "packaging/conda-recipe.yaml"),

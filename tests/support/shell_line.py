@@ -13,6 +13,7 @@ import time
 from pathlib import Path
 
 import daguerre
+from tests.support.pseudo_terminal import need_terminal
 
 PACKAGES = Path(daguerre.__file__).parents[1]
 SCRIPTS = PACKAGES / "daguerre/cli/completion/scripts"
@@ -51,6 +52,7 @@ class Shell:
             folder: Its folder.
             start: Whether it reads its start-up files; else it reads the script alone.
         """
+        need_terminal()
         self._pid, self._terminal = pty.fork()
         if self._pid == 0:
             os.chdir(folder)

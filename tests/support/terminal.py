@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import fcntl
 import os
-import pty
 import re
 import select
 import signal
@@ -15,6 +14,8 @@ import termios
 import time
 from pathlib import Path
 from typing import Self
+
+from tests.support.pseudo_terminal import open_terminal
 
 ROOT = Path(__file__).parents[2]
 #: Answers to the graphics question, the name and the attributes, as these programs give them.
@@ -32,7 +33,7 @@ class Terminal:
 
     def __init__(self, kind: str, *arguments: str, seconds: float = 0.0, **env: str) -> None:
         self.answer, self.written = ANSWERS[kind], b""
-        self._master, slave = pty.openpty()
+        self._master, slave = open_terminal()
         fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 640, 384))
         kept = {k: v for k, v in os.environ.items() if k not in ("TMUX", "TERM_PROGRAM")}
         kept |= {"TERM": "xterm-256color", "FAKE_SECONDS": str(seconds), "PYTHONPATH": str(ROOT)}

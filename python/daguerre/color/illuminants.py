@@ -89,7 +89,7 @@ def photons_per_lux_s(radiance: FloatArray) -> FloatArray:
 
 def integral(values: ArrayLike) -> float:
     """Integrates values at ``NM`` over wavelength (nm)."""
-    return float(np.sum(values) * STEP)
+    return float(np.asarray(values).sum() * STEP)
 
 
 def xy_of(spectrum: FloatArray) -> tuple[float, float]:

@@ -90,4 +90,6 @@ def encoded(pixels: NDArray[Any]) -> NDArray[np.float32]:
     """Scales integer pixels to 0 .. 1; float pixels are not changed."""
     if not np.issubdtype(pixels.dtype, np.integer):
         return np.asarray(pixels, np.float32)
-    return np.asarray(pixels, np.float32) / np.float32(np.iinfo(pixels.dtype).max)
+    scaled = pixels.astype(np.float32)
+    scaled /= np.float32(np.iinfo(pixels.dtype).max)
+    return scaled

@@ -144,7 +144,8 @@ def smooth(point: Point, cells: Cells) -> Found:
         if not values:  # the first one has all the weight
             values = here
             continue
-        share = _step(np.float32(0.5) + np.float32(0.5) * (values[0] - distance) / width)
+        nearer = np.float32(0.5) + np.float32(0.5) * (values[0] - distance) / width
+        share = _step(np.asarray(nearer, np.float32))
         less = width * share * (ONE - share)
         little = less / (ONE + np.float32(3) * width)
         values = [

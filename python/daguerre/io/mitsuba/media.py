@@ -137,7 +137,8 @@ class Media:
         color = (1.0, 1.0, 1.0)
         if read.values.shape[3] == 3:
             self._notes.add("a grid of colours in a medium takes the hue of its mean")
-            r, g, b = read.values.mean(axis=(0, 1, 2), dtype=np.float64) / max(values.mean(), 1e-30)
+            mean = max(float(values.mean()), 1e-30)
+            r, g, b = read.values.mean(axis=(0, 1, 2), dtype=np.float64) / mean
             color = (float(r), float(g), float(b))
         try:
             return Grid(DensityGrid(values, placed), color)

@@ -202,7 +202,8 @@ class _Tree:
                               np.array([one.max() + 1 for one in cells])))  # fmt: skip
         if not found:
             return np.zeros(3, np.int64), np.zeros(3, np.int64)
-        return np.min([low for low, _ in found], axis=0), np.max([h for _, h in found], axis=0)
+        low, high = zip(*found, strict=True)
+        return np.asarray(np.min(low, axis=0)), np.asarray(np.max(high, axis=0))
 
     def filled(self, low: Integers, high: Integers, background: float) -> NDArray[np.float32]:
         """Values of the cells from ``low`` up to ``high``, shape (Z, Y, X)."""

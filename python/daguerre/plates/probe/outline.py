@@ -133,7 +133,7 @@ def _best(
     for side in (radius, -radius):
         middle = np.rint(edges + side * toward).astype(int)
         inside = ((middle >= 0) & (middle < shape)).all(axis=1)
-        at = middle[inside] @ (shape[1], 1)
+        at = np.asarray(middle[inside] @ (shape[1], 1), np.intp)
         # Both signs: parts of a rim may be brighter, others darker than the surroundings.
         votes += np.bincount(at, weights[inside], minlength=votes.size)
     spread = votes.reshape(shape)

@@ -137,7 +137,7 @@ def _needs_rgb(canvas: Canvas, name: str) -> None:
 def _psf(canvas: Canvas, values: Values) -> Step:
     from daguerre.io.images import read_environment
 
-    kernel = read_environment(Path(values["file"]))
+    kernel: Any = read_environment(Path(values["file"]))
     height, width = kernel.shape[:2]
     if height > canvas.height or width > canvas.width:
         raise InputError(
