@@ -20,29 +20,14 @@ import time
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from flare import LUMINANCE, Picture, blocks, scene
 
 import daguerre as dg
 import daguerre._core as _core
 from daguerre.rendering.session import Session
 
-SUN_DEG = 0.265  # half
-LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
-BLOCK = 16  # px
 LENSES = ("tessar-50mm-f2.8", "double-gauss-50mm-f2", "sigma-17-40mm-f1.8")
 ANGLES = ((9.0, 5.0), (2.0, -3.0), (-22.0, 4.0))  # degrees to the right and up
-
-Picture = NDArray[np.float64]
-
-
-def scene(degrees: tuple[float, float]) -> dg.Scene:
-    """A sun, as many degrees to the right and up."""
-    made = dg.Scene()
-    toward = np.array([math.tan(math.radians(d)) for d in degrees] + [-1.0])
-    pose = np.eye(4)
-    pose[:3, 3] = 1000 * toward / np.linalg.norm(toward)
-    made.add_light(dg.SphereLight((1.6e4,) * 3, 1000 * math.tan(math.radians(SUN_DEG))), pose)
-    return made
 
 
 def session(
@@ -75,13 +60,6 @@ def live(made: Session, rounds: int) -> tuple[Picture, dict[str, float]]:
         "arrivals": drawer.arrivals,
     }
     return np.asarray(rgb, float), facts
-
-
-def blocks(light: Picture) -> Picture:
-    """Luminance of blocks."""
-    rows, columns = light.shape[0] // BLOCK, light.shape[1] // BLOCK
-    whole = light[: rows * BLOCK, : columns * BLOCK] @ LUMINANCE
-    return whole.reshape(rows, BLOCK, columns, BLOCK).mean((1, 3))
 
 
 def errors(light: Picture, other: Picture, reference: Picture) -> Picture:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 import daguerre as dg
 from daguerre.color.spectra import luminance_of_rgb
 from daguerre.rendering import Cancelled
-from daguerre.rendering.live_ghosts import LiveGhosts
+from daguerre.rendering.live_ghosts import live_ghosts
 from daguerre.rendering.session import Session
 from daguerre.viewfinder import ghosts
 from daguerre.viewfinder.dials import Dials
@@ -170,13 +170,12 @@ def test_the_picture_at_rest_is_the_render() -> None:
 def draws(monkeypatch: pytest.MonkeyPatch) -> list[Session]:
     """Sessions whose ghosts were drawn."""
     found: list[Session] = []
-    draw = LiveGhosts.draw
 
-    def noted(self: LiveGhosts, session: Session) -> Any:
+    def noted(session: Session) -> Any:
         found.append(session)
-        return draw(self, session)
+        return live_ghosts(session)
 
-    monkeypatch.setattr(LiveGhosts, "draw", noted)
+    monkeypatch.setattr(ghosts, "live_ghosts", noted)
     return found
 
 
@@ -288,21 +287,21 @@ def test_a_lens_that_is_too_slow_is_left_alone_for_a_while(
 def test_a_lens_whose_layer_was_cancelled_late_is_too_slow(
     session: Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    layers, draw = Layers(), LiveGhosts.draw
+    layers = Layers()
 
     def cancelled(*_: object) -> None:
         raise Cancelled
 
-    monkeypatch.setattr(LiveGhosts, "draw", cancelled)
+    monkeypatch.setattr(ghosts, "live_ghosts", cancelled)
     with pytest.raises(Cancelled):  # at once: that says nothing
         layers.draw(session)
-    monkeypatch.setattr(LiveGhosts, "draw", draw)
+    monkeypatch.setattr(ghosts, "live_ghosts", live_ghosts)
     assert layers.draw(session) is not None
-    monkeypatch.setattr(LiveGhosts, "draw", cancelled)
+    monkeypatch.setattr(ghosts, "live_ghosts", cancelled)
     monkeypatch.setattr(ghosts, "MOST_S", 0.0)
     with pytest.raises(Cancelled):
         layers.draw(session)
-    monkeypatch.setattr(LiveGhosts, "draw", draw)
+    monkeypatch.setattr(ghosts, "live_ghosts", live_ghosts)
     assert layers.draw(session) is None
 
 

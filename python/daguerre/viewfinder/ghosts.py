@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.frame.frame import Frame
-from daguerre.rendering.live_ghosts import LiveGhosts
+from daguerre.rendering.live_ghosts import live_ghosts
 from daguerre.rendering.session import Session
 
 #: Longest time to draw a layer, s: two pictures a second still follow a hand.
@@ -25,7 +25,6 @@ class Layers:
     """Draws layers, unless the lens has been too slow for them of late."""
 
     def __init__(self) -> None:
-        self._live: LiveGhosts | None = None  # once it is needed
         self._slow: Any = None  # lens
         self._pause_end = -math.inf
 
@@ -35,8 +34,7 @@ class Layers:
         if lens == self._slow and begun < self._pause_end:
             return None
         try:
-            self._live = self._live or LiveGhosts()
-            light = self._live.draw(session)
+            light = live_ghosts(session)
         finally:  # whoever lost patience cancelled it
             ended = time.monotonic()
             slow = ended - begun > MOST_S
