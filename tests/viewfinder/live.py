@@ -108,6 +108,7 @@ class Page:
     open: dict[str, Any] = field(default_factory=dict)
     state: dict[str, Any] = field(default_factory=dict)
     refused: list[str] = field(default_factory=list)
+    heard: int = 0
     values: list[Any] = field(default_factory=list)
     heads: list[dict[str, Any]] = field(default_factory=list)
     bytes: bytes = b""
@@ -131,6 +132,7 @@ class Page:
         self.role = message.get("role", self.role)
         self.open = message.get("open", self.open)
         self.state = message.get("state", self.state)
+        self.heard += "heard" in message
         if "refused" in message:
             self.refused.append(message["refused"])
         if "value" in message:

@@ -178,7 +178,7 @@ def test_the_picture_before_is_shown_with_its_own_tint(finder: Browser, boards: 
         return bytes(finder.run(TINT))
 
     def turned() -> bytes | None:
-        turns(finder, boards, "#ring-exposure_compensation", "ArrowRight")
+        turns(finder, "#ring-exposure_compensation", "ArrowRight")
         return over()
 
     plain = [over(), turned()]

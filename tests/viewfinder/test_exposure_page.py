@@ -117,7 +117,7 @@ def test_rings_that_the_meter_turns_are_marked(
 ) -> None:
     if mode != "manual":
         set_mode(camera, mode)
-    settled(camera, stopped_down)
+    settled(camera)
     marked = camera.run(
         "[...document.querySelectorAll('.ring.metered')].map((e) => [e.querySelector('input').id,"
         "getComputedStyle(e.querySelector('label'), '::after').content])"
@@ -154,7 +154,7 @@ def test_the_needle_is_the_closing_line_of_render(
     for ring, key, count in STEPS:
         if camera.run(f"document.getElementById('ring-{ring}').disabled"):
             continue
-        turns(camera, stopped_down, f"#ring-{ring}", key, count)
+        turns(camera, f"#ring-{ring}", key, count)
         words = exposure_in_words(seen(stopped_down).session, seen(stopped_down).frame)
         size, side = words.removeprefix(f"{mode}, ").removesuffix(" the meter").split(" EV ")
         wanted = float(size) * (1 if side == "over" else -1)
@@ -175,7 +175,7 @@ def test_the_needle_follows_the_first_picture_of_a_turn(
         f"window.shown = []; new MutationObserver(() => window.shown.push({NEEDLE}.ariaValueNow))"
         f".observe({NEEDLE}, {{attributeFilter: ['aria-valuenow']}})"
     )
-    turns(camera, stopped_down, "#ring-iso", "ArrowRight", 3)
+    turns(camera, "#ring-iso", "ArrowRight", 3)
     values = [float(value) for value in camera.run("window.shown") if float(value) != began]
     assert values
     assert round(values[0] - began, 2) >= 0.2  # decimals, as shown
@@ -189,7 +189,7 @@ def test_beyond_the_scale_the_needle_is_an_arrow(
 ) -> None:
     beyond = "document.querySelector('#needle .pointer').classList.contains('beyond')"
     assert not camera.run(beyond)
-    turns(camera, stopped_down, "#ring-exposure_compensation", key, 12)
+    turns(camera, "#ring-exposure_compensation", key, 12)
     assert camera.run(beyond)
     assert float(camera.run(f"{NEEDLE}.ariaValueNow")) == end
     assert camera.run(f"{NEEDLE}.ariaValueText")[1:].startswith(("4.0 stops", "3.9", "4.1"))
@@ -198,7 +198,7 @@ def test_beyond_the_scale_the_needle_is_an_arrow(
 def test_the_scale_is_in_thirds_and_the_needle_points_into_it(
     camera: Browser, stopped_down: Live
 ) -> None:
-    turns(camera, stopped_down, "#ring-exposure_compensation", "ArrowRight", 4)
+    turns(camera, "#ring-exposure_compensation", "ArrowRight", 4)
     over = float(camera.run(f"{NEEDLE}.ariaValueNow"))
     ticks = camera.run(
         "[...document.querySelectorAll('#needle .tick')].map((e) => e.x1.baseVal.value)"
@@ -250,14 +250,14 @@ def test_rings_change_the_picture_as_on_a_camera(
     if mode != "manual":
         set_mode(camera, mode)
     for ring, stops in AS_ON_CAMERAS[mode].items():
-        settled(camera, stopped_down)
+        settled(camera)
         before = seen(stopped_down)
-        turns(camera, stopped_down, f"#ring-{ring}", "ArrowRight", 3)
+        turns(camera, f"#ring-{ring}", "ArrowRight", 3)
         after = seen(stopped_down)
         assert brightness(after) - brightness(before) == pytest.approx(stops, abs=0.2), ring
         if ring == "f_stop":  # the blur changes in every mode
             assert not np.array_equal(after.frame.rgb, before.frame.rgb)
         if (mode, ring) == ("light", "iso"):  # a perfect sensor has no noise
             assert np.array_equal(after.frame.rgb, before.frame.rgb)
-        turns(camera, stopped_down, f"#ring-{ring}", "ArrowLeft", 3)
+        turns(camera, f"#ring-{ring}", "ArrowLeft", 3)
     assert camera.errors == []

@@ -231,13 +231,13 @@ class Walk:
             "(() => { const e = document.getElementById('play');"
             "if (e.ariaPressed === 'true') e.click(); })()"
         )
-        settled(self.page, self.server)
+        settled(self.page)
         for name in ("models", "denoised"):
             button = f"document.querySelector('[data-show={name}]')"
             if self.page.run(f"{button}.ariaPressed === 'true'"):
                 self.page.run(f"{button}.click()")
                 self.page.until(f"{button}.ariaPressed === 'false'")
-                settled(self.page, self.server)
+                settled(self.page)
 
     def heap_mb(self) -> float:
         """Heap of the page that is in use."""

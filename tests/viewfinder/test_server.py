@@ -120,6 +120,32 @@ def test_a_wrong_turn_is_said_and_nothing_changes(server: Live) -> None:
         assert one.state["turn"] == 0
 
 
+def test_each_change_is_answered_once_also_when_refused(server: Live) -> None:
+    """Pages count the answers: their rings stay where they were turned until the last one."""
+    with page(server) as one:
+        one.until_rest(0)
+        changes: list[dict[str, Any]] = [
+            {"turn": {"iso": "200"}},
+            {"turn": {"lens": "none"}},
+            {"undo": True},
+            {"redo": True},
+            {"redo": True},  # there is nothing to redo
+            {"draw": 3},
+            {"show": {"tint": "depth"}},
+            {"show": {"models": True}},  # no lens of the library
+            {"reload": True},
+        ]
+        for count, message in enumerate(changes, 1):
+            one.send(save=1)  # refused, and changes nothing
+            one.send(**message)
+            while one.heard < count:
+                one.step()
+        one.send(save=1)
+        while len(one.refused) < len(changes) + 4:
+            one.step()
+        assert one.heard == len(changes)
+
+
 def test_a_dial_that_cannot_be_goes_back(server: Live) -> None:
     with page(server) as one:
         one.send(turn={"lens": "double-gauss-50mm-f2"})
@@ -186,7 +212,8 @@ def test_no_state_from_before_a_turn_follows_it(server: Live) -> None:
     while server.hub._guests:
         time.sleep(0.01)
     number = asyncio.run_coroutine_threadsafe(tells_and_turns(), server.loop).result(30)
-    after = told[told.index({"heard": True}) :]
+    answer = next(k for k, message in enumerate(told) if "heard" in message)
+    after = told[answer:]
     assert len([message for message in after if "state" in message]) >= 2
     assert all(m["state"]["turn"] == number for m in after if "state" in m)
 

@@ -61,7 +61,7 @@ class Guests(list[Guest]):
             self[0].turns = True
             await self[0].tell({"role": "turns"})
 
-    async def tell(self, message: dict[str, Any]) -> None:
-        """Sends all pages a message."""
-        text = json.dumps(message)
-        await asyncio.gather(*(guest.line.send(text) for guest in self))
+    async def tell(self, message: dict[str, Any], heard: Guest | None = None) -> None:
+        """Sends all pages a message, which answers what one of them asked for."""
+        answer = message | {"heard": True}
+        await asyncio.gather(*(one.tell(answer if one is heard else message) for one in self))

@@ -25,6 +25,7 @@ from .guests import Guest, Guests, Line
 from .history import History, Steps
 from .image import Image, image_of
 from .messages import (
+    Change,
     Draw,
     Drawing,
     Facts,
@@ -129,10 +130,13 @@ class Hub:
 
     async def hear(self, guest: Guest, text: str | bytes) -> None:
         """Acts on a message of a page; a wrong one is answered by its reason."""
+        message = None
         try:
-            await self._act(guest, parse(text))
+            message = parse(text)
+            await self._act(guest, message)
         except Exception as error:  # whatever it is, the page stays
-            await guest.tell({"refused": reason_of(error)})
+            refused = {"refused": reason_of(error)}
+            await guest.tell(refused | {"heard": True} if isinstance(message, Change) else refused)
 
     @property
     def dials(self) -> Dials:
@@ -175,54 +179,53 @@ class Hub:
             case _ if not guest.turns:
                 raise UsageError("view: read-only: another page controls the camera")
             case Turn(changes):
-                await self._turn({**self._kept(changes), **changes}, changes, guest)
+                await self._turn({**self._kept(changes), **changes}, changes, guest=guest)
             case Draw(samples):
-                await self._turn({"spp": str(samples)})
+                await self._turn({"spp": str(samples)}, guest=guest)
             case Undo():
-                await self._go_back(self._history.undone, "undo: nothing was turned")
+                await self._go_back(self._history.undone, "undo: nothing was turned", guest)
             case Redo():
-                await self._go_back(self._history.redone, "redo: nothing was undone")
+                await self._go_back(self._history.redone, "redo: nothing was undone", guest)
             case Hold(begins):
                 (self._steps.hold if begins else self._steps.let_go)(self._loop.time())
             case Save(kind):
                 path = await asyncio.to_thread(self._save, kind)
                 await self._guests.tell({"saved": str(path)})
             case ShowOtherwise(changes):
-                await self._show_otherwise(self._show.changed(changes))
+                await self._show_otherwise(self._show.changed(changes), guest)
             case Reload():
                 self._stage = await asyncio.to_thread(self._stage.reload)
-                await self._go(self._history)
+                await self._go(self._history, guest)
                 await self._guests.tell({"open": self._opened()})
 
     async def _turn(
         self,
         changes: Mapping[str, str | None],
         names: Collection[str] | None = None,
-        guest: Guest | None = None,
+        *,
+        guest: Guest,
     ) -> None:
         """Turns dials; those of the names tell steps apart."""
         dials = self.dials.turned(changes)
         step = self._steps.of_turn(names or changes, self._loop.time())
         await self._go(self._history.turned(dials, step), guest)
 
-    async def _go_back(self, history: History | None, nothing: str) -> None:
+    async def _go_back(self, history: History | None, nothing: str, guest: Guest) -> None:
         """Undoes or redoes a step; one that cannot be drawn any more is forgotten."""
         if history is None:
             raise UsageError(nothing)
         try:
-            await self._go(history)
+            await self._go(history, guest)
         except DaguerreError:
             self._history = self._history.without(history.now)
             raise
 
-    async def _go(self, history: History, guest: Guest | None = None) -> None:
-        """Takes other dials; the page that asked hears so before the state, and updates once."""
+    async def _go(self, history: History, guest: Guest) -> None:
+        """Takes other dials; the page that asked hears so with the state."""
         shot = self._stage.shot(history.now)  # or an error, and everything stays as it is
         self._shot, self._history, self.error, self._note = shot, history, "", ""
         self._wish()
-        if guest is not None:
-            await guest.tell({"heard": True})
-        await self._tell_state()
+        await self._tell_state(guest)
 
     def _kept(self, changes: Mapping[str, str | None]) -> dict[str, str | None]:
         """Settings that a meter chose, where an automatic mode ends in ``manual``."""
@@ -239,7 +242,7 @@ class Hub:
             Wish(self.number, self._stage, self.dials, self._shot, show.models, show.beside)
         )
 
-    async def _show_otherwise(self, show: Show) -> None:
+    async def _show_otherwise(self, show: Show, guest: Guest) -> None:
         """Shows pictures in another way; denoising begins with the picture that is there."""
         if show.denoised:
             extras.need("mitsuba_oidn", "denoise")
@@ -251,7 +254,7 @@ class Hub:
             self._wish()
         elif self._sheet is not None and self._sheet.drawn.wish.number == self.number:
             await asyncio.to_thread(self.publish, self._sheet.drawn)
-        await self._tell_state()
+        await self._tell_state(guest)
 
     def _newest(self, use: str) -> Sheet:
         """The picture that is there, for a use that needs one."""
@@ -379,6 +382,6 @@ class Hub:
         self._tasks.add(task)  # the loop itself keeps no hold of it
         task.add_done_callback(self._tasks.discard)
 
-    async def _tell_state(self) -> None:
+    async def _tell_state(self, heard: Guest | None = None) -> None:
         """Tells all pages the state of the moment: one from before a turn would undo it there."""
-        await self._guests.tell(self._state())
+        await self._guests.tell(self._state(), heard)

@@ -129,23 +129,10 @@ class Find:
     words: str
 
 
-Message = (
-    Turn
-    | Got
-    | Probe
-    | Save
-    | Draw
-    | Undo
-    | Redo
-    | Hold
-    | Section
-    | Reload
-    | ShowOtherwise
-    | Drawing
-    | Facts
-    | Photograph
-    | Find
-)
+#: Messages that change the picture; each is answered, as pages count the answers.
+Change = Turn | Draw | Undo | Redo | Reload | ShowOtherwise
+
+Message = Change | Got | Probe | Save | Hold | Section | Drawing | Facts | Photograph | Find
 
 
 def parse(text: str | bytes) -> Message:

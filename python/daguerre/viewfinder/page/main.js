@@ -34,6 +34,8 @@ import {Undo} from './undo.js';
 
 /** Longest wait for a picture until the next turn is sent, which ends the work on it. */
 const PATIENCE_MS = 1000;
+/** Messages that change the picture; the server answers each. */
+const CHANGES = ['turn', 'draw', 'undo', 'redo', 'reload', 'show'];
 
 /** Runs the page in a document or shadow root; `makeLink(handlers)` connects it. */
 export function mount(root, makeLink) {
@@ -50,7 +52,7 @@ class Viewfinder {
     this.wish = null;     // turns to send
     this.sent = false;   // whether some were sent whose picture has not come
     this.newest = -1;    // turn of the newest picture
-    this.unheard = 0;    // turns that the server has not taken yet
+    this.unheard = 0;    // changes that the server has not answered yet
     const canvas = this.find('picture');
     this.picture = new Picture(canvas, this.find('over'), this.find('tint'));
     this.tripod = new Tripod(canvas, (dials) => this.turn(dials));
@@ -73,7 +75,9 @@ class Viewfinder {
   /** Sends a message, after what was turned before. */
   send(message) {
     if (this.wish && !message.got && !message.probe) this.sendTurn();
+    if (CHANGES.some((name) => name in message)) this.unheard++;
     this.link.send(message);
+    this.markBusy();
   }
 
   /**
@@ -89,15 +93,21 @@ class Viewfinder {
     clearTimeout(this.patience);
     this.sent = this.wish !== null;
     if (!this.sent) return;
-    this.link.send({turn: this.wish});
-    this.unheard++;
+    const turn = this.wish;
     this.wish = null;
+    this.send({turn});
     this.patience = setTimeout(() => this.sendTurn(), PATIENCE_MS);
   }
 
   /** Whether the readings are those of all that was turned; if not, what was turned stays where it is. */
   get current() {
     return this.wish === null && this.unheard === 0 && (this.state.read === this.state.turn || this.state.error !== '');
+  }
+
+  /** Tells screen readers whether the picture still changes. */
+  markBusy() {
+    const frame = this.find('frame'), {turn, rests} = frame.dataset;
+    frame.ariaBusy = !(this.state && this.current && Number(turn) === this.state.turn && rests === 'true');
   }
 
   /** Tells all parts, as far as they listen. */
@@ -108,13 +118,15 @@ class Viewfinder {
   told(message) {
     if (message.open) this.opened(message.open);
     if (message.heard) this.unheard--;
-    if (message.role || message.refused) this.unheard = 0;
-    if (message.role || message.refused || message.state?.error) this.sendTurn();   // no picture comes
+    if (message.role) this.unheard = 0;
+    const noPicture = message.role || (message.heard && message.refused) || message.state?.error;
+    if (noPicture) this.sendTurn();
     if (message.role) this.mine = message.role === 'turns';
     if (message.role) this.find('watches').hidden = this.mine;
     if (message.state) this.state = message.state;
     if (message.refused) this.refused = {why: message.refused, turn: this.state?.turn};
     if (this.open && this.state && (message.state || message.refused)) this.update();
+    this.markBusy();
     if (message.changed) {
       this.find('changed').hidden = false;
       this.find('changed').firstElementChild.textContent = `${message.changed} has changed.`;
@@ -136,6 +148,7 @@ class Viewfinder {
     this.find('progress').value = head.rests ? 1 : head.samples / most;
     this.tell('shown', head);
     Object.assign(this.find('frame').dataset, {picture: head.picture, turn: head.turn, rests: head.rests});
+    this.markBusy();
   }
 
   status(text) {
