@@ -72,12 +72,19 @@ def off(light: Picture, other: Picture) -> float:
 
 @pytest.mark.parametrize("lens", ["tessar-50mm-f2.8", "double-gauss-50mm-f2"])
 def test_live_ghosts_are_the_exact_ones_but_for_some_per_cent(lens: str) -> None:
-    """In every block, and in the light of each colour."""
+    """In every block."""
     made = session(lens, WHITE)
-    ghosts, reference = live(made), exact(made)
-    assert off(ghosts, reference) < 0.07
-    wrong = ghosts.sum((0, 1)) - reference.sum((0, 1))
-    assert np.abs(wrong).max() < 0.03 * reference.sum()
+    assert off(live(made), exact(made)) < 0.05
+
+
+@pytest.mark.parametrize("lens", ["tessar-50mm-f2.8", "double-gauss-50mm-f2", "sigma-17-40mm-f1.8"])
+def test_live_ghosts_have_the_light_of_all_ghosts(lens: str) -> None:
+    """None of the brighter ones is left out, whatever its colour: coatings make most of them violet and red."""
+    made = session(lens, WHITE)
+    ghosts, reference = live(made).sum((0, 1)), exact(made).sum((0, 1))
+    zoom = lens.startswith("sigma")  # some of its 378 come through specks of the front
+    assert (ghosts / reference).tolist() == pytest.approx([1, 1, 1], abs=0.2 if zoom else 0.03)
+    assert ghosts @ LUMINANCE == pytest.approx(reference @ LUMINANCE, rel=0.05 if zoom else 0.015)
 
 
 def test_two_lamps_have_the_ghosts_of_each() -> None:

@@ -8,8 +8,9 @@
 namespace dg {
 namespace {
 
-constexpr int kZooms = 4;          // times that the region is closed in on
-constexpr int kHardly = 8;          // nodes at which light was seen
+constexpr int kZooms = 5;          // times that the region is closed in on, at most
+constexpr int kCoarse = 8;         // squares across meanwhile
+constexpr int kHardly = 8;         // nodes at which light was seen
 constexpr float kCloseIn = 0.5f;   // share of the region that holds the light: less is worth another look
 
 struct Range {
@@ -19,10 +20,10 @@ struct Range {
 };
 
 /// Rays at its corners are all stopped, and by more than that changes from one to the next; or all beside the frame.
-bool is_dark(const MapRays& rays, const Sensor& sensor, float reach, const MapLanding* at) {
+bool is_dark(const MapRays& rays, const Sensor& sensor, float reach, const MapLanding* at, int side) {
     Range stop, x, y;
     bool all_sound = true;
-    for (const MapLanding* l : {at, at + 1, at + GhostGrid::kSide, at + GhostGrid::kSide + 1}) {
+    for (const MapLanding* l : {at, at + 1, at + side, at + side + 1}) {
         stop.add(rays.stopped(*l)), all_sound &= l->sound;
         if (l->sound) x.add(l->px.x), y.add(l->px.y);
     }
@@ -40,61 +41,83 @@ bool GhostGrid::passes(const Looks& by, const MapLanding& l) {
     return l.sound && here && by.rays.stopped(l) < 0;
 }
 
-/// Squares within two nodes of where light was seen; where there is hardly any, also by looks between nodes.
-void GhostGrid::mark(const Looks& by) {
-    std::vector<bool> may(kSquares * kSquares), near(kSquares * kSquares);
+/// Squares near where light was seen; where there is hardly any, also by looks between nodes. If nothing is seen, all that
+/// are not dark: light may come through the smallest of places.
+int GhostGrid::mark(const Looks& by) {
+    const int side = squares + 1, reach = squares / kCoarse;
+    std::vector<bool> may(squares * squares), near(squares * squares);
     int seen = 0;
     const auto see = [&](int x, int y) {
         ++seen;
-        for (int v = std::max(y - 2, 0); v < std::min(y + 2, kSquares); ++v)
-            for (int u = std::max(x - 2, 0); u < std::min(x + 2, kSquares); ++u) near[v * kSquares + u] = true;
+        for (int v = std::max(y - reach, 0); v < std::min(y + reach, squares); ++v)
+            for (int u = std::max(x - reach, 0); u < std::min(x + reach, squares); ++u) near[v * squares + u] = true;
     };
-    for (int i = 0; i < kSquares * kSquares; ++i)
-        may[i] = !is_dark(by.rays, by.sensor, by.reach, &nodes[i / kSquares * kSide + i % kSquares]);
-    for (int n = 0; n < kSide * kSide; ++n)
-        if (passes(by, nodes[n])) see(n % kSide, n / kSide);
+    for (int i = 0; i < squares * squares; ++i)
+        may[i] = !is_dark(by.rays, by.sensor, by.reach, &nodes[i / squares * side + i % squares], side);
+    for (int n = 0; n < side * side; ++n)
+        if (passes(by, nodes[n])) see(n % side, n / side);
     if (seen < kHardly) {
         std::vector<MapRay> looks;
         std::vector<int> of;
-        for (int i = 0; i < kSquares * kSquares; ++i)
+        for (int i = 0; i < squares * squares; ++i)
             for (const Vec2f u : {Vec2f{0.5f, 0}, {0, 0.5f}, {0.5f, 0.5f}})
                 if (may[i])
                     of.push_back(i),
-                        looks.push_back({at(Vec2f{float(i % kSquares), float(i / kSquares)} + u), {0, 0}, middle_nm()});
+                        looks.push_back({at(Vec2f{float(i % squares), float(i / squares)} + u), {0, 0}, middle_nm()});
         const std::vector<MapLanding> landings = by.rays.trace(looks);
         rays += looks.size();
         for (std::size_t k = 0; k < looks.size(); ++k)
-            if (const int x = of[k] % kSquares, y = of[k] / kSquares; passes(by, landings[k])) see(x, y), see(x + 1, y + 1);
+            if (const int x = of[k] % squares, y = of[k] / squares; passes(by, landings[k])) see(x, y), see(x + 1, y + 1);
     }
-    lit.assign(kSquares * kSquares, false);
-    for (int i = 0; i < kSquares * kSquares; ++i) lit[i] = may[i] && near[i];
+    lit.assign(squares * squares, false);
+    for (int i = 0; i < squares * squares; ++i) lit[i] = may[i] && (near[i] || seen == 0);
+    return seen;
 }
 
 float GhostGrid::middle_nm() { return lambda_node(1); }
 
-GhostGrid::GhostGrid(const MapRays& map_rays, const Sensor& sensor, float reach) {
-    for (int zoom = 1;; ++zoom) {
-        std::vector<MapRay> looks;
-        for (int i = 0; i < kSide * kSide; ++i)
-            looks.push_back({at({float(i % kSide), float(i / kSide)}), {0, 0}, middle_nm()});
-        nodes = map_rays.trace(looks), rays += looks.size();
-        mark({map_rays, sensor, reach});
-        int low_x = kSquares, low_y = kSquares, high_x = 0, high_y = 0;
-        for (int y = 0; y < kSquares; ++y)
-            for (int x = 0; x < kSquares; ++x) {
-                if (!lit[y * kSquares + x]) continue;
-                low_x = std::min(low_x, x), high_x = std::max(high_x, x + 1);
-                low_y = std::min(low_y, y), high_y = std::max(high_y, y + 1);
-            }
-        if (high_x == 0) {
-            nodes.clear();
-            return;
+/// How much light was seen on a grid over the region.
+int GhostGrid::look(const Looks& by, int across) {
+    squares = across;
+    std::vector<MapRay> looks;
+    const int side = squares + 1;
+    for (int i = 0; i < side * side; ++i) looks.push_back({at({float(i % side), float(i / side)}), {0, 0}, middle_nm()});
+    nodes = by.rays.trace(looks), rays += looks.size();
+    return mark(by);
+}
+
+/// Takes what holds all that may be lit; false: that is no smaller, or nothing.
+bool GhostGrid::close_in() {
+    int low_x = squares, low_y = squares, high_x = 0, high_y = 0;
+    for (int y = 0; y < squares; ++y)
+        for (int x = 0; x < squares; ++x) {
+            if (!lit[y * squares + x]) continue;
+            low_x = std::min(low_x, x), high_x = std::max(high_x, x + 1);
+            low_y = std::min(low_y, y), high_y = std::max(high_y, y + 1);
         }
-        const int held = (high_x - low_x) * (high_y - low_y);
-        if (zoom == kZooms || float(held) > kCloseIn * kSquares * kSquares) return;
-        const Vec2f low = at({float(low_x), float(low_y)}), high = at({float(high_x), float(high_y)});
-        region = {low, high - low};
-    }
+    const int held = (high_x - low_x) * (high_y - low_y);
+    if (high_x == 0 || float(held) > kCloseIn * float(squares * squares)) return false;
+    const Vec2f low = at({float(low_x), float(low_y)}), high = at({float(high_x), float(high_y)});
+    region = {low, high - low};
+    return true;
+}
+
+/// No ray is lost where light may come through.
+bool GhostGrid::is_smooth() const {
+    const int side = squares + 1;
+    for (int i = 0; i < squares * squares; ++i)
+        for (int k = 0; k < 4 && lit[i]; ++k)
+            if (!nodes[(i / squares + (k >> 1)) * side + i % squares + (k & 1)].sound) return false;
+    return true;
+}
+
+GhostGrid::GhostGrid(const MapRays& map_rays, const Sensor& sensor, float reach) {
+    const Looks by{map_rays, sensor, reach};
+    int zoom = 1;
+    while (zoom < kZooms && look(by, kCoarse) >= kHardly && is_smooth() && close_in()) ++zoom;
+    int seen = look(by, kSquares);
+    while (zoom < kZooms && close_in()) seen = look(by, kSquares), ++zoom;
+    if (seen == 0) nodes.clear();
 }
 
 }  // namespace dg

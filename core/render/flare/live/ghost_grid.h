@@ -22,7 +22,7 @@ struct GhostGrid {
 
     bool empty() const { return nodes.empty(); }
     /// The place of a node, in squares, or of one between nodes.
-    Vec2f at(Vec2f node) const { return region.at(node * (1.f / kSquares)); }
+    Vec2f at(Vec2f node) const { return region.at(node * (1 / float(squares))); }
 
     static float middle_nm();
 
@@ -33,8 +33,12 @@ struct GhostGrid {
         float reach;
     };
     static bool passes(const Looks& by, const MapLanding& landing);
-    void mark(const Looks& by);
+    int mark(const Looks& by);
+    int look(const Looks& by, int across);
+    bool close_in();
+    bool is_smooth() const;
 
+    int squares = kSquares;   // across, of the present look
 };
 
 }  // namespace dg

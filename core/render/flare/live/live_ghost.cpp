@@ -14,12 +14,12 @@ namespace {
 constexpr int kLooks = 8;               // of a square
 constexpr float kUnseen = 0.3f;         // looks that count as having seen light, of a square where none did
 constexpr float kLostUnseen = 0.25f;    // the same where rays are lost
-constexpr double kWorthMore = 4000;     // arrivals of a ghost that more nodes for its colours pay for
+constexpr double kWorthMore = 4000, kWorthMost = 20000;   // arrivals of a ghost that more nodes for its colours pay for
 constexpr double kWorthFine = 12;       // arrivals of a square that a finer grid pays for
 constexpr float kBend = 0.7f;           // px, from straight between nodes, that is worth one
 constexpr int kGlassNodes = 4;          // at which transmittances are asked for
 constexpr float kAlmost = 0.1f;         // beyond an edge: what is beside it may be lit
-constexpr int kBands = LiveSource::kBands;
+constexpr int kWaves = LiveSource::kNodes;
 
 /// Fields of all nodes, one field after the other.
 std::vector<float> planes_of(const std::vector<MapLanding>& nodes, int crossings) {
@@ -55,7 +55,7 @@ void LiveGhost::look_around() {
     if (!(glass > 0)) squares_.clear();
 }
 
-/// Transmittance in the mean, about, over wavelengths as they are seen: at nodes that let light through.
+/// Luminance that it leaves, about, of the source: at nodes that let light through.
 float LiveGhost::glass() {
     std::vector<int> open;
     for (int n = 0; n < kNodes; ++n)
@@ -68,11 +68,12 @@ float LiveGhost::glass() {
     for (int i = 0; i < kGlassNodes; ++i) {
         const int n = open[(2 * std::size_t(i) + 1) * open.size() / (2 * kGlassNodes)];
         const Vec2f at = grid_.at({float(n % kSide), float(n / kSide)});
-        for (int k = 0; k < kBands; ++k) rays.push_back({at, {0, 0}, LiveSource::nm((float(k) + 0.5f) / kBands)});
+        for (int k = 0; k < kWaves; ++k) rays.push_back({at, {0, 0}, LiveSource::node_nm(k)});
     }
+    const std::vector<MapLanding> landings = trace(rays);
     float sum = 0;
-    for (const MapLanding& l : trace(rays)) sum += l.pass / float(rays.size());
-    return sum;
+    for (std::size_t i = 0; i < rays.size(); ++i) sum += landings[i].pass * source_.seen[i % kWaves] / kGlassNodes;
+    return std::max(sum, 0.f);
 }
 
 /// By the grid alone, as if the source were a point of one colour.
@@ -119,7 +120,7 @@ double LiveGhost::weigh(const FlareTiles& tiles) {
 void LiveGhost::refine(double arrivals) {
     double all = 0;
     for (const Square& s : squares_) all += s.worth;
-    step_ = all * arrivals > kWorthMore ? 2 : 4, few_side_ = GhostGrid::kSquares / step_ + 1;
+    step_ = all * arrivals > kWorthMost ? 1 : all * arrivals > kWorthMore ? 2 : 4, few_side_ = GhostGrid::kSquares / step_ + 1;
     few_.resize(std::size_t(few_side_) * few_side_);
     trace_few();
     find_blur();

@@ -51,7 +51,7 @@ class LiveGhost {
     };
     struct Few {               // at one of few nodes of the grid
         MeshPatch::Sets sets{};
-        std::array<float, LiveSource::kBands> spectrum{};   // transmittance of bands
+        std::array<float, LiveSource::kNodes> spectrum{};   // transmittance at nodes
         CellBlur blur{};
         bool sound = false, blurs = false;
     };
@@ -61,6 +61,9 @@ class LiveGhost {
         return rays_.trace(rays);
     }
     void look(Square& square);
+    using GroupColors = std::array<Rgb, LiveSource::kGroups>;
+    GroupColors colors_of(const Few& few, float times) const;
+    bool apart(const Square& square, const MeshPatch& patch) const;
     void draw(LightLayer& layer, const SheetLevel& levels, const Square& square, std::uint32_t from, int count, float times);
     void look_around();
     float glass();

@@ -8,21 +8,12 @@
 namespace dg {
 namespace {
 
-constexpr int kBands = LiveSource::kBands;
-
-/// Means over bands, by parabolas through the values in their middles.
-std::array<float, kBands> means(const std::array<float, kBands>& middles) {
-    std::array<float, kBands> mean{};
-    for (int k = 0; k < kBands; ++k) {
-        const int at = std::clamp(k, 1, kBands - 2);
-        mean[k] = std::max(middles[k] + (middles[at - 1] - 2 * middles[at] + middles[at + 1]) / 24, 0.f);
-    }
-    return mean;
-}
+constexpr int kWaves = LiveSource::kNodes;
+constexpr float kOutside = 0.2f;   // beyond an edge: what is farther has spectra of its own
 
 }  // namespace
 
-/// The sound node nearest to one of few, rather one that lets light through; nothing: there is none beside it.
+/// The sound node nearest to one of few, rather one that lets light through, or almost; nothing: there is none beside it.
 std::optional<int> LiveGhost::sound_near(int few) const {
     std::optional<int> best;
     int least = 1 << 20;
@@ -30,7 +21,7 @@ std::optional<int> LiveGhost::sound_near(int few) const {
     for (int v = std::max(y - step_, 0); v <= std::min(y + step_, kSide - 1); ++v)
         for (int u = std::max(x - step_, 0); u <= std::min(x + step_, kSide - 1); ++u) {
             const MapLanding& l = node(u, v);
-            const int far = (u - x) * (u - x) + (v - y) * (v - y) + (l.beyond < 0 ? 0 : step_ * step_);
+            const int far = (u - x) * (u - x) + (v - y) * (v - y) + (l.beyond < kOutside ? 0 : step_ * step_);
             if (l.sound && far < least) best = v * kSide + u, least = far;
         }
     return best;
@@ -56,14 +47,14 @@ void LiveGhost::trace_few() {
         const Vec2f at = grid_.at({float(*own % kSide), float(*own / kSide)});
         rays.push_back({at, {0, 0}, lambda_node(0)}), rays.push_back({at, {0, 0}, lambda_node(2)});
         rays.push_back({at, {1, 0}, GhostGrid::middle_nm()}), rays.push_back({at, {0, 1}, GhostGrid::middle_nm()});
-        for (int k = 0; k < kBands; ++k) rays.push_back({at, {0, 0}, LiveSource::nm((float(k) + 0.5f) / kBands)});
+        for (int k = 0; k < kWaves; ++k) rays.push_back({at, {0, 0}, LiveSource::node_nm(k)});
     }
     const std::vector<MapLanding> landings = trace(rays);
     std::vector<bool> sound(int(few_.size()));
     for (std::size_t i = 0; i < of.size(); ++i) {
         Few& f = few_[of[i]];
         const MapLanding& own = grid_.nodes[std::size_t(from[i])];
-        const MapLanding* const l = &landings[i * (MeshPatch::kSets + kBands)];
+        const MapLanding* const l = &landings[i * (MeshPatch::kSets + kWaves)];
         f.sound = sound[of[i]] = true;
         for (int k = 0; k < MeshPatch::kSets; ++k) {
             if (!l[k].sound) continue;
@@ -71,16 +62,15 @@ void LiveGhost::trace_few() {
             put_fields(from.data(), 1, own, crossings), put_fields(to.data(), 1, l[k], crossings);
             for (int j = 0; j < 3 + 2 * crossings; ++j) f.sets[k][j] = to[j] - from[j];
         }
-        for (int k = 0; k < kBands; ++k)
+        for (int k = 0; k < kWaves; ++k)
             f.spectrum[k] = l[MeshPatch::kSets + k].sound ? l[MeshPatch::kSets + k].pass : own.pass;
-        f.spectrum = means(f.spectrum);
     }
     fill_from_beside(sound, few_side_, [&](int n, const std::vector<int>& beside) {
         const float w = 1 / float(beside.size());
         for (const int m : beside) {
             for (int k = 0; k < MeshPatch::kSets; ++k)
                 for (int j = 0; j < MeshPatch::kMostFields; ++j) few_[n].sets[k][j] += w * few_[m].sets[k][j];
-            for (int k = 0; k < kBands; ++k) few_[n].spectrum[k] += w * few_[m].spectrum[k];
+            for (int k = 0; k < kWaves; ++k) few_[n].spectrum[k] += w * few_[m].spectrum[k];
         }
     });
 }
@@ -95,7 +85,7 @@ LiveGhost::Few LiveGhost::few_at(Vec2f node) const {
         const Few& f = few_[(v + (k >> 1)) * few_side_ + u + (k & 1)];
         for (int s = 0; s < MeshPatch::kSets; ++s)
             for (int j = 0; j < MeshPatch::kMostFields; ++j) sum.sets[s][j] += w * f.sets[s][j];
-        for (int b = 0; b < kBands; ++b) sum.spectrum[b] += w * f.spectrum[b];
+        for (int b = 0; b < kWaves; ++b) sum.spectrum[b] += w * f.spectrum[b];
     }
     return sum;
 }

@@ -5,13 +5,22 @@
 #include "math/thread_scratch.h"
 #include "render/flare/live/live_ghost.h"
 #include "render/flare/live/spread_numbers.h"
+#include "render/flare/maps/ghost_map_nodes.h"
 
 namespace dg {
 namespace {
 
 constexpr int kFewest = 3;              // level of light from few arrivals
-constexpr float kApart = 1;             // px, of groups of bands that land together
-constexpr int kBands = LiveSource::kBands;
+constexpr int kGroups = LiveSource::kGroups;
+constexpr float kApart = 1;             // px, of groups of wavelengths that land together
+constexpr float kStoppedApart = 0.01f;  // of what is beyond an edge, of groups that are stopped together
+
+/// Shares of the change to the nodes on either side of the middle wavelength.
+Vec2f lambda_weights(float u) {
+    static const WavelengthScale scale = WavelengthScale::visible();
+    const float l = float(scale(LiveSource::nm(u))) / kLambdaStep;
+    return {0.5f * l * (l - 1), 0.5f * l * (l + 1)};
+}
 
 }  // namespace
 
@@ -29,44 +38,70 @@ void LiveGhost::draw(LightLayer& layer, float unit) {
     }
 }
 
-/// Arrivals of a square. Colours that land apart are a few groups of wavelengths, each in its place.
+/// Arrivals of a square. Where colours land or are stopped apart, each arrival is a few groups of wavelengths, each in its
+/// place; where it takes a ray, one wavelength.
 void LiveGhost::draw(LightLayer& layer, const SheetLevel& levels, const Square& s, std::uint32_t from, int count,
                      float times) {
     MapBatch& b = thread_scratch<MapBatch>([] {});
     const auto points = std::uint32_t(source_.small.points.size());
-    for (int i = 0; i < count; ++i) {
-        const SpreadNumbers u{from + std::uint32_t(i)};
-        const SmallSource::Point& point = source_.small.points[u.i % points];
-        b.set(i, {u[0], u[1]}, point.shift, GhostGrid::middle_nm(), point.moment.iris_opening);
-    }
     const Few few = few_at({float(s.x) + 0.5f, float(s.y) + 0.5f});
+    const GroupColors colors = colors_of(few, times);
     MeshPatch p = patch(s);
     p.sets = few.sets;
-    s.lost ? land_by_rays(s, b, count) : p.land(rays_.ghosts().tables().iris, b, count);
     const float least = least_level(s);
-    constexpr int kGroups = LiveSource::kGroups, kOfGroup = kBands / kGroups;
-    std::array<Rgb, kGroups> colors{};
-    for (int k = 0; k < kBands; ++k)
-        colors[k / kOfGroup] = colors[k / kOfGroup] + source_.colors[k] * (few.spectrum[k] * times * source_.free / kBands);
-    const auto& weights = LiveSource::lambda_weights();
-    const auto moved = [&](float u) {
-        const Vec2f w = weights[std::size_t(u * float(weights.size()))];
-        return Vec2f{w.x * p.sets[0][0] + w.y * p.sets[1][0], w.x * p.sets[0][1] + w.y * p.sets[1][1]};
-    };
-    const bool together = length(moved(0.5f / kGroups) - moved(1 - 0.5f / kGroups)) < kApart;
-    const Rgb all = colors[0] + colors[1] + colors[2];
-    for (int i = 0; i < count; ++i) {
-        if (!(b.left[i] > 0)) continue;
-        const SpreadNumbers u{from + std::uint32_t(i)};
-        const float light = b.left[i] * source_.brightness[u.i % points];
-        const int level = std::min(int(std::max(levels.of(s.blur, b, i), least) + u[3]), LightLayer::kLevels - 1);
-        const Vec2f px{b.x[i], b.y[i]};
-        if (together) {
-            layer.add(level, px + moved(0.5f), all * light);
-            continue;
+    const auto set = [&](const auto& place) {
+        for (int i = 0; i < count; ++i) {
+            const SpreadNumbers u{from + std::uint32_t(i)};
+            const SmallSource::Point& point = source_.small.points[u.i % points];
+            b.set(i, {u[0], u[1]}, point.shift, LiveSource::nm(place(u[2])), point.moment.iris_opening);
         }
-        for (int g = 0; g < kGroups; ++g) layer.add(level, px + moved((float(g) + u[2]) / kGroups), colors[g] * light);
+    };
+    const auto add = [&](const auto& color) {
+        for (int i = 0; i < count; ++i) {
+            if (!(b.left[i] > 0)) continue;
+            const SpreadNumbers u{from + std::uint32_t(i)};
+            const int level = std::min(int(std::max(levels.of(s.blur, b, i), least) + u[3]), LightLayer::kLevels - 1);
+            layer.add(level, {b.x[i], b.y[i]}, color(u[2]) * (b.left[i] * source_.brightness[u.i % points]));
+        }
+    };
+    const IrisTables& iris = rays_.ghosts().tables().iris;
+    if (s.lost) {
+        set([](float u) { return u; }), land_by_rays(s, b, count);
+        add([&](float u) { return source_.at[std::size_t(u * LiveSource::kSteps)] * (times * source_.free); });
+    } else if (apart(s, p)) {
+        for (int g = 0; g < kGroups; ++g) {
+            set([g](float u) { return (float(g) + u) / kGroups; }), p.land(iris, b, count);
+            add([&](float) { return colors[g]; });
+        }
+    } else {
+        const Rgb all = colors[0] + colors[1] + colors[2];
+        set([](float) { return 0.5f; }), p.land(iris, b, count);
+        add([&](float) { return all; });
     }
+}
+
+LiveGhost::GroupColors LiveGhost::colors_of(const Few& few, float times) const {
+    GroupColors colors{};
+    for (int g = 0; g < kGroups; ++g)
+        for (int k = 0; k < LiveSource::kNodes; ++k)
+            colors[g] = colors[g] + source_.colors[g][k] * (few.spectrum[k] * times * source_.free);
+    return colors;
+}
+
+/// Groups of wavelengths land in other places, or another part of them is stopped.
+bool LiveGhost::apart(const Square& s, const MeshPatch& p) const {
+    const auto change = [&](int field) {
+        static const std::array<Vec2f, 2> ends = {lambda_weights(0.5f / kGroups), lambda_weights(1 - 0.5f / kGroups)};
+        const Vec2f w = ends[1] - ends[0];
+        return w.x * p.sets[MeshPatch::kShort][field] + w.y * p.sets[MeshPatch::kLong][field];
+    };
+    if (length(Vec2f{change(0), change(1)}) > kApart) return true;
+    if (!s.edge) return false;
+    float most = std::abs(change(2));
+    const float per_mm = 2 / float(rays_.ghosts().iris_radius());
+    for (int k = 0; k < p.crossings; ++k)
+        most = std::max(most, per_mm * length(Vec2f{change(3 + 2 * k), change(4 + 2 * k)}));
+    return most > kStoppedApart;
 }
 
 /// Each by a ray of its own: where some have no landing, nothing can be interpolated.
@@ -78,7 +113,7 @@ void LiveGhost::land_by_rays(const Square& s, MapBatch& b, int count) {
     for (int i = 0; i < count; ++i) {
         const MapLanding& l = landings[std::size_t(i)];
         const float passed = rays_.passed(l, b.opening[i]);
-        b.left[i] = passed > 0 ? passed / l.pass : 0;
+        b.left[i] = passed;
         b.x[i] = l.px.x, b.y[i] = l.px.y, b.beyond[i] = l.beyond;
         for (int k = 0; k < rays_.crossings(); ++k)
             b.iris_x[k][i] = l.iris[std::size_t(k)].x, b.iris_y[k][i] = l.iris[std::size_t(k)].y;

@@ -3,53 +3,69 @@
 #include <algorithm>
 
 #include "render/flare/maps/color_table.h"
-#include "render/flare/maps/ghost_map_nodes.h"
 
 namespace dg {
 namespace {
 
-constexpr int kBands = LiveSource::kBands;
+constexpr int kNodes = LiveSource::kNodes, kSteps = LiveSource::kSteps;
+constexpr float kBeyond = 0.1f;   // steps from the last nodes: the cubic is good for no more
 
-float band_edge(int k) { return Wavelengths::sample(std::min(float(k) / kBands, 0x1.fffffep-1f)).nm[0]; }
+float sampled_nm(float u) { return Wavelengths::sample(u).nm[0]; }
+
+/// Of a cubic through the four nodes about a wavelength. Coatings reflect most where little is seen, at either end of the
+/// spectrum, and steeply more toward it: even or straight between nodes, some per cent of the light would be off.
+struct NodeWeights {
+    int first;
+    std::array<float, 4> of;
+    explicit NodeWeights(float nm) {
+        const float place = std::clamp((nm - LiveSource::kFirstNm) / LiveSource::kStepNm, -kBeyond, kNodes - 1 + kBeyond);
+        first = std::clamp(int(place) - 1, 0, kNodes - 4);
+        for (int i = 0; i < 4; ++i) {
+            of[i] = 1;
+            for (int j = 0; j < 4; ++j)
+                if (j != i) of[i] *= (place - float(first + j)) / float(i - j);
+        }
+    }
+};
 
 }  // namespace
 
 LiveSource::LiveSource(SmallSource own, float free_share)
-    : small(std::move(own)), free(free_share), light(small.luminance() * free_share) {
+    : small(std::move(own)), colors{}, at{}, seen{}, free(free_share), light(small.luminance() * free_share) {
     Rgb mean{0, 0, 0};
     for (const SmallSource::Point& p : small.points) mean = mean + p.light * (1 / float(small.points.size()));
     for (const SmallSource::Point& p : small.points) brightness.push_back(luminance(p.light) / luminance(mean));
     const ColorTable table{Responses()};
-    constexpr int kSteps = 64;
-    for (int b = 0; b < kBands; ++b) {
-        const float low = b == 0 ? kMinWavelength : band_edge(b), high = b + 1 == kBands ? kMaxWavelength : band_edge(b + 1);
-        FilmColor sum{};
-        for (int i = 0; i < kSteps; ++i)
-            table.add(sum, mean, low + (high - low) * (float(i) + 0.5f) / kSteps, (high - low) * kBands / kSteps);
-        colors[b] = rgb_from_xyz({sum[0], sum[1], sum[2]});
+    const auto color_of = [&](float low, float high) {   // nm
+        constexpr int kParts = 8;
+        FilmColor color{};
+        for (int i = 0; i < kParts; ++i)
+            table.add(color, mean, low + (high - low) * (float(i) + 0.5f) / kParts, (high - low) / kParts);
+        return rgb_from_xyz({color[0], color[1], color[2]});
+    };
+    for (int i = 0; i < kSteps; ++i) {
+        const auto edge = [](int k) { return k == 0 ? kMinWavelength : k == kSteps ? kMaxWavelength : sampled_nm(float(k) / kSteps); };
+        at[i] = color_of(edge(i), edge(i + 1)) * float(kSteps);
+    }
+    for (float nm = kMinWavelength + 0.5f; nm < kMaxWavelength; ++nm) {
+        const Rgb rgb = color_of(nm - 0.5f, nm + 0.5f);
+        int group = 0;
+        while (group < kGroups - 1 && nm > LiveSource::nm(float(group + 1) / kGroups)) ++group;
+        const NodeWeights w(nm);
+        for (int i = 0; i < 4; ++i) {
+            colors[group][w.first + i] = colors[group][w.first + i] + rgb * w.of[i];
+            seen[w.first + i] += luminance(rgb) * w.of[i] / luminance(mean);
+        }
     }
 }
 
 float LiveSource::nm(float u) {
     static const auto table = [] {
-        std::array<float, kBands * kFine> nm;
-        for (int i = 0; i < kBands * kFine; ++i) nm[i] = Wavelengths::sample((float(i) + 0.5f) / (kBands * kFine)).nm[0];
+        std::array<float, kSteps> nm;
+        for (int i = 0; i < kSteps; ++i) nm[i] = sampled_nm((float(i) + 0.5f) / kSteps);
         return nm;
     }();
-    return table[std::size_t(u * kBands * kFine)];
-}
-
-const std::array<Vec2f, kBands * LiveSource::kFine>& LiveSource::lambda_weights() {
-    static const auto table = [] {
-        static const WavelengthScale scale = WavelengthScale::visible();
-        std::array<Vec2f, kBands * kFine> weights;
-        for (int i = 0; i < kBands * kFine; ++i) {
-            const float l = float(scale(nm((float(i) + 0.5f) / (kBands * kFine)))) / kLambdaStep;
-            weights[i] = {0.5f * l * (l - 1), 0.5f * l * (l + 1)};
-        }
-        return weights;
-    }();
-    return table;
+    return table[std::size_t(u * kSteps)];
 }
 
 }  // namespace dg

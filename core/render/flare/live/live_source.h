@@ -1,4 +1,5 @@
-// live_source.h -- a small source as pictures that pass by draw it: its points, and its colours by bands of the wavelength.
+// live_source.h -- a small source as pictures that pass by draw it: its points, and its colours by the transmittance at
+// some wavelengths.
 #pragma once
 #include <array>
 #include <vector>
@@ -8,19 +9,22 @@
 namespace dg {
 
 struct LiveSource {
-    static constexpr int kBands = 15, kFine = 16;   // steps of a band
-    static constexpr int kGroups = 3;               // of bands, which land apart from each other
+    static constexpr int kNodes = 12, kSteps = 240;   // of the wavelength
+    static constexpr float kFirstNm = 405, kStepNm = 295.f / (kNodes - 1);
+    static constexpr int kGroups = 3;                 // of wavelengths, which land apart from each other
     SmallSource small;
-    std::array<Rgb, kBands> colors;                 // of an arrival that is drawn in one of them
-    std::vector<float> brightness;                  // of its points, over their mean
-    float free;                                     // share of its light that nothing in the scene is in the way of
-    double light;                                   // of that share
+    /// Of an arrival of all wavelengths, by groups, for each unit of transmittance at a node.
+    std::array<std::array<Rgb, kNodes>, kGroups> colors;
+    std::array<Rgb, kSteps> at;       // of an arrival of one wavelength, see nm(), for each unit of transmittance
+    std::array<float, kNodes> seen;   // luminance of the same, over that of all of them
+    std::vector<float> brightness;   // of its points, over their mean
+    float free;                      // share of its light that nothing in the scene is in the way of
+    double light;                    // of that share
 
     LiveSource(SmallSource own, float free_share);
-    /// u in [0, 1): its band is int(u * kBands).
+    /// u in [0, 1), evenly as wavelengths are seen: its group is int(u * kGroups).
     static float nm(float u);
-    /// Shares of the change to the nodes on either side of the middle wavelength, by steps.
-    static const std::array<Vec2f, kBands * kFine>& lambda_weights();
+    static float node_nm(int k) { return kFirstNm + kStepNm * float(k); }
 };
 
 }  // namespace dg
