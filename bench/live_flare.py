@@ -2,11 +2,11 @@
 
     python bench/live_flare.py [--json] [--lens NAME ...] [--paths 1e6] [--rounds 5] [-w 480 -h 270]
 
-A lamp as large as the sun shines on each lens from several angles, alone. The ghosts of live
-pictures are compared with exact ones of --paths paths, in blocks of 16 x 16 pixels that are
-brighter than 2 % of the brightest: ``rms`` and ``most`` are the errors of their luminance,
-``halves`` is the RMS of two exact pictures against each other, and ``sum`` the share of all light.
-CPU and wall-clock time are medians of --rounds pictures, set-up included; ``rays`` are exact ones
+A lamp as large as the sun shines on each lens, alone: from several angles, and at several stops
+and focus distances. The ghosts of live pictures are compared with exact ones of --paths paths, in
+blocks of 16 x 16 pixels that are brighter than 2 % of the brightest: ``rms`` and ``most`` are the
+errors of their luminance, ``halves`` is the RMS of two exact pictures against each other, and
+``sum`` the share of all light. CPU and wall-clock time are medians of --rounds pictures, set-up included; ``rays`` are exact ones
 of a picture.
 """
 
@@ -17,7 +17,7 @@ import json
 import math
 import statistics
 import time
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from flare import LUMINANCE, Picture, blocks, scene
@@ -26,17 +26,37 @@ import daguerre as dg
 import daguerre._core as _core
 from daguerre.rendering.session import Session
 
-LENSES = ("tessar-50mm-f2.8", "double-gauss-50mm-f2", "sigma-17-40mm-f1.8")
-ANGLES = ((9.0, 5.0), (2.0, -3.0), (-22.0, 4.0))  # degrees to the right and up
+
+class Case(NamedTuple):
+    """A lens, and the sun's degrees to the right and up."""
+
+    lens: str
+    degrees: tuple[float, float]
+    f_stop: float = 5.6
+    focus: float = math.inf  # m
 
 
-def session(
-    arguments: argparse.Namespace, lens: str, degrees: tuple[float, float], seed: int
-) -> Session:
+TESSAR, GAUSS, ZOOM = "tessar-50mm-f2.8", "double-gauss-50mm-f2", "sigma-17-40mm-f1.8"
+CASES = (
+    *(Case(n, d) for n in (TESSAR, GAUSS, ZOOM) for d in ((9.0, 5.0), (2.0, -3.0), (-22.0, 4.0))),
+    Case(TESSAR, (9.0, 5.0), focus=0.5),
+    Case(GAUSS, (9.0, 5.0), focus=0.5),
+    Case(GAUSS, (9.0, 5.0), f_stop=2),
+    Case(GAUSS, (9.0, 5.0), f_stop=11),
+    Case(ZOOM, (9.0, 5.0), f_stop=2.8),
+    Case("zeiss-biotar-50mm-f1.4", (9.0, 5.0), f_stop=1.4),
+    Case("leica-summilux-r-50mm-f1.4", (9.0, 5.0), f_stop=1.4),
+    Case("fisheye-16mm-f2.8", (20.0, 10.0)),
+    Case("nikon-af-s-120-300mm-f2.8", (1.5, 1.0)),
+    Case("schneider-anamorphic-60mm", (4.0, 3.0)),
+)
+
+
+def session(arguments: argparse.Namespace, case: Case, seed: int) -> Session:
     """Ready to draw ghosts alone."""
-    camera = dg.Camera(lens=lens, focus_distance=math.inf, f_stop=arguments.f_stop, blades=7)
+    camera = dg.Camera(lens=case.lens, focus_distance=case.focus, f_stop=case.f_stop, blades=7)
     options = {"flare": arguments.paths, "light_paths": "off", "seed": seed}
-    return Session(scene(degrees), camera, resolution=(arguments.w, arguments.h), **options)
+    return Session(scene(case.degrees), camera, resolution=(arguments.w, arguments.h), **options)
 
 
 def exact(made: Session) -> Picture:
@@ -69,17 +89,14 @@ def errors(light: Picture, other: Picture, reference: Picture) -> Picture:
     return np.asarray((blocks(light) - blocks(other))[lit] / bright[lit])
 
 
-def measured(
-    arguments: argparse.Namespace, lens: str, degrees: tuple[float, float]
-) -> dict[str, Any]:
+def measured(arguments: argparse.Namespace, case: Case) -> dict[str, Any]:
     """A row of the table."""
-    a, b = (exact(session(arguments, lens, degrees, seed)) for seed in (1, 2))
+    a, b = (exact(session(arguments, case, seed)) for seed in (1, 2))
     mean = (a + b) / 2
-    light, facts = live(session(arguments, lens, degrees, 3), arguments.rounds)
+    light, facts = live(session(arguments, case, 3), arguments.rounds)
     off = errors(light, mean, mean)
     return {
-        "lens": lens,
-        "degrees": degrees,
+        **case._asdict(),
         "rms": float(np.sqrt((off**2).mean())),
         "most": float(np.abs(off).max()),
         "halves": float(np.sqrt((errors(a, b, mean) ** 2).mean())),
@@ -93,25 +110,26 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0], add_help=False)
     parser.add_argument("--help", action="help")
     parser.add_argument("--json", action="store_true")
-    parser.add_argument("--lens", nargs="+", default=LENSES)
+    parser.add_argument("--lens", nargs="+", default=None)
     parser.add_argument("--paths", type=float, default=1e6)
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--f-stop", type=float, default=5.6)
     parser.add_argument("-w", type=int, default=480)
     parser.add_argument("-h", type=int, default=270)
     arguments = parser.parse_args()
-    for lens in arguments.lens:
-        for degrees in ANGLES:
-            row = measured(arguments, lens, degrees)
-            if arguments.json:
-                print(json.dumps(row), flush=True)
-                continue
-            print(
-                f"{lens} {degrees}: RMS {row['rms']:.1%}, most {row['most']:.0%}, halves "
-                f"{row['halves']:.1%}, light {row['sum']:.3f}, {row['cpu_s'] * 1e3:.0f} ms of CPU, "
-                f"{row['wall_s'] * 1e3:.0f} ms, {row['ghosts']} ghosts, {row['rays']} rays",
-                flush=True,
-            )
+    for case in CASES:
+        if arguments.lens and case.lens not in arguments.lens:
+            continue
+        row = measured(arguments, case)
+        if arguments.json:
+            print(json.dumps(row), flush=True)
+            continue
+        print(
+            f"{case.lens} {case.degrees} f/{case.f_stop} {case.focus} m: RMS {row['rms']:.1%}, "
+            f"most {row['most']:.0%}, halves {row['halves']:.1%}, light {row['sum']:.3f}, "
+            f"{row['cpu_s'] * 1e3:.0f} ms of CPU, {row['wall_s'] * 1e3:.0f} ms, "
+            f"{row['ghosts']} ghosts, {row['rays']} rays",
+            flush=True,
+        )
 
 
 if __name__ == "__main__":

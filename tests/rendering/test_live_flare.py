@@ -79,7 +79,7 @@ def test_live_ghosts_are_the_exact_ones_but_for_some_per_cent(lens: str) -> None
 
 @pytest.mark.parametrize("lens", ["tessar-50mm-f2.8", "double-gauss-50mm-f2", "sigma-17-40mm-f1.8"])
 def test_live_ghosts_have_the_light_of_all_ghosts(lens: str) -> None:
-    """None of the brighter ones is left out, whatever its colour: coatings make most of them violet and red."""
+    """None of the brighter ones is left out, whatever its colour: most are violet and red."""
     made = session(lens, WHITE)
     ghosts, reference = live(made).sum((0, 1)), exact(made).sum((0, 1))
     zoom = lens.startswith("sigma")  # some of its 378 come through specks of the front

@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kZooms = 5;          // times that the region is closed in on, at most
 constexpr int kCoarse = 8;         // squares across meanwhile
+constexpr int kSearches = 4;       // for light that no look found
+constexpr float kAbout = 2;        // squares
 constexpr int kHardly = 8;         // nodes at which light was seen
 constexpr float kCloseIn = 0.5f;   // share of the region that holds the light: less is worth another look
 
@@ -41,8 +43,15 @@ bool GhostGrid::passes(const Looks& by, const MapLanding& l) {
     return l.sound && here && by.rays.stopped(l) < 0;
 }
 
+/// How far from one that passes: 0 at an edge or a side of the frame.
+float GhostGrid::from_light(const Looks& by, const MapLanding& l) {
+    if (!l.sound) return std::numeric_limits<float>::infinity();
+    const auto beside = [&](float px, int size) { return (std::abs(px - 0.5f * float(size)) - by.reach) / float(size) - 0.5f; };
+    return std::max({by.rays.stopped(l), beside(l.px.x, by.sensor.width), beside(l.px.y, by.sensor.height)});
+}
+
 /// Squares near where light was seen; where there is hardly any, also by looks between nodes. If nothing is seen, all that
-/// are not dark: light may come through the smallest of places.
+/// are not dark.
 int GhostGrid::mark(const Looks& by) {
     const int side = squares + 1, reach = squares / kCoarse;
     std::vector<bool> may(squares * squares), near(squares * squares);
@@ -54,9 +63,15 @@ int GhostGrid::mark(const Looks& by) {
     };
     for (int i = 0; i < squares * squares; ++i)
         may[i] = !is_dark(by.rays, by.sensor, by.reach, &nodes[i / squares * side + i % squares], side);
-    for (int n = 0; n < side * side; ++n)
+    nearest = std::numeric_limits<float>::infinity();
+    const auto note = [&](Vec2f node, const MapLanding& l) {
+        if (const float far = from_light(by, l); far < nearest) nearest = far, nearest_at = node;
+    };
+    for (int n = 0; n < side * side; ++n) {
         if (passes(by, nodes[n])) see(n % side, n / side);
-    if (seen < kHardly) {
+        note({float(n % side), float(n / side)}, nodes[n]);
+    }
+    if (seen < kHardly && squares == kCoarse) {
         std::vector<MapRay> looks;
         std::vector<int> of;
         for (int i = 0; i < squares * squares; ++i)
@@ -66,8 +81,11 @@ int GhostGrid::mark(const Looks& by) {
                         looks.push_back({at(Vec2f{float(i % squares), float(i / squares)} + u), {0, 0}, middle_nm()});
         const std::vector<MapLanding> landings = by.rays.trace(looks);
         rays += looks.size();
-        for (std::size_t k = 0; k < looks.size(); ++k)
-            if (const int x = of[k] % squares, y = of[k] / squares; passes(by, landings[k])) see(x, y), see(x + 1, y + 1);
+        for (std::size_t k = 0; k < looks.size(); ++k) {
+            const int x = of[k] % squares, y = of[k] / squares;
+            if (passes(by, landings[k])) see(x, y), see(x + 1, y + 1);
+            note(region.in(looks[k].at) * float(squares), landings[k]);
+        }
     }
     lit.assign(squares * squares, false);
     for (int i = 0; i < squares * squares; ++i) lit[i] = may[i] && (near[i] || seen == 0);
@@ -102,6 +120,18 @@ bool GhostGrid::close_in() {
     return true;
 }
 
+/// Light comes through the smallest of places, if at all: takes what is about the ray that came nearest to it; false: all
+/// is dark.
+bool GhostGrid::search() {
+    if (std::ranges::find(lit, true) == lit.end() || !(nearest < std::numeric_limits<float>::infinity())) return false;
+    const auto end = float(squares);
+    const Vec2f low{std::clamp(nearest_at.x - kAbout, 0.f, end), std::clamp(nearest_at.y - kAbout, 0.f, end)};
+    const Vec2f high{std::clamp(nearest_at.x + kAbout, 0.f, end), std::clamp(nearest_at.y + kAbout, 0.f, end)};
+    const Vec2f from = at(low), to = at(high);
+    region = {from, to - from};
+    return true;
+}
+
 /// No ray is lost where light may come through.
 bool GhostGrid::is_smooth() const {
     const int side = squares + 1;
@@ -113,9 +143,15 @@ bool GhostGrid::is_smooth() const {
 
 GhostGrid::GhostGrid(const MapRays& map_rays, const Sensor& sensor, float reach) {
     const Looks by{map_rays, sensor, reach};
+    int seen = look(by, kCoarse);
+    for (int n = 0; seen == 0 && n < kSearches && search(); ++n) seen = look(by, kCoarse);
+    if (seen == 0) {
+        nodes.clear();
+        return;
+    }
     int zoom = 1;
-    while (zoom < kZooms && look(by, kCoarse) >= kHardly && is_smooth() && close_in()) ++zoom;
-    int seen = look(by, kSquares);
+    while (zoom < kZooms && seen >= kHardly && is_smooth() && close_in()) seen = look(by, kCoarse), ++zoom;
+    seen = look(by, kSquares);
     while (zoom < kZooms && close_in()) seen = look(by, kSquares), ++zoom;
     if (seen == 0) nodes.clear();
 }

@@ -36,9 +36,13 @@ struct GhostGrid {
     int mark(const Looks& by);
     int look(const Looks& by, int across);
     bool close_in();
+    bool search();
     bool is_smooth() const;
+    static float from_light(const Looks& by, const MapLanding& landing);
 
     int squares = kSquares;   // across, of the present look
+    float nearest = 0;        // of its rays to passing
+    Vec2f nearest_at{};       // in squares
 };
 
 }  // namespace dg

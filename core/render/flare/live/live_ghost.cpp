@@ -14,7 +14,7 @@ namespace {
 constexpr int kLooks = 8;               // of a square
 constexpr float kUnseen = 0.3f;         // looks that count as having seen light, of a square where none did
 constexpr float kLostUnseen = 0.25f;    // the same where rays are lost
-constexpr double kWorthMore = 4000, kWorthMost = 20000;   // arrivals of a ghost that more nodes for its colours pay for
+constexpr double kWorthMore = 1500, kWorthMost = 6000;   // arrivals of a ghost that more nodes for its colours pay for
 constexpr double kWorthFine = 12;       // arrivals of a square that a finer grid pays for
 constexpr float kBend = 0.7f;           // px, from straight between nodes, that is worth one
 constexpr int kGlassNodes = 4;          // at which transmittances are asked for

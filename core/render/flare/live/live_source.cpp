@@ -44,8 +44,9 @@ LiveSource::LiveSource(SmallSource own, float free_share)
         return rgb_from_xyz({color[0], color[1], color[2]});
     };
     for (int i = 0; i < kSteps; ++i) {
-        const auto edge = [](int k) { return k == 0 ? kMinWavelength : k == kSteps ? kMaxWavelength : sampled_nm(float(k) / kSteps); };
-        at[i] = color_of(edge(i), edge(i + 1)) * float(kSteps);
+        const float low = i == 0 ? kMinWavelength : sampled_nm(float(i) / kSteps);
+        const float high = i + 1 == kSteps ? kMaxWavelength : sampled_nm(float(i + 1) / kSteps);
+        at[i] = color_of(low, high) * float(kSteps);
     }
     for (float nm = kMinWavelength + 0.5f; nm < kMaxWavelength; ++nm) {
         const Rgb rgb = color_of(nm - 0.5f, nm + 0.5f);
