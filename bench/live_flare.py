@@ -6,8 +6,8 @@ A lamp as large as the sun shines on each lens, alone: from several angles, and 
 and focus distances. The ghosts of live pictures are compared with exact ones of --paths paths, in
 blocks of 16 x 16 pixels that are brighter than 2 % of the brightest: ``rms`` and ``most`` are the
 errors of their luminance, ``halves`` is the RMS of two exact pictures against each other, and
-``sum`` the share of all light. CPU and wall-clock time are medians of --rounds pictures, set-up included; ``rays`` are exact ones
-of a picture.
+``sum`` the share of all light. CPU and wall-clock time are medians of --rounds pictures, set-up
+included; ``rays`` are exact ones of a picture.
 """
 
 from __future__ import annotations
