@@ -32,9 +32,14 @@ WHITE = sun(9, 5, (1.6e4, 1.6e4, 1.6e4))
 RED = sun(-6, 3, (3e4, 2e3, 1e3))
 
 
-def session(lens: str, *suns: tuple[dg.SphereLight, Picture], threads: int = 0) -> Session:
-    """A session of suns alone."""
-    scene = dg.Scene()
+def session(
+    lens: str,
+    *suns: tuple[dg.SphereLight, Picture],
+    threads: int = 0,
+    scene: dg.Scene | None = None,
+) -> Session:
+    """A session of suns, in an empty scene or in this one."""
+    scene = scene or dg.Scene()
     for light, pose in suns:
         scene.add_light(light, pose)
     camera = dg.Camera(lens=lens, f_stop=5.6, focus_distance=math.inf, blades=7)
@@ -94,6 +99,17 @@ def test_two_lamps_have_the_ghosts_of_each() -> None:
     each = live(session(lens, WHITE)) + live(session(lens, RED))
     assert off(both, each) < 0.06
     assert both.sum((0, 1)) == pytest.approx(each.sum((0, 1)), rel=0.02)
+
+
+def test_half_a_lamp_has_ghosts_of_half_the_light() -> None:
+    """A card far away covers its right half."""
+    lens, scene = "tessar-50mm-f2.8", dg.Scene()
+    middle = 0.1 * WHITE[1][:3, 3]
+    corners = middle + np.array([(0, -5, 0), (5, -5, 0), (5, 5, 0), (0, 5, 0)])
+    card = scene.add_mesh(corners, np.array([(0, 1, 2), (0, 2, 3)], dtype=np.int32))
+    scene.add_instance(card, dg.Material(dg.Diffuse((0, 0, 0))))
+    half, whole = live(session(lens, WHITE, scene=scene)), live(session(lens, WHITE))
+    assert half.sum((0, 1)) == pytest.approx(whole.sum((0, 1)) / 2, rel=0.04)
 
 
 def test_live_ghosts_have_the_same_bits_on_any_number_of_threads() -> None:

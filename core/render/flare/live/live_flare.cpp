@@ -14,7 +14,7 @@ namespace {
 constexpr double kShare = 0.15;       // of all light, that a source must bring
 constexpr double kArrivals = 4e5;
 constexpr double kDim = 0.0015;        // share of all that the ghosts that are left out are worth, at most
-constexpr int kShadows = 64, kSequence = -7;
+constexpr int kShadows = 512, kSequence = -7;
 constexpr int kLayers = 4;            // which tasks draw on, and which are added in order: no bit depends on threads
 constexpr float kMm2 = 1e6f;          // in 1 m2
 
@@ -26,7 +26,7 @@ float free_share(const FlareAim& aim, const SmallSource& source) {
     for (int i = 0; i < kShadows; ++i) {
         PathSampler sampler(source.source, kSequence, std::uint32_t(i), 0);
         const CameraRandom u = sampler.camera();
-        const SmallSource::Point& p = source.point(u.time);
+        const SmallSource::Point& p = source.point((float(i) + 0.5f) / kShadows);   // each as often as any other
         const auto shadow = rays.shadow({u.lens * 2 - Vec2f{1, 1}, p.shift, 0}, p.from, p.moment.time);
         if (shadow) ++all, seen += aim.scene().visibility_along(*shadow, Wavelengths::sample(u.lambda))[0];
     }
