@@ -12,7 +12,7 @@ constexpr float kBeyond = 0.1f;   // steps from the last nodes: the cubic is goo
 
 float sampled_nm(float u) { return Wavelengths::sample(u).nm[0]; }
 
-/// Of a cubic through the four nodes about a wavelength. Coatings reflect most where little is seen, at either end of the
+/// A cubic through the four nodes about a wavelength. Coatings reflect most where little is seen, at either end of the
 /// spectrum, and steeply more toward it: even or straight between nodes, some per cent of the light would be off.
 struct NodeWeights {
     int first;

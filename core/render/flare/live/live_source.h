@@ -13,7 +13,7 @@ struct LiveSource {
     static constexpr float kFirstNm = 405, kStepNm = 295.f / (kNodes - 1);
     static constexpr int kGroups = 3;                 // of wavelengths, which land apart from each other
     SmallSource small;
-    /// Of an arrival of all wavelengths, by groups, for each unit of transmittance at a node.
+    /// An arrival of all wavelengths has these, by groups, for each unit of transmittance at a node.
     std::array<std::array<Rgb, kNodes>, kGroups> colors;
     std::array<Rgb, kSteps> at;       // of an arrival of one wavelength, see nm(), for each unit of transmittance
     std::array<float, kNodes> seen;   // luminance of the same, over that of all of them
