@@ -26,6 +26,8 @@ TOUCH = 2e-3
 ROUNDING = 0.9
 #: If a smaller share of the axial beam passes, the lens is slower than its stop allows.
 ENOUGH_LIGHT = 0.6
+#: One of so many draws of each point of the film comes first: most points need no more.
+_EACH = 9
 _RADII = 129
 
 
@@ -209,11 +211,21 @@ def frame_notes(
 
 
 def _lit(exact: _core.ExactLens, film: NDArray[np.float64], draws: int) -> NDArray[np.bool_]:
-    """Whether light reaches points of the film (N, 2), mm."""
+    """Whether light reaches points of the film (N, 2), mm; few need more than the first draws."""
     side = round(math.sqrt(draws))
     grid = (np.stack(np.meshgrid(*[np.arange(side)] * 2), -1).reshape(-1, 2) + 0.5) / side
-    points = np.repeat(film, len(grid), axis=0).astype(np.float32)
-    u = np.tile(grid, (len(film), 1)).astype(np.float32)
+    lit = np.zeros(len(film), np.bool_)
+    for u in (grid[::_EACH], grid):
+        lit[~lit] = _any_lit(exact, film[~lit], u)
+    return lit
+
+
+def _any_lit(
+    exact: _core.ExactLens, film: NDArray[np.float64], u: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Whether light reaches points of the film (N, 2), mm, by one of the draws (M, 2)."""
+    points = np.repeat(film, len(u), axis=0).astype(np.float32)
+    draws = np.tile(u, (len(film), 1)).astype(np.float32)
     nm = np.full(len(points), 550, np.float32)
-    weights = np.asarray(exact.generate(points, u, nm)[2]).reshape(len(film), -1)
+    weights = np.asarray(exact.generate(points, draws, nm)[2]).reshape(len(film), len(u))
     return np.asarray((weights > 0).any(axis=1))

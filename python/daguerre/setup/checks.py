@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sized
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -60,12 +61,19 @@ def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
 def prescription_of(camera: Camera) -> lenses.Lens:
     """Loads the lens of a camera that has one with a prescription."""
     from daguerre.lenses.dispersion import without_dispersion
-    from daguerre.lenses.library import path_of
+    from daguerre.lenses.library import FOLDER, path_of
 
     lens = camera.lens or ""
     if not isinstance(lens, lenses.Lens):
-        lens = lenses.read(path_of(lens, IDEAL))
+        path = path_of(lens, IDEAL)
+        lens = _of_library(path) if path.parent == FOLDER else lenses.read(path)
     return lens if camera.dispersion else without_dispersion(lens)
+
+
+@lru_cache(8)
+def _of_library(path: Path) -> lenses.Lens:
+    """Reads a lens of the library once: a session of a viewfinder begins at each turn."""
+    return lenses.read(path)
 
 
 def _projection(camera: Camera) -> str:

@@ -6,7 +6,9 @@ Lengths are in mm unless the name says otherwise. Focus distances are in m.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,8 +117,9 @@ def set_up(framing: Framing, lens: lenses.Lens, model: str) -> ResolvedLens:
     if any(camera.tilt):
         cardinal = _cardinal_points(chosen.order)
         focus = replace(focus, sharp_at=lambda p: tilt.focus_on(cardinal, camera.tilt, p))
-    found = focus.settled(lambda s: _directions(framing, chosen, s))
-    sharp = _focused(camera, chosen, found.distance_m)
+    in_focus = cache(partial(_focused, camera, chosen))
+    found = focus.settled(lambda s: _directions(framing, chosen, in_focus, s))
+    sharp = in_focus(found.distance_m)
     film = framing_distance(sharp) * tilt.cosine(camera.tilt)
     drawn = _traced(framing, model, sharp) if chosen.traced else _ideal(framing, model, sharp, film)
     offset = (sharp.film_z - sharp.order.entrance_pupil.z) * tilt.cosine(camera.tilt)
@@ -154,8 +157,8 @@ def _notes(camera: Camera, chosen: _Chosen) -> list[str]:
     """Notes on zoom, light lost in the glass, and squeeze."""
     notes = []
     lens, squeeze = chosen.lens, chosen.squeeze
-    if lens.zoom_range_mm and camera.zoom is None:
-        short_end, long_end = lens.zoom_range_mm
+    if camera.zoom is None and (ends := lens.zoom_range_mm):
+        short_end, long_end = ends
         notes.append(
             f"{lens.name} is a zoom lens of {short_end:.4g} to {long_end:.4g} mm, set to "
             f"{lens.zoom_mm:.4g} mm"
@@ -274,13 +277,15 @@ def _ideal(framing: Framing, model: str, sharp: _InFocus, film: float) -> _Drawn
     return _Drawn(core_of(framing, model, film, radius, sharp.distance), thick.h0)
 
 
-def _directions(framing: Framing, chosen: _Chosen, distance: float) -> Directions:
+def _directions(
+    framing: Framing, chosen: _Chosen, in_focus: Callable[[float], _InFocus], distance: float
+) -> Directions:
     """View directions of film points at a trial focus distance."""
     camera = framing.camera
     if camera.focus_at is None or not chosen.traced or any(camera.tilt):
-        film = framing_distance(_focused(camera, chosen, distance))
+        film = framing_distance(in_focus(distance))
         return ideal_direction(film * tilt.cosine(camera.tilt))
-    far = _exact_lens(framing, _focused(camera, chosen, math.inf))
+    far = _exact_lens(framing, in_focus(math.inf))
 
     def direction(x: float, y: float) -> NDArray[np.float64]:
         return np.array(far.chief_direction(x, y))
