@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.viewfinder import work
+from daguerre.viewfinder import painter, work
 from daguerre.viewfinder.dials import Dials
 from daguerre.viewfinder.drawn import Drawn, Wish
 from daguerre.viewfinder.image import image_of
@@ -109,6 +109,22 @@ def test_the_newest_wish_wins(seen: Seen) -> None:
     numbers = [drawn.wish.number for drawn in seen.until_rest(39)]
     assert numbers == sorted(numbers)
     assert seen.pictures.empty()
+
+
+def test_while_a_hand_moves_the_next_wish_comes_before_a_better_picture(
+    seen: Seen, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The hand turns on when it sees a picture; work on better ones would delay the next."""
+    monkeypatch.setattr(painter, "WAIT_S", 60.0)
+    for number in (1, 2):
+        seen.wish(number, Dials().turned({"f_stop": str(4 + number)}))
+        while seen.pictures.get(timeout=60).wish.number != number:
+            pass
+    time.sleep(0.5)
+    assert seen.pictures.empty()
+    monkeypatch.setattr(painter, "WAIT_S", 0.0)
+    seen.wish(3)
+    seen.until_rest(3)
 
 
 def test_a_wish_that_cannot_be_is_a_failure_and_the_next_one_is_drawn(seen: Seen) -> None:

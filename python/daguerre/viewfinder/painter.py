@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, wait
 from typing import Any
@@ -12,6 +13,10 @@ from daguerre.rendering import Cancelled, CancelToken
 from .background import background_thread, under
 from .drawn import Drawn, Wish
 from .work import Work
+
+#: A hand moves if two wishes come within the first time, s; then the painter waits for the next
+#: wish as long as the second time, s, before it draws a better picture of the last one.
+MOVING_S, WAIT_S = 0.5, 0.03
 
 
 class Painter:
@@ -33,6 +38,8 @@ class Painter:
         self._changed = threading.Condition()
         self._wish: Wish | None = None  # the next one
         self._taken: Wish | None = None  # the one before
+        self._taken_s = -MOVING_S  # when
+        self._moves = False  # the hand
         self._token = CancelToken()
         self._closed = False
         self._work: Work | None = None
@@ -71,6 +78,7 @@ class Painter:
                     for drawn in self._begun(wish):
                         self._token.throw_if_cancelled()
                         self._show(drawn)
+                        self._wait_for_hand()
             except Cancelled:
                 self._work = None  # its sums are torn
             except Exception as error:  # whatever it is, the next wish is drawn
@@ -87,8 +95,18 @@ class Painter:
             return None if self._closed else self._take()
 
     def _take(self) -> Wish | None:
+        now = time.monotonic()
+        self._moves, self._taken_s = now - self._taken_s < MOVING_S, now
         self._taken, self._wish = self._wish, None
         return self._taken
+
+    def _wait_for_hand(self) -> None:
+        """Waits for the next wish of a moving hand: better pictures would only delay its own."""
+        with self._changed:
+            if self._moves:
+                self._changed.wait_for(lambda: self._wish is not None or self._closed, WAIT_S)
+                self._moves = False
+        self._token.throw_if_cancelled()
 
     def _begun(self, wish: Wish) -> Iterator[Drawn]:
         """Pictures of a wish, of whose light some may be drawn already."""
