@@ -14,6 +14,7 @@ from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench, FloatArray
 from .chief import chief_rays
+from .light_search import Light, light_at, passes
 from .plotted import Plotted
 
 GRID = 96
@@ -102,18 +103,17 @@ def spectral_illumination(
 
 
 def _by_wavelength(bench: Bench, film: FloatArray, nm: FloatArray, grid: int) -> FloatArray:
-    found = _lit_window(bench, film, DESIGN_WAVELENGTH_NM)
+    found = light_at(bench, film, DESIGN_WAVELENGTH_NM)
     if found is None:
         return np.zeros(len(nm))
-    low, high, seen = found
-    light = _through(bench, film, DESIGN_WAVELENGTH_NM, low, high, grid)
-    some = seen[:: max(len(seen) // COARSE**2, 1)]
+    light = _through(bench, film, DESIGN_WAVELENGTH_NM, found, grid)
+    some = found.seen[:: max(len(found.seen) // COARSE**2, 1)]
 
     def transmitted(w: float) -> float:
-        return float(_passes(bench, film, some, w, clip=False).sum())
+        return float(passes(bench, film, some, w, clip=False).sum())
 
-    middle, away = seen.mean(axis=0), _around(CORNERS)
-    far = np.full(CORNERS, float(np.linalg.norm(high - low)))
+    middle, away = found.seen.mean(axis=0), _around(CORNERS)
+    far = np.full(CORNERS, found.width)
     edge = _edge(bench, film, middle, away, 0 * far, far, DESIGN_WAVELENGTH_NM, 16)
 
     def area(w: float) -> float:
@@ -162,13 +162,12 @@ def pupil_outline(
     """
     whole(corners, "pupil_outline: corners", 3, 1 << 14)
     film = _along_y(height_mm)
-    found = _lit_window(bench, film, wavelength_nm)
+    found = light_at(bench, film, wavelength_nm)
     if found is None:
         return np.zeros((0, 2))
-    low, high, seen = found
-    middle = seen.mean(axis=0)
+    middle = found.seen.mean(axis=0)
     away = _around(corners)
-    outer = np.full(corners, float(np.linalg.norm(high - low)))
+    outer = np.full(corners, found.width)
     inner = _edge(bench, film, middle, away, 0 * outer, outer, wavelength_nm, 22)
     edge = middle + inner[:, None] * away
     return np.concatenate([edge, edge[:1]])
@@ -192,7 +191,7 @@ def _edge(
     """Distances from the middle of the light to its edge, searched between two bounds, (N,)."""
     for _ in range(steps):
         between = 0.5 * (inner + outer)
-        lit = _passes(bench, film, middle + between[:, None] * away, nm) > 0
+        lit = passes(bench, film, middle + between[:, None] * away, nm) > 0
         inner, outer = np.where(lit, between, inner), np.where(lit, outer, between)
     return inner
 
@@ -207,52 +206,14 @@ def _along_y(height_mm: float) -> FloatArray:
 
 
 def _irradiance(bench: Bench, film: FloatArray, nm: float, grid: int) -> float:
-    found = _lit_window(bench, film, nm)
-    return 0.0 if found is None else _through(bench, film, nm, found[0], found[1], grid)
+    found = light_at(bench, film, nm)
+    return 0.0 if found is None else _through(bench, film, nm, found, grid)
 
 
-def _through(
-    bench: Bench, film: FloatArray, nm: float, low: FloatArray, high: FloatArray, grid: int
-) -> float:
-    """Area of the light within a window of direction cosines, times its transmittance."""
+def _through(bench: Bench, film: FloatArray, nm: float, light: Light, grid: int) -> float:
+    """Area of the light in direction cosines, times its transmittance."""
     whole(grid, "illumination: grid", 1, 4096)
-    cell = (high - low) / grid
+    cell = (light.high - light.low) / grid
     u = np.arange(grid) + 0.5
-    at = np.stack(np.meshgrid(*(low[k] + cell[k] * u for k in range(2))), -1)
-    return float(_passes(bench, film, at.reshape(-1, 2), nm).sum() * cell[0] * cell[1])
-
-
-def _lit_window(
-    bench: Bench, film: FloatArray, nm: float
-) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-    """Bounds of the light in direction cosines, and directions of a grid within the light."""
-    reach = bench.film_z - bench.order.exit_pupil.z
-    middle = film / np.hypot(reach, np.hypot(*film)) * np.sign(reach)
-    low, high = middle - 1.3 / bench.f_stop, middle + 1.3 / bench.f_stop
-    seen = np.zeros((0, 2))
-    for _ in range(4):
-        low, high = np.maximum(low, -0.999), np.minimum(high, 0.999)
-        cell = (high - low) / 48
-        u = np.arange(48) + 0.5
-        at = np.stack(np.meshgrid(*(low[k] + cell[k] * u for k in range(2))), -1).reshape(-1, 2)
-        seen = at[_passes(bench, film, at, nm) > 0]
-        if not len(seen):
-            return None
-        new_low, new_high = seen.min(axis=0) - cell, seen.max(axis=0) + cell
-        done = ((new_high - new_low) > 0.8 * (high - low)).all()
-        low, high = new_low, new_high
-        if done:
-            break
-    return low, high, seen
-
-
-def _passes(
-    bench: Bench, film: FloatArray, cosines: FloatArray, nm: float, *, clip: bool = True
-) -> FloatArray:
-    """Transmittance of rays from a film point along direction cosines, shape (N,); 0 if stopped."""
-    z2 = 1 - (cosines**2).sum(axis=1)
-    # The cosines are those of the light, toward the film; rays run the other way.
-    directions = -np.column_stack([cosines * [1, 1], np.sqrt(np.maximum(z2, 1e-9))])
-    origins = np.broadcast_to([*film, bench.film_z], directions.shape)
-    rays = bench.rays(origins, directions, nm, to_film=False, clip=clip)
-    return np.where(rays.passed & (z2 > 0), rays.transmittance, 0.0)
+    at = np.stack(np.meshgrid(*(light.low[k] + cell[k] * u for k in range(2))), -1)
+    return float(passes(bench, film, at.reshape(-1, 2), nm).sum() * cell[0] * cell[1])
