@@ -39,7 +39,7 @@ def server() -> Iterator[Live]:
 @pytest.fixture
 def page(server: Live, page: Browser) -> Browser:
     page.open(f"http://{server.host}/#{TOKEN}")
-    page.until("document.getElementById('frame')?.dataset.rests === 'true'")
+    page.until("document.getElementById('frame')?.ariaBusy === 'false'")
     return page
 
 

@@ -324,7 +324,7 @@ def choose(page: Browser, value: Any) -> None:
     hidden = str(value is None).lower()
     page.until(
         f"document.getElementById('divider').hidden === {hidden}"
-        " && document.getElementById('frame').dataset.rests === 'true'"
+        " && document.getElementById('frame').ariaBusy === 'false'"
     )
 
 

@@ -17,7 +17,7 @@ pytest.importorskip("websockets", reason="needs the extra view")
 pytest.importorskip("simplejpeg", reason="needs the extra view")
 SIZE = (320, 240)
 CROP = (160, 60, 280, 220)
-RESTS = "document.getElementById('frame')?.dataset.rests === 'true'"
+RESTS = "document.getElementById('frame')?.ariaBusy === 'false'"
 
 
 def stage() -> Stage:

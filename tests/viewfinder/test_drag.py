@@ -29,7 +29,7 @@ pytestmark = [
 #: Time that each set-up takes, s: several moves of a mouse.
 SLOW_S = 0.1
 SHOWN = "Number(document.getElementById('frame').dataset.turn)"
-RESTS = "document.getElementById('frame')?.dataset.rests === 'true'"
+RESTS = "document.getElementById('frame')?.ariaBusy === 'false'"
 
 
 @pytest.fixture

@@ -218,7 +218,7 @@ def test_without_light_the_needle_says_so(window: Browser) -> None:
     with live(Stage(dark, dark.camera(), dg.RenderSettings.of(resolution=(60, 40), spp=1))) as one:
         window.open("about:blank")
         window.open(f"http://{one.host}/#{TOKEN}")
-        window.until("document.getElementById('frame')?.dataset.rests === 'true'")
+        window.until("document.getElementById('frame')?.ariaBusy === 'false'")
         window.until(f"{NEEDLE}.ariaValueText === 'no light to meter'")
         assert window.run("document.querySelector('#needle .pointer').getBBox().width") == 0
 

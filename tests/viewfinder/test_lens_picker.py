@@ -160,7 +160,7 @@ def opened(page: Browser, server: Live, width: int, height: int) -> Browser:
     page.asked.clear()
     page.size(width, height, touch=width < 800)
     page.open(f"http://{server.host}/#{TOKEN}")
-    page.until("document.getElementById('frame')?.dataset.rests === 'true'")
+    page.until("document.getElementById('frame')?.ariaBusy === 'false'")
     return page
 
 

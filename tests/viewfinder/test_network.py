@@ -110,8 +110,8 @@ def rests(page: Browser, after: int = -1, timeout: float = 60) -> int:
     """Waits until a picture at rest of a later turn is shown, and returns the turn."""
     return int(
         page.until(
-            "(() => { const d = document.getElementById('frame')?.dataset ?? {};"
-            f"return d.rests === 'true' && Number(d.turn) > {after} && d.turn; }})()",
+            "(() => { const frame = document.getElementById('frame'), d = frame?.dataset ?? {};"
+            f"return frame?.ariaBusy === 'false' && Number(d.turn) > {after} && d.turn; }})()",
             timeout,
         )
     )

@@ -85,13 +85,13 @@ class Kernel:
 @pytest.mark.xdist_group("chromium")
 def test_the_panel_turns_the_camera(view: Any, page: Browser) -> None:
     kernel = Kernel(view, page)
-    frame = "root.getElementById('frame').dataset"
-    kernel.until(f"{frame}.rests === 'true'")
-    turn = page.run(f"{frame}.turn")
+    frame = "root.getElementById('frame')"
+    kernel.until(f"{frame}.ariaBusy === 'false'")
+    turn = page.run(f"{frame}.dataset.turn")
     page.run("root.getElementById('ring-f_stop').focus()")
     page.press("ArrowRight")
     page.press("ArrowRight")
-    kernel.until(f"{frame}.rests === 'true' && {frame}.turn !== '{turn}'")
+    kernel.until(f"{frame}.ariaBusy === 'false' && {frame}.dataset.turn !== '{turn}'")
     assert page.run("root.getElementById('command').closest('div').hidden")
     assert view.camera.f_stop != 4
     assert page.errors == []
@@ -103,7 +103,7 @@ def test_the_panel_turns_the_camera(view: Any, page: Browser) -> None:
 @pytest.mark.xdist_group("chromium")
 def test_photographs_of_lenses_come_by_message(view: Any, page: Browser) -> None:
     kernel = Kernel(view, page)
-    kernel.until("root.getElementById('frame').dataset.rests === 'true'")
+    kernel.until("root.getElementById('frame').ariaBusy === 'false'")
     page.run("root.getElementById('lens').click()")
     kernel.until("root.querySelectorAll('#lens-list [role=option]').length > 100")
     kernel.until("root.querySelector('#lens-list img')?.naturalWidth > 100")

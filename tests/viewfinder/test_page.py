@@ -96,8 +96,8 @@ def turn_of(page: Browser) -> int:
 def rests(page: Browser, after: int = -1) -> None:
     """Waits until a picture at rest of a later turn is on the screen."""
     page.until(
-        "(() => { const d = document.getElementById('frame')?.dataset ?? {};"
-        f"return d.rests === 'true' && Number(d.turn) > {after}; }})()"
+        "(() => { const frame = document.getElementById('frame');"
+        f"return frame?.ariaBusy === 'false' && Number(frame.dataset.turn) > {after}; }})()"
     )
 
 

@@ -27,7 +27,7 @@ pytestmark = [
 PHONE, ASIDE, TABLET, DESK, WIDE = (390, 844), (844, 390), (820, 1180), (1440, 900), (1920, 1080)
 TOUCHED = (PHONE, ASIDE, TABLET)
 LAMP = 3e4
-RESTS = "document.getElementById('frame')?.dataset.rests === 'true'"
+RESTS = "document.getElementById('frame')?.ariaBusy === 'false'"
 #: Controls that can be seen, after scrolling where the page scrolls.
 CONTROLS = """[...document.querySelectorAll('button, input, select, #picture, [tabindex="0"]')]
     .filter((e) => e.checkVisibility({checkVisibilityCSS: true}))"""
