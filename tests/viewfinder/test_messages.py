@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from importlib.resources import files
 from typing import Any
 
 import pytest
@@ -33,6 +35,20 @@ from daguerre.viewfinder import messages as m
 )
 def test_a_message_is_read(text: str, message: Any) -> None:
     assert m.parse(text) == message
+
+
+def test_page_and_server_agree_on_what_changes_the_picture() -> None:
+    """The page counts answers: one of its messages without an answer would keep it waiting."""
+    page = files("daguerre.viewfinder") / "page" / "main.js"
+    listed = re.findall(r"const CHANGES = \[(.*)\]", page.read_text("utf-8"))[0]
+    read = {
+        "turn": {}, "draw": 1, "undo": True, "redo": True, "reload": True, "show": {"models": True},
+        "got": 1, "probe": [1, 1], "save": "png", "hold": True, "section": [1, 1], "facts": True,
+        "drawing": "fisheye-16mm-f2.8", "photograph": "fisheye-16mm-f2.8", "find": "zoom",
+    }  # fmt: skip
+    assert read.keys() == m._READERS.keys()
+    changes = [k for k, v in read.items() if isinstance(m.parse(json.dumps({k: v})), m.Change)]
+    assert changes == [name.strip(" '") for name in listed.split(",")]
 
 
 @pytest.mark.parametrize(

@@ -14,9 +14,10 @@ from .background import background_thread, under
 from .drawn import Drawn, Wish
 from .work import Work
 
-#: A hand moves if two wishes come within the first time, s; then the painter waits for the next
-#: wish as long as the second time, s, before it draws a better picture of the last one.
-MOVING_S, WAIT_S = 0.5, 0.03
+#: Longest time between two wishes of a user who keeps turning, s.
+TURNING_S = 0.5
+#: How long the painter waits for the next wish of such a user, before it draws a better picture, s.
+WAIT_S = 0.03
 
 
 class Painter:
@@ -38,8 +39,8 @@ class Painter:
         self._changed = threading.Condition()
         self._wish: Wish | None = None  # the next one
         self._taken: Wish | None = None  # the one before
-        self._taken_s = -MOVING_S  # when
-        self._moves = False  # the hand
+        self._taken_at = -TURNING_S  # time at which that one came, s
+        self._keeps_turning = False  # whether the user does
         self._token = CancelToken()
         self._closed = False
         self._work: Work | None = None
@@ -78,7 +79,7 @@ class Painter:
                     for drawn in self._begun(wish):
                         self._token.throw_if_cancelled()
                         self._show(drawn)
-                        self._wait_for_hand()
+                        self._wait_for_turn()
             except Cancelled:
                 self._work = None  # its sums are torn
             except Exception as error:  # whatever it is, the next wish is drawn
@@ -96,16 +97,16 @@ class Painter:
 
     def _take(self) -> Wish | None:
         now = time.monotonic()
-        self._moves, self._taken_s = now - self._taken_s < MOVING_S, now
+        self._keeps_turning, self._taken_at = now - self._taken_at < TURNING_S, now
         self._taken, self._wish = self._wish, None
         return self._taken
 
-    def _wait_for_hand(self) -> None:
-        """Waits for the next wish of a moving hand: better pictures would only delay its own."""
+    def _wait_for_turn(self) -> None:
+        """Waits while the user keeps turning: a better picture would delay the next turn's."""
         with self._changed:
-            if self._moves:
+            if self._keeps_turning:
                 self._changed.wait_for(lambda: self._wish is not None or self._closed, WAIT_S)
-                self._moves = False
+                self._keeps_turning = False
         self._token.throw_if_cancelled()
 
     def _begun(self, wish: Wish) -> Iterator[Drawn]:
