@@ -14,9 +14,7 @@ RAYS = 1 << 14
 _ROOT = 1.324717957244746  # of x^3 = x + 1: Roberts's R2, points that fill a square evenly
 
 
-def light_of_renderer(
-    bench: Bench, film_mm: Array, draw: _core.PupilDraw = _core.PupilDraw.slope_boxes
-) -> Array:
+def light_of_renderer(bench: Bench, film_mm: Array) -> Array:
     """Light of film points (N, 2) over that of the axis: means of the weights of drawn rays."""
     exact = _core.ExactLens(
         bench.lens.prescription,
@@ -24,7 +22,6 @@ def light_of_renderer(
             f_stop=bench.f_stop,
             half_diagonal_mm=1.02 * bench.field_mm,
             film_z_mm=bench.film_z,
-            draw=draw,
         ),
     )
     steps = np.arange(RAYS) + 0.5

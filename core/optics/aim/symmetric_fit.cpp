@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "math/quasi_random.h"
-#include "optics/lens/lens_error.h"
 
 namespace dg {
 namespace {
@@ -15,20 +14,16 @@ constexpr int kSearchRays = 16384;
 
 SymmetricRays::SymmetricRays(const Tracer& tracer, const AimRequest& request, double outer)
     : tracer_(tracer), request_(request), outer_(outer) {
-    const double h = 1e-4, nm = kDesignWavelength;
-    const auto film =
-        tracer.to_iris({{h, 0, request.film_z}, {0, 0, -1}}, tracer.at(nm), 1);
-    const auto slope = tracer.to_iris(
-        {{0, 0, request.film_z}, normalize(Vec3d{-h, 0, -1})}, tracer.at(nm), 1);
-    if (!film || !slope || slope->x == 0)
-        throw LensError(tracer.prescription().name +
-                            ": no ray leads from the film's centre to the iris",
-                        "lens-no-light");
-    by_film_ = film->x / h, by_slope_ = slope->x / h;
+    find_chiefs(request.film_radius);
+}
+
+void SymmetricRays::find_chiefs(double film_radius) {
+    film_radius_ = film_radius;
+    chiefs_.emplace(tracer_, FilmPlane{{0, 0, request_.film_z}}, FilmRectangle{{}, {film_radius, 0}});
 }
 
 Vec2d SymmetricRays::slope(double r, Vec2d iris) const {
-    return {(iris.x - by_film_ * r) / by_slope_, iris.y / by_slope_};
+    return chiefs_->slope({r / film_radius_, 0}, iris);
 }
 
 std::optional<Vec2d> SymmetricRays::trace_iris(double r, Vec2d m, double nm) const {
@@ -66,7 +61,7 @@ double SymmetricRays::lit_radius() const {
     return lit;
 }
 
-bool SymmetricRays::fit(Aim& aim, int k) const {
+bool SymmetricRays::fit(Aim& aim, int k) {
     const int count = std::max(600, 5 * term_count(k));
     AimTables& t = aim.tables;
     std::vector<SlopeSample> samples = training(t, count, 0);
@@ -76,6 +71,7 @@ bool SymmetricRays::fit(Aim& aim, int k) const {
         const double lit = 1.1 * lit_radius();
         if (lit > 0 && lit < t.film_radius) {
             t.film_radius = float(lit);
+            find_chiefs(lit);
             samples = training(t, count, 0);
         }
     }

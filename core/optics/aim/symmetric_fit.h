@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 
+#include "optics/aim/chief_map.h"
 #include "optics/aim/pupil.h"
 
 namespace dg {
@@ -13,13 +14,15 @@ class SymmetricRays {
     SymmetricRays(const Tracer& tracer, const AimRequest& request, double outer);
 
     const Tracer& tracer() const { return tracer_; }
-    /// Film slope toward an iris point (mm) from a film radius (mm): first order.
+    /// Film slope toward an iris point (mm) from a film radius (mm): first order about the chief ray.
     Vec2d slope(double r, Vec2d iris) const;
     /// Fits `aim.slopes` and its tables at degree k. False, with nothing fitted, if too few rays reach the
     /// iris. A film far wider than the image circle is cut: tables.film_radius.
-    bool fit(Aim& aim, int k) const;
+    bool fit(Aim& aim, int k);
 
   private:
+    /// Up to a film radius, mm. Aberrations move the pupil: far from the axis, nothing paraxial leads there.
+    void find_chiefs(double film_radius);
     std::optional<Vec2d> trace_iris(double r, Vec2d m, double nm) const;
     std::vector<SlopeSample> training(const AimTables& t, int count, int first) const;
     double lit_radius() const;
@@ -27,7 +30,8 @@ class SymmetricRays {
     const Tracer& tracer_;
     const AimRequest& request_;
     double outer_;
-    double by_film_, by_slope_;  // iris = by_film f + by_slope m
+    double film_radius_ = 0;  // of chiefs_
+    std::optional<ChiefMap> chiefs_;
 };
 
 }  // namespace dg
