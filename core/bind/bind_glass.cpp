@@ -57,6 +57,18 @@ void bind_glass(nb::module_& m) {
             },
             "nd"_a, "vd"_a)
         .def_static(
+            "partial",
+            [](double nd, double vd, double theta_gf) {
+                return checked(Glass{PartialGlass{nd, vd, theta_gf}, ""});
+            },
+            "nd"_a, "vd"_a, "theta_gf"_a)
+        .def_static(
+            "matched",
+            [](const Glass& like, double nd, double vd) {
+                return checked(Glass{matched(like, nd, vd, "glass"), ""});
+            },
+            "like"_a, "nd"_a, "vd"_a, "The dispersion of a glass, shifted and scaled to nd and Vd.")
+        .def_static(
             "table",
             [](Numbers nm, Numbers n) {
                 return Glass{TableGlass{std::move(nm), std::move(n)}, ""};

@@ -40,6 +40,16 @@ void describe(A& a, const PolynomialGlass& g) {
     a(coefficient, power);
 }
 template <typename A>
+void describe(A& a, const PartialGlass& g) {
+    const auto& [nd, vd, p_gf] = g;
+    a(nd, vd, p_gf);
+}
+template <typename A>
+void describe(A& a, const MatchedGlass& g) {
+    const auto& [formula, against_vacuum, nd, scale, formula_nd] = g;
+    a(formula, against_vacuum, nd, scale, formula_nd);
+}
+template <typename A>
 void describe(A& a, const Absorption& g) {
     const auto& [nm, per_mm] = g;
     a(nm, per_mm);

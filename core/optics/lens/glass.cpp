@@ -19,19 +19,23 @@ double index_of(const ConstantIndex& glass, double) {
 }
 
 // n = A + B x + C x^2, x = 1/lambda^2, through nd, through nF - nC = (nd-1)/Vd and
-// through ng - nF = P_gF (nF - nC) with P_gF of Schott's normal line (Schott TIE-29, eq.
-// for P_g,F).
-double index_of(const AbbeGlass& glass, double nm) {
+// through ng - nF = P_gF (nF - nC).
+double index_of(const PartialGlass& glass, double nm) {
     const double x = inverse_square(nm), xd = inverse_square(kDesignWavelength);
     const double xf = inverse_square(kLineF), xc = inverse_square(kLineC);
     const double xg = inverse_square(kLineG);
     const double principal = (glass.nd - 1) / glass.vd;
-    const double blue = (0.6438 - 0.001682 * glass.vd) * principal;
+    const double blue = glass.p_gf * principal;
     // Slopes of the two chords: B + C (sum of their ends).
     const double slope_fc = principal / (xf - xc), slope_gf = blue / (xg - xf);
     const double c = (slope_gf - slope_fc) / (xg - xc);
     const double b = slope_fc - c * (xf + xc);
     return glass.nd + b * (x - xd) + c * (x * x - xd * xd);
+}
+
+// P_gF of Schott's normal line (Schott TIE-29, eq. for P_g,F).
+double index_of(const AbbeGlass& glass, double nm) {
+    return index_of(PartialGlass{glass.nd, glass.vd, 0.6438 - 0.001682 * glass.vd}, nm);
 }
 
 // Lagrange through the (up to) four nodes around the wavelength, in x = 1/lambda^2, where
@@ -72,6 +76,12 @@ double index_of(const PolynomialGlass& glass, double nm) {
     return std::sqrt(n2);
 }
 
+double index_of(const MatchedGlass& glass, double nm) {
+    double n = std::visit([&](const auto& formula) { return index_of(formula, nm); }, glass.formula);
+    if (glass.against_vacuum) n /= air_index(nm);
+    return glass.nd + glass.scale * (n - glass.formula_nd);
+}
+
 bool ascending(const std::vector<double>& nm) {
     return std::is_sorted(nm.begin(), nm.end(), std::less_equal<>()) && nm.front() > 0;
 }
@@ -88,6 +98,12 @@ void check_formula(const ConstantIndex&, const std::string&) {}
 void check_formula(const AbbeGlass& glass, const std::string& where) {
     if (!(glass.vd >= 5))
         throw input_error(where, "Abbe number", "at least 5", std::to_string(glass.vd));
+}
+
+void check_formula(const PartialGlass& glass, const std::string& where) {
+    check_formula(AbbeGlass{glass.nd, glass.vd}, where);
+    if (!(glass.p_gf >= 0.4 && glass.p_gf <= 0.8))
+        throw input_error(where, "theta_gF", "0.4 to 0.8", std::to_string(glass.p_gf));
 }
 
 void check_formula(const TableGlass& glass, const std::string& where) {
@@ -107,6 +123,10 @@ void check_formula(const PolynomialGlass& glass, const std::string& where) {
     check_pairs(where,
                 "polynomial glass: wanted as many coefficients as powers, at least one",
                 glass.power.size(), glass.coefficient.size());
+}
+
+void check_formula(const MatchedGlass& glass, const std::string& where) {
+    std::visit([&](const auto& formula) { check_formula(formula, where); }, glass.formula);
 }
 
 void check_absorption(const Absorption& a, const std::string& where) {
@@ -146,6 +166,23 @@ double absorption_per_mm(const Glass& glass, double wavelength_nm) {
     const std::size_t i = above - nm.begin();
     const double u = (wavelength_nm - nm[i - 1]) / (nm[i] - nm[i - 1]);
     return per_mm[i - 1] + u * (per_mm[i] - per_mm[i - 1]);
+}
+
+MatchedGlass matched(const Glass& like, double nd, double vd, const std::string& where) {
+    check_glass(like, where);
+    check_formula(AbbeGlass{nd, vd}, where);
+    MatchedGlass found{{}, like.against_vacuum, nd, 0, refractive_index(like, kDesignWavelength)};
+    const bool has = std::visit(
+        [&](const auto& formula) {
+            if constexpr (requires { found.formula = formula; }) return found.formula = formula, true;
+            return false;
+        },
+        like.formula);
+    const double spread = refractive_index(like, kLineF) - refractive_index(like, kLineC);
+    if (!has || !(spread > 0))
+        throw Error(where + ": wanted a glass whose formula or table has dispersion, got " + like.name);
+    found.scale = (nd - 1) / vd / spread;
+    return found;
 }
 
 // Daimon and Masumura 2007, Measurement of the refractive index of distilled water, Appl.

@@ -19,6 +19,11 @@ struct AbbeGlass {
     double nd, vd;
 };
 
+/// nd, Vd and P_gF = (ng - nF) / (nF - nC), which patents call theta_gF: three-term Cauchy.
+struct PartialGlass {
+    double nd, vd, p_gf;
+};
+
 /// Measured indices; exact at the nodes. Nodes ascend in wavelength.
 struct TableGlass {
     std::vector<double> nm, n;
@@ -37,6 +42,14 @@ struct PolynomialGlass {
     std::vector<double> coefficient, power;
 };
 
+/// Dispersion of a catalogue's glass, shifted and scaled to the nd and Vd of a lens file:
+/// n = nd + (n of the catalogue - nd of the catalogue) * ratio of nF - nC.
+struct MatchedGlass {
+    std::variant<TableGlass, SellmeierGlass, PolynomialGlass> formula;
+    bool against_vacuum = false;   // the formula
+    double nd, scale, formula_nd;
+};
+
 /// Absorption of glass along the way: exp(-per_mm * path). Nodes ascend; the
 /// coefficient is linear between them, hence the internal transmittance is interpolated in
 /// its logarithm; beyond them it stays as it is at the end. Empty: clear glass.
@@ -47,7 +60,8 @@ struct Absorption {
 /// Catalogues state indices relative to air (of 20 C and 101.325 kPa), and so does
 /// everything in optics/: air has n = 1. Data that are relative to vacuum say so here.
 struct Glass {
-    std::variant<ConstantIndex, AbbeGlass, TableGlass, SellmeierGlass, PolynomialGlass>
+    std::variant<ConstantIndex, AbbeGlass, TableGlass, SellmeierGlass, PolynomialGlass, PartialGlass,
+                 MatchedGlass>
         formula;
     std::string name;
     Absorption absorption = {};
@@ -62,6 +76,10 @@ double absorption_per_mm(const Glass& glass, double wavelength_nm);
 
 /// Index of dry air of 20 C and 101.325 kPa against vacuum.
 double air_index(double wavelength_nm);
+
+/// Dispersion of `like` at nd and Vd. Throws Error (with `where`) if `like` has none: a
+/// constant, or a glass that is itself known by its Abbe number.
+MatchedGlass matched(const Glass& like, double nd, double vd, const std::string& where);
 
 Glass water();   // pure, of 20 C
 Glass vacuum();  // n = 1 / air_index

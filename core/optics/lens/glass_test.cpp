@@ -18,6 +18,36 @@ TEST_CASE("a glass of nd and Vd hits both and lies on the normal line") {
           doctest::Approx(0.6438 - 0.001682 * 64.17).epsilon(1e-9));
 }
 
+TEST_CASE("a glass of nd, Vd and theta_gF hits all three; of the normal line's, the same as without") {
+    const Glass g{PartialGlass{1.497, 81.54, 0.5375}, "S-FPL51"};
+    const double nf = refractive_index(g, 486.1327), nc = refractive_index(g, 656.2725);
+    CHECK(refractive_index(g, 587.5618) == doctest::Approx(1.497).epsilon(1e-14));
+    CHECK(0.497 / (nf - nc) == doctest::Approx(81.54).epsilon(1e-10));
+    CHECK((refractive_index(g, 435.8343) - nf) / (nf - nc) == doctest::Approx(0.5375).epsilon(1e-9));
+    const Glass line{PartialGlass{1.6, 40, 0.6438 - 0.001682 * 40}, ""}, abbe{AbbeGlass{1.6, 40}, ""};
+    for (double nm = 400; nm <= 700; nm += 10) CHECK(refractive_index(line, nm) == refractive_index(abbe, nm));
+}
+
+TEST_CASE("a matched glass has nd and Vd of the file and all ratios of dispersion of the catalogue") {
+    const Glass bk7{SellmeierGlass{{1.03961212, 0.231792344, 1.01046945},
+                                   {0.00600069867, 0.0200179144, 103.560653}},
+                    "N-BK7"};
+    for (const bool vacuum : {false, true}) {
+        Glass like = bk7;
+        like.against_vacuum = vacuum;
+        const Glass g{matched(like, 1.5163, 64.1, "x"), ""};
+        const auto n = [](const Glass& glass, double nm) { return refractive_index(glass, nm); };
+        CHECK(n(g, 587.5618) == doctest::Approx(1.5163).epsilon(1e-15));
+        CHECK(0.5163 / (n(g, 486.1327) - n(g, 656.2725)) == doctest::Approx(64.1).epsilon(1e-10));
+        for (double nm = 400; nm <= 700; nm += 25)
+            CHECK((n(g, nm) - n(g, 486.1327)) / (n(g, 486.1327) - n(g, 656.2725)) ==
+                  doctest::Approx((n(like, nm) - n(like, 486.1327)) / (n(like, 486.1327) - n(like, 656.2725))).epsilon(1e-9));
+    }
+    CHECK_THROWS_AS(matched({ConstantIndex{1.5}, ""}, 1.5, 60, "x"), Error);
+    CHECK_THROWS_AS(matched({AbbeGlass{1.5, 60}, ""}, 1.5, 60, "x"), Error);
+    CHECK_THROWS_AS(matched(bk7, 1.5, 0, "x"), Error);
+}
+
 TEST_CASE("Sellmeier: N-BK7 of the Schott catalogue") {
     const Glass g{SellmeierGlass{{1.03961212, 0.231792344, 1.01046945},
                                  {0.00600069867, 0.0200179144, 103.560653}},
@@ -47,6 +77,8 @@ TEST_CASE("absurd glasses are refused by place") {
     CHECK_THROWS_WITH_AS(check_glass({AbbeGlass{0.2, 50}, ""}, "lens: surface 3"),
                          doctest::Contains("lens: surface 3"), Error);
     CHECK_THROWS_AS(check_glass({AbbeGlass{1.5, 0}, ""}, "x"), Error);
+    CHECK_THROWS_AS(check_glass({PartialGlass{1.5, 60, 0.9}, ""}, "x"), Error);
+    CHECK_THROWS_AS(check_glass({PartialGlass{1.5, 60, std::nan("")}, ""}, "x"), Error);
     CHECK_THROWS_AS(check_glass({TableGlass{{500, 400}, {1.5, 1.5}}, ""}, "x"), Error);
     CHECK_THROWS_AS(check_glass({TableGlass{{}, {}}, ""}, "x"), Error);
     CHECK_THROWS_AS(check_glass({ConstantIndex{std::nan("")}, ""}, "x"), Error);
