@@ -14,7 +14,8 @@ first, the package lensfunpy. Errors are RMS over the area of the frame, with pi
     less measured.
 ``mtf``: at 30 lp/mm on the axis, wide open, of super-telephotos with fluorite.
 ``magnification``: at the product's closest focus, measured from the film, at a zoom's long end;
-    ``off`` is relative to its maker's figure.
+    ``at_m`` is the lens's own closest focus where that is farther. ``off`` is relative to the
+    maker's figure.
 """
 
 from __future__ import annotations
@@ -43,6 +44,7 @@ from daguerre.analysis import (
     set_up,
 )
 from daguerre.errors import DaguerreError, InputError
+from daguerre.lenses.focus import closest_focus_m
 
 Row = dict[str, Any]
 POINTS = 24  # image heights
@@ -175,12 +177,14 @@ def mtf(name: str) -> Row:
 
 
 def magnification(name: str, stated: Terms) -> Row:
-    """Magnification at the product's closest focus, beside its maker's figure."""
+    """Magnification at the product's closest focus, or the lens's, beside its maker's figure."""
     far = zoomed(name, math.inf)
-    lens = far.focused(stated["closest_focus_m"], measured_from="sensor")
+    nearest = 1.0001 * closest_focus_m(far, from_sensor=True)
+    at = max(stated["closest_focus_m"], nearest)
+    lens = far.focused(at, measured_from="sensor")
     order = lens.lens.first_order()
     predicted = abs(order.back_focal_point - lens.film_z_mm) / abs(order.efl)
-    return {**stated, "efl_mm": far.first_order().efl, "predicted": predicted}
+    return {**stated, "at_m": at, "efl_mm": far.first_order().efl, "predicted": predicted}
 
 
 def row(key: Row, made: Any, *arguments: Any) -> Row:
