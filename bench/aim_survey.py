@@ -22,6 +22,7 @@ import numpy as np
 
 from daguerre import _core
 from daguerre.errors import CoreError, DaguerreError
+from daguerre.lenses.projections import projected
 
 SAMPLES = 1 << 15
 RINGS = 64
@@ -76,11 +77,9 @@ def half_diagonal(data: dict[str, Any], efl: float) -> float:
     angle = math.radians((nominal.get("full_field_deg") or 0) / 2)
     if not angle:
         return half
-    kind = nominal.get("projection") or ""
-    if kind == "fisheye-equidistant":
-        return min(half, efl * angle)
-    if kind == "fisheye-equisolid":
-        return min(half, 2 * efl * math.sin(angle / 2))
+    law = nominal.get("projection") or "rectilinear"
+    if law != "rectilinear":
+        return min(half, float(projected(law, efl, angle)))
     return half if circle else efl * (math.tan(angle) if angle < 1.2 else angle)
 
 

@@ -294,6 +294,16 @@ def test_field_curvature_is_third_order_close_to_the_axis(gauss: lenses.Lens) ->
     assert shift == pytest.approx(100 * s[4] / (2 * u) / height, rel=0.03)
 
 
+def test_a_fisheye_keeps_close_to_its_own_projection() -> None:
+    """Olympus's fisheye is equisolid: f x angle would be 10 % off at its edge."""
+    bench = analysis.set_up(lenses.load("olympus-zuiko-fisheye-8mm-f2.8"))
+    found = analysis.distortion(bench, np.linspace(0, bench.field_mm, 5))
+    assert found.law == "equisolid"
+    assert np.abs(found.percent).max() < 0.5
+    shape = found.ideal_mm[1:] / np.sin(np.radians(found.angle_deg[1:]) / 2)
+    assert shape == pytest.approx(shape[0])
+
+
 def test_a_symmetric_lens_is_astigmatic_off_the_axis_only(gauss: lenses.Lens) -> None:
     bench = analysis.set_up(gauss, f_stop=8)
     for height, apart in ((0.0, 0.0), (15.0, 0.05)):

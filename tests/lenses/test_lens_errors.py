@@ -13,6 +13,7 @@ from daguerre.errors import CoreError, InputError, core_errors
 from daguerre.lenses import library
 from daguerre.lenses.errors import CODES, LensError, from_core, reported
 from daguerre.lenses.json_lens import lens_of
+from daguerre.lenses.projections import PROJECTIONS
 
 
 def test_a_code_stands_in_the_message_once() -> None:
@@ -92,6 +93,18 @@ def test_a_surface_of_a_file_is_named_by_its_place() -> None:
     ) as caught:
         lens_of(data, "a.json")
     assert (caught.value.code, caught.value.surface) == ("lens-format", 2)
+
+
+def test_a_projection_is_one_of_the_table() -> None:
+    data = json.loads((library.FOLDER / "tessar-50mm-f2.8.json").read_text())
+    for name in PROJECTIONS:
+        data["nominal"]["projection"] = name
+        assert lens_of(data, "a.json").nominal.projection == name
+    data["nominal"]["projection"] = "fisheye-equisolid"
+    with pytest.raises(
+        LensError, match=r"^a\.json: nominal\.projection: .*'equisolid'.*got 'fisheye-equisolid'"
+    ):
+        lens_of(data, "a.json")
 
 
 def test_a_lens_error_goes_to_another_process() -> None:

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from daguerre.checks import number, rows, wavelengths
 from daguerre.doors import guarded
@@ -20,6 +20,7 @@ from daguerre.lenses.errors import LensError
 from daguerre.lenses.focus import focused
 from daguerre.lenses.glasses.catalogue import LINE_C, LINE_D, LINE_F
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
+from daguerre.lenses.projections import projected
 from daguerre.lenses.setting import By, LensSetting
 
 from .plotted import Sectioned
@@ -222,25 +223,6 @@ def half_image(lens: Lens, order: FirstOrder) -> float:
     if field and field > 1 and (law != "rectilinear" or (not known and field < 160)):
         known.append(float(abs(projected(law, order.efl, math.radians(0.5 * field)))))
     return min(known, default=min(0.5 * math.hypot(36, 24), math.sqrt(3) * abs(order.efl)))
-
-
-def projected(projection: str, efl: float, angle: ArrayLike) -> FloatArray:
-    """Image height of a projection, mm, at an angle from the axis, rad.
-
-    Source: Miyamoto 1964, Fish Eye Lens, JOSA 54(8).
-    """
-    theta = np.asarray(angle, np.float64)
-    match projection:
-        case "rectilinear":
-            return np.asarray(efl * np.tan(theta))
-        case "fisheye-equisolid":
-            return np.asarray(2 * efl * np.sin(0.5 * theta))
-        case "fisheye-stereographic":
-            return np.asarray(2 * efl * np.tan(0.5 * theta))
-        case "fisheye-orthographic":
-            return np.asarray(efl * np.sin(theta))
-        case _:
-            return np.asarray(efl * theta)
 
 
 def _iris_radius(lens: Lens, order: FirstOrder, f_stop: float) -> float:

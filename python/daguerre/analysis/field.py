@@ -14,8 +14,9 @@ from daguerre.doors import guarded
 from daguerre.files.value import BriefRecord
 from daguerre.lenses import FirstOrder
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
+from daguerre.lenses.projections import projected
 
-from .bench import FDC_NM, Bench, FloatArray, projected
+from .bench import FDC_NM, Bench, FloatArray
 from .chief import chief_rays
 from .pencils import FLAT_FIELD, Pencil, unbounded
 from .plotted import Plotted

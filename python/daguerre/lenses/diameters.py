@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .lens import DESIGN_WAVELENGTH_NM, Lens
+from .projections import projected
 from .sag import sag
 from .surface import LensSurface
 from .zoom import positions, with_stop
@@ -61,11 +62,10 @@ def image_radius(lens: Lens) -> float | None:
     if not nominal.full_field_deg:
         return None
     half, efl = math.radians(nominal.full_field_deg / 2), lens.first_order().efl
-    if nominal.projection == "equisolid":
-        return 2 * efl * math.sin(half / 2)
-    if nominal.projection == "equidistant" or half > math.radians(70):
-        return efl * half
-    return efl * math.tan(half)
+    law = nominal.projection or "rectilinear"
+    if law == "rectilinear" and half > math.radians(70):
+        law = "equidistant"
+    return float(projected(law, efl, half))
 
 
 def _with_stop(lens: Lens) -> Lens:

@@ -15,6 +15,7 @@ from .errors import LensError, reported
 from .glass_json import glass_from_json
 from .groups import Group, placed
 from .lens import Lens, Nominal
+from .projections import PROJECTIONS
 from .reading import member, number, text, triple
 from .surface import LensSurface
 from .surface_reader import COATINGS, read_surfaces
@@ -118,6 +119,11 @@ def _group(item: Item, count: int, configurations: Sequence[Configuration]) -> G
     )
 
 
+def _projection(nominal: Item | None) -> str | None:
+    found = None if nominal is None else member(nominal, "projection")
+    return None if found is None else str(found.choice(PROJECTIONS))
+
+
 def _nominal(root: Item, configuration: Configuration) -> Nominal:
     nominal = member(root, "nominal")
 
@@ -132,6 +138,6 @@ def _nominal(root: Item, configuration: Configuration) -> Nominal:
         f_number=configuration.f_number or value("f_number"),
         full_field_deg=value("full_field_deg"),
         image_circle_mm=value("image_circle_mm"),
-        projection=None if nominal is None else text(nominal, "projection"),
+        projection=_projection(nominal),
         efl_x_mm=value("efl_x_mm"),
     )

@@ -23,7 +23,7 @@ SURFACE_COLORS = "tab20"
 def distortion(axes: Axes, found: Distortion) -> None:
     """Plots distortion over the field, percent."""
     axes.plot(found.percent, found.height_mm, color=INK)
-    law = {"rectilinear": "f tan θ"}.get(found.law, found.law.replace("fisheye-", ""))
+    law = {"rectilinear": "f tan θ"}.get(found.law, found.law)
     axes.set_title("Distortion")
     axes.set_xlabel(f"% of the ideal height ({law})")
     axes.set_ylabel("image height, mm")
