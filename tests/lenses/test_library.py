@@ -112,6 +112,11 @@ def test_the_axial_beam_passes_at_full_aperture_and_meets_in_a_point(entry: Entr
     assert spot < (0.006 if soft else 0.0012) * order.efl
 
 
+@pytest.mark.parametrize("entry", [e for e in ENTRIES if "fisheye" in e.type], ids=lambda e: e.name)
+def test_a_fisheye_says_its_projection(entry: Entry) -> None:
+    assert lenses.load(entry.name).nominal.projection not in (None, "rectilinear")
+
+
 def test_a_list_of_names_parses_no_lens() -> None:
     start = time.process_time()
     assert len(lenses.names()) == len(ENTRIES)
