@@ -43,6 +43,11 @@ def checked(lens: Lens) -> Lens:
         raise LensError(
             f"{lens.source}: the focal length must be finite, got {order.efl}", "lens-afocal"
         )
+    if not math.isfinite(order.stop_semi_diameter):
+        raise LensError(
+            f"{lens.source}: nominal.f_number: wanted a finite stop, got f/{order.f_number:g}",
+            "lens-f-stop",
+        )
     beam = _beam(lens)
     surfaces, notes = list(lens.surfaces), list(lens.notes)
     for i, j in _neighbors(surfaces):
@@ -50,7 +55,7 @@ def checked(lens: Lens) -> Lens:
         if crossing is None:
             continue
         inner = min(beam[i], beam[j])
-        where = f"surfaces {i} and {j}{_numbers(lens, i, j)}"
+        where = f"surfaces {i} and {j}{in_file(lens, i, j)}"
         if crossing < ROUNDING * inner:
             raise LensError(
                 f"{lens.source}: {where}: edge: surfaces cross {crossing:.4g} mm off the axis, "
@@ -72,7 +77,7 @@ def checked(lens: Lens) -> Lens:
         return lens.rebuilt(surfaces, notes=tuple(notes))
 
 
-def _numbers(lens: Lens, *indices: int) -> str:
+def in_file(lens: Lens, *indices: int) -> str:
     """Surface numbers as the imported file counts them, in parentheses."""
     rows = lens.data.get("surfaces", [])
     numbers = [rows[i].get("from") for i in indices if i < len(rows)]
@@ -123,14 +128,14 @@ def _beam(lens: Lens) -> NDArray[np.float64]:
     if not math.isfinite(radius) or not math.isfinite(order.entrance_pupil.z):
         return out
     for share in (1.0, 0.97, 0.9, 0.8, 0.65, 0.5, 0.25, 0.1):
-        origin, direction = _ray(lens, order.entrance_pupil.z, 0.0, share * radius)
+        origin, direction = ray_to_pupil(lens, order.entrance_pupil.z, 0.0, share * radius)
         path = lens.prescription.path(origin[None], direction[None], DESIGN_WAVELENGTH_NM, False)
         if len(path) == len(out):
             return np.asarray(np.hypot(path[:, 0], path[:, 1]), np.float64)
     return out
 
 
-def _ray(
+def ray_to_pupil(
     lens: Lens, pupil_z: float, x: float, y: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Ray from the object on the axis to a point of the entrance pupil."""
@@ -151,7 +156,7 @@ def _check_light(lens: Lens) -> list[str]:
         return []
     share = (np.arange(9) - 4) / 4.5
     rays = [
-        _ray(lens, order.entrance_pupil.z, radius * x, radius * y)
+        ray_to_pupil(lens, order.entrance_pupil.z, radius * x, radius * y)
         for x in share
         for y in share
         if x * x + y * y <= 1
@@ -169,7 +174,7 @@ def _check_light(lens: Lens) -> list[str]:
         ]
     worst = int(np.bincount(stopped).argmax())
     raise LensError(
-        f"{lens.source}: surface {worst}{_numbers(lens, worst)}: wanted rays of the axial beam "
+        f"{lens.source}: surface {worst}{in_file(lens, worst)}: wanted rays of the axial beam "
         f"to pass, got {np.count_nonzero(stopped == worst)} of {len(rays)} stopped there",
         "lens-no-light",
         worst,

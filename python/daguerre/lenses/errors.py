@@ -16,7 +16,7 @@ CODES = {
     "lens-glass": "an unknown glass",
     "lens-overlap": "a gap along the axis is negative",
     "lens-edge": "two surfaces cross within the axial beam",
-    "lens-no-stop": "no surface is the stop",
+    "lens-no-stop": "no surface is the stop, or its size is unknown",
     "lens-two-stops": "more than one surface is the stop",
     "lens-no-light": "no ray passes",
     "lens-afocal": "the lens has no focal length",

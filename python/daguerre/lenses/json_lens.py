@@ -17,6 +17,7 @@ from .groups import Group, placed
 from .lens import Lens, Nominal
 from .projections import PROJECTIONS
 from .reading import member, number, text, triple
+from .stop_size import probe, with_stop_of_other_diameters
 from .surface import LensSurface
 from .surface_reader import COATINGS, read_surfaces
 from .zoom import standing_mm
@@ -60,7 +61,15 @@ def lens_from(root: Item, path: Path, name: str | None) -> Lens:
         )
     for group in _groups(root, len(items), configurations):
         surfaces = placed(surfaces, group)
-    lens = _assembled(root, path, surfaces, configurations, configuration)
+    nominal, stop = _nominal(root, configuration), surfaces[stops[0]]
+    if configuration is not configurations[0]:  # the stated field belongs to the first one
+        nominal = dataclasses.replace(nominal, full_field_deg=None)
+    unsized = stop.semi_diameter is None and nominal.f_number is None
+    if unsized:
+        surfaces[stops[0]] = probe(stop)
+    lens = _assembled(root, path, surfaces, nominal, configurations)
+    if unsized:
+        lens = with_stop_of_other_diameters(lens, stop)
     lens = dataclasses.replace(lens, zoom_mm=standing_mm(lens, configuration))
     return with_derived_diameters(lens)
 
@@ -69,15 +78,12 @@ def _assembled(
     root: Item,
     path: Path,
     surfaces: list[LensSurface],
+    nominal: Nominal,
     configurations: tuple[Configuration, ...],
-    configuration: Configuration,
 ) -> Lens:
     coating = member(root, "coating")
     coating_name = "mgf2" if coating is None else coating.choice(COATINGS)
     name = clean(text(root, "name") or path.stem)
-    nominal = _nominal(root, configuration)
-    if configuration is not configurations[0]:  # the stated field belongs to the first one
-        nominal = dataclasses.replace(nominal, full_field_deg=None)
     medium, _ = glass_from_json(member(root, "object_medium"))
     return Lens(
         name=name,

@@ -20,7 +20,7 @@ from daguerre.errors import InputError
 from daguerre.files.value import BriefRecord, Value
 
 from .configurations import Configuration
-from .errors import reported
+from .errors import LensError, reported
 from .glasses.catalogue import LINE_D
 from .groups import Group, placed
 from .medium import Medium
@@ -124,6 +124,19 @@ class Lens(Value):
     def __post_init__(self) -> None:
         with reported(self.source):
             _ = self.prescription  # raises if the core rejects the lens
+        self._check_stop()
+
+    def _check_stop(self) -> None:
+        """Raises an error for a stop that is neither sized nor has an f-number to size it."""
+        (i,) = (i for i, surface in enumerate(self.surfaces) if surface.stop)
+        size, f_number = self.surfaces[i].semi_diameter, self.nominal.f_number
+        if (size is None or not math.isfinite(size)) and not f_number:
+            raise LensError(
+                f"{self.source}: surface {i}: semi_diameter: wanted the clear radius of the stop, "
+                f"or nominal.f_number, got neither",
+                "lens-no-stop",
+                i,
+            )
 
     @cached_property
     def prescription(self) -> _core.Prescription:
@@ -403,5 +416,5 @@ def _table(lens: Lens) -> list[str]:
             f"{i:3} {mark:5} {cells[0]:>10} {cells[1]:>10} {cells[2]:>10}  {s.glass}".rstrip()
         )
     if any(s.derived for s in lens.surfaces):
-        rows.append("* not stated by the source; derived from rays of the full field")
+        rows.append("* not stated by the source; derived from rays")
     return rows

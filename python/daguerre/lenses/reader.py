@@ -38,7 +38,8 @@ def read(path: str | Path, configuration: str | None = None) -> Lens:
         root, notes = _root(data, path)
         lens = lens_from(root, path, configuration)
         source = path.stem if path.parent == FOLDER else str(path)
-        return checked(replace(lens, source=source, notes=(*notes, *unknown_members(root))))
+        notes += [*lens.notes, *unknown_members(root)]
+        return checked(replace(lens, source=source, notes=tuple(notes)))
 
 
 def _root(data: bytes, path: Path) -> tuple[Item, list[str]]:
