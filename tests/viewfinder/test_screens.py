@@ -27,6 +27,8 @@ pytestmark = [
 PHONE, ASIDE, TABLET, DESK, WIDE = (390, 844), (844, 390), (820, 1180), (1440, 900), (1920, 1080)
 TOUCHED = (PHONE, ASIDE, TABLET)
 LAMP = 3e4
+#: Waits for a frame: rings that change their width are drawn anew before it.
+PAINTED = "new Promise((done) => requestAnimationFrame(() => setTimeout(() => done(0))))"
 RESTS = "document.getElementById('frame')?.ariaBusy === 'false'"
 #: Controls that can be seen, after scrolling where the page scrolls.
 CONTROLS = """[...document.querySelectorAll('button, input, select, #picture, [tabindex="0"]')]
@@ -146,8 +148,11 @@ def test_no_label_of_a_ring_touches_another(page: Browser) -> None:
                 f"ring.value = Number(ring.min) + {share / 10} * (ring.max - ring.min);"
                 "ring.dispatchEvent(new Event('input'))"
             )
+            page.run(PAINTED)
             assert page.run(TOUCHING) == [], (ring, share)
     page.run("document.querySelectorAll('.back:enabled').forEach((one) => one.click())")
+    page.until(RESTS)
+    page.until("!document.querySelector('.back:enabled')")
 
 
 def test_targets_of_touch_are_large(page: Browser, size: tuple[int, int]) -> None:
