@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from daguerre.errors import InputError
 from daguerre.io.images import read_file, upright
+from daguerre.io.shot_blocks import read_tags
 
 from .photograph import Photograph
-from .shot_facts import exif_number, shot_facts
+from .shot_facts import exif_number, facts_and_notes, orientation
 
 _WHOLE = (np.dtype(np.uint8), np.dtype(np.uint16))
 
@@ -23,17 +24,18 @@ def read_display(path: Path) -> Photograph:
     Raises:
         InputError: The file cannot be decoded, or its pixels are not integers.
     """
-    pixels, spec = read_file(path)
+    pixels, _ = read_file(path)
     if pixels.dtype not in _WHOLE:
         raise InputError(
             f"{path}: pixels: wanted 8 or 16 bits (linear light only as .exr), got {pixels.dtype}"
         )
-    tags = {str(a.name).rpartition(":")[2]: a.value for a in spec.extra_attribs}
-    turn = int(exif_number(tags.get("Orientation")) or 1)
+    shot = read_tags(path)
+    turn = orientation(shot)
     notes = turn_notes(turn)
     colors, more = colors_of(pixels, str(path))
-    facts = shot_facts(tags, (pixels.shape[1], pixels.shape[0]))
-    if exif_number(tags.get("ColorSpace")) == 65535:
+    facts, told = facts_and_notes(shot, (pixels.shape[1], pixels.shape[0]))
+    notes += told
+    if exif_number(shot.exif.get("ColorSpace", shot.xmp.get("ColorSpace"))) == 65535:
         notes.append("colours: the file has another colour space; it is read as sRGB")
     return Photograph(
         path, "display", upright(colors, turn), None, turned(facts, turn), (*notes, *more)

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from daguerre.development.camera_raw import opened_raw, tags_of, white_of_shot
 from daguerre.errors import InputError
 from daguerre.io.images import upright
+from daguerre.io.shot_blocks import read_tags
 
 from .display_file import turn_notes, turned
 from .photograph import Photograph, RawNumbers
-from .shot_facts import shot_facts
+from .shot_facts import facts_and_notes, shot_facts
 
 #: EXIF orientation by LibRaw's flip.
 _TURNS = {0: 1, 3: 3, 5: 8, 6: 6}
@@ -33,9 +34,9 @@ def read_raw(path: Path) -> Photograph:
     with opened_raw(path) as opened:
         turn = _TURNS.get(int(opened.sizes.flip), 1)
         raw = _numbers(path, opened, tags, turn)
-        height, width = opened.raw_image_visible.shape
-        facts = shot_facts(_with_others(opened, tags), (width, height))
-    return Photograph(path, "raw", None, raw, turned(facts, turn), tuple(turn_notes(turn)))
+        facts, notes = raw_facts(path, opened)
+    notes = [*turn_notes(turn), *notes]
+    return Photograph(path, "raw", None, raw, turned(facts, turn), tuple(notes))
 
 
 def _numbers(path: Path, opened: Any, tags: Mapping[str, Any], turn: int) -> RawNumbers:
@@ -78,8 +79,17 @@ def shortest(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return cells
 
 
-def _with_others(opened: Any, tags: Mapping[str, Any]) -> dict[str, Any]:
-    """Adds LibRaw's values for missing tags, as of files that are not TIFF."""
+def raw_facts(path: Path, opened: Any) -> tuple[dict[str, Any], list[str]]:
+    """Returns metadata of a raw file as stored, by OpenEXR's names, and notes.
+
+    LibRaw gives values of files without EXIF that can be read, such as CR3.
+
+    Args:
+        path: The file.
+        opened: The same, opened by rawpy.
+    """
+    height, width = opened.raw_image_visible.shape
+    facts, notes = facts_and_notes(read_tags(path), (width, height))
     other, lens = getattr(opened, "other", None), getattr(opened, "lens", None)
     more = {
         "PhotographicSensitivity": getattr(other, "iso_speed", None),
@@ -89,4 +99,4 @@ def _with_others(opened: Any, tags: Mapping[str, Any]) -> dict[str, Any]:
         "LensModel": getattr(lens, "model", None),
         "LensMake": getattr(lens, "make", None),
     }
-    return {name: value for name, value in more.items() if value} | dict(tags)
+    return shot_facts(more, (width, height)) | facts, notes

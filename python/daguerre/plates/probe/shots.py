@@ -19,7 +19,7 @@ from daguerre.files.reading import size_of
 from daguerre.io.images import read_environment
 from daguerre.plates.display_file import read_display
 from daguerre.plates.files import DISPLAY
-from daguerre.plates.shot_facts import shot_facts
+from daguerre.plates.raw_file import raw_facts
 
 White = float | tuple[float, float] | None
 LINEAR = (".exr", ".hdr")
@@ -113,15 +113,17 @@ def read_shot(path: str | Path, white: White, notes: Notes, one_of: int = 1) -> 
 
 def _raw(file: Path, white: White, notes: Notes) -> Shot:
     """Reads a raw file as linear light; developed white is 1."""
+    from daguerre.development.camera_raw import opened_raw
     from daguerre.development.camera_raw import read_shot as read_raw
-    from daguerre.development.camera_raw import tags_of
 
     channels = read_raw(file)
     at = channels.as_shot if white is None else illuminants.white_xy(white)
     rgb = rgb_from_xyz() @ adaptation(at, illuminants.D65_XY) @ channels.xyz_from(at)
     unit = channels.unit.astype(np.float32)
-    height, width = channels.pixels.shape[:2]
-    facts = shot_facts(tags_of(file), (width, height))
+    with opened_raw(file) as opened:
+        facts, told = raw_facts(file, opened)
+    for note in told:
+        notes.add(note)
     if white is None:
         notes.add("raw file developed with its as-shot white balance")
     return Shot(file, channels.pixels / unit, channels.full / unit, rgb, facts)
