@@ -6,7 +6,8 @@ Data: lens_measured.json and closest_focus.json in ../shared/data/reality or in 
 first, the package lensfunpy. Errors are RMS over the area of the frame, with pixels of 24 MP:
 
 ``distortion``: image heights without distortion, after the best scale: only its shape is measured.
-    A fisheye's is relative to f x angle, as in the database.
+    A fisheye's is relative to f x angle, as in the database. Curves are percent of the heights of
+    the straightest picture.
 ``colour``: red and blue against green at f/8: chief rays of 410 to 690 nm, weighted by the response
     of a Sony A7R II times the wavelength. ``axial_g_um`` is the focus at 435.8 nm.
 ``vignetting``: EV, at the farthest distance measured; ``open`` is the widest stop of its focal
@@ -92,10 +93,12 @@ def distortion(one: Calibration, terms: Terms) -> Row:
     ours = abs(bench.order.efl) * (angles if bench.is_fisheye else np.tan(angles))
     theirs = one.undistorted(terms, heights)
     ours = ours * float((area * ours * theirs).sum() / (area * ours**2).sum())
+    straight = heights / float((area * heights * theirs).sum() / (area * theirs**2).sum())
     return {
         "efl_mm": bench.order.efl,
+        "pixel_mm": one.pixel_mm,
         "px": rms((ours - theirs) / one.pixel_mm, area),
-        "curve": curve(heights, 100 * (heights / theirs - 1), 100 * (heights / ours - 1)),
+        "curve": curve(heights, 100 * (straight / theirs - 1), 100 * (straight / ours - 1)),
     }
 
 

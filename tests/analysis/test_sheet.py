@@ -10,6 +10,7 @@ import pytest
 from daguerre import analysis, lenses
 from daguerre.analysis.figures import Figures, figures
 from daguerre.analysis.illumination import within_light
+from daguerre.lenses.agreement import agreement
 from daguerre.plots.lens_outline import element_outlines, sag
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -32,6 +33,17 @@ def test_the_page_is_a_file_of_its_kind(kind: str, made: Figures) -> None:
         root = ElementTree.fromstring(data)
         width, height = (float(root.get(k, "0").removesuffix("pt")) for k in ("width", "height"))
         assert height / width == pytest.approx(297 / 210, rel=1e-2)
+
+
+def test_the_page_shows_the_agreement_with_the_product(made: Figures) -> None:
+    pytest.importorskip("matplotlib", reason="data sheets are drawn by matplotlib")
+    from matplotlib.figure import Figure
+
+    from daguerre.plots.sheet import draw_sheet
+
+    found = str(agreement(made.bench.lens))
+    assert "px" in found
+    assert found in [text.get_text() for text in draw_sheet(made, Figure).texts]
 
 
 def test_the_field_of_the_figures_ends_where_the_light_does() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from daguerre.analysis.bench import FDC_NM
 from daguerre.analysis.figures import FIELDS, FREQUENCIES, MTF_FIELDS, Figures
+from daguerre.lenses.agreement import agreement
 
 from . import images
 from .lens_section import COLORS as FIELD_COLORS
@@ -37,6 +38,9 @@ def header(page: Figure, made: Figures) -> None:
     page.text(0.965, 0.968, setting, size=9, ha="right", color=INK)
     page.text(0.965, 0.952, "Daguerre lens data sheet", size=7, ha="right", color="#888888")
     page.add_artist(_rule(0.944))
+    found = agreement(lens)
+    if found is not None:
+        page.text(0.075, 0.9375, str(found), size=5.2, color="#555555")
     page.text(
         0.075,
         0.022,

@@ -153,6 +153,8 @@ def _finite(value: Any) -> Any:
 
 
 def _print(item: Lens, wavelength: float) -> None:
+    from daguerre.lenses.agreement import agreement
+
     try:
         order = asdict(item.first_order(wavelength))
     except InputError as error:
@@ -162,9 +164,15 @@ def _print(item: Lens, wavelength: float) -> None:
     for key, value in order.items():
         if key != "wavelength_nm":
             console.show(f"  {key.replace('_', ' '):22} {_show(value)}")
+    found = agreement(item)
+    if found is not None:
+        console.show(found)
 
 
 def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:
+    from daguerre.lenses.agreement import agreement
+
+    found = agreement(item)
     names = ("kind", "radius", "thickness", "semi_diameter", "glass", "stop", "derived")
     surfaces = [{name: getattr(s, name) for name in names} for s in item.surfaces]
     return {
@@ -177,6 +185,7 @@ def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:
         "nominal": asdict(item.nominal),
         "image_z": item.image_z,
         "surfaces": surfaces,
+        "agreement": None if found is None else asdict(found),
     }
 
 

@@ -1,0 +1,140 @@
+"""Plots of predicted against measured values, and of six lenses."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from daguerre import lenses
+from daguerre.plots.curves import BLUE, INK, RED
+from daguerre.plots.figure import SINGLE
+from daguerre.plots.sheet import saved
+
+Row = dict[str, Any]
+#: Lenses with all three measurements; the focal lengths are those of the plots, mm.
+SIX = {
+    "canon-rf-85mm-f1.2": 85.0,
+    "fujifilm-gf-110mm-f2": 110.0,
+    "nikon-ai-s-50mm-f1.8": 50.0,
+    "nikon-z-14-30mm-f4": 14.0,
+    "sigma-50mm-f1.4": 50.0,
+    "voigtlander-apo-lanthar-50mm-f2": 50.0,
+}
+GOLD = "#b7791f"
+#: Letters of the overview are legible where the page is as narrow as a phone.
+LARGE: Any = {
+    **SINGLE,
+    "font.size": 11,
+    "axes.titlesize": 12,
+    "axes.labelsize": 11,
+    "xtick.labelsize": 10.5,
+    "ytick.labelsize": 10.5,
+    "legend.fontsize": 10.5,
+    "legend.handletextpad": 0.1,
+    "legend.borderaxespad": 0.2,
+}
+
+
+def drawings(rows: Row) -> dict[str, bytes]:
+    """Files by their names in docs, without suffix."""
+    made = {"measured": overview(rows)}
+    return made | {f"measured/{name}": one_lens(name, mm, rows) for name, mm in SIX.items()}
+
+
+def overview(rows: Row) -> bytes:
+    """Values at the corner of every setting, and magnifications."""
+    seen = {name: [r for r in rows[name] if "error" not in r] for name in QUANTITIES}
+    light = {
+        k: [r["curve"] for r in seen["vignetting"] if r["kind"] == k] for k in ("open", "stopped")
+    }
+    near = [
+        {"measured": [r["magnification"]], "predicted": [r["predicted"]]}
+        for r in seen["magnification"]
+    ]
+    with rc_context(LARGE):
+        figure = Figure(figsize=(6.4, 6.4), layout="constrained")
+        figure.get_layout_engine().set(w_pad=0.12, h_pad=0.12)
+        panels = figure.subplots(2, 2).ravel()
+        dots(panels[0], "Distortion, %", {"": (INK, [r["curve"] for r in seen["distortion"]])})
+        shifts = {
+            n: (c, [r[f"{n}_curve"] for r in seen["colour"]])
+            for n, c in (("red", RED), ("blue", BLUE))
+        }
+        dots(panels[1], "Lateral colour, px", shifts)
+        stops = {"wide open": (INK, light["open"]), "stopped down": (GOLD, light["stopped"])}
+        dots(panels[2], "Light at the corner, EV", stops)
+        for axes in panels[:3]:
+            axes.set_xlabel("measured")
+            axes.locator_params(nbins=4)
+        panels[3].set(xscale="log", yscale="log", xlabel="stated by the maker")
+        dots(panels[3], "Closest magnification", {"": (INK, near)})
+        for axis in (panels[3].xaxis, panels[3].yaxis):
+            axis.set_major_formatter("{x:g}")
+        return saved(figure, "svg", "Predicted against measured")
+
+
+QUANTITIES = ("distortion", "colour", "vignetting", "magnification")
+
+
+def dots(axes: Any, title: str, groups: dict[str, tuple[str, list[Row]]]) -> None:
+    """Measured values across, predicted up; on the line both are the same."""
+    for name, (color, curves) in groups.items():
+        at = [[c[k][-1] for c in curves] for k in ("measured", "predicted")]
+        axes.plot(*at, "o", ms=5, mew=0, alpha=0.5, color=color, label=name)
+    low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
+    ends = float(low.min()), float(high.max())
+    axes.plot(ends, ends, color="#888888", lw=1, zorder=1)
+    axes.set(xlim=ends, ylim=ends, aspect="equal", title=title, ylabel="predicted")
+    if len(groups) > 1:
+        axes.legend(loc="upper left")
+
+
+def one_lens(name: str, focal_mm: float, rows: Row) -> bytes:
+    """Distortion, lateral colour and light over the image height of a lens."""
+    own = {
+        k: [
+            r
+            for r in rows[k]
+            if (r["lens"], r.get("focal_mm"), r.get("match")) == (name, focal_mm, "A")
+        ]
+        for k in QUANTITIES
+    }
+    with rc_context(SINGLE):
+        figure = Figure(figsize=(8.4, 2.7), layout="constrained")
+        shape, colour, light = figure.subplots(1, 3)
+        pair(shape, shifted(own["distortion"][0]), INK)
+        for color, label in ((RED, "red"), (BLUE, "blue")):
+            pair(colour, own["colour"][0][f"{label}_curve"], color, label)
+        stops = [r for r in own["vignetting"] if r["kind"] != "between"]
+        for color, row in zip((INK, GOLD), (stops[0], stops[-1]), strict=True):
+            pair(light, row["curve"], color, f"f/{row['f_stop']:g}")
+        for axes, title, low, high in (
+            (shape, "Distortion, px at 24 MP", -5.0, 5.0),
+            (colour, "Lateral colour, px at 24 MP", -1.0, 1.0),
+            (light, "Light against the axis, EV", -1.0, 0.1),
+        ):
+            bottom, top = axes.get_ylim()
+            axes.set(title=title, xlabel="image height, mm")
+            axes.set(xlim=(0, None), ylim=(min(low, bottom), max(high, top)))
+        for axes in (colour, light):
+            axes.legend(loc="best")
+        setting = f"{lenses.load(name).name}, {focal_mm:g} mm"
+        figure.suptitle(f"{setting}: lines predicted, circles measured", size=10)
+        return saved(figure, "svg", name)
+
+
+def shifted(row: Row) -> Row:
+    """Distortion as shifts of points from the straightest picture, px."""
+    heights = np.array(row["curve"]["height_mm"])
+    found = {k: np.array(row["curve"][k]) / 100 for k in ("measured", "predicted")}
+    shifts = {k: heights * v / (1 + v) / row["pixel_mm"] for k, v in found.items()}
+    return {"height_mm": heights, **shifts}
+
+
+def pair(axes: Any, curve: Row, color: str, label: str = "") -> None:
+    """A line for the lens, and circles for the product."""
+    axes.plot(curve["height_mm"], curve["predicted"], color=color, label=label)
+    axes.plot(curve["height_mm"], curve["measured"], "o", ms=3.5, mfc="none", mew=0.8, color=color)
