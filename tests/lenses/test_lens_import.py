@@ -52,7 +52,7 @@ ASPHERE = made(
             asphere={"a4": 2.5e-6, "a6": -3.25e-9, "a8": 1.5e-12},
         ),
         row("aspheric", -310.0, 1.5, 13.0, conic=1.25, asphere={"a4": 4.0e-6}),
-        row("stop", None, 44.0, 11.0),
+        row("stop", None, 41.79, 11.0),
     ]
 )
 ODD = made(

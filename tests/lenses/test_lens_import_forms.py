@@ -169,7 +169,7 @@ def test_compound_tilts_place_surfaces_where_the_frames_are(tmp_path: Path) -> N
 
 def test_the_image_of_code_v_may_stand_off_the_last_gap(tmp_path: Path) -> None:
     text = write.seq(ASPHERE).replace("SI 0.0 0.0", "SI 0.0 -0.25")
-    assert imported(text, tmp_path, ".seq").surfaces[-1].thickness == 44.0 - 0.25
+    assert imported(text, tmp_path, ".seq").surfaces[-1].thickness == 41.79 - 0.25
 
 
 def test_a_clear_diameter_beyond_the_sphere_is_the_spheres(tmp_path: Path) -> None:

@@ -39,6 +39,8 @@ def read(path: str | Path, configuration: str | None = None) -> Lens:
         lens = lens_from(root, path, configuration)
         source = path.stem if path.parent == FOLDER else str(path)
         notes += [*lens.notes, *unknown_members(root)]
+        if formats.is_foreign(path):
+            notes += formats.film_notes(lens)
         return checked(replace(lens, source=source, notes=tuple(notes)))
 
 

@@ -6,9 +6,12 @@ import re
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from daguerre.lenses.errors import LensError
+
+if TYPE_CHECKING:
+    from daguerre.lenses.lens import Lens
 
 Parse = Callable[[str, str], tuple[dict[str, Any], list[str]]]
 
@@ -35,6 +38,13 @@ def parse(data: bytes, path: Path) -> tuple[dict[str, Any], list[str]]:
     text = decoded(data, str(path))
     parse_text: Parse = import_module(f".{_format(text, path)}", __name__).parse
     return parse_text(text, str(path))
+
+
+def film_notes(lens: Lens) -> list[str]:
+    """Returns a note if a camera focuses the lens elsewhere than its file does."""
+    from .film import film_notes as notes_of
+
+    return notes_of(lens)
 
 
 def _format(text: str, path: Path) -> str:

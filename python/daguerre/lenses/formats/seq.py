@@ -16,6 +16,7 @@ from .assemble import Configuration, lens_file
 from .draft import Draft
 from .pupil import Pupil
 from .seq_commands import commands
+from .seq_mode import fitting
 from .seq_surface import Surface
 from .text import Line, Unread, number, words
 
@@ -24,11 +25,11 @@ _UNITS = {"M": 1.0, "MM": 1.0, "C": 10.0, "CM": 10.0, "I": 25.4, "IN": 25.4}
 #: Commands that do not change the rays: titles, analysis, drawing, optimization.
 _HARMLESS = words(
     "LEN INI WTW WTF WL REF DOR GO DER CA PIM POL UID TOL SLB CCY THC KC AC BC CC DC EC FC GC "
-    "HC JC CUF CWL XOB YOB DOM AFI ECH OUT VER CMP DSX DSY BTX BTY RIM VIE SUR GLC WID ACC "
+    "HC JC CUF CWL DOM AFI ECH OUT VER CMP DSX DSY BTX BTY RIM VIE SUR GLC WID ACC "
     "XDC YDC ZDC ADC BDC CDC CRX PFR TIL NEW"
 )
 _FIELDS = {"XAN": "angle", "YAN": "angle", "XIM": "height", "YIM": "height"}
-_FIELDS |= {"XRI": "height", "YRI": "height"}
+_FIELDS |= {"XRI": "height", "YRI": "height", "XOB": "object", "YOB": "object"}
 _PUPILS = {"EPD": "diameter", "FNO": "working", "NAO": "aperture"}
 _SURFACE_WORD = re.compile(r"S(\d+|[OI])", re.IGNORECASE)
 
@@ -39,21 +40,30 @@ def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
     Raises:
         LensError: The file cannot be read; the message has the line, and the surface if any.
     """
-    reader = _Reader(where)
+    reader = _run(text, where, True)
+    if reader.says_mode or not any(surface.numbered for surface in reader.surfaces):
+        return reader.lens()
+    return fitting(reader.lens, _run(text, where, False).lens, where)
+
+
+def _run(text: str, where: str, radius_mode: bool) -> _Reader:
+    """Takes all commands; ``radius_mode`` holds until the file says RDM."""
+    reader = _Reader(where, radius_mode)
     for command in commands(text, where):
         if not reader.take(command):
             break
-    return reader.lens()
+    return reader
 
 
 class _Reader:
     """Builds a lens from the commands, one after the other."""
 
-    def __init__(self, file: str) -> None:
+    def __init__(self, file: str, radius_mode: bool) -> None:
         self.file = file
         self.unread = Unread()
         self.surfaces: list[Surface] = []
-        self.radius_mode = True
+        self.radius_mode = radius_mode
+        self.says_mode = False
         self.unit = 1.0
         self.title = ""
         self.pupil: tuple[str, Line] | None = None
@@ -98,6 +108,7 @@ class _Reader:
     def _system(self, line: Line) -> bool:
         keyword = line.words[0]
         if keyword == "RDM":
+            self.says_mode = True
             self.radius_mode = len(line.words) < 2 or line.words[1][:1].upper() != "N"
         elif keyword == "TIT":
             self._titled(line)
@@ -204,6 +215,9 @@ class _Reader:
             drafts.append(surface.draft(self.unit))
         drafts[-2].thickness += drafts[-1].thickness  # the image surface's thickness is a defocus
         nominal: dict[str, float] = {}
+        self.unread.add_fields(self.fields.get("angle", 0.0), "degrees")
+        self.unread.add_fields(self.fields.get("height", 0.0) * self.unit, "mm on the film")
+        self.unread.add_fields(self.fields.get("object", 0.0) * self.unit, "mm at the object")
         if 0 < self.fields.get("angle", 0) < 180:
             nominal["full_field_deg"] = 2 * self.fields["angle"]
         elif self.fields.get("height", 0) > 0:

@@ -55,6 +55,7 @@ class Surface:
         self.line, self.number, self.unread = line, number_, unread
         self.is_image = line.words[0] == "SI"
         first = line.number_at(1, "radius" if radius_mode else "curvature", default=0)
+        self.numbered = first != 0  # whether a radius or a curvature follows, by RDM
         self.curvature = (1 / first if first else 0.0) if radius_mode else first
         far = number_ == 0 and line.word(2, "thickness").upper() in ("INF", "INFINITY")
         self.thickness = math.inf if far else line.number_at(2, "thickness", default=0)

@@ -164,6 +164,11 @@ class Unread:
         if place and place not in places and len(places) < 12:
             places.append(place)
 
+    def add_fields(self, size: float, unit: str) -> None:
+        """Adds a note on the fields of a file, of up to this size."""
+        if size > 0:
+            self.add(f"fields up to {size:.6g} {unit} do not set the frame; the sensor does")
+
     def notes(self) -> list[str]:
         """Notes, each with its places; at most 40, then their number."""
         rows = [f"{what} ({', '.join(p)})" if p else what for what, p in self._places.items()]

@@ -21,6 +21,14 @@ from .zmx_surface import Block, draft_of
 _WORDS = re.compile(r'"[^"]*"|\S+')
 #: Units of length, mm.
 _UNITS = {"MM": 1.0, "CM": 10.0, "IN": 25.4, "METER": 1000.0, "M": 1000.0}
+#: Units of fields by FTYP's number, after conversion to mm.
+_FIELDS = {
+    0: "degrees",
+    1: "mm at the object",
+    2: "mm on the film",
+    3: "mm on the film",
+    4: "degrees (theodolite)",
+}
 _VIGNETTING = ("VDXN", "VDYN", "VCXN", "VCYN", "VANN")
 #: Records that do not change the rays: display, analysis, tolerances, catalogue data.
 _HARMLESS = words(
@@ -177,6 +185,8 @@ class _Reader:
             for word in line.words[1 : 1 + count] if line else []:
                 size = max(size, abs(line.to_number(word, "field")) if line else 0)
         what = kind.whole_at(1, "kind of field", 0, 20)
+        scale = 1.0 if what in (0, 4) else self.unit
+        self.unread.add_fields(size * scale, _FIELDS.get(what, "of an unknown kind"))
         if what == 0 and 0 < size < 180:
             out["full_field_deg"] = 2 * size
         elif what in (2, 3) and size > 0:
