@@ -25,6 +25,7 @@ import plots  # noqa: E402
 import tables  # noqa: E402
 from measured_products import Calibration, calibrations, closest_focus  # noqa: E402
 
+from daguerre.errors import DaguerreError  # noqa: E402
 from daguerre.lenses.agreement import FILE  # noqa: E402
 
 DOCS = ROOT / "docs"
@@ -60,7 +61,11 @@ def main() -> None:
     parser.add_argument("--data", type=Path, metavar="FOLDER")
     parser.add_argument("--rows", type=Path, metavar="FILE")
     given = parser.parse_args()
-    rows = json.loads(given.rows.read_text()) if given.rows else computed(given.data)
+    try:
+        rows = json.loads(given.rows.read_text()) if given.rows else computed(given.data)
+    except DaguerreError as error:
+        print(f"make-measured: {error}", file=sys.stderr)
+        sys.exit(error.exit_code)
     FILE.write_text(kept.text(rows), encoding="utf-8")
     for name, drawing in plots.drawings(rows).items():
         (DOCS / f"{name}.svg").write_bytes(drawing)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ SIX = {
     "sigma-50mm-f1.4": 50.0,
     "voigtlander-apo-lanthar-50mm-f2": 50.0,
 }
+SHOWN = ("distortion", "colour", "vignetting")
 GOLD = "#b7791f"
 #: Letters of the overview are legible where the page is as narrow as a phone.
 LARGE: Any = {
@@ -41,12 +43,25 @@ LARGE: Any = {
 def drawings(rows: Row) -> dict[str, bytes]:
     """Files by their names in docs, without suffix."""
     made = {"measured": overview(rows)}
-    return made | {f"measured/{name}": one_lens(name, mm, rows) for name, mm in SIX.items()}
+    for name, mm in SIX.items():
+        own = at_focal_length(name, mm, rows)
+        if all(own.values()):
+            made[f"measured/{name}"] = one_lens(name, mm, own)
+        else:
+            print(f"{name}: no measurements at {mm:g} mm, so its plot stays", file=sys.stderr)
+    return made
+
+
+def at_focal_length(name: str, focal_mm: float, rows: Row) -> dict[str, list[Row]]:
+    """Rows of a lens's own product at one focal length."""
+    wanted = {"lens": name, "focal_mm": focal_mm, "match": "A"}
+    seen = {k: [r for r in rows[k] if "error" not in r] for k in SHOWN}
+    return {k: [r for r in found if wanted.items() <= r.items()] for k, found in seen.items()}
 
 
 def overview(rows: Row) -> bytes:
     """Values at the corner of every setting, and magnifications."""
-    seen = {name: [r for r in rows[name] if "error" not in r] for name in QUANTITIES}
+    seen = {name: [r for r in rows[name] if "error" not in r] for name in (*SHOWN, "magnification")}
     light = {
         k: [r["curve"] for r in seen["vignetting"] if r["kind"] == k] for k in ("open", "stopped")
     }
@@ -76,9 +91,6 @@ def overview(rows: Row) -> bytes:
         return saved(figure, "svg", "Predicted against measured")
 
 
-QUANTITIES = ("distortion", "colour", "vignetting", "magnification")
-
-
 def dots(axes: Any, title: str, groups: dict[str, tuple[str, list[Row]]]) -> None:
     """Measured values across, predicted up; on the line both are the same."""
     for name, (color, curves) in groups.items():
@@ -92,16 +104,8 @@ def dots(axes: Any, title: str, groups: dict[str, tuple[str, list[Row]]]) -> Non
         axes.legend(loc="upper left")
 
 
-def one_lens(name: str, focal_mm: float, rows: Row) -> bytes:
+def one_lens(name: str, focal_mm: float, own: dict[str, list[Row]]) -> bytes:
     """Distortion, lateral colour and light over the image height of a lens."""
-    own = {
-        k: [
-            r
-            for r in rows[k]
-            if (r["lens"], r.get("focal_mm"), r.get("match")) == (name, focal_mm, "A")
-        ]
-        for k in QUANTITIES
-    }
     with rc_context(SINGLE):
         figure = Figure(figsize=(8.4, 2.7), layout="constrained")
         shape, colour, light = figure.subplots(1, 3)

@@ -38,11 +38,12 @@ def sentence(rows: Row) -> str:
     products = len({(r["lens"], r["product"]) for r in rows["distortion"]})
     medians = {name: one["median"] for name, one in made.items() if isinstance(one, dict)}
     return (
-        "**Predicted against measured**: light traced through patents, and photographs by the "
-        f"{products} products\nthat were built to them. Medians at 24 MP: distortion "
-        f"{medians['distortion_px']:.1f} px, lateral colour {medians['red_px']:.1f} px (red) and\n"
-        f"{medians['blue_px']:.1f} px (blue), corners stopped down "
-        f"{medians['stopped_corner_ev']:.2f} EV. [Every lens](docs/measured.md)."
+        f"**Predicted against measured**: for {products} real lenses, distortion traced through the "
+        "patent is within\n"
+        f"{medians['distortion_px']:.1f} px of that in photographs, lateral colour within "
+        f"{medians['red_px']:.1f} px (red) and {medians['blue_px']:.1f} px (blue), and the light at\n"
+        f"the corner, stopped down, within {medians['stopped_corner_ev']:.2f} EV (medians, pixels of "
+        "24 MP): [every lens](docs/measured.md)."
     )
 
 
