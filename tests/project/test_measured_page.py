@@ -66,7 +66,7 @@ def test_rows_become_figures_and_tables(tools: Any) -> None:
     ]
     assert "| 2.8 | -1.00 | -2.00 | 0.30 | 11 | -1.00 | -2.00 | -0.10 |" in texts["light"]
     assert "| 0.15 | 0.12 | -20 % | at 0.60 m, its nearest |" in texts["magnification"]
-    assert "for 2 real lenses" in tools["tables"].sentence(rows)
+    assert "for 2 real lenses," in tools["tables"].sentence(rows)
 
 
 def made_up() -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from textwrap import fill
 from typing import Any
 
 import measured
@@ -36,15 +37,15 @@ def sentence(rows: Row) -> str:
     """The claim of README.md."""
     made = measured.summary(rows)
     products = len({(r["lens"], r["product"]) for r in rows["distortion"]})
-    medians = {name: one["median"] for name, one in made.items() if isinstance(one, dict)}
-    return (
+    median = {name: one["median"] for name, one in made.items() if isinstance(one, dict)}
+    text = (
         f"**Predicted against measured**: for {products} real lenses, distortion traced through the "
-        "patent is within\n"
-        f"{medians['distortion_px']:.1f} px of that in photographs, lateral colour within "
-        f"{medians['red_px']:.1f} px (red) and {medians['blue_px']:.1f} px (blue), and the light at\n"
-        f"the corner, stopped down, within {medians['stopped_corner_ev']:.2f} EV (medians, pixels of "
-        "24 MP): [every lens](docs/measured.md)."
+        f"patent is within {median['distortion_px']:.1f} px of that in photographs, lateral "
+        f"colour within {median['red_px']:.1f} px (red) and {median['blue_px']:.1f} px (blue), and "
+        f"the light at the corner, stopped down, within {median['stopped_corner_ev']:.2f} EV "
+        "(medians, pixels of 24 MP): [every lens](docs/measured.md)."
     )
+    return fill(text, 120)
 
 
 def summary(rows: Row) -> str:
