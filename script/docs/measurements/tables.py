@@ -39,8 +39,8 @@ def sentence(rows: Row) -> str:
     products = len({(r["lens"], r["product"]) for r in rows["distortion"]})
     median = {name: one["median"] for name, one in made.items() if isinstance(one, dict)}
     text = (
-        f"**Predicted against measured**: for {products} real lenses, distortion traced through the "
-        f"patent is within {median['distortion_px']:.1f} px of that in photographs, lateral "
+        f"**Predicted against measured**: for {products} real lenses, distortion traced through "
+        f"the patent is within {median['distortion_px']:.1f} px of that in photographs, lateral "
         f"colour within {median['red_px']:.1f} px (red) and {median['blue_px']:.1f} px (blue), and "
         f"the light at the corner, stopped down, within {median['stopped_corner_ev']:.2f} EV "
         "(medians, pixels of 24 MP): [every lens](docs/measured.md)."
