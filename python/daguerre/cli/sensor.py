@@ -59,8 +59,12 @@ def _print(item: Sensor, numbers: dict[str, Any]) -> None:
     console.show(f"source: {item.source}")
     if item.note:
         console.show(f"note: {item.note}")
-    for text in item.assumed:
-        console.show(f"assumed: {text}")
+    if numbers["basis"]:
+        console.show(f"known: {numbers['basis']}")
+    for kind in ("measured", "fitted", "assumed"):
+        for text in numbers[kind]:
+            if ":" in text:  # the others are named in the line above
+                console.show(f"{kind}: {text}")
     peaks = ", ".join(f"{k} {v:.3g}" for k, v in numbers["peak_quantum_efficiency"].items())
     made = ", ".join(f"{k} {v:.0f}" for k, v in numbers["electrons_per_lux_s"].items())
     dark = item.dark_current

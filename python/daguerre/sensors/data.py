@@ -104,6 +104,8 @@ class SensorData(Value, BriefRecord):
     serial: int = 0
     assumed: tuple[str, ...] = ()
     note: str = ""
+    measured: tuple[str, ...] = ()
+    fitted: tuple[str, ...] = ()
 
     @property
     def where(self) -> str:

@@ -51,6 +51,13 @@ def row(sensor: Sensor, iso: float) -> dict[str, float]:
     }
 
 
+def basis(sensor: Sensor) -> str:
+    """One line: which values were measured, fitted and assumed, by their keys in the file."""
+    kinds = {"measured": sensor.measured, "fitted": sensor.fitted, "assumed": sensor.assumed}
+    keys = {kind: ", ".join(text.split(":")[0] for text in texts) for kind, texts in kinds.items()}
+    return "; ".join(f"{kind} {listed}" for kind, listed in keys.items() if listed)
+
+
 def facts(sensor: Sensor) -> dict[str, Any]:
     """All facts about a sensor."""
     names = sensor.channels
@@ -62,6 +69,9 @@ def facts(sensor: Sensor) -> dict[str, Any]:
         "model": sensor.model,
         "source": sensor.source,
         "licence": sensor.licence,
+        "basis": basis(sensor),
+        "measured": list(sensor.measured),
+        "fitted": list(sensor.fitted),
         "assumed": list(sensor.assumed),
         "note": sensor.note,
         "size_mm": list(sensor.size),

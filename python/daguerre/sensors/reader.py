@@ -16,7 +16,8 @@ from .sensor import Sensor
 
 SCHEMA = "daguerre-sensor/0.1"
 MEMBERS = (
-    *("schema", "name", "make", "model", "source", "licence", "assumed", "note"),
+    *("schema", "name", "make", "model", "source", "licence"),
+    *("measured", "fitted", "assumed", "note"),
     *("pixel_pitch_um", "resolution", "size_mm", "fill_factor", "pattern", "wavelengths_nm"),
     *("quantum_efficiency", "infrared_cut", "cover_glass", "full_well_e", "dual_gain"),
     *("read_noise_e", "dark_current", "prnu", "dsnu_e", "hot_pixels", "black_level_dn"),
@@ -47,7 +48,9 @@ def _sensor(root: Item) -> Sensor:
         model=root.need("model").text(),
         source=root.need("source").text(),
         licence=root.need("licence").text(),
-        assumed=tuple(item.text() for item in root.list_of("assumed")),
+        measured=_texts(root, "measured"),
+        fitted=_texts(root, "fitted"),
+        assumed=_texts(root, "assumed"),
         note=_text(root, "note"),
         pixel_pitch=root.need("pixel_pitch_um").number(),
         resolution=(int(columns), int(rows)),
@@ -78,6 +81,10 @@ def _sensor(root: Item) -> Sensor:
 def _text(root: Item, key: str) -> str:
     item = root.get(key)
     return "" if item is None else item.text()
+
+
+def _texts(root: Item, key: str) -> tuple[str, ...]:
+    return tuple(item.text() for item in root.list_of(key))
 
 
 def _pair(values: tuple[float, ...]) -> tuple[float, float]:

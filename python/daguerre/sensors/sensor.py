@@ -66,6 +66,8 @@ class Sensor(Response):
         serial: Serial number, which seeds PRNU, DSNU and hot pixels.
         assumed: Names of the values without a source.
         note: Remark.
+        measured: Names of the values that a source gives; a remark may follow after a colon.
+        fitted: Names of the values that were changed to agree with another measurement, and how.
     """
 
     def __post_init__(self) -> None:

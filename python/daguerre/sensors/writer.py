@@ -34,6 +34,8 @@ def members(sensor: Sensor) -> dict[str, Any]:
         "model": sensor.model,
         "source": sensor.source,
         "licence": sensor.licence,
+        "measured": list(sensor.measured),
+        "fitted": list(sensor.fitted),
         "assumed": list(sensor.assumed),
         "note": sensor.note or None,
         "pixel_pitch_um": sensor.pixel_pitch,
