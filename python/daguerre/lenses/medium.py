@@ -13,6 +13,8 @@ from daguerre.files.value import Value
 _CORE: dict[str, Callable[..., _core.Glass]] = {
     "constant": _core.Glass.constant,
     "abbe": _core.Glass.abbe,
+    "partial": _core.Glass.partial,
+    "matched": lambda like, nd, vd: _core.Glass.matched(like.core, nd, vd),
     "table": _core.Glass.table,
     "sellmeier": _core.Glass.sellmeier,
     "polynomial": _core.Glass.polynomial,
@@ -29,8 +31,9 @@ class Medium(Value):
     the core's ``ValueError``.
 
     Attributes:
-        formula: ``constant``, ``abbe``, ``table``, ``sellmeier``, ``polynomial``, ``water`` or
-            ``vacuum``.
+        formula: ``constant``, ``abbe``, ``partial`` (nd, Vd, theta_gF), ``matched`` (the dispersion
+            of another medium at an nd and Vd), ``table``, ``sellmeier``, ``polynomial``, ``water``
+            or ``vacuum``.
         numbers: Arguments of the formula.
         vacuum: Whether the index is relative to vacuum instead of air.
         absorption: Wavelengths (nm) and absorption coefficients, base e (1/mm); empty: none.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -114,12 +114,27 @@ def find(name: str, maker: str | None = None) -> GlassData:
     maker = _maker(name, maker)
     found = _found(name, maker)
     if found is None:
-        whose = f" of {maker}" if maker else ""
         raise LensError(
-            f"glass {name!r}: no glass{whose} in the catalogues has this name"
+            f"glass {name!r}: no glass has this name in {asked(maker)}"
             f"{suggest(name, names(maker))}",
             "lens-glass",
         )
+    return found
+
+
+def asked(maker: str | None = None) -> str:
+    """Names the catalogues that are searched, for messages."""
+    return f"the catalogue of {maker}" if maker else f"the catalogues {', '.join(MAKERS)}"
+
+
+def maker_of(name: str, maker: str) -> str:
+    """Name of a catalogue, in any case.
+
+    Raises:
+        LensError: There is no such catalogue (lens-glass).
+    """
+    found = _maker(name, maker)
+    assert found is not None
     return found
 
 
@@ -146,22 +161,35 @@ def _found(name: str, maker: str | None) -> GlassData | None:
 
 
 @guarded
-def similar(label: str, nd: float, tolerance: float = 5e-4) -> GlassData | None:
+def similar(
+    label: str, nd: float, tolerance: float = 5e-4, makers: Sequence[str] = ()
+) -> GlassData | None:
     """Finds the catalogue's glass that a lens file's label names, if its nd agrees; else None.
 
     Labels hold more than names (``N-SK16 / SK16 class (Schott, 620/603)``), so each word is tried
-    in turn.
+    in turn, in the catalogues of ``makers`` first.
     """
+    return next((g for g in _of_label(label, makers) if abs(g.nd - nd) <= tolerance), None)
+
+
+@guarded
+def named(label: str, makers: Sequence[str] = ()) -> GlassData | None:
+    """Finds the first catalogue glass that a lens file's label names, if any, whatever its nd."""
+    return next(_of_label(label, makers), None)
+
+
+def _of_label(label: str, makers: Sequence[str]) -> Iterator[GlassData]:
+    """Glasses of a label's words, the exact names of a maker before its newer types."""
     for word in _WORD.findall(label):
         key = _key(word)
         if len(key) < 2:
             continue
-        for maker in MAKERS:
-            for candidate in (key, *(prefix + key for prefix in PREFIXES)):
+        keys = (key, *(prefix + key for prefix in PREFIXES), _key(_OTHER_NAMES.get(key, "")))
+        for maker in dict.fromkeys((*makers, *MAKERS)):
+            for candidate in keys:
                 entry = _by_key(maker).get(candidate)
-                if entry is not None and abs(_load(entry).nd - nd) <= tolerance:
-                    return _load(entry)
-    return None
+                if entry is not None:
+                    yield _load(entry)
 
 
 @dataclass(frozen=True)
@@ -190,7 +218,13 @@ def _maker(name: str, maker: str | None) -> str | None:
 
 @cache
 def _catalogue(maker: str) -> dict[str, Any]:
-    data: dict[str, Any] = json.loads((FOLDER / f"{maker.lower()}.json").read_text("utf-8"))
+    """Glasses of a maker, with those that were added by hand."""
+    data, added = _json(f"{maker.lower()}.json"), _json("added.json")["glasses"]
+    return {**data["glasses"], **added.get(maker, {})}
+
+
+def _json(name: str) -> dict[str, Any]:
+    data: dict[str, Any] = json.loads((FOLDER / name).read_text("utf-8"))
     return data
 
 
@@ -199,7 +233,7 @@ def _entries(maker: str | None) -> Iterator[_Entry]:
         yield from (_Entry(name, "core", "") for name in ("air", "water", "vacuum"))
     for one in MAKERS if maker is None else (_maker("names", maker),):
         assert one is not None
-        for name in _catalogue(one)["glasses"]:
+        for name in _catalogue(one):
             yield _Entry(name, one, f"{one.lower()}.json")
 
 
@@ -216,7 +250,7 @@ def _load(entry: _Entry, note: str = "") -> GlassData:
     if entry.maker == "core":
         made = AIR if entry.name == "air" else Medium(entry.name)
         return GlassData(entry.name, "core", made, note=note)
-    item = Item(_catalogue(entry.maker)["glasses"][entry.name], entry.name, Item({}, entry.file))
+    item = Item(_catalogue(entry.maker)[entry.name], entry.name, Item({}, entry.file))
     formula = formula_of(item)
     assert formula is not None, entry
     glass = formula[0]
