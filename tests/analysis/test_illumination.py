@@ -109,7 +109,7 @@ def test_light_is_found_without_a_bound_from_the_last_surface() -> None:
     near, everywhere = (
         analysis.spectral_illumination(b, film, [DESIGN_WAVELENGTH_NM]) for b in (bench, tilted)
     )
-    assert everywhere == pytest.approx(near, rel=2e-3)
+    assert everywhere == pytest.approx(near, rel=5e-3)  # the wide window has few rays in the iris
 
 
 def test_far_beyond_the_image_circle_is_no_light() -> None:

@@ -207,7 +207,7 @@ def test_nothing_is_lost_or_gained_at_the_corner(case: Case) -> None:
     )
     exact = _core.ExactLens(lens, settings)
     film = 0.95 * case.half_mm * np.array([0.8, 0.6])
-    side = 320
+    side = 480
     u_lens = midpoints(side).astype(np.float32)
     points = np.broadcast_to(film, (side * side, 2)).astype(np.float32)
     nm = np.full(side * side, 550, np.float32)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -11,8 +12,10 @@ from daguerre.files.json_item import Item, clean, short
 
 from .configurations import Configuration, chosen, read_configurations
 from .diameters import with_derived_diameters
+from .dispersion_rule import DispersionRule
 from .errors import LensError, reported
 from .glass_json import glass_from_json
+from .glass_rules import Origin, suppliers_of
 from .groups import Group, placed
 from .lens import Lens, Nominal
 from .projections import PROJECTIONS
@@ -46,7 +49,7 @@ def lens_from(root: Item, path: Path, name: str | None) -> Lens:
         root.fail("surfaces: the list is empty, wanted at least one")
     configurations = read_configurations(root, len(items))
     configuration = chosen(root, configurations, name)
-    surfaces = read_surfaces(items, configuration.gaps)
+    surfaces = read_surfaces(items, configuration.gaps, _origin(root))
     stops = [i for i, surface in enumerate(surfaces) if surface.stop]
     if len(stops) != 1:
         where = f" (surfaces {', '.join(map(str, stops[:8]))})" if stops else ""
@@ -84,7 +87,7 @@ def _assembled(
     coating = member(root, "coating")
     coating_name = "mgf2" if coating is None else coating.choice(COATINGS)
     name = clean(text(root, "name") or path.stem)
-    medium, _ = glass_from_json(member(root, "object_medium"))
+    outside = glass_from_json(member(root, "object_medium"), _origin(root))
     return Lens(
         name=name,
         source=str(path),
@@ -95,7 +98,30 @@ def _assembled(
         coating=coating_name,
         data=root.value,
         configurations=configurations,
-        object_medium=medium,
+        object_medium=outside.medium,
+        notes=_glass_notes([*(s.dispersion for s in surfaces), outside.rule]),
+    )
+
+
+def _glass_notes(rules: list[DispersionRule | None]) -> tuple[str, ...]:
+    """A note on all glasses that their names do not describe; empty: there are none."""
+    notes = dict.fromkeys(rule.note for rule in rules if rule is not None and rule.note)
+    return (f"glass: {'; '.join(notes)}",) if notes else ()
+
+
+def _year(root: Item) -> int | None:
+    """Year of the lens: a number, or the first one of a text (``c. 1959``); None: unknown."""
+    found = member(root, "year")
+    year = re.search(r"\d{4}", str(found.value)) if found is not None else None
+    return int(year[0]) if year else None
+
+
+def _origin(root: Item) -> Origin:
+    """Facts of the lens by which its glasses are chosen."""
+    return Origin(
+        makers=suppliers_of(text(root, "maker") or ""),
+        year=_year(root),
+        keeps_line=text(root, "normal_line") is not None,
     )
 
 

@@ -404,7 +404,9 @@ def _headline(lens: Lens) -> list[str]:
 
 
 def _table(lens: Lens) -> list[str]:
-    rows = [f"{'':3} {'':5} {'radius':>10} {'thickness':>10} {'semi-diam.':>10}  glass"]
+    wide = max(len("glass"), *(len(s.glass) for s in lens.surfaces))
+    heads = f"{'radius':>10} {'thickness':>10} {'semi-diam.':>10}  {'glass':{wide}}  dispersion"
+    rows = [f"{'':9} {heads}"]
     for i, s in enumerate(lens.surfaces):
         cells = [
             "plane" if s.radius is None else f"{s.radius:.3f}",
@@ -412,9 +414,8 @@ def _table(lens: Lens) -> list[str]:
             "" if s.semi_diameter is None else f"{s.semi_diameter:.3f}" + "*" * s.derived,
         ]
         mark = "stop" if s.stop else ""
-        rows.append(
-            f"{i:3} {mark:5} {cells[0]:>10} {cells[1]:>10} {cells[2]:>10}  {s.glass}".rstrip()
-        )
+        numbers = " ".join(f"{cell:>10}" for cell in cells)
+        rows.append(f"{i:3} {mark:5} {numbers}  {s.glass:{wide}}  {s.dispersion or ''}".rstrip())
     if any(s.derived for s in lens.surfaces):
         rows.append("* not stated by the source; derived from rays")
     return rows

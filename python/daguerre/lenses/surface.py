@@ -10,6 +10,7 @@ from typing import Any
 import daguerre._core as _core
 from daguerre.doors import guarded
 
+from .dispersion_rule import DispersionRule
 from .medium import Medium
 
 #: Values that ``kind`` may have.
@@ -47,6 +48,7 @@ class LensSurface:
         coating: Name of the coating; empty: the lens's.
         ripple: Grooves left by grinding: RMS height (nm), period (um), seed; height 0: none.
         derived: Whether the semi-diameter was derived by tracing rays, not given by the source.
+        dispersion: Rule that gave the glass that follows its dispersion; None: air, or unknown.
     """
 
     kind: str
@@ -67,6 +69,7 @@ class LensSurface:
     coating: str = ""
     ripple: tuple[float, float, int] = (0.0, 0.0, 0)
     derived: bool = False
+    dispersion: DispersionRule | None = None
 
     def replaced(self, **changes: Any) -> LensSurface:
         """Returns a copy with some fields changed."""

@@ -8,6 +8,7 @@ from daguerre.files.json_item import Item, short
 
 from .errors import LensError, reported
 from .glass_json import glass_from_json
+from .glass_rules import Origin
 from .reading import member, number, triple
 from .surface import KINDS, TWO_SECTIONS, LensSurface
 
@@ -16,33 +17,33 @@ MAX_POWER = 40
 COATINGS = ("uncoated", "mgf2", "v-coat", "broadband", "perfect")
 
 
-def read_surfaces(items: list[Item], gaps: dict[int, float]) -> list[LensSurface]:
+def read_surfaces(items: list[Item], gaps: dict[int, float], origin: Origin) -> list[LensSurface]:
     """Reads the surfaces, with the gaps of one configuration."""
     last = len(items) - 1
     surfaces = []
     for i, item in enumerate(items):
         with reported(item.file, "lens-format", i):
-            surfaces.append(_surface(item, gaps.get(i), i == last))
+            surfaces.append(_surface(item, gaps.get(i), origin, last=i == last))
     return surfaces
 
 
-def _surface(item: Item, gap: float | None, last: bool) -> LensSurface:
+def _surface(item: Item, gap: float | None, origin: Origin, *, last: bool) -> LensSurface:
     item.need("kind").text()
     kind = item.need("kind").choice(KINDS)
     radius = _radius(item, "radius")
     radius_x = _radius(item, "radius_x") if kind in TWO_SECTIONS else None
     flag = member(item, "stop")
     semi_diameter = _semi_diameter(item, radius)
-    glass, label = glass_from_json(member(item, "glass"))
+    glass = glass_from_json(member(item, "glass"), origin)
     coating = member(item, "coating")
     return LensSurface(
         kind=kind,
         radius=radius,
         thickness=_thickness(item, gap, last),
         semi_diameter=semi_diameter,
-        glass=label,
+        glass=glass.label,
         stop=kind == "stop" or (flag is not None and flag.flag()),
-        medium=glass,
+        medium=glass.medium,
         conic=number(item, "conic") or 0.0,
         asphere=_asphere(item),
         radius_x=radius_x,
@@ -53,6 +54,7 @@ def _surface(item: Item, gap: float | None, last: bool) -> LensSurface:
         tilt=triple(item, "tilt", 90),
         coating="" if coating is None else coating.choice(COATINGS),
         ripple=_ripple(item),
+        dispersion=glass.rule,
     )
 
 

@@ -14,7 +14,7 @@ KNOWN = {
     "": (
         *("schema", "units", "name", "type", "maker", "designer", "year", "patent", "format"),
         *("title_in_source", "nominal", "object_medium", "coating", "surfaces", "groups"),
-        *("configurations", "note", "suspect"),
+        *("configurations", "note", "suspect", "normal_line"),
     ),
     "nominal": (
         *("efl_mm", "efl_x_mm", "f_number", "full_field_deg", "image_circle_mm", "projection"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 LINE_COLORS = ("#2b6cb0", "#2f855a", "#c53030")
 LINE_NAMES = ("F 486", "d 588", "C 656")
 INK = "#222222"
+#: Characters in a line at the foot of the page.
+FOOT_LETTERS = 215
 
 
 def header(page: Figure, made: Figures) -> None:
@@ -43,7 +46,7 @@ def header(page: Figure, made: Figures) -> None:
         page.text(0.075, 0.9375, str(found), size=5.2, color="#555555")
     page.text(
         0.075,
-        0.022,
+        0.0225,
         "Exact rays through the prescription; glass, coatings, every clear aperture and the iris. "
         "F, d, C weighted as the eye sees them; PSF: five wavelengths 470-650 nm. "
         "Film at the best focus on the axis unless stated.",
@@ -153,6 +156,17 @@ def _known(value: float, form: str, unit: str = "") -> str:
 
 def _stated(value: float | None, unit: str = "") -> str:
     return "" if value is None else f"{value:g}{unit}"
+
+
+def dispersions(page: Figure, made: Figures) -> None:
+    """Names the rule that gives each glass its dispersion, at the foot of the page."""
+    glasses: dict[str, list[str]] = {}
+    for i, surface in enumerate(made.bench.lens.surfaces):
+        if surface.dispersion is not None:
+            glasses.setdefault(str(surface.dispersion), []).append(str(i))
+    rules = (f"{name}: {', '.join(surfaces)}" for name, surfaces in glasses.items())
+    text = f"Dispersion of the glass behind surfaces.  {'; '.join(rules)}"
+    page.text(0.075, 0.019, fill(text, FOOT_LETTERS), size=4.6, color="#777777", va="top")
 
 
 def spots(page: Figure, cell: SubplotSpec, made: Figures) -> None:

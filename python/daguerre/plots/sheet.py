@@ -88,6 +88,7 @@ def draw_sheet(made: Figures, kind: type[Sheet]) -> Sheet:
         cells = _row(page, bottom, bottom + 0.088).subgridspec(1, 4, wspace=0.34)
         for k, drawer in enumerate(drawers):
             drawer(page.add_subplot(cells[k]), made)
+    panels.dispersions(page, made)
     return page
 
 

@@ -174,7 +174,11 @@ def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:
 
     found = agreement(item)
     names = ("kind", "radius", "thickness", "semi_diameter", "glass", "stop", "derived")
-    surfaces = [{name: getattr(s, name) for name in names} for s in item.surfaces]
+    surfaces = [
+        {name: getattr(s, name) for name in names}
+        | {"dispersion": None if s.dispersion is None else asdict(s.dispersion)}
+        for s in item.surfaces
+    ]
     return {
         "name": item.name,
         "source": item.patent,
