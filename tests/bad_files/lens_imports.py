@@ -126,10 +126,14 @@ ZMX: dict[str, tuple[Callable[[str], str], str]] = {
     "mirror": (swap("GLAS ___BLANK", "GLAS MIRROR"), r"surface 1: GLAS.*\[lens-mirror\]"),
     "glass": (
         swap("GLAS ___BLANK 1 .*", "GLAS N-BK77 0 0 0 0"),
-        r"surface 1: glass: wanted a known glass, got 'N-BK77' \(did you mean .*\[lens-glass\]",
+        r"surface 1: glass: the catalogues Schott, .* have no 'N-BK77' \(did you mean .*lens-glass",
     ),
     "no glass": (swap("GLAS ___BLANK 1 .*", "GLAS"), "GLAS: glass: missing" + _F),
     "glass numbers": (swap("(GLAS ___BLANK 1 0) .*", r"\1 x y"), "GLAS: nd: wanted a number" + _F),
+    "dPgF": (
+        swap("60.32 0$", "60.32 0.9"),
+        r"surface 1: glass: dPgF: theta_gF out of range: wanted 0.4 .. 0.8, got 1.44.*lens-glass",
+    ),
     "abbe 1": (swap("(GLAS ___BLANK 1 0 1.62041).*", r"\1 1"), r"Vd: out of range.*\[lens-glass\]"),
     "two stops": (add("  STOP", "CURV -0.054"), r"stop, got 2.*\[lens-two-stops\]"),
     "image stop": (
@@ -219,7 +223,7 @@ SEQ: dict[str, tuple[Callable[[str], str], str]] = {
     "return": (swap("^S -22.*", r"\g<0>\nRET S1"), "surface 3: RET" + _S),
     "glass": (
         swap("1.62041:60.32", "NBK77_SCHOTT"),
-        r"surface 1: glass: wanted a known glass, got 'NBK77'.*\[lens-glass\]",
+        r"surface 1: glass: the catalogues Schott, .* have no 'NBK77'.*\[lens-glass\]",
     ),
     "glass index": (swap("1.62041:60.32", "7.5:60"), r"nd: out of range.*\[lens-glass\]"),
     "glass abbe": (swap("1.62041:60.32", "1.6:0.1"), r"Vd: out of range.*\[lens-glass\]"),

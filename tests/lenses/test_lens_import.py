@@ -22,8 +22,9 @@ GLASS = {"nd": 1.62041, "vd": 60.32}
 
 
 def shipped(name: str) -> Data:
-    """A lens of the library; glasses by nd and vd."""
+    """A lens of the library; glasses by nd and vd, without what else tells which they are."""
     data: Data = json.loads((FOLDER / f"{name}.json").read_text())
+    data = {key: value for key, value in data.items() if key not in ("maker", "year")}
     for s in data["surfaces"]:
         if s["glass"]:
             s["glass"] = {key: s["glass"][key] for key in ("nd", "vd") if key in s["glass"]}
@@ -255,6 +256,34 @@ def test_a_finite_object_widens_the_working_aperture(tmp_path: Path) -> None:
 # Notes on what is not honoured --------------------------------------------------------------------
 
 
+def test_dpgf_of_a_model_glass_is_its_deviation_from_the_normal_line(tmp_path: Path) -> None:
+    text = write.zmx(ASPHERE).replace("60.32 0\n", "60.32 0.01\n", 1)
+    lens = imported(text, tmp_path, ".zmx")
+    assert lens.notes == ()
+    rules = [s.dispersion.rule for s in lens.surfaces if s.dispersion]
+    assert rules[0] == "theta_gF"
+    g, f, c = (lens.surfaces[0].medium.index(nm) for nm in (435.8343, 486.1327, 656.2725))
+    assert (g - f) / (f - c) == pytest.approx(0.6438 - 0.001682 * 60.32 + 0.01, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("catalogues", "maker", "note"),
+    [
+        ("CORNING", "Hoya", "glass LAF2: took that of Hoya, others differ (Hikari)"),
+        ("HIKARI", "Hikari", ""),
+        ("HIKARI HOYA", "Hikari", "glass LAF2: took that of Hikari, others differ (Hoya)"),
+    ],
+)
+def test_a_name_in_several_catalogues_is_noted_where_they_differ(
+    catalogues: str, maker: str, note: str, tmp_path: Path
+) -> None:
+    text = write.zmx(ASPHERE).replace("___BLANK 1 0 1.62041 60.32 0", "LAF2 0 0 1.5 40 0", 1)
+    lens = imported(text.replace("GCAT SCHOTT", f"GCAT {catalogues}", 1), tmp_path, ".zmx")
+    assert next(s.dispersion.maker for s in lens.surfaces if s.dispersion) == maker
+    notes = [n for n in lens.notes if n.startswith("glass")]
+    assert [n[: len(note)] for n in notes] == ([note] if note else [])
+
+
 @pytest.mark.parametrize(
     ("old", "new", "note"),
     [
@@ -263,8 +292,11 @@ def test_a_finite_object_widens_the_working_aperture(tmp_path: Path) -> None:
         ("  STOP", "  STOP\n  SQAP 3 2 0", "aperture SQAP"),
         ("  STOP", "  STOP\n  COAT AR", "coatings are ignored; the lens's coating applies"),
         ("  STOP", "  STOP\n  SCBD 1 2", "record SCBD"),
-        ("60.32 0\n", "60.32 0.01\n", "partial dispersion"),
-        ("___BLANK 1 0 1.62041 60.32 0", "QX9 0 0 1.62041 60.32 0", "glass QX9: in no catalogue"),
+        (
+            "___BLANK 1 0 1.62041 60.32 0",
+            "QX9 0 0 1.62041 60.32 0",
+            "glass: QX9 is in no catalogue, ",
+        ),
         ("___BLANK 1 0 1.62041 60.32 0", "BK7 0 0 1.5 40 0", "glass BK7: took N-BK7"),
     ],
 )

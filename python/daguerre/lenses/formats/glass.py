@@ -6,15 +6,34 @@ import re
 from typing import Any
 
 from daguerre.files.json_item import clean
+from daguerre.lenses.glass_rules import THETA_RANGE
 
-from .catalogue import find, nearest
+from .catalogue import find, known_maker, missing
 from .text import Line, Unread
 
 Glass = dict[str, Any]
 
 
-def model(line: Line, surface: int, nd: float, vd: float, name: str = "") -> Glass | None:
-    """Makes a glass from nd and Vd; Vd 0: no dispersion, nd 1: air."""
+def model(
+    line: Line,
+    surface: int,
+    nd: float,
+    vd: float,
+    name: str = "",
+    maker: str = "",
+    deviation: float = 0,
+) -> Glass | None:
+    """Makes a glass from nd and Vd; Vd 0: no dispersion, nd 1: air.
+
+    Args:
+        line: Line of the file.
+        surface: Number of the surface.
+        nd: Index at 587.56 nm.
+        vd: Abbe number.
+        name: Name in the file.
+        maker: Maker in the file; those without a catalogue are dropped.
+        deviation: theta_gF less that of Schott's normal line; 0: not known.
+    """
     if nd == 1:
         return None
     if not 1 <= nd <= 5:
@@ -26,7 +45,20 @@ def model(line: Line, surface: int, nd: float, vd: float, name: str = "") -> Gla
         out["vd"] = vd
     if name:
         out["name"] = name
+    if name and vd and (known := known_maker(maker)):
+        out["maker"] = known
+    if vd and deviation:
+        out["theta_gF"] = _theta(line, surface, vd, deviation)
     return out
+
+
+def _theta(line: Line, surface: int, vd: float, deviation: float) -> float:
+    theta = 0.6438 - 0.001682 * vd + deviation  # normal line: Schott, TIE-29
+    least, most = THETA_RANGE
+    if not least <= theta <= most:
+        what = f"glass: dPgF: theta_gF out of range: wanted {least} .. {most}, got {theta:g}"
+        line.fail(what, "lens-glass", surface)
+    return theta
 
 
 def coded(word: str) -> tuple[float, float] | None:
@@ -66,8 +98,5 @@ def named(
     if numbers is not None:
         return model(line, surface, *numbers)
     if embedded is not None:
-        unread.add(
-            f"glass {name}: in no catalogue; nd and Vd come from the file", f"surface {surface}"
-        )
         return model(line, surface, *embedded, name)
-    line.fail(f"glass: wanted a known glass, got {name!r}{nearest(name)}", "lens-glass", surface)
+    line.fail(f"glass: {missing(name)}", "lens-glass", surface)

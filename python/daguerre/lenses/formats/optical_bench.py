@@ -122,7 +122,7 @@ class _Table:
         diameter = row.to_number(words[4], "diameter", 0) if number(words[4]) is not None else 0.0
         if words[4] and words[4].lower() not in ("infinity", "undefined") and not diameter:
             diameter = row.to_number(words[4], "diameter", 0)
-        glass = model(row, index, nd, vd, words[6])
+        glass = model(row, index, nd, vd, words[6], words[7])
         if glass is None and words[6]:
             if find(words[6]) is None:
                 self.unread.add(f"remark {words[6][:40]} is ignored", f"surface {index}")

@@ -155,12 +155,8 @@ def _glass(block: Block, makers: tuple[str, ...], unread: Unread) -> Glass | Non
     nd, vd = line.number_at(4, "nd", default=0), line.number_at(5, "Vd", default=0)
     place = f"surface {block.number}"
     if how == 1 or name == "___BLANK":
-        if line.number_at(6, "dPgF", default=0) != 0:
-            unread.add(
-                "partial dispersion dPgF of model glass is ignored; the normal line's applies",
-                place,
-            )
-        return model(line, block.number, nd, vd)
+        deviation = line.number_at(6, "dPgF", default=0)
+        return model(line, block.number, nd, vd, deviation=deviation)
     if how == 4 and any(line.number_at(i, "offset", default=0) for i in (10, 11)):
         unread.add("offsets of nd and Vd are ignored", place)
     # Zemax writes 1.5 and 40 when it has no values.
