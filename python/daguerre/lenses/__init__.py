@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from .index import Entry, names
     from .lens import FirstOrder, Lens, Nominal, Pupil
     from .library import load
+    from .product import Product
     from .reader import read
     from .search import find
     from .setting import LensSetting
@@ -28,6 +29,7 @@ __all__ = [
     "LensSetting",
     "LensSurface",
     "Nominal",
+    "Product",
     "Pupil",
     "find",
     "load",
@@ -48,6 +50,7 @@ if not TYPE_CHECKING:  # checkers know the names above, and report all others
             "LensSetting": "setting",
             "LensSurface": "surface",
             "Nominal": "lens",
+            "Product": "product",
             "Pupil": "lens",
             "find": "search",
             "load": "library",

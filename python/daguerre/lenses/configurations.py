@@ -27,6 +27,7 @@ class Configuration:
         object_distance_mm: Distance from the object plane to the first vertex; None: infinity.
         object_to_image_mm: Distance from the object plane to the film; None: infinity.
         stop_semi_diameter: Semi-diameter of the open iris; None: as in the table.
+        fitted: Whether the gaps were fitted to the product's closest focus, not printed.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Configuration:
     object_distance_mm: float | None = None
     object_to_image_mm: float | None = None
     stop_semi_diameter: float | None = None
+    fitted: bool = False
 
     @property
     def at_infinity(self) -> bool:
@@ -82,7 +84,13 @@ def _configuration(item: Item, count: int) -> Configuration:
         object_distance_mm=number(item, "object_distance_mm", above=0),
         object_to_image_mm=None if to_image is None else 1000 * to_image,
         stop_semi_diameter=number(item, "stop_semi_diameter", above=0),
+        fitted=_fitted(item),
     )
+
+
+def _fitted(item: Item) -> bool:
+    found = member(item, "fitted")
+    return found is not None and found.flag()
 
 
 def _gaps(item: Item, count: int) -> dict[int, float]:

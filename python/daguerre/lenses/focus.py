@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from daguerre.doors import guarded
 
+from .configurations import Configuration
 from .errors import LensError, reported
 from .lens import DESIGN_WAVELENGTH_NM, Lens
 from .setting import LensSetting
@@ -39,14 +40,32 @@ class Focused:
 
 @dataclass(frozen=True)
 class Path:
-    """Gaps of a lens from focus at infinity (0) to its nearest focus (1)."""
+    """Gaps of a lens from focus at infinity (0) to the nearest position that is printed (1).
+
+    Fitted positions lead on beyond 1. If all are fitted, the last one is at 1, and the film stays
+    where the lens is sharp at infinity: nothing moves there.
+    """
 
     lens: Lens  # at infinity
     changes: list[dict[int, float]]  # of gaps, mm, at equal steps of the way
+    printed: int  # changes from 0 to 1
+    fitted: bool  # whether no near position is printed
+
+    @property
+    def end(self) -> float:
+        """Way to the nearest focus."""
+        return (len(self.changes) - 1) / (self.printed - 1)
+
+    @property
+    def grid(self) -> list[float]:
+        """Ways at which a search for the focus begins, first those beyond infinity."""
+        way = [-BEYOND, -BEYOND / 8, *np.linspace(0, 1, 2 * self.printed + 3)]
+        more = len(self.changes) - self.printed
+        return [*way, *np.linspace(1, self.end, 2 * more + 3)[1:]] if more else way
 
     def at(self, way: float) -> Lens:
-        """Lens at one position of this path, 0 to 1."""
-        step = 1 / (len(self.changes) - 1)
+        """Lens at one position of this path, 0 to ``end``."""
+        step = 1 / (self.printed - 1)
         k = min(max(int(way / step), 0), len(self.changes) - 2)
         share = way / step - k
         gaps = {}
@@ -55,6 +74,11 @@ class Path:
             gap = (self.lens.surfaces[i].thickness or 0.0) + change
             gaps[i] = float(max(gap, 0.0) if i + 1 < len(self.lens.surfaces) else gap)
         return self.lens.with_gaps(gaps)
+
+    def with_film(self, z: float) -> Path:
+        """Returns this path with the film elsewhere."""
+        gap = {len(self.lens.surfaces) - 1: z - self.lens.vertices[-1]}
+        return replace(self, lens=self.lens.with_gaps(gap))
 
 
 def focused(lens: Lens, setting: LensSetting) -> Focused:
@@ -74,8 +98,10 @@ def focused(lens: Lens, setting: LensSetting) -> Focused:
         narrowed = setting.f_stop / lens.first_order().f_number
     sharp = _sharp(setting, narrowed)
     with reported(lens.source):
-        if path is None:
+        if path is None or (path.fitted and math.isinf(setting.focus_m)):
             return _done(lens, _whole(lens, setting))
+        if path.fitted:
+            path = path.with_film(_whole(lens, replace(setting, focus_m=math.inf)))
         moved = _solved(path, sharp, setting)
         return _done(moved, sharp(moved))
 
@@ -90,7 +116,7 @@ def closest_focus_m(lens: Lens, *, from_sensor: bool = False) -> float:
     path = path_of(lens)
     if path is None:
         return float(lens.prescription.closest_focus_m(from_sensor))
-    return _nearest(path.at(1.0), from_sensor=from_sensor)
+    return _nearest(path.at(path.end), from_sensor=from_sensor)
 
 
 def path_of(lens: Lens) -> Path | None:
@@ -105,10 +131,12 @@ def path_of(lens: Lens) -> Path | None:
         low, high, share = found[0], found[0], 0.0
     else:
         low, high, share = bracket(lens, lens.zoom_mm)
-    ways = [_waypoints(lens, low, found), _waypoints(lens, high, found)]
-    known = [way for way in ways if len(way) > 1]
-    if not known:
+    ways = [(p, near) for p in (low, high) if (near := _near(lens, p, found))]
+    if not ways:
         return None
+    known = [_waypoints(*way) for way in ways]
+    nearest = max((near for _, near in ways), key=len)
+    printed = sum(not c.fitted for c in nearest)
     base = at_zoom(lens, lens.zoom_mm) if lens.zoom_mm is not None else lens.with_gaps(low.gaps)
     first, last = known[0], known[-1]
     count = max(len(first), len(last))
@@ -116,16 +144,21 @@ def path_of(lens: Lens) -> Path | None:
     for way in np.linspace(0, 1, count):
         a, b = _along(first, way), _along(last, way)
         changes.append({i: (1 - share) * a[i] + share * b[i] for i in low.gaps})
-    return Path(base, changes)
+    path = Path(base, changes, 1 + (printed or len(nearest)), not printed)
+    return path if printed else path.with_film(image_z(base, -math.inf))
 
 
-def _waypoints(lens: Lens, position: Position, found: list[Position]) -> list[dict[int, float]]:
-    """Changes of the gaps from infinity to the nearest focus that the file gives at this zoom."""
+def _near(lens: Lens, position: Position, found: list[Position]) -> list[Configuration]:
+    """Configurations for near objects that the file gives at this zoom, the nearest last."""
     near = [c for c in lens.configurations if not c.at_infinity]
     mine = [c for c in near if max(found, key=lambda p: c.like(p.configuration)) == position]
-    mine.sort(key=lambda c: -c.distance_mm)
+    return sorted(mine, key=lambda c: -c.distance_mm)
+
+
+def _waypoints(position: Position, near: list[Configuration]) -> list[dict[int, float]]:
+    """Changes of the gaps from infinity to the nearest focus."""
     zero = dict.fromkeys(position.gaps, 0.0)
-    return [zero, *({i: c.gaps.get(i, g) - g for i, g in position.gaps.items()} for c in mine)]
+    return [zero, *({i: c.gaps.get(i, g) - g for i, g in position.gaps.items()} for c in near)]
 
 
 def _along(points: list[dict[int, float]], way: float) -> dict[int, float]:
@@ -192,14 +225,14 @@ def _solved(path: Path, sharp: Callable[[Lens], float], setting: LensSetting) ->
         lens = path.at(way)
         return sharp(lens) - lens.image_z
 
-    grid = [-BEYOND, -BEYOND / 8, *np.linspace(0, 1, 2 * len(path.changes) + 3)]
+    grid = path.grid
     values = [miss(way) for way in grid]
     for k in (*range(2, len(grid) - 1), 1, 0):  # beyond infinity only if not before
         if values[k] == 0 or values[k] * values[k + 1] < 0:
             return path.at(_root(miss, grid[k], grid[k + 1], values[k], values[k + 1]))
     if values[-1] < 0:  # beyond infinity, as the file's own film is a little off: the film moves
         return path.at(0.0)
-    nearest = _nearest(path.at(1.0), from_sensor=setting.from_sensor)
+    nearest = _nearest(path.at(path.end), from_sensor=setting.from_sensor)
     raise LensError(
         f"{path.lens.source}: focus distance: wanted {nearest:.4g} m or more (the nearest "
         f"possible), got {setting.focus_m:.4g} m",

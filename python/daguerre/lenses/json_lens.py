@@ -18,6 +18,7 @@ from .glass_json import glass_from_json
 from .glass_rules import Origin, suppliers_of
 from .groups import Group, placed
 from .lens import Lens, Nominal
+from .product import read_product
 from .projections import PROJECTIONS
 from .reading import member, number, text, triple
 from .stop_size import probe, with_stop_of_other_diameters
@@ -100,6 +101,7 @@ def _assembled(
         configurations=configurations,
         object_medium=outside.medium,
         notes=_glass_notes([*(s.dispersion for s in surfaces), outside.rule]),
+        product=read_product(root),
     )
 
 

@@ -24,6 +24,7 @@ from .errors import LensError, reported
 from .glasses.catalogue import LINE_D
 from .groups import Group, placed
 from .medium import Medium
+from .product import Product
 from .setting import By, LensSetting, MeasuredFrom
 from .surface import LensSurface
 
@@ -106,6 +107,7 @@ class Lens(Value):
         object_medium: Medium before the first surface.
         zoom_mm: Focal length to which a zoom is set; None: not a zoom.
         notes: Deviations from the file, such as members that are ignored or diameters that are cut.
+        product: How the product of the design focuses, if the file says so.
     """
 
     name: str
@@ -120,6 +122,7 @@ class Lens(Value):
     object_medium: Medium
     zoom_mm: float | None = None
     notes: tuple[str, ...] = ()
+    product: Product | None = None
 
     def __post_init__(self) -> None:
         with reported(self.source):

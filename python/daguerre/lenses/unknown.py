@@ -14,8 +14,9 @@ KNOWN = {
     "": (
         *("schema", "units", "name", "type", "maker", "designer", "year", "patent", "format"),
         *("title_in_source", "nominal", "object_medium", "coating", "surfaces", "groups"),
-        *("configurations", "note", "suspect", "normal_line"),
+        *("configurations", "note", "suspect", "normal_line", "product"),
     ),
+    "product": ("closest_focus_m", "magnification", "moves", "source"),
     "nominal": (
         *("efl_mm", "efl_x_mm", "f_number", "full_field_deg", "image_circle_mm", "projection"),
     ),
@@ -27,7 +28,7 @@ KNOWN = {
     "groups": ("name", "surfaces", "decenter", "tilt", "pivot_mm", "note"),
     "configurations": (
         *("name", "gaps", "efl_mm", "efl_x_mm", "f_number", "object_distance_mm", "note"),
-        *("object_to_image_m", "stop_semi_diameter", "angle_of_view_deg"),
+        *("object_to_image_m", "stop_semi_diameter", "angle_of_view_deg", "fitted"),
     ),
 }
 SHOWN = 8
