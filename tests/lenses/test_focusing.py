@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from daguerre import lenses
+from daguerre.camera import Camera
 from daguerre.errors import InputError
 from daguerre.lenses import Lens
 from daguerre.lenses.focus import closest_focus_m, path_of
@@ -16,6 +17,8 @@ from daguerre.lenses.focusing import FAR, closest, focusing, whole_lens_note
 from daguerre.lenses.json_lens import lens_of
 from daguerre.lenses.library import FOLDER
 from daguerre.lenses.product import Product
+from daguerre.scene import Scene
+from daguerre.setup.camera_facts import camera_facts
 
 FITTED = [
     path.stem for path in sorted(FOLDER.glob("*.json")) if '"fitted": true' in path.read_text()
@@ -121,6 +124,17 @@ def test_a_lens_of_a_product_whose_parts_are_known_names_them() -> None:
         "Leica APO-Summicron-M 35 mm f/2 ASPH focuses as a whole; the product moves two groups by "
         "different amounts"
     )
+
+
+@pytest.mark.parametrize("model", ["exact", "thick"])
+def test_the_camera_notes_it(model: str) -> None:
+    def notes(focus: float, lens: str = WHOLE) -> str:
+        camera = Camera(lens_model=model, lens=lens, focus_distance=focus)
+        return " ".join(camera_facts(camera, Scene(), resolution=(36, 24)).notes)
+
+    assert "focuses as a whole" in notes(0.5)
+    assert "focuses as a whole" not in notes(50.0)
+    assert "focuses as a whole" not in notes(0.5, "tessar-50mm-f2.8")
 
 
 def test_what_moves_in_words() -> None:

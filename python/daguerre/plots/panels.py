@@ -11,6 +11,7 @@ import numpy as np
 from daguerre.analysis.bench import FDC_NM
 from daguerre.analysis.figures import FIELDS, FREQUENCIES, MTF_FIELDS, Figures
 from daguerre.lenses.agreement import agreement
+from daguerre.lenses.focusing import focusing, whole_lens_note
 
 from . import images
 from .lens_section import COLORS as FIELD_COLORS
@@ -53,6 +54,8 @@ def header(page: Figure, made: Figures) -> None:
         size=5.2,
         color="#777777",
     )
+    if note := whole_lens_note(lens, bench.magnification):
+        page.text(0.075, 0.011, note, size=5.2, color=INK)
 
 
 def _rule(y: float) -> Any:
@@ -113,6 +116,7 @@ def fact_rows(made: Figures) -> list[tuple[str, str, str]]:
             "",
         ),
         ("pupil magnification", f"{order.pupil_magnification:.3f}", ""),
+        *_focusing(made),
     ]
     if not math.isinf(bench.focus_mm):
         rows.append(("magnification", f"1:{-1 / bench.magnification:.2f}", ""))
@@ -136,6 +140,20 @@ def fact_rows(made: Figures) -> list[tuple[str, str, str]]:
         ("distortion at the edge", _known(float(made.distortion.percent[-1]), "+.2f", " %"), ""),
     ]
     return rows
+
+
+def _focusing(made: Figures) -> list[tuple[str, str, str]]:
+    lens = made.bench.lens
+    how, product = focusing(lens), lens.product
+    moves = "groups" + " (fitted)" * how.fitted if how.gaps else "whole lens"
+    stated = _closest(product.closest_focus_m, product.magnification) if product else ""
+    own = _closest(how.closest_focus_m, how.magnification)
+    return [("focusing", moves, ""), ("closest focus", own, stated)]
+
+
+def _closest(distance_m: float | None, magnification: float | None) -> str:
+    known = ((distance_m, " m", ".3g"), (magnification, "x", ".2g"))
+    return ", ".join(f"{value:{form}}{unit}" for value, unit, form in known if value is not None)
 
 
 def paraxial_film(made: Figures) -> float:

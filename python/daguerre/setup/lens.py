@@ -21,6 +21,7 @@ from daguerre.camera.parameters.needs import TRACED
 from daguerre.lenses.checking import frame_notes
 from daguerre.lenses.errors import LensError, reported
 from daguerre.lenses.focus import focused
+from daguerre.lenses.focusing import whole_lens_note
 from daguerre.lenses.setting import LensSetting
 
 from . import tilt
@@ -141,7 +142,7 @@ def set_up(framing: Framing, lens: lenses.Lens, model: str) -> ResolvedLens:
             h0=drawn.h0,
             fit=fit,
         ),
-        notes=(*found.notes, *lens.notes, *_notes(camera, chosen), *drawn.notes),
+        notes=(*found.notes, *lens.notes, *_notes(camera, chosen, sharp), *drawn.notes),
     )
 
 
@@ -153,8 +154,8 @@ def _chosen(camera: Camera, lens: lenses.Lens, model: str) -> _Chosen:
     return _Chosen(lens, model, order, transmittance, f_stop)
 
 
-def _notes(camera: Camera, chosen: _Chosen) -> list[str]:
-    """Notes on zoom, light lost in the glass, and squeeze."""
+def _notes(camera: Camera, chosen: _Chosen, sharp: _InFocus) -> list[str]:
+    """Notes on zoom, focusing, light lost in the glass, and squeeze."""
     notes = []
     lens, squeeze = chosen.lens, chosen.squeeze
     if camera.zoom is None and (ends := lens.zoom_range_mm):
@@ -163,6 +164,9 @@ def _notes(camera: Camera, chosen: _Chosen) -> list[str]:
             f"{lens.name} is a zoom lens of {short_end:.4g} to {long_end:.4g} mm, set to "
             f"{lens.zoom_mm:.4g} mm"
         )
+    magnification = (sharp.order.back_focal_point - sharp.film_z) / sharp.order.efl
+    if moved := whole_lens_note(lens, magnification):
+        notes.append(moved)
     if camera.t_stop is not None:
         notes.append(
             f"T/{camera.t_stop:.3g} of {lens.name} is f/{chosen.f_stop:.3g}: the glass "

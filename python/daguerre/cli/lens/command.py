@@ -154,6 +154,7 @@ def _finite(value: Any) -> Any:
 
 def _print(item: Lens, wavelength: float) -> None:
     from daguerre.lenses.agreement import agreement
+    from daguerre.lenses.focusing import focusing
 
     try:
         order = asdict(item.first_order(wavelength))
@@ -164,6 +165,9 @@ def _print(item: Lens, wavelength: float) -> None:
     for key, value in order.items():
         if key != "wavelength_nm":
             console.show(f"  {key.replace('_', ' '):22} {_show(value)}")
+    console.show(f"focusing: {focusing(item)}")
+    if (product := item.product) is not None:
+        console.show(f"the product: {product}")
     found = agreement(item)
     if found is not None:
         console.show(found)
@@ -171,6 +175,7 @@ def _print(item: Lens, wavelength: float) -> None:
 
 def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:
     from daguerre.lenses.agreement import agreement
+    from daguerre.lenses.focusing import focusing
 
     found = agreement(item)
     names = ("kind", "radius", "thickness", "semi_diameter", "glass", "stop", "derived")
@@ -187,6 +192,8 @@ def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:
         **order,
         "first_order": order,
         "nominal": asdict(item.nominal),
+        "focusing": asdict(focusing(item)),
+        "product": None if item.product is None else asdict(item.product),
         "image_z": item.image_z,
         "surfaces": surfaces,
         "agreement": None if found is None else asdict(found),
