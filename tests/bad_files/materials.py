@@ -54,9 +54,9 @@ BAD: dict[str, tuple[Change, str]] = {
     "filter": (put("samplers.0.minFilter", 5), r"samplers\[0\]\.minFilter: unknown value"),
     "image from nowhere": (put("images.0", {}), r"images\[0\]: wanted either a uri or a bufferVi"),
     "image view": (put("images.0.bufferView", 77), r"images\[0\]\.bufferView: index out of range"),
-    "image missing": (
-        put("images.0", {"uri": "wood.png", "name": "wood"}),
-        r"images\[0\]\.uri: '.*wood\.png': no such file",
+    "image a folder": (
+        put("images.0", {"uri": ".", "name": "wood"}),
+        r"images\[0\]\.uri: '.*': wanted a file, got a folder",
     ),
     "image is text": (
         put("images.0", {"uri": "data:image/png;base64,aGVsbG8=", "name": "wood"}),

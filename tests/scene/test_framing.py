@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -50,3 +53,22 @@ def test_bounds_are_those_of_the_corners() -> None:
 
 def test_an_empty_scene_has_no_view() -> None:
     assert frame_everything(dg.Scene()) is None
+
+
+TWO_BALLS = """<scene version="3.0.0">
+  <shape type="sphere"><point name="center" x="-4" y="0" z="0"/></shape>
+  <shape type="sphere"><point name="center" x="4" y="0" z="0"/></shape>
+</scene>"""
+
+
+def test_a_file_without_a_camera_is_in_focus(tmp_path: Path) -> None:
+    """Between the balls the middle ray meets nothing; a camera of the file's own stays at far."""
+    path = tmp_path / "balls.xml"
+    path.write_text(TWO_BALLS)
+    scene = dg.load(path)
+    frame = dg.render(scene, resolution=(12, 8), spp=1)
+    distance = float(np.linalg.norm(scene.camera().transform[:3, 3]))
+    assert frame.metadata["focus"] == pytest.approx(distance, rel=1e-3)
+    scene.add_camera("own", scene.camera())
+    frame = dg.render(scene, "own", resolution=(12, 8), spp=1)
+    assert math.isinf(frame.metadata["focus"])

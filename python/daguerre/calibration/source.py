@@ -164,8 +164,13 @@ def camera_matrix(item: Item) -> tuple[tuple[float, float], tuple[float, float]]
 
 
 def rigid(item: Item) -> FloatArray:
-    """Reads a rotation and a translation, shape (4, 4)."""
-    pose = matrix(item, 4, 4)
+    """Reads a rotation and a translation, shape (4, 4); the last row may be left out."""
+    rows = item.need("rows").value if isinstance(item.value, dict) else len(list(item))
+    pose = np.eye(4)
+    if rows in (3, 12):
+        pose[:3] = matrix(item, 3, 4)
+    else:
+        pose = matrix(item, 4, 4)
     turned = pose[:3, :3]
     odd = np.abs(turned @ turned.T - np.eye(3)).max() > 1e-4 or np.linalg.det(turned) < 0
     if odd or (np.abs(pose[3] - (0, 0, 0, 1)) > 1e-9).any():

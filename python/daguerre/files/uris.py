@@ -15,7 +15,7 @@ from pathlib import Path
 from urllib.parse import unquote, unquote_to_bytes, urlsplit
 
 from .json_item import Item, short
-from .reading import fault_of
+from .reading import MISSING, fault_of
 
 
 class Folder:
@@ -38,6 +38,17 @@ class Folder:
         Raises:
             InputError: The URI leaves the allowed folders, or no such file exists.
         """
+        path = self.find(uri)
+        if path is None:
+            uri.fail(f"{short(str(self._path(uri)), 200)}: {MISSING}")
+        return path
+
+    def find(self, uri: Item) -> Path | None:
+        """Returns the regular file of a URI; None: no such file exists.
+
+        Raises:
+            InputError: The URI leaves the allowed folders, or is no name of a regular file.
+        """
         path = self._path(uri)
         if not any(path.is_relative_to(directory) for directory in self.allowed):
             uri.fail(
@@ -45,9 +56,10 @@ class Folder:
                 f"(--allow-dir allows more folders), got {short(uri.text())}"
             )
         # Only regular files: a pipe or a device would never end.
-        if fault := fault_of(path):
+        fault = fault_of(path)
+        if fault and fault != MISSING:
             uri.fail(f"{short(str(path), 200)}: {fault}")
-        return path
+        return None if fault else path
 
     def _path(self, uri: Item) -> Path:
         text = uri.text()

@@ -10,7 +10,7 @@ from daguerre.checks import number
 from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files import formats
-from daguerre.scene.framing import frame_everything
+from daguerre.scene import framing
 from daguerre.scene.scene import Scene
 
 
@@ -54,7 +54,7 @@ def load(
     if strict and scene.warnings:
         more = f", and {len(scene.warnings) - 1} more" if len(scene.warnings) > 1 else ""
         raise InputError(f"{path}: strict: the file has notes: {scene.warnings[0]}{more}")
-    if not scene.cameras and (camera := frame_everything(scene)) is not None:
-        scene.add_camera("framing", camera)
+    if not scene.cameras and (camera := framing.frame_everything(scene)) is not None:
+        scene.add_camera(framing.NAME, camera)
         scene.note("the file has no usable camera; the camera 'framing' shows everything")
     return scene

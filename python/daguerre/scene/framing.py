@@ -18,6 +18,15 @@ _TOWARD_CAMERA = np.array([0.35, 0.3, 1.0]) / math.sqrt(0.35**2 + 0.3**2 + 1)
 _HALF_FIELD = math.atan(12 / 50)  # of 50 mm over the height of 24 mm
 
 
+#: Name of the camera of a file without one.
+NAME = "framing"
+
+
+def is_framed(scene: Scene) -> bool:
+    """Whether the scene has no camera of its own, only the one that shows everything."""
+    return list(scene.cameras) == [NAME]
+
+
 def frame_everything(scene: Scene) -> Camera | None:
     """Makes a 50 mm camera at f/8 with the whole scene in view; None if the scene is empty."""
     corners = bounds(scene)

@@ -13,6 +13,7 @@ import daguerre._core as _core
 from daguerre.camera.camera import Camera
 from daguerre.errors import InputError, UsageError
 from daguerre.files.value import BriefRecord
+from daguerre.scene.framing import bounds, is_framed
 from daguerre.scene.node_names import find_node, no_node
 from daguerre.scene.scene import Scene
 
@@ -104,13 +105,26 @@ class Focus(BriefRecord):
             toward = tuple(self.world[:3, :3] @ direction)
             hit = self.core_scene.first_hit(origin, toward, start)
         if hit is None:
-            return Sharp(math.inf, (f"autofocus: {what} meets nothing; focus at infinity",))
+            return self._unmet(what)
         depth = float(hit[0]) * -float(direction[2])
         if not depth > 0:  # the camera stands in a surface
             note = f"autofocus: {what} begins on a surface; focus at infinity"
             return Sharp(math.inf, (note,))
         distance = depth if self.sharp_at is None else self.sharp_at(float(hit[0]) * direction)
         return Sharp(distance, (f"autofocus: {what} meets a surface {depth:.4g} m away",))
+
+    def _unmet(self, what: str) -> Sharp:
+        """Focus of a ray that meets nothing: infinity, or the scene, if its file has no camera."""
+        found = bounds(self.scene) if is_framed(self.scene) else None
+        if found is not None:
+            middle = (found[0] + found[1]) / 2 - self.world[:3, 3]
+            depth = float(middle @ -self.world[:3, 2])
+            if depth > 0:
+                local = self.world[:3, :3].T @ middle
+                distance = depth if self.sharp_at is None else self.sharp_at(local)
+                note = f"autofocus: {what} meets nothing; focus on the middle of the scene"
+                return Sharp(distance, (f"{note}, {depth:.4g} m away",))
+        return Sharp(math.inf, (f"autofocus: {what} meets nothing; focus at infinity",))
 
     def _on_node(self, name: str) -> Sharp:
         """Depth of the visible surface at the middle of the node, else of its nearest vertex."""

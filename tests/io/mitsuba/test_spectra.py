@@ -124,7 +124,6 @@ def test_names_of_indices_and_of_metals(tmp_path: Path) -> None:
         ),
         ('<spectrum name="reflectance" value="400:0.1, 500"/>', "wanted 2 numbers, got 1"),
         ('<spectrum name="reflectance" value="400:-1"/>', "at least 0"),
-        ('<spectrum name="reflectance" filename="none.spd"/>', "no such file"),
         ('<boolean name="reflectance" value="true"/>', "wanted a colour or spectrum, got True"),
         (
             '<spectrum name="reflectance" type="blackbody"/>',

@@ -275,7 +275,7 @@ def _slice(item: Item, buffers: list[memoryview]) -> memoryview:
     buffer = buffers[item.need("buffer").index(len(buffers), "buffers")]
     offset_item = item.get("byteOffset")
     offset = 0 if offset_item is None else offset_item.integer(0)
-    length = item.need("byteLength").integer(1)
+    length = item.need("byteLength").integer(0)  # none of 0 bytes may be read
     if offset + length > len(buffer):
         item.fail(
             f"beyond its buffer ({len(buffer)} bytes): wanted byteOffset + byteLength at most "

@@ -42,12 +42,14 @@ class Images:
 
     Attributes:
         same: Index of the first image with the same file or bufferView, for each image.
+        missing: Names of files that do not exist, by image.
     """
 
     def __init__(self, document: Document, accessors: Accessors) -> None:
         self._document = document
         self._accessors = accessors
         self._images = document.root.list_of("images")
+        self.missing: dict[int, str] = {}
         self._paths = [self._path(item) for item in self._images]
         first: dict[object, int] = {}
         self.same = [first.setdefault(self._source(i), i) for i in range(len(self._images))]
@@ -98,7 +100,12 @@ class Images:
             self._accessors.view_bytes(view)
             return None
         assert uri is not None
-        return None if is_data(uri) else self._document.folder.resolve(uri)
+        if is_data(uri):
+            return None
+        path = self._document.folder.find(uri)
+        if path is None:
+            self.missing[int(item.key)] = uri.text()
+        return path
 
     def _source(self, index: int) -> object:
         view = self._images[index].get("bufferView")

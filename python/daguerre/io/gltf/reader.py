@@ -146,7 +146,7 @@ class _Reader:
     def read(self, scene_index: int | None) -> Scene:
         scene = self.scene
         images = Images(self.document, self.accessors)
-        textures = Textures(self.root, images.same, self.notes)
+        textures = Textures(self.root, images.same, images.missing, self.notes)
         materials = read_materials(self.root, textures, self.notes)
         images.decode(textures.plans, scene)
         again = partial(read_material, textures=textures.silenced(), notes=Silence())

@@ -53,17 +53,19 @@ class Textures(Value):
     Args:
         root: The JSON object of the file.
         same: Index of the first image with the same file or bufferView, for each image.
+        missing: Names of files that do not exist, by image.
         notes: Receives notes on unsupported content.
 
     Attributes:
         plans: The scene's textures and their indices.
     """
 
-    def __init__(self, root: Item, same: list[int], notes: Notes) -> None:
+    def __init__(self, root: Item, same: list[int], missing: dict[int, str], notes: Notes) -> None:
         self._notes = notes
         self._textures = root.list_of("textures")
         self._samplers = [_sampler(item) for item in root.list_of("samplers")]
         self._same = same
+        self._missing = missing
         self._images: dict[int, int | None] = {}
         self._settled = False
         self.plans: dict[Plan, int] = {}
@@ -94,6 +96,10 @@ class Textures(Value):
             seen_through = self._samplers[sampler.index(len(self._samplers), "samplers")]
         if image is None:
             self._notes.add("a texture without an image of a supported format is left out")
+            return None
+        if image in self._missing:
+            missing = "a texture whose file is missing is left out"
+            self._notes.add(missing, name=self._missing[image])
             return None
         uv_set, transform = _coordinates(info)
         if uv_set > 1:

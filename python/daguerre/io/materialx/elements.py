@@ -15,6 +15,8 @@ from daguerre.files.xml_text import xml_errors
 
 #: White space before the declaration, which XML forbids and other readers of MaterialX pass over.
 _LATE = re.compile(rb"\A(\s+)(<\?xml\b[^>]*\?>)")
+#: Comments. XML forbids two hyphens in them; pugixml, which Mitsuba and MaterialX use, does not.
+_COMMENT = re.compile(rb"(?<=<!--).*?(?=-->)", re.DOTALL)
 MAX_DEPTH = 64
 MAX_ELEMENTS = 1_000_000
 MAX_BYTES = 64 << 20
@@ -53,9 +55,11 @@ def parse(data: bytes, file: str) -> Element:
     """
     if len(data) > MAX_BYTES:
         raise InputError(f"{file}: XML: wanted at most {MAX_BYTES} bytes, got {len(data)}")
+    data = _LATE.sub(rb"\2\1", data, count=1)
+    data = _COMMENT.sub(lambda found: found[0].replace(b"-", b" "), data)
     reader = _Reader(file)
     with xml_errors(file):
-        reader.parser.Parse(_LATE.sub(rb"\2\1", data, count=1), True)
+        reader.parser.Parse(data, True)
     assert reader.root is not None  # expat refuses a text without an element
     return reader.root
 

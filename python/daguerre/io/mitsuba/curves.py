@@ -18,11 +18,11 @@ CURVES = {"bsplinecurve": "bspline", "linearcurve": "linear"}
 _LEAST = {"bspline": 4, "linear": 2}
 
 
-def add_curves(node: Node, context: Context) -> int:
+def add_curves(node: Node, context: Context) -> int | None:
     """Adds the curves of a shape to the scene, as one mesh; ``to_world`` leaves radii as they are.
 
     Returns:
-        Index of the mesh, in the space of the scene.
+        Index of the mesh, in the space of the scene; None, and a note: the file is missing.
 
     Raises:
         InputError: The file is wrong; the message names its line.
@@ -32,6 +32,9 @@ def add_curves(node: Node, context: Context) -> int:
     name = node.text("filename")
     data = context.document.files_of(node).read(name, node.entry)
     place = context.world @ node.transform()
+    if data is None:
+        context.notes.add("curves whose file is missing are left out", name=name)
+        return None
     where = str(node.entry.about(name))
     rows, counts = _rows(data, where)
     short = [count for count in counts if count < _LEAST[basis]]

@@ -229,7 +229,7 @@ class _Reader:
         known(element, entry, "filename", "name")
         if self._includes >= MAX_INCLUDES:
             entry.fail(f"too many nested includes: the limit is {MAX_INCLUDES}")
-        path = self._files.find(element.get("filename"), entry)
+        path = self._files.need(element.get("filename"), entry)
         inside = self._files.within(path.parent)
         reader = _Reader(self._document, inside, str(path), self._includes + 1, self._depth)
         with asked_by(entry):

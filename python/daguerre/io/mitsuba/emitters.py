@@ -154,6 +154,10 @@ class Emitters:
         node.skip("mis_compensation", "gamma", "cache")
         scale = node.number("scale", 1.0, 0.0)
         turn = orthogonal(self._world @ node.transform(), node)[:3, :3]
+        if file is None:
+            missing = "an environment whose picture is missing is left out"
+            self._notes.add(missing, name=node.text("filename"))
+            return
         with asked_by(node.entry):
             picture = read_environment(file)
         pixels, rotation = panorama(picture, turn)

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from daguerre.errors import asked_by
-from daguerre.files.reading import fault_of, read_bytes
+from daguerre.files.reading import MISSING, fault_of, read_bytes
 from daguerre.files.text_lines import MAX_BYTES
 from daguerre.files.uris import Folder
 
@@ -51,24 +51,49 @@ class Files:
         self._check(self._real(self._folders[0], name, entry), name, entry)
         entry.fail(f"{name[:200]!r}: no such folder")
 
-    def find(self, name: str, entry: Entry) -> Path:
+    def need(self, name: str, entry: Entry) -> Path:
         """File of a name.
 
         Raises:
             InputError: There is no such file, or it may not be read.
+        """
+        found = self.find(name, entry)
+        if found is None:
+            entry.fail(f"{name[:200]!r}: {MISSING}")
+        return found
+
+    def find(self, name: str, entry: Entry) -> Path | None:
+        """File of a name; None: there is no such file.
+
+        Raises:
+            InputError: It may not be read, or is no file.
         """
         for folder in self._folders:
             found = self._real(folder, name, entry)
             if _is_file(found):
                 self._check(found, name, entry)
                 return found
-        first = self._real(self._folders[0], name, entry)
-        self._check(first, name, entry)
-        entry.fail(f"{name[:200]!r}: {fault_of(first)}")
+        first = self.first(name, entry)
+        fault = fault_of(first)
+        if fault != MISSING:
+            entry.fail(f"{name[:200]!r}: {fault}")
+        return None
 
-    def read(self, name: str, entry: Entry, most: int = MAX_BYTES) -> bytes:
-        """Bytes of the file of a name, at most ``most``."""
+    def first(self, name: str, entry: Entry) -> Path:
+        """Where a name would be, in the folder that comes first.
+
+        Raises:
+            InputError: It may not be read.
+        """
+        path = self._real(self._folders[0], name, entry)
+        self._check(path, name, entry)
+        return path
+
+    def read(self, name: str, entry: Entry, most: int = MAX_BYTES) -> bytes | None:
+        """Bytes of the file of a name, at most ``most``; None: there is no such file."""
         found = self.find(name, entry)
+        if found is None:
+            return None
         with asked_by(entry):
             return read_bytes(found, most)
 

@@ -67,10 +67,13 @@ class Media:
         node.skip("sample_emitters", "has_spectral_extinction", "method", "step_size")
         scale = node.number("scale", 1.0, 0.0) / self._context.unit_m
         lobes = self._phase(node.nested_one("phase"))
-        grid = self._grid(node, local)
+        grid, missing = self._grid(node, local)
         hue = (1.0, 1.0, 1.0) if grid is None else grid.color
         absorption, scattering = self._coefficients(node, scale, hue)
         emission = self._emission(node)
+        if missing:
+            self._notes.add("a medium whose file is missing is left out", name=missing)
+            return None
         return Medium(
             absorption, scattering, lobes, emission, None if grid is None else grid.density
         )
@@ -109,30 +112,35 @@ class Media:
         leave_out(volume, self._notes, sentence)
         return default, default, default
 
-    def _grid(self, node: Node, local: Matrix) -> Grid | None:
-        """Grid of extinction; None: the medium is even, and without end."""
+    def _grid(self, node: Node, local: Matrix) -> tuple[Grid | None, str]:
+        """Grid of extinction, None: the medium is even, and without end; name of a missing file."""
         found = node.find("sigma_t")
         volume = None if found is None else found.value
         if found is not None and isinstance(volume, Node) and volume.plugin in _GRIDS:
             found.take()
-            return self._of_file(volume, local)
+            grid = self._of_file(volume, local)
+            return grid, "" if grid else volume.text("filename")
         if node.plugin == "homogeneous":
-            return None
+            return None, ""
         # Mitsuba's heterogeneous media fill the unit cube of their extinction alone.
         box = volume.transform() if isinstance(volume, Node) else np.eye(4)
         placed = np.linalg.inv(local) @ self._world @ box
-        return Grid(DensityGrid(np.ones((1, 1, 1), np.float32), placed), (1.0, 1.0, 1.0))
+        return Grid(DensityGrid(np.ones((1, 1, 1), np.float32), placed), (1.0, 1.0, 1.0)), ""
 
-    def _of_file(self, volume: Node, local: Matrix) -> Grid:
-        """Grid of a file."""
+    def _of_file(self, volume: Node, local: Matrix) -> Grid | None:
+        """Grid of a file; None: it is missing."""
         volume.use()
         volume.skip("filter_type", "wrap_mode", "accel", "raw", "max_value")
         files = self._context.document.files_of(volume)
         file = files.find(volume.text("filename"), volume.entry)
+        box = volume.flag("use_grid_bbox", False)
+        placing = volume.transform()
+        if file is None:
+            return None
         with asked_by(volume.entry):
             read = vol.read(file)
-        inner = read.transform if volume.flag("use_grid_bbox", False) else np.eye(4)
-        placed = np.linalg.inv(local) @ self._world @ volume.transform() @ inner
+        inner = read.transform if box else np.eye(4)
+        placed = np.linalg.inv(local) @ self._world @ placing @ inner
         values = read.values.mean(axis=3)
         color = (1.0, 1.0, 1.0)
         if read.values.shape[3] == 3:

@@ -20,6 +20,7 @@ from .node import Node
 from .vertex_normals import lie_against, vertex_normals
 
 FILES = ("obj", "ply", "serialized")
+MISSING_MESH = "a mesh whose file is missing is left out"
 #: Attributes that become colours of the mesh.
 _COLORS = ("vertex_color", "face_color")
 
@@ -61,14 +62,16 @@ class MeshFiles:
         self._context = context
         self._known: dict[Wanted, int] = {}
 
-    def mesh(self, node: Node, attribute: str) -> int:
-        """Index of the mesh of a shape.
+    def mesh(self, node: Node, attribute: str) -> int | None:
+        """Index of the mesh of a shape; None, and a note: its file is missing.
 
         Raises:
             InputError: The file is wrong; the message names it.
         """
+        name = node.text("filename")
+        file = self._context.document.files_of(node).find(name, node.entry)
         wanted = Wanted(
-            file=self._context.document.files_of(node).find(node.text("filename"), node.entry),
+            file=file or Path(name),
             plugin=node.plugin,
             number=node.whole("shape_index", 0, 0, 1 << 30),
             flat=node.flag("face_normals", False),
@@ -78,6 +81,9 @@ class MeshFiles:
         )
         if attribute and not wanted.attribute:
             self._context.notes.add(f"the attribute {attribute[:40]!r} of a mesh is left out")
+        if file is None:
+            self._context.notes.add(MISSING_MESH, name=name)
+            return None
         if wanted not in self._known:
             with asked_by(node.entry):
                 self._known[wanted] = self._add(self._read(wanted), wanted)

@@ -83,6 +83,8 @@ class Placing:
     def _curves(self, node: Node) -> None:
         place = self._context.world @ node.transform()
         mesh = add_curves(node, self._context)
+        if mesh is None:
+            return
         name = self._named(node, np.eye(4))
         self._scene.add_instance(mesh, self._material(node, Chart(), place), name=name)
 
@@ -116,7 +118,8 @@ class Placing:
 
     def _read(self, node: Node, attribute: str) -> tuple[int, Matrix] | None:
         if node.plugin in FILES:
-            return self._files.mesh(node, attribute), np.eye(4)
+            found = self._files.mesh(node, attribute)
+            return None if found is None else (found, np.eye(4))
         solid = solid_of(node)
         if solid is None:
             leave_out(node, self._notes, f"a shape {node.plugin[:40]!r} is left out")

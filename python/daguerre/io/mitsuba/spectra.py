@@ -19,6 +19,7 @@ from daguerre.color import srgb
 from daguerre.color.illuminants import blackbody
 from daguerre.color.spectra import rgb_of_emission, rgb_of_reflectance
 from daguerre.errors import InputError
+from daguerre.files.notes import Notes
 from daguerre.scene.materials import Color
 from daguerre.scene.spectrum import Spectrum
 
@@ -36,27 +37,36 @@ PLUGINS = (
     *("rgb", "srgb", "uniform", "regular", "irregular", "d65", "blackbody"),
     *("rawconstant", "srgb_d65", "acromatic"),
 )
-ReadFile = Callable[[str, Entry], bytes]
+ReadFile = Callable[[str, Entry], bytes | None]
+
+
+class _Missing(Exception):
+    """A file of samples that does not exist."""
 
 
 class Spectra:
     """Reads colours and spectra.
 
     Args:
-        read: Reads the file of a name, for an element.
+        read: Reads the file of a name, for an element; None: there is no such file.
+        notes: Receives notes on missing files.
     """
 
-    def __init__(self, read: ReadFile) -> None:
-        self._read = read
+    def __init__(self, read: ReadFile, notes: Notes) -> None:
+        self._read, self._notes = read, notes
 
-    def value(self, one: Property) -> Color | Spectrum:
-        """Colour or spectrum of a property, which is no texture.
+    def value(self, one: Property) -> Color | Spectrum | None:
+        """Colour or spectrum of a property, which is no texture; None, and a note: no such file.
 
         Raises:
             InputError: It is none.
         """
-        made = self._plain(one) if one.tag != "object" else self._node(one.value)
         one.take()
+        try:
+            made = self._plain(one) if one.tag != "object" else self._node(one.value)
+        except _Missing as missing:
+            self._notes.add("a spectrum whose file is missing is left out", name=str(missing))
+            return None
         values = made.values if isinstance(made, Spectrum) else made
         if min(values) < 0:
             one.entry.fail(f"wanted values of at least 0, got {min(values):g}")
@@ -91,7 +101,10 @@ class Spectra:
     def _of_file(self, file: str, entry: Entry) -> Spectrum:
         """Pairs of a wavelength and a value, one on each line."""
         about = entry.about(file)
-        lines = _lines(self._read(file, entry), about)
+        data = self._read(file, entry)
+        if data is None:
+            raise _Missing(file)
+        lines = _lines(data, about)
         pairs = [numbers(line, about, 2) for line in lines if line.split()]
         return sampled([p[0] for p in pairs], [p[1] for p in pairs], about)
 

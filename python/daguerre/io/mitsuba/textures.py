@@ -175,11 +175,12 @@ class Textures:
     ) -> Color | Spectrum:
         if found is None:
             return _triple(default)
-        return self.spectra(found.value if found.tag == "object" else node).value(found)
+        value = self.spectra(found.value if found.tag == "object" else node).value(found)
+        return _triple(default) if value is None else value
 
     def spectra(self, node: Node) -> Spectra:
         """Reader of spectra whose files are named in an object."""
-        return Spectra(self._document.files_of(node).read)
+        return Spectra(self._document.files_of(node).read, self._notes)
 
     def _is_texture(self, found: Property) -> bool:
         return isinstance(found.value, Node) and found.value.plugin not in PLUGINS
@@ -209,7 +210,8 @@ class Textures:
         node.skip("format", "accel", "max_anisotropy", "cache")
         filter_ = node.choice("filter_type", "bilinear", (*_FILTERS,))
         wrap = node.choice("wrap_mode", "repeat", _WRAPS)
-        file = self._document.files_of(node).find(name, entry)
+        files = self._document.files_of(node)
+        file = files.find(name, entry) or files.first(name, entry)
         picture = self.images.picture(str(entry), str(file))
         if picture is None:
             return None
