@@ -11,20 +11,18 @@ from typing import Any
 import bpy
 
 from daguerre import lenses
-from daguerre.analysis.bench import half_image
 from daguerre.camera.ideal import IDEAL
 from daguerre.errors import InputError
 from daguerre.lenses import library
+from daguerre.lenses.checking import SPILL
 from daguerre.lenses.errors import LensError
-from daguerre.lenses.kinds import diagonal_mm
+from daguerre.lenses.image_circle import stated_half_image
 from daguerre.setup.lens import GRANTED
 
 from .reports import told
 
 #: Lenses that a user can choose and that have no prescription.
 PLAIN = ("blender", *IDEAL)
-#: Share by which a film may exceed the image circle.
-SPILL = 0.01
 
 
 @dataclass(frozen=True)
@@ -94,17 +92,13 @@ def _read(name: str, zoom: float) -> Facts:
         stands, fault = lens.at_zoom(zoom) if zoom else lens, ""
     except LensError as error:
         stands, fault = lens, f"Zoom: {error.message.rpartition('zoom: ')[2]}"
-    return Facts(
-        stands, entry.year if entry else None, lens.zoom_range_mm, _circle(lens, entry), fault
-    )
+    return Facts(stands, entry.year if entry else None, lens.zoom_range_mm, _circle(lens), fault)
 
 
-def _circle(lens: lenses.Lens, entry: library.Entry | None) -> float | None:
+def _circle(lens: lenses.Lens) -> float | None:
     """Diameter of the image circle, mm, by the source's words; None: it says nothing."""
-    told_by_format = diagonal_mm(entry) if entry else None
-    if told_by_format or lens.nominal.image_circle_mm:
-        return told_by_format or lens.nominal.image_circle_mm
-    return 2 * half_image(lens, lens.first_order()) if lens.nominal.full_field_deg else None
+    half = stated_half_image(lens, lens.first_order())
+    return None if half is None else 2 * half
 
 
 def warnings(group: Any, reach_mm: float) -> dict[str, str]:
@@ -133,7 +127,7 @@ def _stop(group: Any, facts: Facts) -> tuple[str, str]:
 
 def _film(facts: Facts, reach_mm: float) -> str:
     circle = facts.circle_mm or math.inf
-    if 2 * reach_mm <= (1 + SPILL) * circle:
+    if 2 * reach_mm <= SPILL * circle:
         return ""
     return (
         f"Needs an image circle of {2 * reach_mm:.3g} mm, the lens has {circle:.3g}: dark corners"

@@ -65,6 +65,10 @@ LENSES: dict[str, tuple[Any, str]] = {
         change("surfaces.0.inner_semi_diameter", 50),
         S + "inner_semi_diameter: wanted 0 mm",
     ),
+    "narrower than the source": (
+        change("surfaces.0.widened_from", 50),
+        S + "widened_from: wanted less than the semi-diameter, got 50",
+    ),
     "groups is an object": (change("groups", {}), "groups: wrong type"),
     "group beyond the table": (
         change("groups", [{"surfaces": [0, 99]}]),

@@ -91,3 +91,19 @@ def test_the_focal_length_of_a_straight_picture_is_read_back() -> None:
     with pytest.raises(dg.InputError, match="here: wanted the camera's focal length"):
         straight_focal_px({"camera": {"lens_model": "pinhole"}}, "here")
     assert np.isfinite(setup.world_from_camera).all()
+
+
+@pytest.mark.parametrize(
+    ("given", "notes"),
+    [
+        ({"lens": "sigma-17-40mm-f1.8", "sensor_size": (23.5, 15.6)}, 0),
+        ({"lens": "sigma-17-40mm-f1.8", "sensor_size": (24.6, 16.4)}, 1),
+        ({"lens": GAUSS}, 0),
+    ],
+)
+def test_a_frame_larger_than_the_stated_image_circle_is_noted(
+    given: dict[str, Any], notes: int
+) -> None:
+    said = "larger than the image circle of Sigma 17-40 mm f/1.8 DC Art, 28.2 mm across"
+    setup = resolved(zoom=30.0 if "sigma" in given["lens"] else None, f_stop=8.0, **given)
+    assert sum(said in note for note in setup.notes) == notes

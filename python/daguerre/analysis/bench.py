@@ -19,8 +19,8 @@ from daguerre.lenses import FirstOrder, Lens
 from daguerre.lenses.errors import LensError
 from daguerre.lenses.focus import focused
 from daguerre.lenses.glasses.catalogue import LINE_C, LINE_D, LINE_F
+from daguerre.lenses.image_circle import half_image
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
-from daguerre.lenses.projections import projected
 from daguerre.lenses.setting import By, LensSetting
 
 from .plotted import Sectioned
@@ -208,21 +208,6 @@ def at_film(lens: Lens, film_z: float, field_mm: float) -> Bench:
         field_mm=field_mm,
         order=order,
     )
-
-
-def half_image(lens: Lens, order: FirstOrder) -> float:
-    """Half of the image circle, mm: the nominal circle, or that of the nominal field.
-
-    A fisheye has the smaller of both: its picture may be a circle within its film. A lens with
-    neither has the smaller of the circle of 36 x 24 mm and that of 60 degrees from the axis.
-    """
-    known = []
-    if lens.nominal.image_circle_mm:
-        known.append(0.5 * lens.nominal.image_circle_mm)
-    field, law = lens.nominal.full_field_deg, lens.nominal.projection or "rectilinear"
-    if field and field > 1 and (law != "rectilinear" or (not known and field < 160)):
-        known.append(float(abs(projected(law, order.efl, math.radians(0.5 * field)))))
-    return min(known, default=min(0.5 * math.hypot(36, 24), math.sqrt(3) * abs(order.efl)))
 
 
 def _iris_radius(lens: Lens, order: FirstOrder, f_stop: float) -> float:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 
 from .errors import LensError, reported
+from .image_circle import stated_half_image
 from .lens import DESIGN_WAVELENGTH_NM, Lens
 from .sag import sag
 from .surface import LensSurface
@@ -29,6 +30,8 @@ ENOUGH_LIGHT = 0.6
 #: One of so many draws of each point of the film comes first: most points need no more.
 _EACH = 9
 _RADII = 129
+#: A frame may exceed the stated image circle by this factor.
+SPILL = 1.01
 
 
 def checked(lens: Lens) -> Lens:
@@ -187,7 +190,7 @@ def frame_notes(
     frame_mm: tuple[float, float],
     shift_mm: tuple[float, float],
 ) -> list[str]:
-    """Returns a note on the share of the frame outside the image circle; empty if all is inside.
+    """Returns a note on a frame outside the image circle, real or stated; empty if all is inside.
 
     Raises:
         LensError: The whole frame lies outside.
@@ -207,11 +210,22 @@ def frame_notes(
             "lens-no-light",
         )
     if lit.all():
-        return []
+        return _beyond_stated(lens, frame_mm, frame)
     circle = 2 * float(np.hypot(*film[lit].T).max())
     return [
         f"the image circle of {lens.name} is about {circle:.2g} mm across: "
         f"{100 * (1 - lit.mean()):.2g} % of the frame of {frame} stays dark"
+    ]
+
+
+def _beyond_stated(lens: Lens, frame_mm: tuple[float, float], frame: str) -> list[str]:
+    """Note on a frame that is lit, but larger than the image circle that the source states."""
+    half = stated_half_image(lens, lens.first_order())
+    if half is None or math.hypot(*frame_mm) <= SPILL * 2 * half:
+        return []
+    return [
+        f"the frame of {frame} is larger than the image circle of {lens.name}, "
+        f"{2 * half:.3g} mm across"
     ]
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,9 +109,27 @@ def _heights(lens: Lens, y: float) -> Array:
     (stop,) = (s.semi_diameter or 0.0 for s in lens.surfaces if s.stop)
     angle = np.linspace(-np.pi / 2, np.pi / 2, RIM)
     rim = stop * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    slopes = np.tile(_chief_guess(lens, film), (RIM, 1))
+    return beam_heights(lens, film, rim, _chief_guess(lens, film), (0.0, 0.5, 1.0))
+
+
+def beam_heights(
+    lens: Lens, film: Array, rim: Array, slope: Array, shares: Sequence[float]
+) -> Array:
+    """Largest height at each surface of rays from a film point through points of the stop.
+
+    Args:
+        lens: The lens.
+        film: Film point, (3,), mm.
+        rim: Points of the stop, shape (N, 2), mm.
+        slope: Slope (dx/dz, dy/dz) at the film toward the middle of the stop, about.
+        shares: Steps toward those points, of their distances from the axis; the last is 1.
+
+    Returns:
+        Shape (surfaces,), mm; rays that do not arrive are left out.
+    """
+    slopes = np.tile(slope, (len(rim), 1))
     out = np.zeros(len(lens.surfaces))
-    for share in (0.0, 0.5, 1.0):
+    for share in shares:
         slopes, points, directions = _aimed(lens, film, share * rim, slopes)
         for point, direction in zip(points, directions, strict=True):
             if np.isfinite(point).all():

@@ -414,11 +414,18 @@ def _table(lens: Lens) -> list[str]:
         cells = [
             "plane" if s.radius is None else f"{s.radius:.3f}",
             "" if s.thickness is None else f"{s.thickness:.3f}",
-            "" if s.semi_diameter is None else f"{s.semi_diameter:.3f}" + "*" * s.derived,
+            "" if s.semi_diameter is None else f"{s.semi_diameter:.3f}" + _mark(s),
         ]
         mark = "stop" if s.stop else ""
         numbers = " ".join(f"{cell:>10}" for cell in cells)
         rows.append(f"{i:3} {mark:5} {numbers}  {s.glass:{wide}}  {s.dispersion or ''}".rstrip())
     if any(s.derived for s in lens.surfaces):
         rows.append("* not stated by the source; derived from rays")
+    if any(s.widened_from for s in lens.surfaces):
+        rows.append("+ wider than in the source, which blocks light of the corner")
     return rows
+
+
+def _mark(surface: LensSurface) -> str:
+    """Mark of a semi-diameter that is not the source's."""
+    return "*" * surface.derived + "+" * bool(surface.widened_from)

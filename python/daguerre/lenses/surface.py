@@ -49,6 +49,8 @@ class LensSurface:
         ripple: Grooves left by grinding: RMS height (nm), period (um), seed; height 0: none.
         derived: Whether the semi-diameter was derived by tracing rays, not given by the source.
         dispersion: Rule that gave the glass that follows its dispersion; None: air, or unknown.
+        widened_from: Semi-diameter in the source, which blocks a corner's light even stopped down;
+            None: the semi-diameter is the source's.
     """
 
     kind: str
@@ -70,6 +72,7 @@ class LensSurface:
     ripple: tuple[float, float, int] = (0.0, 0.0, 0)
     derived: bool = False
     dispersion: DispersionRule | None = None
+    widened_from: float | None = None
 
     def replaced(self, **changes: Any) -> LensSurface:
         """Returns a copy with some fields changed."""

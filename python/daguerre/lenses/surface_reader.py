@@ -55,6 +55,7 @@ def _surface(item: Item, gap: float | None, origin: Origin, *, last: bool) -> Le
         coating="" if coating is None else coating.choice(COATINGS),
         ripple=_ripple(item),
         dispersion=glass.rule,
+        widened_from=_widened_from(item, semi_diameter),
     )
 
 
@@ -101,6 +102,13 @@ def _semi_diameter(item: Item, radius: float | None) -> float | None:
         item.need("semi_diameter").fail(
             f"wanted at most the radius, {abs(radius):g} mm, got {value:g}"
         )
+    return value
+
+
+def _widened_from(item: Item, semi_diameter: float | None) -> float | None:
+    value = number(item, "widened_from", above=0)
+    if value is not None and (semi_diameter is None or value >= semi_diameter):
+        item.need("widened_from").fail(f"wanted less than the semi-diameter, got {value:g}")
     return value
 
 

@@ -10,6 +10,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
+from daguerre.lenses.image_circle import half_image as stated_half
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM, Lens
 
 from .lens_outline import Points, clear_heights, element_outlines
@@ -75,13 +76,10 @@ def section(
         half_image: Radius of the image circle, mm; default: the lens's, else that of 36 x 24 mm.
         light: Light of up to three points of the meridional plane; default: of three fields.
     """
-    # The bench, a layer above, aims the rays.
-    from daguerre.analysis.bench import half_image as stated
-
     heights = [max(pair) for pair in clear_heights(lens)]
     order = lens.first_order()
     image_z = lens.image_z if film_z is None else film_z
-    half = half_image or stated(lens, order)
+    half = half_image or stated_half(lens, order)
     top = 1.08 * max(max(heights), half)
     length = image_z - min(0.0, float(lens.vertices[0]))
     left, right = -0.3 * length, image_z + 0.04 * length

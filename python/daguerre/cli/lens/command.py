@@ -155,6 +155,7 @@ def _finite(value: Any) -> Any:
 def _print(item: Lens, wavelength: float) -> None:
     from daguerre.lenses.agreement import agreement
     from daguerre.lenses.focusing import focusing
+    from daguerre.lenses.image_circle import stated_half_image
 
     try:
         order = asdict(item.first_order(wavelength))
@@ -165,6 +166,8 @@ def _print(item: Lens, wavelength: float) -> None:
     for key, value in order.items():
         if key != "wavelength_nm":
             console.show(f"  {key.replace('_', ' '):22} {_show(value)}")
+    if (half := stated_half_image(item, item.first_order())) is not None:
+        console.show(f"  {'image circle':22} {_show(2 * half)}")
     console.show(f"focusing: {focusing(item)}")
     if (product := item.product) is not None:
         console.show(f"the product: {product}")
@@ -178,9 +181,10 @@ def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:
     from daguerre.lenses.focusing import focusing
 
     found = agreement(item)
-    names = ("kind", "radius", "thickness", "semi_diameter", "glass", "stop", "derived")
+    names = ("kind", "radius", "thickness", "semi_diameter", "glass", "stop")
+    marks = ("derived", "widened_from")
     surfaces = [
-        {name: getattr(s, name) for name in names}
+        {name: getattr(s, name) for name in names + marks}
         | {"dispersion": None if s.dispersion is None else asdict(s.dispersion)}
         for s in item.surfaces
     ]
