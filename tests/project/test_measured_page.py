@@ -69,6 +69,14 @@ def test_rows_become_figures_and_tables(tools: Any) -> None:
     assert "for 2 real lenses," in tools["tables"].sentence(rows)
 
 
+def test_fitted_quantities_are_marked(tools: Any) -> None:
+    """The travel of a focusing group of this zoom is fitted."""
+    rows = made_up()
+    rows["magnification"][0]["lens"] = name = "canon-ef-11-24mm-f4"
+    assert tools["kept"].fitted(name) == ["magnification"]
+    assert tools["tables"].texts(rows)["magnification"].endswith("| fitted |")
+
+
 def made_up() -> dict[str, Any]:
     """Rows of the bench: a product, and a relative that is farther off."""
     curve = {"height_mm": [10.0, 20.0], "measured": [0.0, -1.0], "predicted": [0.0, -2.0]}

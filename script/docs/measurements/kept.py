@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -55,8 +56,12 @@ def median(values: Iterable[float]) -> float | None:
     return float(f"{np.median(known):.3g}") if known else None
 
 
+@cache
 def fitted(name: str) -> list[str]:
-    """Quantities that the lens's file says were fitted to its product."""
-    data = lenses.load(name).data
-    near = any(one.get("fitted") for one in data.get("configurations", ()))
-    return ["magnification"] if near else []
+    """Quantities to which the lens's file says that a part was fitted."""
+    found = set()
+    for member, value in lenses.load(name).data.items():
+        parts = value if isinstance(value, list) else [value]
+        if any(isinstance(part, dict) and part.get("fitted") for part in parts):
+            found.add("magnification" if member == "configurations" else "vignetting")
+    return sorted(found)

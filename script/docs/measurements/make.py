@@ -23,8 +23,9 @@ import kept  # noqa: E402
 import measured  # noqa: E402
 import plots  # noqa: E402
 import tables  # noqa: E402
-from measured_products import Calibration, calibrations, closest_focus  # noqa: E402
+from measured_products import Calibration, calibrations  # noqa: E402
 
+from daguerre import lenses  # noqa: E402
 from daguerre.errors import DaguerreError  # noqa: E402
 from daguerre.lenses.agreement import FILE  # noqa: E402
 
@@ -36,7 +37,17 @@ BLOCK = r"(<!-- measured {name}: by script/docs/make-measured -->\n).*?(<!-- end
 def computed(folder: Path | None) -> dict[str, Any]:
     """Rows of the bench, with their source."""
     found, source = calibrations(folder)
-    return {"source": source, **measured.rows([*map(ends, found)], closest_focus(folder), ())}
+    return {"source": source, **measured.rows([*map(ends, found)], stated(), ())}
+
+
+def stated() -> list[dict[str, Any]]:
+    """Closest focus and magnification of products, from the lens files that have both."""
+    products = {name: lenses.load(name).product for name in lenses.names()}
+    return [
+        {"lens": name, "closest_focus_m": one.closest_focus_m, "magnification": one.magnification}
+        for name, one in products.items()
+        if one is not None and one.closest_focus_m and one.magnification
+    ]
 
 
 def ends(one: Calibration) -> Calibration:

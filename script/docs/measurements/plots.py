@@ -6,6 +6,7 @@ import sys
 from typing import Any
 
 import numpy as np
+from kept import fitted
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
@@ -26,6 +27,8 @@ SIX = {
 }
 SHOWN = ("distortion", "colour", "vignetting")
 GOLD = "#b7791f"
+TENTHS = (0.1, 0.2, 0.5, 1)
+Dot = tuple[float, float, str]  # measured, predicted, name of the lens
 #: Letters of the overview are legible where the page is as narrow as a phone.
 LARGE: Any = {
     **SINGLE,
@@ -62,44 +65,51 @@ def at_focal_length(name: str, focal_mm: float, rows: Row) -> dict[str, list[Row
 def overview(rows: Row) -> bytes:
     """Values at the corner of every setting, and magnifications."""
     seen = {name: [r for r in rows[name] if "error" not in r] for name in (*SHOWN, "magnification")}
-    light = {
-        k: [r["curve"] for r in seen["vignetting"] if r["kind"] == k] for k in ("open", "stopped")
-    }
-    near = [
-        {"measured": [r["magnification"]], "predicted": [r["predicted"]]}
-        for r in seen["magnification"]
-    ]
+    light = {k: [r for r in seen["vignetting"] if r["kind"] == k] for k in ("open", "stopped")}
+    near = [(r["magnification"], r["predicted"], r["lens"]) for r in seen["magnification"]]
     with rc_context(LARGE):
         figure = Figure(figsize=(6.4, 6.4), layout="constrained")
         figure.get_layout_engine().set(w_pad=0.12, h_pad=0.12)
-        panels = figure.subplots(2, 2).ravel()
-        dots(panels[0], "Distortion, %", {"": (INK, [r["curve"] for r in seen["distortion"]])})
-        shifts = {
-            n: (c, [r[f"{n}_curve"] for r in seen["colour"]])
-            for n, c in (("red", RED), ("blue", BLUE))
-        }
-        dots(panels[1], "Lateral colour, px", shifts)
+        (shape, colour), (vignetting, magnified) = figure.subplots(2, 2)
+        dots(shape, "", {"": (INK, corners(seen["distortion"]))})
+        named = (("red", RED), ("blue", BLUE))
+        dots(colour, "", {n: (c, corners(seen["colour"], f"{n}_curve")) for n, c in named})
         stops = {"wide open": (INK, light["open"]), "stopped down": (GOLD, light["stopped"])}
-        dots(panels[2], "Light at the corner, EV", stops)
-        for axes in panels[:3]:
-            axes.set_xlabel("measured")
-            axes.locator_params(nbins=4)
-        panels[3].set(xscale="log", yscale="log", xlabel="stated by the maker")
-        dots(panels[3], "Closest magnification", {"": (INK, near)})
-        for axis in (panels[3].xaxis, panels[3].yaxis):
-            axis.set_major_formatter("{x:g}")
+        dots(vignetting, "vignetting", {n: (c, corners(found)) for n, (c, found) in stops.items()})
+        magnified.set(xscale="log", yscale="log")
+        for axis in (magnified.xaxis, magnified.yaxis):
+            axis.set_ticks(TENTHS, labels=map(str, TENTHS))
+            axis.set_ticks([], minor=True)
+        dots(magnified, "magnification", {"": (INK, near)})
+        for axes, title in (
+            (shape, "Distortion, %"),
+            (colour, "Lateral colour, px"),
+            (vignetting, "Light at the corner, EV"),
+            (magnified, "Closest magnification"),
+        ):
+            axes.set(title=title, xlabel="measured", ylabel="predicted")
+        magnified.set_xlabel("stated by the maker")
         return saved(figure, "svg", "Predicted against measured")
 
 
-def dots(axes: Any, title: str, groups: dict[str, tuple[str, list[Row]]]) -> None:
-    """Measured values across, predicted up; on the line both are the same."""
-    for name, (color, curves) in groups.items():
-        at = [[c[k][-1] for c in curves] for k in ("measured", "predicted")]
-        axes.plot(*at, "o", ms=5, mew=0, alpha=0.5, color=color, label=name)
+def corners(found: list[Row], curve: str = "curve") -> list[Dot]:
+    """Values of curves at the corner."""
+    return [(r[curve]["measured"][-1], r[curve]["predicted"][-1], r["lens"]) for r in found]
+
+
+def dots(axes: Any, quantity: str, groups: dict[str, tuple[str, list[Dot]]]) -> None:
+    """Measured values across, predicted up, rings where fitted; on the line both are the same."""
+    for name, (color, found) in groups.items():
+        axes.plot([], [], "o", ms=5, mew=0, alpha=0.5, color=color, label=name)
+        for measured, predicted, lens in found:
+            look = {"mfc": "none"} if quantity in fitted(lens) else {"mew": 0}
+            axes.plot(measured, predicted, "o", ms=5, alpha=0.5, color=color, **look)
     low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
     ends = float(low.min()), float(high.max())
     axes.plot(ends, ends, color="#888888", lw=1, zorder=1)
-    axes.set(xlim=ends, ylim=ends, aspect="equal", title=title, ylabel="predicted")
+    axes.set(xlim=ends, ylim=ends, aspect="equal")
+    if axes.get_xscale() == "linear":
+        axes.locator_params(nbins=4)
     if len(groups) > 1:
         axes.legend(loc="upper left")
 
