@@ -29,8 +29,10 @@ def test_line_of_a_relative_without_light() -> None:
 
 
 def test_line_says_what_was_fitted() -> None:
-    found = Agreement("A", open_ev=0.1, magnification=0.2, stated=0.2, fitted=("magnification",))
-    assert str(found).endswith("light 0.10 EV open, magnification 0.20 (maker 0.20) (fitted)")
+    fitted = ("magnification", "vignetting")
+    found = str(Agreement("A", open_ev=0.1, magnification=0.2, stated=0.21, fitted=fitted))
+    light, near = "light 0.10 EV open (mount fitted)", "(maker 0.21, travel fitted)"
+    assert found.endswith(f": {light}, magnification 0.20 {near}")
 
 
 def test_command_prints_it(capsys: pytest.CaptureFixture[str]) -> None:

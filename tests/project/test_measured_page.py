@@ -74,7 +74,7 @@ def test_fitted_quantities_are_marked(tools: Any) -> None:
     rows = made_up()
     rows["magnification"][0]["lens"] = name = "canon-ef-11-24mm-f4"
     assert tools["kept"].fitted(name) == ["magnification"]
-    assert tools["tables"].texts(rows)["magnification"].endswith("| fitted |")
+    assert tools["tables"].texts(rows)["magnification"].endswith("| travel fitted |")
 
 
 def made_up() -> dict[str, Any]:

@@ -27,7 +27,8 @@ class Agreement:
         open_ev: Light wide open, RMS over the frame, EV.
         stopped_ev: Light at the corner, stopped down 3.5 x or more, EV.
         magnification, stated: At the product's closest focus: the lens's, and its maker's figure.
-        fitted: Quantities that were fitted to the product: ``vignetting``, ``magnification``.
+        fitted: Quantities of a part that was fitted to the product: ``vignetting`` of a mount,
+            ``magnification`` of the travel of focusing groups.
     """
 
     product: str
@@ -42,23 +43,25 @@ class Agreement:
 
     def __str__(self) -> str:
         product = "the measured product" if self.product == "A" else "a measured relative"
-        light = _joined(_off(self.open_ev, "EV open"), _off(self.stopped_ev, "EV stopped down"))
+        stops = (self.open_ev, "EV open"), (self.stopped_ev, "EV stopped down")
         parts = (
             _off(self.distortion_px, "px", "distortion "),
             _off(self.red_px, "px", "red "),
             _off(self.blue_px, "px", "blue "),
-            self._marked("vignetting", f"light {light}" if light else ""),
-            self._marked("magnification", self._magnified()),
+            self._lit(_joined(*(_off(*stop) for stop in stops))),
+            self._magnified(),
         )
         return f"Differences from {product}: {_joined(*parts)}"
+
+    def _lit(self, light: str) -> str:
+        marked = " (mount fitted)" if "vignetting" in self.fitted else ""
+        return f"light {light}{marked}" if light else ""
 
     def _magnified(self) -> str:
         if self.magnification is None or self.stated is None:
             return ""
-        return f"magnification {self.magnification:.2f} (maker {self.stated:.2f})"
-
-    def _marked(self, quantity: str, text: str) -> str:
-        return f"{text} (fitted)" if text and quantity in self.fitted else text
+        marked = ", travel fitted" if "magnification" in self.fitted else ""
+        return f"magnification {self.magnification:.2f} (maker {self.stated:.2f}{marked})"
 
 
 def _off(value: float | None, unit: str, name: str = "") -> str:

@@ -51,9 +51,9 @@ def agreement(lens: str, rows: Row) -> Row:
 
 
 def median(values: Iterable[float]) -> float | None:
-    """Median, to three digits; None without values."""
+    """Median, to four digits; None without values."""
     known = list(values)
-    return float(f"{np.median(known):.3g}") if known else None
+    return float(f"{np.median(known):.4g}") if known else None
 
 
 @cache

@@ -88,7 +88,7 @@ def light(rows: Row) -> str:
         worst = max(same, key=lambda r: abs(r["corner_ev"]), default=None)
         lens, mm = named(row)
         if "vignetting" in fitted(row["lens"]):
-            lens += " fitted"
+            lens += ", mount fitted"
         body.append((lens, mm, *shade(row, row["ev"]), *shade(worst, None)))
     return table(("lens", "mm", "open, f/", *VALUES, "stopped, f/", *VALUES), body)
 
@@ -107,7 +107,7 @@ def magnification(rows: Row) -> str:
     for row in sorted((r for r in rows["magnification"] if "error" not in r), key=key):
         stated, predicted, at_m = row["magnification"], row["predicted"], row["at_m"]
         how = "" if at_m < 1.01 * row["closest_focus_m"] else f"at {at_m:.2f} m, its nearest"
-        how = "fitted" if "magnification" in fitted(row["lens"]) else how
+        how = "travel fitted" if "magnification" in fitted(row["lens"]) else how
         cells = f"{row['closest_focus_m']:g}", f"{stated:.2f}", f"{predicted:.2f}"
         body.append((f"`{row['lens']}`", *cells, f"{100 * (predicted / stated - 1):+z.0f} %", how))
     return table(("lens", "closest focus, m", "maker", "predicted", "difference", ""), body)
