@@ -21,7 +21,7 @@ from daguerre.setup.pose import mounted
 FloatArray = NDArray[np.float64]
 #: Conversion between camera frames of calibrations (y down, z ahead) and Daguerre's (y up, z back).
 FLIP = np.diag((1.0, -1.0, -1.0, 1.0))
-#: Models whose picture must be defined in all corners, and polynomial fisheyes, whose need not be.
+#: Models of pinholes with distortion, and polynomial fisheyes.
 WHOLE, FISHEYES = ("opencv", "opencv_inverse"), ("kannala_brandt", "omni")
 #: Angle from the axis, degrees, from which on a picture is a circle that may end within the frame.
 SIDEWAYS = 90.0
@@ -127,8 +127,8 @@ def projection(where: str, *values: Any) -> Projection:
 def check_field(made: Projection, where: str) -> None:
     """Checks that the polynomial of a model does not fold within the picture.
 
-    A fisheye may leave the corners dark, so it is checked up to the nearest edge only. It is not
-    checked if it sees 90 degrees and more, as its image circle may then lie within the picture.
+    Corners may stay dark, so it is checked up to the nearest edge only. A fisheye is not checked if
+    it sees 90 degrees and more, as its image circle may then lie within the picture.
 
     Raises:
         InputError: The model folds within the picture.
@@ -143,11 +143,11 @@ def check_field(made: Projection, where: str) -> None:
             f"{where}: {made.model}: pixel ({u:.4g}, {v:.4g}) sees nothing: the distortion "
             f"folds over within the picture"
         )
+    reach = min(x, y, width - 1 - x, height - 1 - y)
     if made.model in WHOLE and dark.any():
-        reach = max(math.hypot(a - x, b - y) for a in (0, width - 1) for b in (0, height - 1))
-        what = "farthest corner"
+        if fold >= reach:
+            return
     elif made.model in FISHEYES and math.isfinite(fold):
-        reach, what = min(x, y, width - 1 - x, height - 1 - y), "nearest edge"
         last = made.unproject([[x + 0.999 * fold * math.sqrt(fx / fy), y]])[0]
         angle = math.degrees(math.acos(min(max(last[2], -1), 1)))
         if fold >= reach or math.isnan(angle) or angle >= SIDEWAYS:
@@ -156,8 +156,8 @@ def check_field(made: Projection, where: str) -> None:
         return
     raise InputError(
         f"{where}: {made.model}: the radial polynomial folds at {fold:.4g} px from the principal "
-        f"point ({angle:.4g} degrees); it must not fold up to the {what} of the picture, at "
-        f"{reach:.4g} px"
+        f"point ({angle:.4g} degrees); it must not fold up to the nearest edge of the picture, "
+        f"at {reach:.4g} px"
     )
 
 
@@ -166,7 +166,8 @@ def field_notes(made: Projection) -> list[str]:
     notes = []
     (fx, fy), (width, height), (x, y) = made.focal, made.size, made.center
     ends = np.array([[0, y], [width - 1, y], [x, 0], [x, height - 1]])
-    if made.model in FISHEYES and not np.isfinite(made.unproject(ends)).all():
+    ends = _border(width, height) if made.model in WHOLE else ends
+    if made.model in (*WHOLE, *FISHEYES) and not np.isfinite(made.unproject(ends)).all():
         fold = made.core.largest_radius * math.sqrt(fx * fy)
         if math.isfinite(fold):
             notes.append(

@@ -1,9 +1,10 @@
 """Kalibr's camera chains: several cameras, each of which stands by the one before it.
 
 The conventions are OpenCV's. ``T_cn_cnm1`` takes points of the camera before into this one's frame,
-so a camera stands, seen from the first, at the inverse of the product of them all. The time of the
-IMU is that of a camera and ``timeshift_cam_imu``: of two pictures with the same stamp that of the
-camera with the larger shift was taken later.
+so a camera stands, seen from the first, at the inverse of the product of them all. It follows also
+from the poses of two cameras by the IMU, ``T_cam_imu`` or its inverse ``T_imu_cam``. The time of
+the IMU is that of a camera and ``timeshift_cam_imu``: of two pictures with the same stamp that of
+the camera with the larger shift was taken later.
 
 Source: Kalibr's wiki, "YAML formats" and "Supported models".
 """
@@ -38,6 +39,8 @@ MODELS = {
     ("ds", "none"): "double_sphere",
     ("eucm", "none"): "eucm",
 }
+#: Entries of poses that differ by more disagree.
+_AGREE = 1e-3
 
 
 @guarded
@@ -65,15 +68,45 @@ def read_kalibr(source: Source) -> dict[str, Calibration]:
     shifts = [root.need(str(name)).number_of("timeshift_cam_imu", 0.0) for name in names]
     for i, name in enumerate(map(str, names)):
         item = root.need(name)
+        notes: list[str] = []
+        _camera_from_imu(item)  # checked, also where it is not used
         if i > 0:
-            camera_from_first = rigid(item.need("T_cn_cnm1")) @ camera_from_first
-        if (imu := item.get("T_cam_imu")) is not None:
-            rigid(imu)
+            before = root.need(str(names[i - 1]))
+            camera_from_first = _from_before(item, before, notes) @ camera_from_first
         stands = FLIP @ np.linalg.inv(camera_from_first) @ FLIP
         found[name] = Calibration(
-            *(_projection(item), name, stands if i else np.eye(4)), delay_s=shifts[i] - shifts[0]
+            *(_projection(item), name, stands if i else np.eye(4)),
+            notes=tuple(notes),
+            delay_s=shifts[i] - shifts[0],
         )
     return found
+
+
+def _from_before(item: Item, before: Item, notes: list[str]) -> FloatArray:
+    """Pose of a camera seen from the one before: as given, else by way of the IMU."""
+    chained = item.get("T_cn_cnm1")
+    here, there = _camera_from_imu(item), _camera_from_imu(before)
+    by_imu = None if here is None or there is None else here @ np.linalg.inv(there)
+    if chained is not None:
+        pose = rigid(chained)
+        if by_imu is not None and np.abs(pose - by_imu).max() > _AGREE:
+            off = float(np.linalg.norm(pose[:3, 3] - by_imu[:3, 3])) * 1e3
+            notes.append(
+                f"{item.key}: T_cn_cnm1 and the poses of the IMU differ, by {off:.3g} mm: took "
+                "T_cn_cnm1"
+            )
+        return pose
+    if by_imu is None:
+        item.fail("missing: T_cn_cnm1, or T_cam_imu or T_imu_cam of this camera and the one before")
+    return np.asarray(by_imu, np.float64)
+
+
+def _camera_from_imu(item: Item) -> FloatArray | None:
+    """Pose that takes points of the IMU into the camera's frame; None: it is not given."""
+    if (pose := item.get("T_cam_imu")) is not None:
+        return rigid(pose)
+    inverse = item.get("T_imu_cam")
+    return None if inverse is None else np.asarray(np.linalg.inv(rigid(inverse)), np.float64)
 
 
 def _projection(item: Item) -> Projection:

@@ -16,7 +16,7 @@ from daguerre.files.json_item import Item
 from daguerre.files.source import Source
 
 from .calibration import FLIP, Calibration, FloatArray, projection
-from .opencv import coefficients, matrix_of
+from .opencv import COUNTS, coefficients, matrix_of
 from .source import camera_matrix, choice, first, load, matrix, needed, row
 from .stereo import rectified_of, rotation
 
@@ -25,10 +25,13 @@ Numbers = tuple[str, Pair, Pair, tuple[float, ...]]
 PROJECTION = ("projection_matrix", "P", "p")
 OFFSETS, SIDES = ("x_offset", "y_offset"), ("width", "height")
 
+COEFFICIENTS = ("distortion_coefficients", "D", "d")
+#: Largest number of coefficients of plumb_bob.
+_MOST_OF_PLUMB_BOB = 5
 #: Name -> Daguerre's model, and allowed numbers of coefficients.
 MODELS = {
-    "plumb_bob": ("opencv", (0, 4, 5)),
-    "rational_polynomial": ("opencv", (8, 12, 14)),
+    "plumb_bob": ("opencv", COUNTS),
+    "rational_polynomial": ("opencv", COUNTS),
     "equidistant": ("kannala_brandt", (4,)),
     "fisheye": ("kannala_brandt", (4,)),
 }
@@ -57,6 +60,8 @@ def read_ros(source: Source, *, rectified: bool = False) -> Calibration:
     made = projection(root.file, model, size, focal, principal, values)
     name = root.get("camera_name")
     stands = _rig_from_camera(root, rectified=rectified)
+    if not rectified:
+        notes += _length_notes(root, len(values))
     return Calibration(made, "" if name is None else name.text(), stands, notes=notes)
 
 
@@ -65,8 +70,27 @@ def _raw(root: Item) -> Numbers:
     focal, principal = camera_matrix(needed(root, "a camera matrix", "camera_matrix", "K", "k"))
     named = choice(needed(root, "a model", "distortion_model"), MODELS)
     model, counts = MODELS[named]
-    values = row(needed(root, "coefficients", "distortion_coefficients", "D", "d"), counts)
+    found = needed(root, "coefficients", *COEFFICIENTS)
+    # Some drivers write a shape that is not that of the numbers.
+    data = found.need("data") if isinstance(found.value, dict) else found
+    values = row(data, counts)
     return model if values else "rectilinear", focal, principal, values
+
+
+def _length_notes(root: Item, count: int) -> tuple[str, ...]:
+    """Notes on coefficients whose number is not that of their model or shape."""
+    notes = []
+    if root.need("distortion_model").value == "plumb_bob" and count > _MOST_OF_PLUMB_BOB:
+        notes.append(f"plumb_bob has {count} coefficients: they are read as rational_polynomial")
+    found = needed(root, "coefficients", *COEFFICIENTS)
+    if isinstance(found.value, dict):
+        shape = [found.need(name).integer(0, 4096) for name in ("rows", "cols")]
+        if shape[0] * shape[1] != count:
+            notes.append(
+                f"{found.key}: {shape[0]} x {shape[1]} by its rows and cols, with {count} numbers: "
+                "all numbers count"
+            )
+    return tuple(notes)
 
 
 def _rectified(root: Item) -> Numbers:
