@@ -253,3 +253,13 @@ def test_the_loupe_tells_the_distance() -> None:
                 one.step()
             found = one.values[-1]["distance_m"]
             assert (math.inf if found is None else found) == pytest.approx(wanted, abs=1e-3)
+
+
+# What moves
+
+
+def test_a_macro_lens_that_moves_as_a_whole_says_so_when_it_is_near() -> None:
+    whole = Dials().turned({"lens": "canon-ef-100mm-f2.8-macro"})
+    for distance, said in (("1", 1), ("6", 0)):
+        warnings = readings_of(drawn(stage(), whole.turned({"focus_distance": distance})))
+        assert sum("focuses as a whole" in text for text in warnings["warnings"]) == said

@@ -125,6 +125,7 @@ def set_up(framing: Framing, lens: lenses.Lens, model: str) -> ResolvedLens:
     drawn = _traced(framing, model, sharp) if chosen.traced else _ideal(framing, model, sharp, film)
     offset = (sharp.film_z - sharp.order.entrance_pupil.z) * tilt.cosine(camera.tilt)
     fit = drawn.fit
+    whole = whole_lens_note(lens, (sharp.order.back_focal_point - sharp.film_z) / sharp.order.efl)
     return ResolvedLens(
         core=drawn.core,
         model=model if fit is None or fit.used else "exact",
@@ -141,8 +142,9 @@ def set_up(framing: Framing, lens: lenses.Lens, model: str) -> ResolvedLens:
             transmittance=chosen.transmittance,
             h0=drawn.h0,
             fit=fit,
+            whole=whole,
         ),
-        notes=(*found.notes, *lens.notes, *_notes(camera, chosen, sharp), *drawn.notes),
+        notes=(*found.notes, *lens.notes, *_notes(camera, chosen, whole), *drawn.notes),
     )
 
 
@@ -154,7 +156,7 @@ def _chosen(camera: Camera, lens: lenses.Lens, model: str) -> _Chosen:
     return _Chosen(lens, model, order, transmittance, f_stop)
 
 
-def _notes(camera: Camera, chosen: _Chosen, sharp: _InFocus) -> list[str]:
+def _notes(camera: Camera, chosen: _Chosen, whole: str | None) -> list[str]:
     """Notes on zoom, focusing, light lost in the glass, and squeeze."""
     notes = []
     lens, squeeze = chosen.lens, chosen.squeeze
@@ -164,9 +166,8 @@ def _notes(camera: Camera, chosen: _Chosen, sharp: _InFocus) -> list[str]:
             f"{lens.name} is a zoom lens of {short_end:.4g} to {long_end:.4g} mm, set to "
             f"{lens.zoom_mm:.4g} mm"
         )
-    magnification = (sharp.order.back_focal_point - sharp.film_z) / sharp.order.efl
-    if moved := whole_lens_note(lens, magnification):
-        notes.append(moved)
+    if whole is not None:
+        notes.append(whole)
     if camera.t_stop is not None:
         notes.append(
             f"T/{camera.t_stop:.3g} of {lens.name} is f/{chosen.f_stop:.3g}: the glass "

@@ -44,6 +44,7 @@ class Glass:
         transmittance: Share of the light on the axis that the glass transmits.
         h0: Illuminance on the axis by a world of 1 cd/m2, lux.
         fit: Quality of the polynomials, if the model has them.
+        whole: Note that it focuses as a whole although its product does not; None: no need.
     """
 
     lens: Lens
@@ -53,6 +54,7 @@ class Glass:
     transmittance: float
     h0: float
     fit: FitQuality | None = None
+    whole: str | None = None
 
 
 @dataclass(frozen=True)

@@ -97,12 +97,14 @@ def _rounded_up(value: float) -> float:
 
 
 def _warnings(drawn: Drawn) -> list[str]:
-    """Warnings as the command line gives them."""
+    """Warnings as the command line gives them, and notes that a turn of a ring can bring."""
     session, chosen = drawn.session, drawn.shot.chosen
+    glass = session.prepared.setup.lens.glass
+    whole = [glass.whole] if glass is not None and glass.whole is not None else []
     unlit = [] if lit(session.scene) else [UNLIT]
     dim = [chosen.warning] if chosen is not None and chosen.warning else []
     alone = [drawn.note] if drawn.note else []
-    return [*camera_warnings(session.camera), *unlit, *session.warnings, *dim, *alone]
+    return [*camera_warnings(session.camera), *unlit, *session.warnings, *whole, *dim, *alone]
 
 
 def _meter(drawn: Drawn) -> dict[str, float] | None:
