@@ -1,4 +1,4 @@
-"""Reads COLMAP's text models: ``cameras.txt``, and ``images.txt`` with a pose for each picture.
+"""Reads COLMAP's models: ``cameras``, and ``images`` with a pose for each picture, text or binary.
 
 COLMAP has the upper left corner of the picture at (0, 0), so **pixel centres are at halves**,
 unlike in most other formats here. Its camera frame is OpenCV's, and a pose maps world points into
@@ -21,7 +21,9 @@ from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files.reading import not_utf8, reading, size_of
 
+from . import colmap_bin
 from .calibration import FLIP, Calibration, FloatArray, projection
+from .colmap_rows import MOST, CameraRow, ImageRow
 
 #: Largest file; most of ``images.txt`` are points, which are skipped.
 MAX_BYTES = 1 << 30
@@ -45,15 +47,17 @@ def is_colmap(source: object) -> bool:
     if not isinstance(source, str | os.PathLike):
         return False
     path = Path(source)
-    return path.is_dir() or path.name in ("cameras.txt", "images.txt")
+    return path.is_dir() or path.name in (
+        *("cameras.txt", "images.txt", "cameras.bin", "images.bin"),
+    )
 
 
 @guarded
 def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[str, Calibration]:
-    """Reads the pictures of a model by name; without ``images.txt`` the cameras by number.
+    """Reads the pictures of a model by name; without a file of images the cameras by number.
 
     Args:
-        source: Folder of the model.
+        source: Folder of the model, with ``cameras.txt`` or else ``cameras.bin``.
         unit_m: Length of the model's unit, m, which COLMAP does not know.
 
     Raises:
@@ -61,23 +65,32 @@ def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[
     """
     path = Path(source)
     folder = path if os.path.isdir(path) else path.parent  # noqa: PTH112
-    cameras = {}
-    for where, words in _lines(folder / "cameras.txt"):
-        name, made = _camera(where, words)
-        if name in cameras:
-            raise InputError(f"{where}: camera {name} appears twice")
-        cameras[name] = made
+    suffix = next((s for s in (".txt", ".bin") if (folder / f"cameras{s}").exists()), None)
+    if suffix is None:
+        raise InputError(
+            f"{folder / 'cameras.txt'}: no such file; wanted COLMAP's cameras.txt or cameras.bin"
+        )
+    text = suffix == ".txt"
+    cameras: dict[str, Projection] = {}
+    listed = folder / f"cameras{suffix}"
+    for camera in _cameras_of_text(listed) if text else colmap_bin.cameras(listed, MODELS):
+        if camera.name in cameras:
+            raise InputError(f"{camera.where}: camera {camera.name} appears twice")
+        cameras[camera.name] = _projection(camera)
     if not cameras:
-        raise InputError(f"{folder / 'cameras.txt'}: no cameras")
-    images = folder / "images.txt"
+        raise InputError(f"{listed}: no cameras")
+    images = folder / f"images{suffix}"
     if not images.exists():
         return {f"camera{name}": Calibration(made) for name, made in cameras.items()}
     found: dict[str, Calibration] = {}
-    for where, words in _lines(images, every=2):
-        one = _image(where, words, cameras, unit_m)
-        if one.name in found:
-            raise InputError(f"{where}: picture {short(one.name)} appears twice")
-        found[one.name] = one
+    for image in _images_of_text(images) if text else colmap_bin.images(images):
+        if image.name in found:
+            raise InputError(f"{image.where}: picture {short(image.name)} appears twice")
+        if image.camera not in cameras:
+            raise InputError(
+                f"{image.where}: wanted a CAMERA_ID of {listed.name}, got {short(image.camera)}"
+            )
+        found[image.name] = _calibration(image, cameras[image.camera], unit_m)
     if not found:
         raise InputError(f"{images}: no pictures")
     return found
@@ -97,29 +110,45 @@ def _lines(path: Path, every: int = 1) -> Iterator[tuple[str, list[str]]]:
                     yield f"{path}: line {number}", line.split()
                 count += 1
     except UnicodeDecodeError as error:
-        raise InputError(
-            f"{path}: {not_utf8(error)} (COLMAP's .bin files are not supported: export as text)"
-        ) from None
+        raise InputError(f"{path}: {not_utf8(error)}") from None
 
 
-def _camera(where: str, words: list[str]) -> tuple[str, Projection]:
+def _cameras_of_text(path: Path) -> Iterator[CameraRow]:
     """Parses CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]."""
-    if len(words) < 5:
-        raise InputError(
-            f"{where}: wanted CAMERA_ID MODEL WIDTH HEIGHT PARAMS, got {len(words)} words"
-        )
-    name, model = words[:2]
+    for where, words in _lines(path):
+        if len(words) < 5:
+            raise InputError(
+                f"{where}: wanted CAMERA_ID MODEL WIDTH HEIGHT PARAMS, got {len(words)} words"
+            )
+        width, height, *numbers = (_number(where, word) for word in words[2:])
+        yield CameraRow(where, words[0], words[1], (width, height), numbers)
+
+
+def _images_of_text(path: Path) -> Iterator[ImageRow]:
+    """Parses IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME; names may have blanks."""
+    for where, words in _lines(path, every=2):
+        if len(words) < 10:
+            raise InputError(
+                f"{where}: wanted IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, got "
+                f"{len(words)} words"
+            )
+        pose = [_number(where, word) for word in words[1:8]]
+        yield ImageRow(where, pose, words[8], " ".join(words[9:]))
+
+
+def _projection(row: CameraRow) -> Projection:
+    where, model = row.where, row.model
     if model not in MODELS:
         raise InputError(
             f"{where}: model: wanted {', '.join(MODELS)}; got {short(model)}"
             f"{suggest(model, MODELS)}"
         )
     ours, focals, more = MODELS[model]
-    width, height = (_number(where, word) for word in words[2:4])
+    width, height = row.size
     for side in (width, height):
         if not 1 <= side <= 65536 or side != int(side):
             raise InputError(f"{where}: size: wanted whole numbers of 1 .. 65536 px, got {side:g}")
-    numbers = [_number(where, word) for word in words[4:]]
+    numbers = row.numbers
     if len(numbers) != focals + 2 + more:
         raise InputError(
             f"{where}: {model}: wanted {focals + 2 + more} parameters, got {len(numbers)}"
@@ -128,29 +157,20 @@ def _camera(where: str, words: list[str]) -> tuple[str, Projection]:
     x, y = numbers[focals : focals + 2]
     values = tuple(numbers[focals + 2 :])
     size = int(width), int(height)
-    return name, projection(where, ours, size, (fx, fy), (x - 0.5, y - 0.5), values)
+    return projection(where, ours, size, (fx, fy), (x - 0.5, y - 0.5), values)
 
 
-def _image(
-    where: str, words: list[str], cameras: dict[str, Projection], unit_m: float
-) -> Calibration:
-    """Parses IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME; names may have blanks."""
-    if len(words) < 10:
-        raise InputError(
-            f"{where}: wanted IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, got {len(words)} words"
-        )
-    values = np.array([_number(where, word) for word in words[1:8]])
+def _calibration(row: ImageRow, camera: Projection, unit_m: float) -> Calibration:
+    where, values = row.where, np.array(row.pose)
     turn, size = values[:4], float(np.linalg.norm(values[:4]))
     if not abs(size - 1) < 1e-3:
         raise InputError(f"{where}: wanted a quaternion of length 1, got {size:.4g}")
-    if words[8] not in cameras:
-        raise InputError(f"{where}: wanted a CAMERA_ID of cameras.txt, got {short(words[8])}")
     camera_from_world = np.eye(4)
     camera_from_world[:3, :3] = _rotation(turn / size)
     camera_from_world[:3, 3] = unit_m * values[4:]
     world_from_camera = np.linalg.inv(camera_from_world) @ FLIP
     settings = {"transform": world_from_camera}
-    return Calibration(cameras[words[8]], " ".join(words[9:]), settings=settings)
+    return Calibration(camera, row.name, settings=settings)
 
 
 def _rotation(q: FloatArray) -> FloatArray:
@@ -165,7 +185,7 @@ def _number(where: str, word: str) -> float:
         value = float(word)
     except ValueError:
         value = np.nan
-    if not abs(value) < 1e15:
+    if not abs(value) < MOST:
         raise InputError(f"{where}: wanted a finite number below 1e15 in size, got {short(word)}")
     return value
 
