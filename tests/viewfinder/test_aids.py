@@ -255,7 +255,7 @@ def test_the_loupe_tells_the_distance() -> None:
             assert (math.inf if found is None else found) == pytest.approx(wanted, abs=1e-3)
 
 
-# What moves
+# Moved as a whole
 
 
 def test_a_macro_lens_that_moves_as_a_whole_says_so_when_it_is_near() -> None:
