@@ -50,18 +50,19 @@ COMPARED = {
 HIGHEST_ISO = 12800  # bodies smooth their raw files at the highest settings
 
 
-def cameras(folder: Path | None) -> dict[tuple[str, str], Row]:
-    """Measured bodies by make and model, in lower case."""
+def cameras(folder: Path | None) -> list[Row]:
+    """Measured bodies."""
     path = (folder or SHARED) / CAMERAS
     if not path.is_file():
         raise InputError(f"--data: wanted a folder with {CAMERAS}, got {path.parent}")
-    listed = json.loads(path.read_text())["cameras"]
-    return {(one["make"].lower(), one["model"].lower()): one for one in listed}
+    return list(json.loads(path.read_text())["cameras"])
 
 
-def measurements(sensor: Sensor, known: dict[tuple[str, str], Row]) -> Row | None:
-    """Measurements of one body, if there are any."""
-    return known.get((sensor.make.lower(), sensor.model.lower()))
+def measurements(sensor: Sensor, known: list[Row]) -> Row | None:
+    """Measurements of one body, if there are any; some of its names lack the series."""
+    make, model = sensor.make.lower(), sensor.model.lower()
+    same = (one for one in known if one["make"].lower() == make)
+    return next((one for one in same if model.endswith(one["model"].lower())), None)
 
 
 def measured_bodies(folder: Path | None, names: Sequence[str]) -> list[tuple[Sensor, Row]]:

@@ -11,6 +11,7 @@ import pytest
 from daguerre.cli import main
 from daguerre.color import illuminants
 from daguerre.sensors import load, names
+from daguerre.sensors.writer import members
 from tests.support.flats import flat
 
 NAMES = names()
@@ -34,6 +35,21 @@ def test_the_well_is_full_by_the_base_iso(name: str) -> None:
     sensor = load(name)
     assert sensor.saturation_iso <= sensor.base_iso * 1.001
     assert sensor.white_level(sensor.base_iso) == sensor.highest_dn
+
+
+def test_the_page_lists_every_body() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "sensors.md").read_text(encoding="utf-8")
+    assert [name for name in NAMES if f"| `{name}` |" not in page] == []
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_each_says_what_was_measured_and_what_is_assumed(name: str) -> None:
+    sensor = load(name)
+    keys = set(members(sensor))
+    for texts in (sensor.measured, sensor.fitted, sensor.assumed):
+        assert {text.split(":")[0] for text in texts} <= keys
+    assert sensor.measured
+    assert sensor.assumed
 
 
 def test_the_gain_of_the_a7r_ii_is_that_measured() -> None:
@@ -150,7 +166,7 @@ def test_the_page_of_a_sensor(
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
     [
-        (["sensor", "sony-a7"], 3, "did you mean 'sony-a7r-ii'"),
+        (["sensor", "sony-a7"], 3, "did you mean 'sony-a9', 'sony-a7r-iv' or 'sony-a7r-ii'"),
         (["sensor", "ideal", "--plot", "x.jpg"], 2, "--plot: wanted a name ending in .svg"),
         (["sensor", "no.json"], 3, "no.json: no such file"),
     ],
