@@ -22,8 +22,9 @@ from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files.reading import not_utf8, reading, size_of
 
 from . import colmap_bin
-from .calibration import FLIP, Calibration, FloatArray, projection
+from .calibration import FLIP, Calibration, projection
 from .colmap_rows import MOST, CameraRow, ImageRow
+from .source import turned
 
 #: Largest file; most of ``images.txt`` are points, which are skipped.
 MAX_BYTES = 1 << 30
@@ -166,18 +167,11 @@ def _calibration(row: ImageRow, camera: Projection, unit_m: float) -> Calibratio
     if not abs(size - 1) < 1e-3:
         raise InputError(f"{where}: wanted a quaternion of length 1, got {size:.4g}")
     camera_from_world = np.eye(4)
-    camera_from_world[:3, :3] = _rotation(turn / size)
+    camera_from_world[:3, :3] = turned(turn / size)
     camera_from_world[:3, 3] = unit_m * values[4:]
     world_from_camera = np.linalg.inv(camera_from_world) @ FLIP
     settings = {"transform": world_from_camera}
     return Calibration(camera, row.name, settings=settings)
-
-
-def _rotation(q: FloatArray) -> FloatArray:
-    """Matrix of a unit quaternion (w, x, y, z), Hamilton's."""
-    w, v = q[0], q[1:]
-    cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-    return np.asarray(np.eye(3) + 2 * w * cross + 2 * cross @ cross)
 
 
 def _number(where: str, word: str) -> float:

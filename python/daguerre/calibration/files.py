@@ -15,31 +15,78 @@ from daguerre.files.numbered import has_place
 from daguerre.files.source import Source
 from daguerre.io.export_camera import export_camera
 
-from . import colmap, kalibr, opencv, opentrackio, ros, stereo, track, transforms
+from . import (
+    basalt,
+    bop,
+    camodocal,
+    colmap,
+    euroc,
+    foreign,
+    kalibr,
+    kitti,
+    opencv,
+    opentrackio,
+    ros,
+    stereo,
+    track,
+    transforms,
+)
 from .calibration import Calibration
 from .source import load
 from .take import Take, take_of
 
-FORMATS = ("opencv", "ros", "kalibr", "opentrackio", "colmap", "transforms")
+FORMATS = (
+    *("opencv", "ros", "kalibr", "opentrackio", "colmap", "transforms"),
+    *("euroc", "camodocal", "basalt", "bop", "kitti"),
+)
 WRITTEN = (*FORMATS[:4], "usd")
+#: Readers of formats that take no options.
+_PLAIN: dict[str, Callable[[Source], dict[str, Calibration]]] = {
+    "kalibr": kalibr.read_kalibr,
+    "euroc": euroc.read_euroc,
+    "camodocal": camodocal.read_camodocal,
+    "basalt": basalt.read_basalt,
+    "bop": bop.read_bop,
+}
 
 
 def format_of(source: Source) -> str:
-    """Format of a file, recognized by the names in it."""
+    """Format of a file, recognized by the names in it.
+
+    Raises:
+        InputError: It is of no known format; the message names those that are read.
+    """
     if colmap.is_colmap(source):
         return "colmap"
+    foreign.refuse(source)
+    if kitti.is_kitti(source):
+        return "kitti"
     if track.is_take(source):
         return "opentrackio"
-    names = set(load(source).value)
+    root = load(source)
+    names = set(root.value)
     if "cam0" in names:
         return "kalibr"
+    if "T_BS" in names or {"camera_model", "intrinsics"} <= names:
+        return "euroc"
+    if "model_type" in names:
+        return "camodocal"
+    if "value0" in names or {"T_imu_cam", "intrinsics"} <= names:
+        return "basalt"
+    if set(bop.NAMES) <= names:
+        return "bop"
     if {"static", "lens"} <= names or "protocol" in names:
         return "opentrackio"
     if "frames" in names:
         return "transforms"
     if "msg" in names or "distortion_model" in names:
         return "ros"
-    return "ros" if {"rectification_matrix", "projection_matrix"} & names else "opencv"
+    if {"rectification_matrix", "projection_matrix"} & names:
+        return "ros"
+    if not stereo.is_stereo(root) and not names & set(opencv.MATRICES):
+        wanted = f"missing: a camera matrix ({' or '.join(opencv.MATRICES)})"
+        root.fail(f"{wanted}; {foreign.READ}")
+    return "opencv"
 
 
 @guarded(but=("source",))
@@ -96,18 +143,22 @@ def read_all(
     pair = kind == "opencv" and stereo.is_stereo(load(source))
     colmap.check_unit(unit_m)
     where = "calibration" if isinstance(source, dict) else str(source)
-    if rectified and not (pair or kind == "ros"):
-        raise UsageError(f"{where}: rectified: wanted ROS or an OpenCV stereo pair, got {kind}")
+    if rectified and not (pair or kind in ("ros", "kitti")):
+        raise UsageError(
+            f"{where}: rectified: wanted ROS, KITTI or an OpenCV stereo pair, got {kind}"
+        )
     if unit_m != 1 and not (pair or kind in ("colmap", "transforms")):
         raise UsageError(
             f"{where}: unit: wanted COLMAP, transforms.json or an OpenCV stereo pair, got {kind}"
         )
     if model is not None and kind != "opencv":
         raise UsageError(f"{where}: model: {kind} takes none, got {model!r}")
-    if size is not None and kind in ("kalibr", "ros", "colmap"):
+    if size is not None and kind in ("ros", "colmap", *_PLAIN):
         raise UsageError(f"{where}: size: {kind} takes none, got {short(size)}")
-    if kind == "kalibr":
-        return kalibr.read_kalibr(source)
+    if kind in _PLAIN:
+        return _one_named_by_its_file(_PLAIN[kind](source), source)
+    if kind == "kitti":
+        return kitti.read_kitti(source, size=size, rectified=rectified)
     if kind == "colmap":
         if isinstance(source, dict):
             raise UsageError("calibration: colmap: wanted a folder, got a dict")
@@ -126,7 +177,14 @@ def read_all(
         found = opentrackio.read_opentrackio(source, size=size)
     else:
         found = opencv.read_opencv(source, model=model, size=size)
-    return {Path(source).stem if isinstance(source, str | os.PathLike) else "camera": found}
+    return _one_named_by_its_file({"camera": found}, source)
+
+
+def _one_named_by_its_file(found: dict[str, Calibration], source: Source) -> dict[str, Calibration]:
+    """Gives a single camera without a name that of its file."""
+    if list(found) != ["camera"] or not isinstance(source, str | os.PathLike):
+        return found
+    return {Path(source).stem: found["camera"]}
 
 
 @guarded

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NoReturn
@@ -16,7 +17,11 @@ from daguerre.files import extras, json_text, reading, xml_text
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source
 
+from . import foreign
+
 FloatArray = NDArray[np.float64]
+#: First element of an XML text.
+_ELEMENT = re.compile(rb"<([A-Za-z_][\w.:-]*)")
 #: Largest files. A calibration has some thousand bytes; JSON may hold all frames of a long shot.
 MAX_BYTES, MAX_JSON_BYTES = 1 << 20, 1 << 26
 
@@ -38,22 +43,39 @@ def load(source: Source) -> Item:
             f"OpenTrackIO take"
         )
     data = read_bytes(path)
+    foreign.refuse(path)
     if data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<"):
-        root = xml_text.parse(data, str(path))
+        root = _xml(data, path)
     elif path.suffix.lower() == ".json":
         root = json_text.parse(data, str(path))
     else:
         root = _yaml(data, path)
     if not isinstance(root.value, dict):
-        root.fail(f"wanted names and values, got {short(root.value)}")
+        root.fail(f"wanted names and values, got {short(root.value)}; {foreign.READ}")
     return root
+
+
+def _xml(data: bytes, path: Path) -> Item:
+    element = _ELEMENT.search(data)
+    if element is not None and element[1] != xml_text.ROOT.encode():
+        name = element[1][:40].decode("ascii", "replace")
+        raise InputError(
+            f"{path}: XML: wanted <{xml_text.ROOT}>, as OpenCV writes it, got <{name}>; "
+            f"{foreign.READ}"
+        )
+    return xml_text.parse(data, str(path))
 
 
 def _yaml(data: bytes, path: Path) -> Item:
     extras.need("yaml", f"{path}: YAML")
     from daguerre.files import yaml_text
 
-    return yaml_text.parse(data, str(path))
+    try:
+        return yaml_text.parse(data, str(path))
+    except InputError as error:
+        if path.suffix.lower() in (".yaml", ".yml"):
+            raise
+        raise InputError(f"{error}; {foreign.READ}") from None
 
 
 def read_bytes(path: Path) -> bytes:
@@ -177,6 +199,13 @@ def rigid(item: Item) -> FloatArray:
         got = short(pose.tolist())
         item.fail(f"wanted a rotation and a translation (last row 0 0 0 1), got {got}")
     return pose
+
+
+def turned(q: FloatArray) -> FloatArray:
+    """Matrix of a unit quaternion (w, x, y, z), Hamilton's."""
+    w, v = q[0], q[1:]
+    cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+    return np.asarray(np.eye(3) + 2 * w * cross + 2 * cross @ cross)
 
 
 def choice(item: Item, known: Iterable[str]) -> str:

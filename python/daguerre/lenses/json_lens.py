@@ -10,6 +10,7 @@ from typing import Any
 
 from daguerre.files.json_item import Item, clean, short
 
+from . import foreign_json
 from .configurations import Configuration, chosen, read_configurations
 from .diameters import with_derived_diameters
 from .dispersion_rule import DispersionRule
@@ -41,6 +42,7 @@ def lens_of(data: dict[str, Any], source: str, configuration: str | None = None)
 
 def lens_from(root: Item, path: Path, name: str | None) -> Lens:
     """Builds a lens from a file's value, at a configuration by name; None: the first."""
+    foreign_json.refuse(root)
     schema = root.need("schema")
     if schema.text() != SCHEMA:
         schema.fail(f"wanted {SCHEMA!r}, got {short(schema.value)}")
