@@ -17,6 +17,7 @@ from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError
+from daguerre.files.extras import hint
 from daguerre.files.json_item import Item
 from daguerre.files.json_text import parse
 
@@ -174,7 +175,7 @@ def calibrations(folder: Path | None) -> tuple[list[Calibration], str]:
     except ImportError:
         raise InputError(
             f"measured lenses: wanted {CALIBRATIONS} in {SHARED} or in --data FOLDER, or the "
-            "package lensfunpy (pip install lensfunpy); got neither"
+            f"package lensfunpy ({hint('lensfunpy')}); got neither"
         ) from None
     return _of_package(lensfunpy.Database().lenses), f"lensfunpy {lensfunpy.__version__}"
 

@@ -16,6 +16,7 @@ EXTRAS = {
     "anywidget": ("anywidget", "notebook"),
     "PyOpenColorIO": ("opencolorio", "color"),
     "distributed": ("distributed", "cluster"),
+    "lensfunpy": ("lensfunpy", "compare"),
     "matplotlib": ("matplotlib", "plot"),
     "mitsuba_oidn": ("mitsuba-oidn", "denoise"),
     "rawpy": ("rawpy", "raw"),
