@@ -74,6 +74,10 @@ class World:
         return self.session.state()
 
     @cached_property
+    def profile(self) -> dg.export.LensfunProfile:
+        return dg.export.lensfun_profile("tessar-50mm-f2.8")
+
+    @cached_property
     def camera(self) -> dg.Camera:
         return dg.Camera(focal_length=40.0, iso=100, f_stop=4.0, shutter_time=0.01)
 

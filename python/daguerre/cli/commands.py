@@ -42,6 +42,7 @@ GROUPS = {
     "Files for other programs": {
         "export-camera": Command(".export_camera", "Write cameras as a USD stage."),
         "export-scene": Command(".export_scene", "Write a scene for pbrt-v4 or Mitsuba 3."),
+        "export-lens": Command(".export_lens", "Write a lens profile for lensfun."),
     },
     "Clusters": {
         "scheduler": Command(".cluster", "Start the scheduler of a cluster."),

@@ -1,5 +1,14 @@
-"""Exports fitted lenses: C, GLSL, OSL for Blender's custom camera, NumPy and JSON."""
+"""Exports lenses: fits as C, GLSL, OSL, NumPy and JSON, profiles for lensfun."""
 
 from .files import SUFFIXES, check_suffix, code, save
+from .lensfun import LensfunProfile, lensfun_profile, save_lensfun
 
-__all__ = ["SUFFIXES", "check_suffix", "code", "save"]
+__all__ = [
+    "SUFFIXES",
+    "LensfunProfile",
+    "check_suffix",
+    "code",
+    "lensfun_profile",
+    "save",
+    "save_lensfun",
+]
