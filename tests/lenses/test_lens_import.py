@@ -111,6 +111,11 @@ def imported(
     return lenses.read(path, configuration)
 
 
+def but_film(notes: tuple[str, ...]) -> tuple[str, ...]:
+    """Notes without the one on the film, which each file with an image distance has."""
+    return tuple(note for note in notes if "has its image" not in note)
+
+
 def check_same(lens: lenses.Lens, other: lenses.Lens) -> None:
     """First order to 1e-9, rays to 1e-9 mm, the same ones stopped."""
     a, b = lens.first_order(), other.first_order()
@@ -259,7 +264,7 @@ def test_a_finite_object_widens_the_working_aperture(tmp_path: Path) -> None:
 def test_dpgf_of_a_model_glass_is_its_deviation_from_the_normal_line(tmp_path: Path) -> None:
     text = write.zmx(ASPHERE).replace("60.32 0\n", "60.32 0.01\n", 1)
     lens = imported(text, tmp_path, ".zmx")
-    assert lens.notes == ()
+    assert but_film(lens.notes) == ()
     rules = [s.dispersion.rule for s in lens.surfaces if s.dispersion]
     assert rules[0] == "theta_gF"
     g, f, c = (lens.surfaces[0].medium.index(nm) for nm in (435.8343, 486.1327, 656.2725))
@@ -303,14 +308,14 @@ def test_a_name_in_several_catalogues_is_noted_where_they_differ(
 def test_zemax_notes(old: str, new: str, note: str, tmp_path: Path) -> None:
     text = write.zmx(ASPHERE)
     assert old in text
-    assert imported(text, tmp_path, ".zmx").notes == ()
+    assert but_film(imported(text, tmp_path, ".zmx").notes) == ()
     notes = imported(text.replace(old, new, 1), tmp_path, ".zmx").notes
     assert [n for n in notes if n.startswith(note)], notes
 
 
 def test_code_v_notes(tmp_path: Path) -> None:
     text = write.seq(ASPHERE)
-    assert imported(text, tmp_path, ".seq").notes == (
+    assert but_film(imported(text, tmp_path, ".seq").notes) == (
         "no EPD, FNO, NA or NAO: the f-number follows from the stop's clear diameter",
     )
     more = "EPD 11; VUY .1 .2\nTEM 40\nREX 3; PIK THI S1 S2; XYZ 1"
@@ -318,7 +323,7 @@ def test_code_v_notes(tmp_path: Path) -> None:
     wanted = ("vignetting factors", "TEM 40", "aperture REX", "pickups", "command XYZ is ignored")
     for start in wanted:
         assert [n for n in notes if n.startswith(start)], (start, notes)
-    assert len(notes) == len(wanted)
+    assert len(but_film(notes)) == len(wanted)
 
 
 def test_a_tilted_film_is_told(tmp_path: Path) -> None:

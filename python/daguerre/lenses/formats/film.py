@@ -12,7 +12,7 @@ _NEAR = 0.005
 
 
 def film_notes(lens: Lens) -> list[str]:
-    """Returns a note if the file has its film or its object elsewhere than a camera puts them."""
+    """Returns a note on the file's film and object, as a camera puts them where its focus is."""
     behind = lens.surfaces[-1].thickness
     if not behind or path_of(lens) is not None:
         return []
@@ -25,6 +25,6 @@ def film_notes(lens: Lens) -> list[str]:
         ]
     focus = image_z(lens, -math.inf)
     if abs(lens.image_z - focus) <= _NEAR * abs(order.efl):
-        return []
+        return [f"the file has its image {back}: the focus distance of the camera places the film"]
     at = focus - float(lens.vertices[-1])
     return [f"the file has its image {back}: the film is at the focus instead, {at:.4g} mm"]
