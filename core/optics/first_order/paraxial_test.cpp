@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+
 #include "math/error.h"
 #include "optics/lens/test_lenses.h"
 #include "optics/trace/trace.h"
@@ -115,6 +117,15 @@ TEST_CASE(
     CHECK(iris_radius(lens, f, f.f_number) == doctest::Approx(8.55));
     CHECK_THROWS_WITH_AS(iris_radius(lens, f, 1.4), doctest::Contains("f/2.01"), Error);
     CHECK_THROWS_AS(iris_radius(lens, f, 0), Error);
+}
+
+TEST_CASE("no iris has a radius where the stop has no size, at any f-stop") {
+    Prescription lens = test::check_lens();
+    lens.surfaces[lens.stop_index()].semi_diameter = std::numeric_limits<double>::infinity();
+    CHECK_THROWS_WITH_AS(iris_radius(lens, first_order(lens), 8), doctest::Contains("size of the stop"),
+                         Error);
+    lens.nominal_f_number = 4;
+    CHECK(iris_radius(lens, first_order(lens), 8) > 0);
 }
 
 TEST_CASE("prescriptions that cannot be are refused with surface and value") {
