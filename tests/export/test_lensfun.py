@@ -18,10 +18,12 @@ from daguerre import export, lenses
 from daguerre.analysis import distortion, lateral_colour, relative_illumination, set_up
 from daguerre.cli import main
 from daguerre.errors import InputError, UsageError
-from daguerre.export.lensfun import models
+from daguerre.export.lensfun import fitting, models
 from daguerre.export.lensfun.frame import Frame
 from daguerre.export.lensfun.traced import BANDS_NM, GRID, STOP, channels
 from daguerre.export.lensfun.xml import as_xml
+from daguerre.lenses import library
+from daguerre.lenses.json_lens import lens_of
 from daguerre.lenses.lens import Lens
 from tests.support import lensfun
 
@@ -149,6 +151,17 @@ def test_the_frame_is_the_lenses_format_or_as_given() -> None:
     assert profile("fujifilm-gf-110mm-f2").frame == Frame(43.8, 32.9)
     given = export.lensfun_profile("tessar-50mm-f2.8", sensor_size=(24.0, 36.0))
     assert given.frame == FULL
+
+
+@pytest.mark.parametrize(
+    ("text", "frame"),
+    [("17.3x13", Frame(17.3, 13.0)), ("35 mm film", FULL), (36, FULL), (None, FULL), ("0x0", FULL)],
+)
+def test_a_format_that_is_no_size_is_a_remark(text: Any, frame: Frame) -> None:
+    """The lens's image circle is that of 36 x 24 mm."""
+    data = json.loads((library.FOLDER / "tessar-50mm-f2.8.json").read_text())
+    made = fitting._frame(lens_of(data | {"format": text}, "a.json"), None)
+    assert (made.long_mm, made.short_mm) == pytest.approx((frame.long_mm, frame.short_mm), rel=1e-3)
 
 
 @pytest.mark.parametrize(

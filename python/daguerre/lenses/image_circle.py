@@ -36,7 +36,16 @@ def half_image(lens: Lens, order: FirstOrder) -> float:
     return stated or min(FULL_FRAME, math.sqrt(3) * abs(order.efl))
 
 
+def format_mm(lens: Lens) -> tuple[float, float] | None:
+    """Width and height of the file's format, such as ``36x24``, mm; None: no such format."""
+    text = str(lens.data.get("format"))
+    sides = re.fullmatch(r"(\d+(?:\.\d+)?)x(\d+(?:\.\d+)?)", text)
+    if sides is None or not min(map(float, sides.groups())):
+        return None
+    return float(sides[1]), float(sides[2])
+
+
 def _half_format(lens: Lens) -> float | None:
-    """Half of the diagonal of the file's format, such as ``36x24``, mm."""
-    sides = re.fullmatch(r"([\d.]+)x([\d.]+)", str(lens.data.get("format")))
-    return 0.5 * math.hypot(*map(float, sides.groups())) if sides else None
+    """Half of the diagonal of the file's format, mm."""
+    sides = format_mm(lens)
+    return 0.5 * math.hypot(*sides) if sides else None

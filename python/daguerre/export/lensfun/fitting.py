@@ -14,7 +14,7 @@ from daguerre.errors import InputError, UsageError
 from daguerre.files.atomic import write_bytes
 from daguerre.files.formats import check_written
 from daguerre.lenses import load
-from daguerre.lenses.diameters import image_radius
+from daguerre.lenses.image_circle import FULL_FRAME, format_mm, stated_half_image
 from daguerre.lenses.lens import Lens
 from daguerre.lenses.zoom import positions
 
@@ -28,7 +28,6 @@ SUFFIXES = (".xml",)
 #: px RMS below which poly5 serves: lensfun computes roots for ptlens with 12 bits, poly5 exactly.
 SAME = 0.1
 STEP = 1.08  # largest ratio of neighbouring focal lengths of a zoom
-FORMAT = (36.0, 24.0)  # mm, of a lens that states neither format nor field
 
 
 @guarded
@@ -97,14 +96,11 @@ def _frame(lens: Lens, given: tuple[float, float] | None) -> Frame:
 
 def _format(lens: Lens) -> tuple[float, float]:
     """Sides of a lens's film, mm: as stated, or 3:2 within its image circle."""
-    if lens.data.get("format"):
-        width, height = (float(side) for side in lens.data["format"].split("x"))
-        return width, height
-    radius = image_radius(lens)
-    if radius is None:
-        return FORMAT
-    share = radius / (0.5 * math.hypot(*FORMAT))
-    return share * FORMAT[0], share * FORMAT[1]
+    stated = format_mm(lens)
+    if stated:
+        return stated
+    share = (stated_half_image(lens, lens.first_order()) or FULL_FRAME) / FULL_FRAME
+    return share * 36, share * 24
 
 
 def _focal_lengths(lens: Lens) -> list[float]:
