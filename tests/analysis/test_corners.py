@@ -13,7 +13,7 @@ from daguerre import analysis, lenses
 from daguerre.analysis.bench import Bench
 
 ROOT = Path(__file__).parents[2]
-# Transcribed diameters blocked the corners of the first seven.
+# Transcribed diameters blocked the corners of the first seven; the ninth has mounts.
 TEN = (
     "asahi-super-takumar-50mm-f1.4",
     "canon-ef-24-70mm-f2.8",
@@ -23,7 +23,7 @@ TEN = (
     "sonnar-50mm-f2",
     "zeiss-distagon-28mm-f2",
     "laikin-fisheye-5mm-f1.8",
-    "nikon-z-14-30mm-f4",
+    "sony-sonnar-55mm-f1.8",
     "tessar-50mm-f2.8",
 )
 WIDENED = {"laowa-12mm-f2.8": {0: 24.5, 2: 18, 3: 15, 4: 10.5}, "wide-angle-28mm-f3.5": {2: 16}}

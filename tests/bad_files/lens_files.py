@@ -69,6 +69,10 @@ LENSES: dict[str, tuple[Any, str]] = {
         change("surfaces.0.widened_from", 50),
         S + "widened_from: wanted less than the semi-diameter, got 50",
     ),
+    "mount of glass": (
+        change("surfaces.0.fitted", True),
+        S + "fitted: wanted a plane in air with a semi_diameter",
+    ),
     "groups is an object": (change("groups", {}), "groups: wrong type"),
     "group beyond the table": (
         change("groups", [{"surfaces": [0, 99]}]),

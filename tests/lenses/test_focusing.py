@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import math
 from typing import Any
 
@@ -21,7 +22,9 @@ from daguerre.scene import Scene
 from daguerre.setup.camera_facts import camera_facts
 
 FITTED = [
-    path.stem for path in sorted(FOLDER.glob("*.json")) if '"fitted": true' in path.read_text()
+    path.stem
+    for path in sorted(FOLDER.glob("*.json"))
+    if any(one.get("fitted") for one in json.loads(path.read_text())["configurations"])
 ]
 STANDING = "canon-ef-24-70mm-f2.8"  # all near positions are fitted
 LED_ON = "sigma-28mm-f1.4"  # one is printed

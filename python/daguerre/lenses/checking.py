@@ -19,7 +19,7 @@ from .errors import LensError, reported
 from .image_circle import stated_half_image
 from .lens import DESIGN_WAVELENGTH_NM, Lens
 from .sag import sag
-from .surface import LensSurface
+from .surface import LensSurface, bounding
 
 #: Surfaces that touch at the rim by this much (mm) are a patent's rounding.
 TOUCH = 2e-3
@@ -91,12 +91,8 @@ def in_file(lens: Lens, *indices: int) -> str:
 
 def _neighbors(surfaces: list[LensSurface]) -> list[tuple[int, int]]:
     """Pairs of surfaces that bound one element or one air gap; planes in air bound neither."""
-    solid = [
-        i
-        for i, s in enumerate(surfaces)
-        if not any(s.decenter) and not any(s.tilt) and not (s.kind == "stop" and not s.glass)
-    ]
     placed = {i for i, s in enumerate(surfaces) if any(s.decenter) or any(s.tilt)}
+    solid = [i for i in bounding(surfaces) if i not in placed]
     return [(i, j) for i, j in itertools.pairwise(solid) if not placed & set(range(i, j + 1))]
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from .lens import DESIGN_WAVELENGTH_NM, Lens
 from .projections import projected
 from .sag import sag
-from .surface import LensSurface
+from .surface import LensSurface, bounding
 from .zoom import positions, with_stop
 
 #: Number of fields between the axis and the corner, and of points on half the rim of the stop.
@@ -88,8 +88,7 @@ def _widest(radius: float | None, conic: float) -> float:
 
 def _trimmed(surfaces: list[LensSurface], variants: list[Lens]) -> list[LensSurface]:
     """Cuts derived semi-diameters where a surface would cross the next one."""
-    solid = [i for i, s in enumerate(surfaces) if s.kind != "stop" or s.glass]
-    for i, j in itertools.pairwise(solid):
+    for i, j in itertools.pairwise(bounding(surfaces)):
         a, b = surfaces[i], surfaces[j]
         gap = min(float(at.vertices[j] - at.vertices[i]) for at in variants)
         r = np.linspace(0, min(a.semi_diameter or 0.0, b.semi_diameter or 0.0), 513)

@@ -423,9 +423,11 @@ def _table(lens: Lens) -> list[str]:
         rows.append("* not stated by the source; derived from rays")
     if any(s.widened_from for s in lens.surfaces):
         rows.append("+ wider than in the source, which blocks light of the corner")
+    if any(s.fitted for s in lens.surfaces):
+        rows.append("~ a mount, fitted to measured vignetting of the product")
     return rows
 
 
 def _mark(surface: LensSurface) -> str:
     """Mark of a semi-diameter that is not the source's."""
-    return "*" * surface.derived + "+" * bool(surface.widened_from)
+    return "*" * surface.derived + "+" * bool(surface.widened_from) + "~" * surface.fitted

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -51,6 +52,7 @@ class LensSurface:
         dispersion: Rule that gave the glass that follows its dispersion; None: air, or unknown.
         widened_from: Semi-diameter in the source, which blocks a corner's light even stopped down;
             None: the semi-diameter is the source's.
+        fitted: Whether it is a mount, a plane in air, fitted to the product's measured vignetting.
     """
 
     kind: str
@@ -73,6 +75,7 @@ class LensSurface:
     derived: bool = False
     dispersion: DispersionRule | None = None
     widened_from: float | None = None
+    fitted: bool = False
 
     def replaced(self, **changes: Any) -> LensSurface:
         """Returns a copy with some fields changed."""
@@ -104,6 +107,26 @@ class LensSurface:
             coating=self.coating,
             ripple=self.ripple,
         )
+
+
+def bounding(surfaces: Sequence[LensSurface]) -> list[int]:
+    """Indices of surfaces that bound an element or an air gap: all but planes within air."""
+    before = [True, *(not s.glass for s in surfaces)]
+    return [
+        i
+        for i, s in enumerate(surfaces)
+        if s.glass or not (s.kind == "stop" or _apart(s, before[i]))
+    ]
+
+
+def _apart(surface: LensSurface, behind_air: bool) -> bool:
+    """Whether a surface with air behind it is a plane, as of a mount, with air before it."""
+    return (
+        behind_air
+        and surface.radius is None
+        and not surface.asphere
+        and surface.kind == "spherical"
+    )
 
 
 def _curvature(radius: float | None) -> float:

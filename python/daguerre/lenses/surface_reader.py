@@ -56,6 +56,7 @@ def _surface(item: Item, gap: float | None, origin: Origin, *, last: bool) -> Le
         ripple=_ripple(item),
         dispersion=glass.rule,
         widened_from=_widened_from(item, semi_diameter),
+        fitted=_fitted(item, semi_diameter),
     )
 
 
@@ -110,6 +111,16 @@ def _widened_from(item: Item, semi_diameter: float | None) -> float | None:
     if value is not None and (semi_diameter is None or value >= semi_diameter):
         item.need("widened_from").fail(f"wanted less than the semi-diameter, got {value:g}")
     return value
+
+
+def _fitted(item: Item, semi_diameter: float | None) -> bool:
+    flag = member(item, "fitted")
+    if flag is None or not flag.flag():
+        return False
+    bends = any(member(item, key) for key in ("radius", "glass", "asphere"))
+    if bends or semi_diameter is None:
+        flag.fail("wanted a plane in air with a semi_diameter: a mount")
+    return True
 
 
 def _inner(item: Item, semi_diameter: float | None) -> float:

@@ -23,7 +23,7 @@ KNOWN = {
     "surfaces": (
         *("kind", "radius", "radius_x", "thickness", "semi_diameter", "semi_diameter_after"),
         *("inner_semi_diameter", "glass", "stop", "conic", "conic_x", "asphere", "decenter"),
-        *("tilt", "coating", "ripple", "widened_from", "note", "from"),
+        *("tilt", "coating", "ripple", "widened_from", "fitted", "note", "from"),
     ),
     "groups": ("name", "surfaces", "decenter", "tilt", "pivot_mm", "note"),
     "configurations": (

@@ -182,7 +182,7 @@ def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:
 
     found = agreement(item)
     names = ("kind", "radius", "thickness", "semi_diameter", "glass", "stop")
-    marks = ("derived", "widened_from")
+    marks = ("derived", "widened_from", "fitted")
     surfaces = [
         {name: getattr(s, name) for name in names + marks}
         | {"dispersion": None if s.dispersion is None else asdict(s.dispersion)}
