@@ -29,9 +29,9 @@ class CalibrationFlags:
             "--calibration",
             metavar="FILE[:NAME,...|all]",
             help="Camera calibration to use instead of a lens: a file of OpenCV, ROS, Kalibr, "
-            "OpenTrackIO or COLMAP, or transforms.json. :NAME picks cameras of the file, :all "
-            "takes all; # in NAME stands for the frame number; repeatable [the file's first "
-            "camera].",
+            "OpenTrackIO, COLMAP, EuRoC, camodocal, basalt, BOP or KITTI, or transforms.json. "
+            ":NAME picks cameras of the file, :all takes all; # in NAME stands for the frame "
+            "number; repeatable [the file's first camera].",
             panel=_CALIBRATION,
         ),
     ] = None
