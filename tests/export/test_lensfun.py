@@ -18,7 +18,7 @@ from daguerre import export, lenses
 from daguerre.analysis import distortion, lateral_colour, relative_illumination, set_up
 from daguerre.cli import main
 from daguerre.errors import InputError, UsageError
-from daguerre.export.lensfun import fitting, models
+from daguerre.export.lensfun import fitting, models, traced
 from daguerre.export.lensfun.frame import Frame
 from daguerre.export.lensfun.traced import BANDS_NM, GRID, STOP, channels
 from daguerre.export.lensfun.xml import as_xml
@@ -145,6 +145,23 @@ def test_a_lens_that_no_model_fits_says_so() -> None:
     assert not made.fits
     assert made.residual_px == max(fit.rms for fit in made.distortion) > 0.3
     assert "no model of lensfun fits this lens to 0.3 px" in as_xml(made)
+
+
+@pytest.mark.slow
+def test_four_of_five_lenses_of_the_library_fit() -> None:
+    """At the first position of a zoom; fisheyes and the anamorphic lens are refused."""
+    fits, refused = [], []
+    for name in lenses.names():
+        lens = lenses.load(name)
+        try:
+            fitting._check(lens)
+        except InputError:
+            refused.append(name)
+            continue
+        found = traced.geometry(lens, fitting._frame(lens, None))
+        fits.append(min(fit.rms for fit in found.distortion.values()) < 0.3)
+    assert np.mean(fits) > 0.8
+    assert len(refused) == 9
 
 
 def test_the_frame_is_the_lenses_format_or_as_given() -> None:
