@@ -6,9 +6,8 @@ Lengths are in mm unless the name says otherwise. Focus distances are in m.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 import daguerre._core as _core
 from daguerre import lenses
 from daguerre.camera.camera import Camera
+from daguerre.camera.exposure import without_brightness
 from daguerre.camera.ideal import WITHOUT_IRIS
 from daguerre.camera.parameters.needs import TRACED
 from daguerre.lenses.checking import frame_notes
@@ -36,6 +36,8 @@ from .iris import iris_of, mask_of
 from .near_clip import Directions
 from .resolved import Glass, ResolvedLens
 
+#: Lenses that are kept, and focuses of each.
+_KEPT = 4
 #: Share of the widest f-number that a stop may have, as in the core: stops are round numbers.
 GRANTED = 0.99
 
@@ -105,6 +107,51 @@ class _Drawn:
     notes: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class _Exact:
+    """An exact lens, maybe by polynomials.
+
+    Attributes:
+        lens: The lens.
+        fit: Quality of its polynomials, if the model has them.
+        notes: Notes for the user.
+    """
+
+    lens: _core.ExactLens
+    fit: FitQuality | None
+    notes: tuple[str, ...]
+
+
+class _Glass:
+    """A lens by all that a camera sets of it; focused lenses are kept for the next picture.
+
+    Attributes:
+        chosen: The lens at its zoom and f-stop.
+    """
+
+    def __init__(self, camera: Camera, lens: lenses.Lens, model: str) -> None:
+        self._camera, self._model = camera, model
+        self.chosen = _chosen(camera, lens, model)
+        self.notes = lru_cache(_KEPT)(self._notes)
+        self.in_focus = lru_cache(_KEPT)(self._focused)
+        self.exact = lru_cache(_KEPT)(self._exact)
+
+    def _notes(self, whole: str | None) -> tuple[str, ...]:
+        return tuple(_notes(self._camera, self.chosen, whole))
+
+    def _focused(self, distance: float) -> _InFocus:
+        return _focused(self._camera, self.chosen, distance)
+
+    def _exact(self, distance: float, film_mm: tuple[float, float], pitch_mm: float) -> _Exact:
+        return _exact(self._camera, self._model, self.in_focus(distance), film_mm, pitch_mm)
+
+
+@lru_cache(_KEPT)
+def _glass(camera: Camera, lens: lenses.Lens, model: str) -> _Glass:
+    """Glass of a camera without pose and brightness: one that only moves has the same."""
+    return _Glass(camera, lens, model)
+
+
 def set_up(framing: Framing, lens: lenses.Lens, model: str) -> ResolvedLens:
     """Focuses a lens and makes the camera of the model.
 
@@ -113,16 +160,20 @@ def set_up(framing: Framing, lens: lenses.Lens, model: str) -> ResolvedLens:
         InputError: The lens has no such focus or stop.
     """
     camera, focus = framing.camera, framing.focus
-    chosen = _chosen(camera, lens, model)
+    glass = _glass(without_brightness(camera).with_(transform=np.eye(4)), lens, model)
+    chosen = glass.chosen
     lens = chosen.lens
     if any(camera.tilt):
         cardinal = _cardinal_points(chosen.order)
         focus = replace(focus, sharp_at=lambda p: tilt.focus_on(cardinal, camera.tilt, p))
-    in_focus = cache(partial(_focused, camera, chosen))
-    found = focus.settled(lambda s: _directions(framing, chosen, in_focus, s))
-    sharp = in_focus(found.distance_m)
+    found = focus.settled(lambda s: _directions(framing, glass, s))
+    sharp = glass.in_focus(found.distance_m)
     film = framing_distance(sharp) * tilt.cosine(camera.tilt)
-    drawn = _traced(framing, model, sharp) if chosen.traced else _ideal(framing, model, sharp, film)
+    if chosen.traced:
+        exact = glass.exact(found.distance_m, framing.film_mm, framing.pitch_mm)
+        drawn = _traced(framing, exact)
+    else:
+        drawn = _ideal(framing, model, sharp, film)
     offset = (sharp.film_z - sharp.order.entrance_pupil.z) * tilt.cosine(camera.tilt)
     fit = drawn.fit
     whole = whole_lens_note(lens, (sharp.order.back_focal_point - sharp.film_z) / sharp.order.efl)
@@ -144,7 +195,7 @@ def set_up(framing: Framing, lens: lenses.Lens, model: str) -> ResolvedLens:
             fit=fit,
             whole=whole,
         ),
-        notes=(*found.notes, *lens.notes, *_notes(camera, chosen, whole), *drawn.notes),
+        notes=(*found.notes, *lens.notes, *glass.notes(whole), *drawn.notes),
     )
 
 
@@ -243,25 +294,35 @@ def _from_sensor(camera: Camera) -> bool:
     return camera.focus_from == "sensor" and camera.focus_distance is not None
 
 
-def _traced(framing: Framing, model: str, sharp: _InFocus) -> _Drawn:
-    """Makes the camera of the lens by its surfaces or by polynomials."""
-    camera, film = framing.camera, framing.film_mm
+def _exact(
+    camera: Camera,
+    model: str,
+    sharp: _InFocus,
+    film_mm: tuple[float, float],
+    pitch_mm: float,
+) -> _Exact:
+    """Sets up a focused lens by its surfaces or by polynomials."""
     fit, notes = None, []
     if model == "polynomial":
-        exact = _exact_lens(framing, sharp, camera.degree or DEFAULT_DEGREE)
-        fit = judged(exact, camera, sharp.lens.name, framing.pitch_mm)
+        exact = _exact_lens(camera, film_mm, sharp, camera.degree or DEFAULT_DEGREE)
+        fit = judged(exact, camera, sharp.lens.name, pitch_mm)
         exact = exact if fit.used else exact.without_fit()
         notes.append(fit.note)
     else:
-        exact = _exact_lens(framing, sharp)
-    notes += frame_notes(exact, sharp.lens, film, camera.shift)
+        exact = _exact_lens(camera, film_mm, sharp)
+    notes += frame_notes(exact, sharp.lens, film_mm, camera.shift)
     masks = mask_of(camera, "front_mask"), mask_of(camera, "iris_mask")
     if any(mask is not None for mask in masks):
         exact = exact.with_dirt(*masks)
-    core = _core.Camera.exact(framing.pose, exact)
-    core.sensor_stack = stack_of(camera)
-    core.scatter = parts_of(camera)
-    return _Drawn(core, exact.h0, fit, tuple(notes))
+    return _Exact(exact, fit, tuple(notes))
+
+
+def _traced(framing: Framing, exact: _Exact) -> _Drawn:
+    """Makes the camera of an exact lens."""
+    core = _core.Camera.exact(framing.pose, exact.lens)
+    core.sensor_stack = stack_of(framing.camera)
+    core.scatter = parts_of(framing.camera)
+    return _Drawn(core, exact.lens.h0, exact.fit, exact.notes)
 
 
 def _ideal(framing: Framing, model: str, sharp: _InFocus, film: float) -> _Drawn:
@@ -282,15 +343,13 @@ def _ideal(framing: Framing, model: str, sharp: _InFocus, film: float) -> _Drawn
     return _Drawn(core_of(framing, model, film, radius, sharp.distance), thick.h0)
 
 
-def _directions(
-    framing: Framing, chosen: _Chosen, in_focus: Callable[[float], _InFocus], distance: float
-) -> Directions:
+def _directions(framing: Framing, glass: _Glass, distance: float) -> Directions:
     """View directions of film points at a trial focus distance."""
     camera = framing.camera
-    if camera.focus_at is None or not chosen.traced or any(camera.tilt):
-        film = framing_distance(in_focus(distance))
+    if camera.focus_at is None or not glass.chosen.traced or any(camera.tilt):
+        film = framing_distance(glass.in_focus(distance))
         return ideal_direction(film * tilt.cosine(camera.tilt))
-    far = _exact_lens(framing, in_focus(math.inf))
+    far = _exact_lens(camera, framing.film_mm, glass.in_focus(math.inf))
 
     def direction(x: float, y: float) -> NDArray[np.float64]:
         return np.array(far.chief_direction(x, y))
@@ -324,10 +383,12 @@ def framing_distance(sharp: _InFocus) -> float:
 
 
 def _exact_lens(
-    framing: Framing, sharp: _InFocus, fit_degree: int | None = None
+    camera: Camera,
+    film_mm: tuple[float, float],
+    sharp: _InFocus,
+    fit_degree: int | None = None,
 ) -> _core.ExactLens:
-    camera, film = framing.camera, framing.film_mm
-    half = [abs(s) + size / 2 for s, size in zip(camera.shift, film, strict=True)]
+    half = [abs(s) + size / 2 for s, size in zip(camera.shift, film_mm, strict=True)]
     settings = _core.ExactLensSettings(
         f_stop=sharp.f_stop,
         iris=iris_of(camera),
@@ -337,7 +398,7 @@ def _exact_lens(
         film_z_mm=sharp.film_z,
         tilt_deg=camera.tilt,
         film_center_mm=camera.shift,
-        film_half_mm=(0.51 * film[0], 0.51 * film[1]),
+        film_half_mm=(0.51 * film_mm[0], 0.51 * film_mm[1]),
         fit_degree=fit_degree,
     )
     with reported(sharp.lens.source):
