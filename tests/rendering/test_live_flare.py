@@ -48,10 +48,10 @@ def session(
     )
 
 
-def live(made: Session) -> Picture:
+def live(made: Session, drawer: _core.LiveFlare | None = None) -> Picture:
     """Live ghosts of its picture."""
-    one = made.prepared
-    rgb = _core.LiveFlare().draw(one.core_scene, one.setup.core, made.light_plan.core)
+    one, drawer = made.prepared, drawer or _core.LiveFlare()
+    rgb = drawer.draw(one.core_scene, one.setup.core, made.light_plan.core)
     return np.asarray(rgb, float)
 
 
@@ -127,3 +127,46 @@ def test_without_a_small_lamp_there_is_no_light() -> None:
     assert drawer.sources == 0
     assert rgb.shape == (SIZE[1], SIZE[0], 3)
     assert not rgb.any()
+
+
+ASIDE = sun(-12, -7, (1.6e4, 1.6e4, 1.6e4))
+NEAR = (dg.SphereLight((2e5, 2e5, 2e5), 0.006), ASIDE[1].copy())
+NEAR[1][:3, 3] *= 2.5 / 1000
+
+
+@pytest.mark.parametrize("lamp", [WHITE, ASIDE, NEAR])
+@pytest.mark.parametrize("lens", ["tessar-50mm-f2.8", "double-gauss-50mm-f2"])
+def test_a_lens_that_stays_has_the_same_ghosts_by_fewer_rays(
+    lens: str, lamp: tuple[dg.SphereLight, Picture]
+) -> None:
+    """From where they came in before, as if they were found anew."""
+    made, drawer = session(lens, lamp), _core.LiveFlare()
+    found, found_rays = live(made, drawer), drawer.rays
+    live(made, drawer)
+    kept = live(made, drawer)
+    assert off(kept, found) < 0.06
+    assert kept.sum((0, 1)) == pytest.approx(found.sum((0, 1)), rel=0.03)
+    assert drawer.rays < 0.75 * found_rays
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_ghosts_do_not_depend_on_pictures_before(threads: int) -> None:
+    """Whatever was drawn by this lens or by another one, on any number of threads."""
+    made = session("tessar-50mm-f2.8", WHITE)
+    drawer = _core.LiveFlare()
+    live(made, drawer)
+    kept = live(made, drawer)
+    for lamp in (ASIDE, NEAR):
+        live(session("tessar-50mm-f2.8", lamp), drawer)
+    assert np.array_equal(live(session("tessar-50mm-f2.8", WHITE, threads=threads), drawer), kept)
+    live(session("double-gauss-50mm-f2", WHITE), drawer)
+    live(made, drawer)
+    assert np.array_equal(live(made, drawer), kept)
+
+
+def test_a_lens_without_symmetry_has_its_ghosts_found_anew() -> None:
+    """The same bits each time."""
+    made, drawer = session("schneider-anamorphic-60mm", sun(4, 3, (1.6e4,) * 3)), _core.LiveFlare()
+    found, rays = live(made, drawer), drawer.rays
+    assert np.array_equal(live(made, drawer), found)
+    assert drawer.rays == rays

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 import daguerre as dg
 from daguerre.color.spectra import luminance_of_rgb
 from daguerre.rendering import Cancelled
-from daguerre.rendering.live_ghosts import live_ghosts
+from daguerre.rendering.live_ghosts import LiveGhosts
 from daguerre.rendering.session import Session
 from daguerre.viewfinder import ghosts
 from daguerre.viewfinder.dials import Dials
@@ -171,11 +171,13 @@ def draws(monkeypatch: pytest.MonkeyPatch) -> list[Session]:
     """Sessions whose ghosts were drawn."""
     found: list[Session] = []
 
-    def noted(session: Session) -> Any:
-        found.append(session)
-        return live_ghosts(session)
+    draw = LiveGhosts.draw
 
-    monkeypatch.setattr(ghosts, "live_ghosts", noted)
+    def noted(self: LiveGhosts, session: Session) -> Any:
+        found.append(session)
+        return draw(self, session)
+
+    monkeypatch.setattr(LiveGhosts, "draw", noted)
     return found
 
 
@@ -287,21 +289,21 @@ def test_a_lens_that_is_too_slow_is_left_alone_for_a_while(
 def test_a_lens_whose_layer_was_cancelled_late_is_too_slow(
     session: Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    layers = Layers()
+    layers, draw = Layers(), LiveGhosts.draw
 
     def cancelled(*_: object) -> None:
         raise Cancelled
 
-    monkeypatch.setattr(ghosts, "live_ghosts", cancelled)
+    monkeypatch.setattr(LiveGhosts, "draw", cancelled)
     with pytest.raises(Cancelled):  # at once: that says nothing
         layers.draw(session)
-    monkeypatch.setattr(ghosts, "live_ghosts", live_ghosts)
+    monkeypatch.setattr(LiveGhosts, "draw", draw)
     assert layers.draw(session) is not None
-    monkeypatch.setattr(ghosts, "live_ghosts", cancelled)
+    monkeypatch.setattr(LiveGhosts, "draw", cancelled)
     monkeypatch.setattr(ghosts, "MOST_S", 0.0)
     with pytest.raises(Cancelled):
         layers.draw(session)
-    monkeypatch.setattr(ghosts, "live_ghosts", live_ghosts)
+    monkeypatch.setattr(LiveGhosts, "draw", draw)
     assert layers.draw(session) is None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 import daguerre._core as _core
 from daguerre.camera.parameters.needs import TRACED
@@ -15,23 +16,32 @@ from .light_plan import core_settings_of
 from .session import Session
 
 
-@core_errors(InputError, "flare")
-def live_ghosts(session: Session) -> Frame | None:
-    """Draws the ghosts by two reflections of the brightest small lamps, and nothing else.
+class LiveGhosts:
+    """Draws live ghosts; keeps where they come through the front of a lens that stays."""
 
-    Args:
-        session: Session of the picture, whatever it has drawn.
+    def __init__(self) -> None:
+        self._core = _core.LiveFlare()
 
-    Returns:
-        Their light, which adds to a frame without ghosts; None: there is none.
-    """
+    @core_errors(InputError, "flare")
+    def draw(self, session: Session) -> Frame | None:
+        """Draws the ghosts by two reflections of the brightest small lamps, and nothing else.
+
+        Args:
+            session: Session of the picture, whatever it has drawn.
+
+        Returns:
+            Their light, which adds to a frame without ghosts; None: there is none.
+        """
+        one = session.prepared
+        if one.setup.lens.model not in TRACED:
+            return None
+        whole = self._core.draw(one.core_scene, one.setup.core, core_settings_of(one))
+        return _frame(session, whole) if self._core.sources else None
+
+
+def _frame(session: Session, whole: NDArray[np.float32]) -> Frame:
+    """Returns the crop of a session's ghosts as a frame."""
     one = session.prepared
-    if one.setup.lens.model not in TRACED:
-        return None
-    drawer = _core.LiveFlare()
-    whole = drawer.draw(one.core_scene, one.setup.core, core_settings_of(one))
-    if not drawer.sources:
-        return None
     left, top, right, bottom = one.crop
     rgb = np.ascontiguousarray(whole[top:bottom, left:right])
     light = Frame(rgb, flare=rgb, metadata=session.metadata)

@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.frame.frame import Frame
-from daguerre.rendering.live_ghosts import live_ghosts
+from daguerre.rendering.live_ghosts import LiveGhosts
 from daguerre.rendering.session import Session
 
-#: Longest time to draw a layer, s: two pictures a second still follow a hand.
-MOST_S = 0.5
+#: Longest time to draw a layer, s; the second one of a lens, which finds what is kept, takes twice
+#: as long as the first.
+MOST_S = 1.0
 #: Time without layers by a lens after one that took longer, s.
 PAUSE_S = 10.0
 
@@ -25,6 +26,7 @@ class Layers:
     """Draws layers, unless the lens has been too slow for them of late."""
 
     def __init__(self) -> None:
+        self._ghosts = LiveGhosts()
         self._slow: Any = None  # lens
         self._pause_end = -math.inf
 
@@ -34,7 +36,7 @@ class Layers:
         if lens == self._slow and begun < self._pause_end:
             return None
         try:
-            light = live_ghosts(session)
+            light = self._ghosts.draw(session)
         finally:  # whoever lost patience cancelled it
             ended = time.monotonic()
             slow = ended - begun > MOST_S

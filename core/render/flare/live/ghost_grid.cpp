@@ -13,7 +13,11 @@ constexpr int kCoarse = 8;         // squares across meanwhile
 constexpr int kSearches = 4;       // for light that no look found
 constexpr float kAbout = 2;        // squares
 constexpr int kHardly = 8;         // nodes at which light was seen
+constexpr int kPlenty = 120;       // nodes that let light pass: no light hides between them
 constexpr float kCloseIn = 0.5f;   // share of the region that holds the light: less is worth another look
+constexpr float kWellSeen = 0.8f;  // the same where there is plenty
+constexpr double kDim = 0.005;     // share of all light: not worth a closer look
+constexpr float kMargin = 2.f / GhostGrid::kSquares;   // of a region that is known about, on each side
 
 struct Range {
     float low = std::numeric_limits<float>::infinity(), high = -low;
@@ -33,6 +37,13 @@ bool is_dark(const MapRays& rays, const Sensor& sensor, float reach, const MapLa
     const float more = reach + std::max(x.size(), y.size());
     return all_sound && (x.low - more > float(sensor.width) || x.high + more < 0 ||
                          y.low - more > float(sensor.height) || y.high + more < 0);
+}
+
+FlareRectangle widened(const FlareRectangle& r) {
+    const Vec2f by = r.size * kMargin;
+    const Vec2f low{std::max(r.low.x - by.x, -1.f), std::max(r.low.y - by.y, -1.f)};
+    const Vec2f high{std::min(r.low.x + r.size.x + by.x, 1.f), std::min(r.low.y + r.size.y + by.y, 1.f)};
+    return {low, high - low};
 }
 
 }  // namespace
@@ -71,7 +82,7 @@ int GhostGrid::mark(const Looks& by) {
         if (passes(by, nodes[n])) see(n % side, n / side);
         note({float(n % side), float(n / side)}, nodes[n]);
     }
-    if (seen < kHardly && squares == kCoarse) {
+    if (seen < kHardly) {
         std::vector<MapRay> looks;
         std::vector<int> of;
         for (int i = 0; i < squares * squares; ++i)
@@ -105,7 +116,7 @@ int GhostGrid::look(const Looks& by, int across) {
 }
 
 /// Takes what holds all that may be lit; false: that is no smaller, or nothing.
-bool GhostGrid::close_in() {
+bool GhostGrid::close_in(float least) {
     int low_x = squares, low_y = squares, high_x = 0, high_y = 0;
     for (int y = 0; y < squares; ++y)
         for (int x = 0; x < squares; ++x) {
@@ -114,7 +125,7 @@ bool GhostGrid::close_in() {
             low_y = std::min(low_y, y), high_y = std::max(high_y, y + 1);
         }
     const int held = (high_x - low_x) * (high_y - low_y);
-    if (high_x == 0 || float(held) > kCloseIn * float(squares * squares)) return false;
+    if (high_x == 0 || float(held) > least * float(squares * squares)) return false;
     const Vec2f low = at({float(low_x), float(low_y)}), high = at({float(high_x), float(high_y)});
     region = {low, high - low};
     return true;
@@ -141,18 +152,51 @@ bool GhostGrid::is_smooth() const {
     return true;
 }
 
-GhostGrid::GhostGrid(const MapRays& map_rays, const Sensor& sensor, float reach) {
-    const Looks by{map_rays, sensor, reach};
-    int seen = look(by, kCoarse);
+/// Light comes in at a side of the region that is none of the front's: there may be more beyond.
+bool GhostGrid::is_cut(const Looks& by) const {
+    const int side = squares + 1;
+    const Vec2f low = region.low, high = region.low + region.size;
+    const auto lit_at = [&](auto node) {
+        for (int k = 0; k < side; ++k)
+            if (passes(by, nodes[node(k)])) return true;
+        return false;
+    };
+    return (low.x > -1 && lit_at([&](int k) { return k * side; })) ||
+           (high.x < 1 && lit_at([&](int k) { return k * side + squares; })) ||
+           (low.y > -1 && lit_at([&](int k) { return k; })) ||
+           (high.y < 1 && lit_at([&](int k) { return squares * side + k; }));
+}
+
+/// Closes in on the light from all of the front; how much it saw then.
+int GhostGrid::find(const Looks& by) {
+    region = {};
+    int seen = look(by, kSquares);
     for (int n = 0; seen == 0 && n < kSearches && search(); ++n) seen = look(by, kCoarse);
     if (seen == 0) {
         nodes.clear();
-        return;
+        return 0;
     }
-    int zoom = 1;
-    while (zoom < kZooms && seen >= kHardly && is_smooth() && close_in()) seen = look(by, kCoarse), ++zoom;
-    seen = look(by, kSquares);
-    while (zoom < kZooms && close_in()) seen = look(by, kSquares), ++zoom;
+    for (int zoom = 1; zoom < kZooms && seen >= kHardly && is_smooth() && close_in(kCloseIn); ++zoom) seen = look(by, kCoarse);
+    return squares == kSquares ? seen : look(by, kSquares);
+}
+
+GhostGrid::GhostGrid(const MapRays& map_rays, const Sensor& sensor, float reach,
+                     const KnownGhost* known) {
+    const Looks by{map_rays, sensor, reach};
+    int seen = 0;
+    if (known) {
+        region = widened(known->region), seen = look(by, kSquares);
+        const bool dark = std::ranges::find(lit, true) == lit.end();
+        if (!dark && (seen < kHardly || is_cut(by))) seen = find(by);
+    } else {
+        seen = find(by);
+    }
+    const auto least = [&] {
+        if (known && known->share < kDim) return kCloseIn;
+        const auto passing = std::ranges::count_if(nodes, [&](const MapLanding& l) { return l.sound && l.beyond < 0; });
+        return passing > kPlenty ? kWellSeen : kCloseIn;
+    };
+    for (int zoom = 0; zoom < kZooms && !empty() && close_in(least()); ++zoom) seen = look(by, kSquares);
     if (seen == 0) nodes.clear();
 }
 

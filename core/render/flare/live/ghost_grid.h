@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/flare/flare_cells.h"
+#include "render/flare/live/ghost_place.h"
 #include "render/flare/maps/map_rays.h"
 
 namespace dg {
@@ -17,8 +17,8 @@ struct GhostGrid {
     std::vector<bool> lit;             // squares through which light may come
     std::size_t rays = 0;              // that it took
 
-    /// `reach`: px beside the frame that count.
-    GhostGrid(const MapRays& rays, const Sensor& sensor, float reach);
+    /// `reach`: px beside the frame that count. `known`: or null.
+    GhostGrid(const MapRays& rays, const Sensor& sensor, float reach, const KnownGhost* known);
 
     bool empty() const { return nodes.empty(); }
     /// The place of a node, in squares, or of one between nodes.
@@ -35,8 +35,10 @@ struct GhostGrid {
     static bool passes(const Looks& by, const MapLanding& landing);
     int mark(const Looks& by);
     int look(const Looks& by, int across);
-    bool close_in();
+    bool close_in(float least);
     bool search();
+    int find(const Looks& by);
+    bool is_cut(const Looks& by) const;
     bool is_smooth() const;
     static float from_light(const Looks& by, const MapLanding& landing);
 

@@ -1,11 +1,12 @@
 #include "render/flare/live/live_flare.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 
 #include "math/error.h"
 #include "math/sampler.h"
-#include "render/flare/live/live_ghost.h"
+#include "render/flare/live/drawn_ghosts.h"
 #include "render/parallel.h"
 
 namespace dg {
@@ -47,49 +48,25 @@ std::vector<LiveSource> sources_of(const FlareAim& aim) {
     return chosen;
 }
 
-/// A ghost with the rays that it is made of.
-struct Own {
-    std::unique_ptr<MapRays> rays;
-    std::unique_ptr<LiveGhost> ghost;
-    double worth = 0;
-};
-
-std::vector<Own> ghosts_of(const FlareAim& aim, const std::vector<LiveSource>& sources, int threads) {
-    const auto pairs = std::size_t(aim.pairs());
-    std::vector<Own> all(sources.size() * pairs);
-    parallel_tasks(threads, std::int64_t(all.size()), [&](std::int64_t i) {
-        const LiveSource& source = sources[std::size_t(i) / pairs];
-        Own& own = all[std::size_t(i)];
-        own.rays = std::make_unique<MapRays>(aim.camera(), aim.sensor(), aim.ghost_lens(),
-                                             aim.steps(int(std::size_t(i) % pairs)), source.small.shape);
-        own.ghost = std::make_unique<LiveGhost>(*own.rays, source, aim.sensor(), std::uint64_t(i));
-    });
-    return all;
-}
-
-/// Keeps those that bring light, the brightest first, without those that nobody would miss; returns what they are worth.
-double choose(std::vector<Own>& all, const Sensor& sensor) {
-    std::erase_if(all, [](const Own& own) { return own.ghost->empty(); });
-    FlareTiles tiles(sensor);
-    for (const Own& own : all) own.ghost->add_to(tiles);
-    tiles.finish();
-    double worth = 0;
-    for (Own& own : all) worth += own.worth = own.ghost->weigh(tiles);
-    std::ranges::stable_sort(all, std::greater{}, &Own::worth);
-    double left = worth;
-    std::size_t count = 0;
-    while (count < all.size() && left > kDim * worth) left -= all[count++].worth;
-    all.erase(all.begin() + std::ptrdiff_t(count), all.end());
-    return worth - left;
+/// Ghosts by layers of about the same worth; the brightest come first.
+std::array<std::vector<LiveGhost*>, kLayers> layers_of(const std::vector<DrawnGhost>& all) {
+    std::array<std::vector<LiveGhost*>, kLayers> layers;
+    std::array<double, kLayers> worth{};
+    for (const DrawnGhost& own : all) {
+        const auto least = std::size_t(std::ranges::min_element(worth) - worth.begin());
+        layers[least].push_back(own.ghost.get()), worth[least] += own.worth;
+    }
+    return layers;
 }
 
 /// On layers that are added in their order: the same bits on any number of threads.
-std::vector<float> draw_all(const std::vector<Own>& all, const Sensor& sensor, float unit, int threads) {
+std::vector<float> draw_all(const std::vector<DrawnGhost>& all, const Sensor& sensor, float unit, int threads) {
+    const auto ghosts = layers_of(all);
     std::vector<std::unique_ptr<LightLayer>> layers(kLayers);
     parallel_tasks(threads, kLayers, [&](std::int64_t k) {
         auto& layer = layers[std::size_t(k)];
         layer = std::make_unique<LightLayer>(sensor.width, sensor.height);
-        for (std::size_t i = std::size_t(k); i < all.size(); i += kLayers) all[i].ghost->draw(*layer, unit);
+        for (LiveGhost* const ghost : ghosts[std::size_t(k)]) ghost->draw(*layer, unit);
     });
     for (int k = 1; k < kLayers; ++k) layers[0]->add(*layers[std::size_t(k)]);
     return layers[0]->pixels();
@@ -100,20 +77,33 @@ std::vector<float> draw_all(const std::vector<Own>& all, const Sensor& sensor, f
 std::vector<float> LiveFlare::draw(const Scene& scene, const Camera& camera, RenderSettings settings) {
     if (!std::holds_alternative<ExactLens>(camera.lens))
         throw input_error("live flare", "lens", "the exact model of a lens", "an ideal lens");
+    const std::scoped_lock lock(drawing_);
     facts_ = {};
     settings.flare.highlights = false, settings.flare.order = 2;
     const Sensor& sensor = settings.sensor;
     const FlareAim aim(scene, camera, settings);
     if (aim.pairs() == 0) return std::vector<float>(std::size_t(3) * sensor.width * sensor.height);
-    const std::vector<LiveSource> sources = sources_of(aim);
-    std::vector<Own> all = ghosts_of(aim, sources, settings.threads);
-    const double worth = choose(all, sensor);
+    std::vector<LiveSource> sources = sources_of(aim);
+    std::vector<std::vector<std::optional<KnownGhost>>> known(sources.size());
+    std::vector<DrawnGhost> all;
+    const bool keeps = GhostPlaces::can_keep(camera) && places_.set_lens(camera, sensor);
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+        MapSource& shape = sources[s].small.shape;
+        if (keeps) {
+            shape.turn = GhostPlaces::turn_of(camera, shape);
+            known[s] = places_.of(aim, shape, settings.threads);
+        }
+        std::ranges::move(ghosts_of(aim, sources[s], sensor, keeps ? &known[s] : nullptr, settings.threads),
+                          std::back_inserter(all));
+    }
+    const double worth = choose(all, sensor, kDim);
     parallel_tasks(settings.threads, std::int64_t(all.size()),
                    [&](std::int64_t i) { all[std::size_t(i)].ghost->refine(kArrivals / worth); });
     const double per_px = double(kMm2) / std::get<ExactLens>(camera.lens).h0() / sensor.mm2_per_px();
     std::vector<float> rgb = draw_all(all, sensor, float(per_px) * settings.shutter.weight(), settings.threads);
+    facts_.rays = keeps ? places_.rays() : 0;
     facts_.sources = int(sources.size()), facts_.ghosts = int(all.size());
-    for (const Own& own : all) facts_.rays += own.ghost->rays(), facts_.arrivals += own.ghost->arrivals();
+    for (const DrawnGhost& own : all) facts_.rays += own.ghost->rays(), facts_.arrivals += own.ghost->arrivals();
     return rgb;
 }
 

@@ -31,9 +31,10 @@ std::vector<float> planes_of(const std::vector<MapLanding>& nodes, int crossings
 
 }  // namespace
 
-LiveGhost::LiveGhost(const MapRays& rays, const LiveSource& source, const Sensor& sensor, std::uint64_t key)
-    : rays_(rays), source_(source), sensor_(sensor), first_(std::uint32_t(hash64(key))),
-      grid_(rays, sensor, CoarseLight::reach(LightLayer::kLevels - 1)) {
+LiveGhost::LiveGhost(const MapRays& rays, const LiveSource& source, const Sensor& sensor, std::uint64_t key,
+                     const KnownGhost* known)
+    : rays_(rays), source_(source), sensor_(sensor), known_(known), first_(std::uint32_t(hash64(key))),
+      grid_(rays, sensor, CoarseLight::reach(LightLayer::kLevels - 1), known) {
     traced_ = grid_.rays;
     if (grid_.empty()) return;
     std::vector<MapLanding> nodes = grid_.nodes;
@@ -43,11 +44,16 @@ LiveGhost::LiveGhost(const MapRays& rays, const LiveSource& source, const Sensor
 }
 
 void LiveGhost::look_around() {
+    MapBatch& batch = thread_scratch<MapBatch>([] {});
+    for (int i = 0; i < kLooks; ++i) {
+        const SpreadNumbers u{std::uint32_t(i + 1)};
+        batch.set(i, {u[0], u[1]}, {0, 0}, GhostGrid::middle_nm(), 1);
+    }
     float most = 0;
     for (int i = 0; i < int(grid_.lit.size()); ++i) {
         if (!grid_.lit[i]) continue;
         squares_.push_back({i % GhostGrid::kSquares, i / GhostGrid::kSquares});
-        look(squares_.back());
+        look(squares_.back(), batch);
         most = std::max(most, squares_.back().light);
     }
     const float glass = most > 0 ? this->glass() : 0;
@@ -64,25 +70,16 @@ float LiveGhost::glass() {
         for (int n = 0; n < kNodes; ++n)
             if (grid_.nodes[n].sound && grid_.nodes[n].beyond < kAlmost) open.push_back(n);
     if (open.empty()) return 0;
-    std::vector<MapRay> rays;
-    for (int i = 0; i < kGlassNodes; ++i) {
-        const int n = open[(2 * std::size_t(i) + 1) * open.size() / (2 * kGlassNodes)];
-        const Vec2f at = grid_.at({float(n % kSide), float(n / kSide)});
-        for (int k = 0; k < kWaves; ++k) rays.push_back({at, {0, 0}, LiveSource::node_nm(k)});
-    }
-    const std::vector<MapLanding> landings = trace(rays);
+    std::vector<int> some;
+    for (int i = 0; i < kGlassNodes; ++i) some.push_back(open[(2 * std::size_t(i) + 1) * open.size() / (2 * kGlassNodes)]);
     float sum = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) sum += landings[i].pass * source_.seen[i % kWaves] / kGlassNodes;
+    for (const GhostPlace::Spectrum& s : spectra(some))
+        for (int k = 0; k < kWaves; ++k) sum += s[k] * source_.seen[k] / kGlassNodes;
     return std::max(sum, 0.f);
 }
 
 /// By the grid alone, as if the source were a point of one colour.
-void LiveGhost::look(Square& s) {
-    MapBatch& b = thread_scratch<MapBatch>([] {});
-    for (int i = 0; i < kLooks; ++i) {
-        const SpreadNumbers u{std::uint32_t(i + 1)};
-        b.set(i, {u[0], u[1]}, {0, 0}, GhostGrid::middle_nm(), 1);
-    }
+void LiveGhost::look(Square& s, MapBatch& b) {
     patch(s).land(rays_.ghosts().tables().iris, b, kLooks);
     int seen = 0;
     Vec2f px{0, 0};
@@ -117,12 +114,29 @@ double LiveGhost::weigh(const FlareTiles& tiles) {
     return sum;
 }
 
+/// Takes as many of its nodes for its colours as so many arrivals pay for.
+void LiveGhost::divide(double own_arrivals) {
+    step_ = own_arrivals > kWorthMost ? 1 : own_arrivals > kWorthMore ? 2 : 4, few_side_ = GhostGrid::kSquares / step_ + 1;
+    few_.resize(std::size_t(few_side_) * few_side_);
+}
+
+GhostPlace LiveGhost::place(double arrivals, double share) {
+    divide(share * arrivals);
+    const FewNodes nodes = few_nodes();
+    set_spectra(nodes);
+    fill_few(nodes);
+    GhostPlace place{grid_.region, share, few_side_, {}};
+    for (const Few& f : few_) place.spectra.push_back(f.spectrum);
+    return place;
+}
+
 void LiveGhost::refine(double arrivals) {
     double all = 0;
     for (const Square& s : squares_) all += s.worth;
-    step_ = all * arrivals > kWorthMost ? 1 : all * arrivals > kWorthMore ? 2 : 4, few_side_ = GhostGrid::kSquares / step_ + 1;
-    few_.resize(std::size_t(few_side_) * few_side_);
-    trace_few();
+    divide(all * arrivals);
+    const FewNodes nodes = few_nodes();
+    trace_sets(nodes), set_spectra(nodes);
+    fill_few(nodes);
     find_blur();
     for (Square& s : squares_) {
         s.worth *= arrivals;

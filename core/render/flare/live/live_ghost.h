@@ -12,6 +12,7 @@
 
 #include "render/flare/flare_tiles.h"
 #include "render/flare/live/ghost_grid.h"
+#include "render/flare/live/ghost_place.h"
 #include "render/flare/live/light_layer.h"
 #include "render/flare/live/live_source.h"
 #include "render/flare/live/mesh_patch.h"
@@ -21,14 +22,17 @@ namespace dg {
 
 class LiveGhost {
   public:
-    /// All but the sensor outlives this.
-    LiveGhost(const MapRays& rays, const LiveSource& source, const Sensor& sensor, std::uint64_t key);
+    /// All but the sensor outlives this. `known`: where it comes in and how its glass is, about; null: nothing is known.
+    LiveGhost(const MapRays& rays, const LiveSource& source, const Sensor& sensor, std::uint64_t key,
+              const KnownGhost* known = nullptr);
 
     bool empty() const { return squares_.empty(); }
     /// Adds its light, about.
     void add_to(FlareTiles& tiles) const;
     /// How many arrivals it is worth beside other ghosts.
     double weigh(const FlareTiles& tiles);
+    /// Where it comes in and how its glass is, as finely as so many arrivals are worth of which it gets a share.
+    GhostPlace place(double arrivals, double share);
     /// Finds all that drawing takes, for so many arrivals for each unit of weigh().
     void refine(double arrivals);
     /// `unit`: light of a pixel for light and unit areas of the front's square.
@@ -51,7 +55,7 @@ class LiveGhost {
     };
     struct Few {               // at one of few nodes of the grid
         MeshPatch::Sets sets{};
-        std::array<float, LiveSource::kNodes> spectrum{};   // transmittance at nodes
+        GhostPlace::Spectrum spectrum{};
         CellBlur blur{};
         bool sound = false, blurs = false;
     };
@@ -60,7 +64,7 @@ class LiveGhost {
         traced_ += rays.size();
         return rays_.trace(rays);
     }
-    void look(Square& square);
+    void look(Square& square, MapBatch& batch);
     using GroupColors = std::array<Rgb, LiveSource::kGroups>;
     GroupColors colors_of(const Few& few, float times) const;
     bool apart(const Square& square, const MeshPatch& patch) const;
@@ -69,7 +73,16 @@ class LiveGhost {
     float glass();
     std::optional<int> sound_near(int few) const;
     bool matters(int few) const;
-    void trace_few();
+    void divide(double own_arrivals);
+    struct FewNodes {
+        std::vector<int> few, node;   // of few_, and the node of the grid in whose place each is traced
+    };
+    FewNodes few_nodes() const;
+    Vec2f place_of(int node) const { return grid_.at({float(node % kSide), float(node / kSide)}); }
+    std::vector<GhostPlace::Spectrum> spectra(const std::vector<int>& nodes);
+    void trace_sets(const FewNodes& nodes);
+    void set_spectra(const FewNodes& nodes);
+    void fill_few(const FewNodes& nodes);
     void find_blur();
     const CellBlur& blur_near(const Square& square) const;
     bool bends(const Square& square) const;
@@ -83,6 +96,7 @@ class LiveGhost {
     const MapRays& rays_;
     const LiveSource& source_;
     Sensor sensor_;
+    const KnownGhost* known_;          // or null
     std::uint32_t first_;              // of its numbers
     GhostGrid grid_;
     std::vector<float> planes_;        // of the grid's nodes, field by field

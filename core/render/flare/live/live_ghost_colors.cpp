@@ -35,36 +35,63 @@ bool LiveGhost::matters(int few) const {
     });
 }
 
-/// The change over wavelengths and source, and spectra: at few nodes.
-void LiveGhost::trace_few() {
-    const int crossings = rays_.crossings();
+LiveGhost::FewNodes LiveGhost::few_nodes() const {
+    FewNodes nodes;
+    for (int n = 0; n < int(few_.size()); ++n)
+        if (const auto own = sound_near(n); own && matters(n)) nodes.few.push_back(n), nodes.node.push_back(*own);
+    return nodes;
+}
+
+/// At nodes of the grid: what is known of them, or by rays.
+std::vector<GhostPlace::Spectrum> LiveGhost::spectra(const std::vector<int>& nodes) {
+    std::vector<GhostPlace::Spectrum> found(nodes.size());
     std::vector<MapRay> rays;
-    std::vector<int> of, from;
-    for (int n = 0; n < int(few_.size()); ++n) {
-        const auto own = sound_near(n);
-        if (!own || !matters(n)) continue;
-        of.push_back(n), from.push_back(*own);
-        const Vec2f at = grid_.at({float(*own % kSide), float(*own / kSide)});
-        rays.push_back({at, {0, 0}, lambda_node(0)}), rays.push_back({at, {0, 0}, lambda_node(2)});
-        rays.push_back({at, {1, 0}, GhostGrid::middle_nm()}), rays.push_back({at, {0, 1}, GhostGrid::middle_nm()});
-        for (int k = 0; k < kWaves; ++k) rays.push_back({at, {0, 0}, LiveSource::node_nm(k)});
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const Vec2f at = place_of(nodes[i]);
+        if (known_)
+            found[i] = known_->spectrum(at);
+        else
+            for (int k = 0; k < kWaves; ++k) rays.push_back({at, {0, 0}, LiveSource::node_nm(k)});
     }
     const std::vector<MapLanding> landings = trace(rays);
-    std::vector<bool> sound(int(few_.size()));
-    for (std::size_t i = 0; i < of.size(); ++i) {
-        Few& f = few_[of[i]];
-        const MapLanding& own = grid_.nodes[std::size_t(from[i])];
-        const MapLanding* const l = &landings[i * (MeshPatch::kSets + kWaves)];
-        f.sound = sound[of[i]] = true;
+    for (std::size_t i = 0; i < landings.size(); ++i) {
+        const MapLanding& own = grid_.nodes[std::size_t(nodes[i / kWaves])];
+        found[i / kWaves][i % kWaves] = landings[i].sound ? landings[i].pass : own.pass;
+    }
+    return found;
+}
+
+void LiveGhost::set_spectra(const FewNodes& nodes) {
+    const std::vector<GhostPlace::Spectrum> found = spectra(nodes.node);
+    for (std::size_t i = 0; i < found.size(); ++i) few_[nodes.few[i]].spectrum = found[i];
+}
+
+/// The change over wavelengths and source.
+void LiveGhost::trace_sets(const FewNodes& nodes) {
+    const int crossings = rays_.crossings();
+    std::vector<MapRay> rays;
+    for (const int n : nodes.node) {
+        const Vec2f at = place_of(n);
+        rays.push_back({at, {0, 0}, lambda_node(0)}), rays.push_back({at, {0, 0}, lambda_node(2)});
+        rays.push_back({at, {1, 0}, GhostGrid::middle_nm()}), rays.push_back({at, {0, 1}, GhostGrid::middle_nm()});
+    }
+    const std::vector<MapLanding> landings = trace(rays);
+    for (std::size_t i = 0; i < nodes.few.size(); ++i) {
+        Few& f = few_[nodes.few[i]];
+        const MapLanding& own = grid_.nodes[std::size_t(nodes.node[i])];
         for (int k = 0; k < MeshPatch::kSets; ++k) {
-            if (!l[k].sound) continue;
+            const MapLanding& l = landings[i * MeshPatch::kSets + k];
+            if (!l.sound) continue;
             std::array<float, MeshPatch::kMostFields> from{}, to{};
-            put_fields(from.data(), 1, own, crossings), put_fields(to.data(), 1, l[k], crossings);
+            put_fields(from.data(), 1, own, crossings), put_fields(to.data(), 1, l, crossings);
             for (int j = 0; j < 3 + 2 * crossings; ++j) f.sets[k][j] = to[j] - from[j];
         }
-        for (int k = 0; k < kWaves; ++k)
-            f.spectrum[k] = l[MeshPatch::kSets + k].sound ? l[MeshPatch::kSets + k].pass : own.pass;
     }
+}
+
+void LiveGhost::fill_few(const FewNodes& nodes) {
+    std::vector<bool> sound(few_.size());
+    for (const int n : nodes.few) few_[n].sound = sound[n] = true;
     fill_from_beside(sound, few_side_, [&](int n, const std::vector<int>& beside) {
         const float w = 1 / float(beside.size());
         for (const int m : beside) {

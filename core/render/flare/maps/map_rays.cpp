@@ -30,14 +30,16 @@ Vec2f MapSource::shift_of(Vec3d point) const {
 MapRays::MapRays(const Camera& camera, const Sensor& sensor, const GhostLens& ghosts,
                  const std::vector<GhostStep>& steps, const MapSource& source)
     : lens_(std::get<ExactLens>(camera.lens)), camera_(camera), sensor_(sensor), ghosts_(ghosts), steps_(steps),
-      source_(source),
+      source_(source), crossings_(dg::crossings(ghosts, steps)),
       per_iris2_(float(1 / std::pow(ghosts.iris_radius() * ghosts.iris().outer_radius(), 2))), front_(lens_.front_ball()) {}
 
 /// The square that stands across the way from the middle of the front to a point of the source.
 MapRays::Front MapRays::front(Vec2f shift) const {
     const Vec3d p = source_.point(shift), e = source_.at_infinity ? p : normalize(p - front_.center);
     const Across across(e);
-    return {p, e, front_.radius * across.x, front_.radius * across.y};
+    if (source_.turn == 0) return {p, e, front_.radius * across.x, front_.radius * across.y};
+    const double c = front_.radius * std::cos(source_.turn), s = front_.radius * std::sin(source_.turn);
+    return {p, e, c * across.x + s * across.y, c * across.y - s * across.x};
 }
 
 MapRays::Line MapRays::line(const Front& front, Vec2f at) const {

@@ -17,6 +17,7 @@ struct MapSource {
     Vec3d middle{0, 0, -1};   // a place, or the direction toward it
     bool at_infinity = true;
     double radius = 0;        // m, or the tangent of half its angle
+    double turn = 0;          // rad, of the square's sides about the way to it
 
     /// Place or direction of one of its points; within the unit disc.
     Vec3d point(Vec2f shift) const;
@@ -45,7 +46,7 @@ class MapRays {
     MapRays(const Camera& camera, const Sensor& sensor, const GhostLens& ghosts,
             const std::vector<GhostStep>& steps, const MapSource& source);
 
-    int crossings() const { return dg::crossings(ghosts_, steps_); }
+    int crossings() const { return crossings_; }
     const GhostLens& ghosts() const { return ghosts_; }
     const MapSource& source() const { return source_; }
     std::vector<MapLanding> trace(std::span<const MapRay> rays) const;
@@ -72,6 +73,7 @@ class MapRays {
     const GhostLens& ghosts_;
     const std::vector<GhostStep>& steps_;
     MapSource source_;
+    int crossings_;
     float per_iris2_;   // 1 / mm2
     ExactLens::Ball front_;
 };
