@@ -101,8 +101,10 @@ def test_a_projection_is_one_of_the_table() -> None:
         data["nominal"]["projection"] = name
         assert lens_of(data, "a.json").nominal.projection == name
     data["nominal"]["projection"] = "fisheye-equisolid"
+    assert lens_of(data, "a.json").nominal.projection == "equisolid"
+    data["nominal"]["projection"] = "fisheye"
     with pytest.raises(
-        LensError, match=r"^a\.json: nominal\.projection: .*'equisolid'.*got 'fisheye-equisolid'"
+        LensError, match=r"^a\.json: nominal\.projection: .*'equisolid'.*got 'fisheye'"
     ):
         lens_of(data, "a.json")
 

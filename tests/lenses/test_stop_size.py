@@ -15,6 +15,7 @@ import daguerre as dg
 from daguerre import lenses
 from daguerre.cli import main
 from daguerre.lenses.errors import LensError
+from tests.faults.scene import write_scene
 from tests.support import lens_writers as write
 from tests.support.triplet import TRIPLET
 
@@ -69,11 +70,31 @@ def test_the_stop_is_as_wide_as_other_diameters_let_the_axial_beam(
     assert f"through surface {limit}" in note
 
 
-@pytest.mark.parametrize("suffix", WRITERS)
+@pytest.mark.parametrize("suffix", [suffix for suffix in WRITERS if suffix != "json"])
 def test_without_any_diameter_the_stop_is_refused_by_name(tmp_path: Path, suffix: str) -> None:
     with pytest.raises(LensError, match=rf"lens\.{suffix}: surface 4.*stop.*got none") as caught:
         loaded(tmp_path, suffix, unsized(others=False))
     assert (caught.value.code, caught.value.surface) == ("lens-no-stop", STOP)
+
+
+def test_a_prescription_without_diameters_is_traced_and_not_rendered(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lens = loaded(tmp_path, "json", unsized(others=False))
+    assert lens.first_order().stop_semi_diameter == math.inf
+    assert np.isfinite(lens.trace([[0, 4.0, -9.0]], [[0, 0, 1.0]], [587.5618])).all()
+    file, out = str(tmp_path / "lens.json"), str(tmp_path / "out.exr")
+    scene = write_scene(tmp_path / "scene.glb", 1e3)
+    for words in (
+        ["lens", file],
+        ["lens", file, "--json"],
+        ["lens", file, "--export", str(tmp_path / "lens.osl")],
+        ["export-lens", file, "-o", str(tmp_path / "lens.xml")],
+        ["render", str(scene), "--lens", file, "-o", out],
+        ["render", str(scene), "--lens", file, "--lens-model", "thin", "--f-stop", "8", "-o", out],
+    ):
+        assert main(words) == 3, words
+        assert f"surface {STOP}: wanted a clear diameter of the stop" in capsys.readouterr().err
 
 
 def test_a_stated_f_number_goes_before_other_diameters(tmp_path: Path) -> None:

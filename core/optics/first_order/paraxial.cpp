@@ -89,13 +89,13 @@ double widest_f_stop(const Prescription&, const FirstOrder& f) {
 }
 
 double iris_radius(const Prescription& lens, const FirstOrder& f, double f_stop) {
-    if (!(f_stop > 0) || !std::isfinite(f_stop))
-        throw input_error(lens.name, "f-stop", "a positive number",
-                          std::to_string(f_stop));
     if (!std::isfinite(f.stop_semi_diameter))
         throw lens_error("lens-no-stop", lens.stop_index(), lens.name, "size of the stop",
                          "a finite semi-diameter, or a nominal f-number",
                          std::to_string(f.stop_semi_diameter));
+    if (!(f_stop > 0) || !std::isfinite(f_stop))
+        throw input_error(lens.name, "f-stop", "a positive number",
+                          std::to_string(f_stop));
     const double widest = widest_f_stop(lens, f);
     if (!(f_stop >= 0.99 * widest)) {
         std::ostringstream wanted, got;

@@ -22,6 +22,7 @@ from daguerre.lenses.glasses.catalogue import LINE_C, LINE_D, LINE_F
 from daguerre.lenses.image_circle import half_image
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 from daguerre.lenses.setting import By, LensSetting
+from daguerre.lenses.stop_size import check_stop_size
 
 from .plotted import Sectioned
 
@@ -212,12 +213,7 @@ def at_film(lens: Lens, film_z: float, field_mm: float) -> Bench:
 
 def _iris_radius(lens: Lens, order: FirstOrder, f_stop: float) -> float:
     # The pupil's diameter is focal length / f-stop; the stop's is proportional to it.
-    if math.isinf(order.stop_semi_diameter):
-        raise LensError(
-            f"{lens.name}: f-stop: wanted a clear diameter of the stop, or nominal.f_number, "
-            "got neither",
-            "lens-f-stop",
-        )
+    check_stop_size(lens)
     number(f_stop, f"{lens.name}: f-stop")
     if not (math.isfinite(f_stop) and f_stop > 0):
         raise LensError(

@@ -46,7 +46,7 @@ def checked(lens: Lens) -> Lens:
         raise LensError(
             f"{lens.source}: the focal length must be finite, got {order.efl}", "lens-afocal"
         )
-    if not math.isfinite(order.stop_semi_diameter):
+    if lens.nominal.f_number and not math.isfinite(order.stop_semi_diameter):
         raise LensError(
             f"{lens.source}: nominal.f_number: wanted a finite stop, got f/{order.f_number:g}",
             "lens-f-stop",

@@ -20,7 +20,7 @@ from .glass_rules import Origin, suppliers_of
 from .groups import Group, placed
 from .lens import Lens, Nominal
 from .product import read_product
-from .projections import PROJECTIONS
+from .projections import PROJECTION_NAMES
 from .reading import member, number, text, triple
 from .stop_size import probe, with_stop_of_other_diameters
 from .surface import LensSurface
@@ -157,7 +157,7 @@ def _group(item: Item, count: int, configurations: Sequence[Configuration]) -> G
 
 def _projection(nominal: Item | None) -> str | None:
     found = None if nominal is None else member(nominal, "projection")
-    return None if found is None else str(found.choice(PROJECTIONS))
+    return None if found is None else PROJECTION_NAMES[str(found.choice(PROJECTION_NAMES))]
 
 
 def _nominal(root: Item, configuration: Configuration) -> Nominal:

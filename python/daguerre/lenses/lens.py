@@ -130,9 +130,11 @@ class Lens(Value):
         self._check_stop()
 
     def _check_stop(self) -> None:
-        """Raises an error for a stop that is neither sized nor has an f-number to size it."""
+        """Raises an error if other surfaces have a size, and nothing gives the size of the stop."""
         (i,) = (i for i, surface in enumerate(self.surfaces) if surface.stop)
         size, f_number = self.surfaces[i].semi_diameter, self.nominal.f_number
+        if size is None and all(s.semi_diameter is None for s in self.surfaces):
+            return  # a prescription without diameters
         if (size is None or not math.isfinite(size)) and not f_number:
             raise LensError(
                 f"{self.source}: surface {i}: semi_diameter: wanted the clear radius of the stop, "

@@ -12,13 +12,18 @@ from numpy.typing import ArrayLike, NDArray
 
 FloatArray = NDArray[np.float64]
 
-#: Height over focal length by the angle from the axis, rad. Lens files use these names.
+#: Height over focal length by the angle from the axis, rad.
 PROJECTIONS: dict[str, Callable[[FloatArray], FloatArray]] = {
     "rectilinear": np.tan,
     "equidistant": lambda angle: angle,
     "equisolid": lambda angle: 2 * np.sin(0.5 * angle),
     "stereographic": lambda angle: 2 * np.tan(0.5 * angle),
     "orthographic": np.sin,
+}
+#: Projections by the names that lens files may use.
+PROJECTION_NAMES = {
+    **{name: name for name in PROJECTIONS},
+    **{f"fisheye-{name}": name for name in PROJECTIONS if name != "rectilinear"},
 }
 
 

@@ -16,6 +16,7 @@ from .errors import LensError, reported
 from .index import FOLDER
 from .json_lens import lens_from
 from .lens import Lens
+from .stop_size import check_stop_size
 from .unknown import unknown_members
 
 MAX_BYTES = 16_000_000
@@ -40,6 +41,7 @@ def read(path: str | Path, configuration: str | None = None) -> Lens:
         source = path.stem if path.parent == FOLDER else str(path)
         notes += [*lens.notes, *unknown_members(root)]
         if formats.is_foreign(path):
+            check_stop_size(lens)
             notes += formats.film_notes(lens)
         return checked(replace(lens, source=source, notes=tuple(notes)))
 

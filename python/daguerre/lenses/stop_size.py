@@ -25,33 +25,50 @@ def probe(stop: LensSurface) -> LensSurface:
 def with_stop_of_other_diameters(lens: Lens, unsized: LensSurface) -> Lens:
     """Returns the lens with its iris sized by the other clear diameters, and a note.
 
+    Without any clear diameter, a lens is a prescription: rays are traced through it unclipped.
+
     Args:
         lens: The lens with a ``probe`` as its stop.
         unsized: The stop as the file gives it.
 
     Raises:
-        LensError: No other surface that the axial beam meets has a clear diameter.
+        LensError: None of the surfaces with a clear diameter meets the axial beam.
     """
     (stop,) = (i for i, s in enumerate(lens.surfaces) if s.stop)
     heights = _heights(lens)
     known = [(i, clear) for i, s in enumerate(lens.surfaces) if (clear := _clear(s)) and i != stop]
     growth = {i: clear / heights[i] for i, clear in known if heights[i] > 0}
+    surfaces = list(lens.surfaces)
+    if not known:
+        surfaces[stop] = unsized
+        return lens.rebuilt(surfaces)
     if not growth or not heights[stop] > 0:
-        raise LensError(
-            f"{lens.source}: surface {stop}{in_file(lens, stop)}: wanted a clear diameter of the "
-            "stop, an f-number, or clear diameters of other surfaces, got none",
-            "lens-no-stop",
-            stop,
-        )
+        raise no_stop_size(lens)
     limit = min(growth, key=lambda i: growth[i])
     size = float(growth[limit] * heights[stop])
-    surfaces = list(lens.surfaces)
     surfaces[stop] = unsized.replaced(semi_diameter=size, derived=True)
     note = (
         f"surface {stop}{in_file(lens, stop)}: the file gives no size of the stop: took "
         f"{2 * size:.4g} mm, the axial beam through surface {limit}{in_file(lens, limit)}"
     )
     return lens.rebuilt(surfaces, notes=(*lens.notes, note))
+
+
+def check_stop_size(lens: Lens) -> None:
+    """Raises an error if nothing gives the size of the stop."""
+    if not np.isfinite(lens.first_order().stop_semi_diameter):
+        raise no_stop_size(lens)
+
+
+def no_stop_size(lens: Lens) -> LensError:
+    """Returns the error of a lens with a stop of unknown size."""
+    (stop,) = (i for i, s in enumerate(lens.surfaces) if s.stop)
+    return LensError(
+        f"{lens.source}: surface {stop}{in_file(lens, stop)}: wanted a clear diameter of the "
+        "stop, an f-number, or clear diameters of other surfaces, got none",
+        "lens-no-stop",
+        stop,
+    )
 
 
 def _clear(surface: LensSurface) -> float | None:

@@ -23,6 +23,7 @@ from daguerre.lenses.errors import LensError, reported
 from daguerre.lenses.focus import focused
 from daguerre.lenses.focusing import whole_lens_note
 from daguerre.lenses.setting import LensSetting
+from daguerre.lenses.stop_size import check_stop_size
 
 from . import tilt
 from .aim_cache import exact_lens
@@ -239,9 +240,9 @@ def _notes(camera: Camera, chosen: _Chosen, whole: str | None) -> list[str]:
 
 def _transmittance(lens: lenses.Lens, order: lenses.FirstOrder) -> float:
     """Luminous transmittance on the axis for D65, which is the same at any f-stop."""
-    f_stop = order.f_number or DEFAULT_F_STOP  # 0: the size of the stop is unknown
+    check_stop_size(lens)
     with reported(lens.source):
-        thick = _core.ThickLens(lens.prescription, f_stop, _core.Iris(), math.inf)
+        thick = _core.ThickLens(lens.prescription, order.f_number, _core.Iris(), math.inf)
     return float(thick.transmittance)
 
 

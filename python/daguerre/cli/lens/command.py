@@ -85,12 +85,14 @@ def lens(
     """
     from daguerre import lenses as library
     from daguerre.analysis import set_up
+    from daguerre.lenses.stop_size import check_stop_size
 
     files.check(film_serves=flare.wanted)
     flare.check()
     setting.check()
     psf.check()
     item = library.load(name)
+    check_stop_size(item)
     for text in item.notes:
         note(text)
     if files.export is not None:
