@@ -30,12 +30,22 @@ def blocks(page: str) -> list[tuple[str, str]]:
     return re.findall(r"^```(\w*)\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
 
 
+EUROC = """sensor_type: camera
+resolution: [752, 480]
+camera_model: pinhole
+intrinsics: [458.6, 457.3, 367.2, 248.4]
+distortion_model: radial-tangential
+distortion_coefficients: [-0.283, 0.074, 0.0002, 0.00002]
+"""
+KITTI = "".join(f"P{n}: 718.9 0 607.2 {-54 * n} 0 718.9 185.2 0 0 0 1 0\n" for n in range(4))
+
+
 @pytest.fixture
 def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """A folder with the files that the pages name, and what their code has at hand."""
     monkeypatch.chdir(tmp_path)
     board = charts.make("checkerboard")
-    for name in ("desk", "plate", "shot", "edge"):
+    for name in ("desk", "plate", "shot", "street", "edge"):
         board.save(Path(f"{name}.glb"))
     write_opencv()
     write("left.yaml", Calibration(PLATE, "left"), "ros")
@@ -52,6 +62,9 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     Path("sparse/0/cameras.txt").write_text("1 OPENCV 1280 720 905 904 641 358 -0.21 0.06 0 0\n")
     solved = [f"{n} 1 0 0 0 0 0 {2 + n / 100} 1 IMG_{n:04d}.jpg\n\n" for n in (42, *SHOT)]
     Path("sparse/0/images.txt").write_text("".join(dict.fromkeys(solved)))
+    Path("mav0/cam0").mkdir(parents=True)
+    Path("mav0/cam0/sensor.yaml").write_text(EUROC)
+    Path("calib.txt").write_text(KITTI)
     sample = json.loads(Path("sample.json").read_text())
     sample["timing"] = {"sampleRate": {"num": 24, "denom": 1}}
     Path("take.jsonl").write_text(100 * (json.dumps(sample) + "\n"))
