@@ -73,7 +73,7 @@ def test_an_edge_through_a_lens_has_the_mtf_of_the_bench(square: str, side: str)
     place = charts.places([_edge(chart, square, side)], one.metadata)[0]
     x, y = np.round(place).astype(int)
     crop = (x - 44, y - 44, x + 44, y + 44)
-    frame = _shot(chart, camera, spp=256, resolution=pixels, crop=crop)
+    frame = _shot(chart, camera, spp=1024, resolution=pixels, crop=crop)
     response = charts.edge_response(frame.xyz[..., 1])
 
     bench = analysis.set_up(

@@ -150,6 +150,7 @@ def test_no_label_of_a_ring_touches_another(page: Browser) -> None:
             )
             page.run(PAINTED)
             assert page.run(TOUCHING) == [], (ring, share)
+    page.until(RESTS)  # a ring can go back once the server has answered its turns
     page.run("document.querySelectorAll('.back:enabled').forEach((one) => one.click())")
     page.until(RESTS)
     page.until("!document.querySelector('.back:enabled')")

@@ -6,6 +6,7 @@
 
 #include "camera/kept/aim_state.h"
 #include "camera/kept/archive.h"
+#include "math/portable.h"
 #include "render/flare/live/drawn_ghosts.h"
 #include "render/parallel.h"
 
@@ -23,8 +24,8 @@ struct Seen {
     double angle, turn, nearness;
     Seen(const ExactLens::Ball& front, const MapSource& source) {
         const Vec3d to = source.at_infinity ? source.middle : source.middle - front.center;
-        const double across = std::hypot(to.x, to.y);
-        angle = std::atan2(across, -to.z), turn = across > 0 ? std::atan2(to.y, to.x) : 0;
+        const double across = hypot(to.x, to.y);
+        angle = atan2(across, -to.z), turn = across > 0 ? atan2(to.y, to.x) : 0;
         nearness = source.at_infinity ? 0 : front.radius / length(to);
     }
 };
@@ -57,14 +58,14 @@ bool GhostPlaces::set_lens(const Camera& camera, const Sensor& sensor) {
     rays_ = 0;
     if (key == lens_) return true;
     lens_ = std::move(key);
-    const double far = std::hypot(std::abs(sensor.center_mm.x + shift.x) + 0.5 * sensor.width_mm,
+    const double far = hypot(std::abs(sensor.center_mm.x + shift.x) + 0.5 * sensor.width_mm,
                                   std::abs(sensor.center_mm.y + shift.y) + 0.5 * sensor.height_mm);
     const auto square = [far](double pitch) { return int(std::ceil(2 * far / pitch)); };
     const double pitch_x = sensor.width_mm / sensor.width, pitch_y = sensor.height_mm / sensor.height;
     frame_.width = square(pitch_x), frame_.height = square(pitch_y);
     frame_.width_mm = frame_.width * pitch_x, frame_.height_mm = frame_.height * pitch_y;
     frame_.center_mm = {-shift.x, -shift.y};
-    step_rad_ = std::atan(far / std::abs(lens.first_order().efl)) / kSteps;
+    step_rad_ = atan(far / std::abs(lens.first_order().efl)) / kSteps;
     return false;
 }
 
