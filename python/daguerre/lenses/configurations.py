@@ -11,7 +11,7 @@ from daguerre.errors import suggest
 from daguerre.files.json_item import Item, clean
 
 from .errors import LensError
-from .reading import member, number
+from .reading import flag, member, number
 
 
 @guarded
@@ -84,13 +84,8 @@ def _configuration(item: Item, count: int) -> Configuration:
         object_distance_mm=number(item, "object_distance_mm", above=0),
         object_to_image_mm=None if to_image is None else 1000 * to_image,
         stop_semi_diameter=number(item, "stop_semi_diameter", above=0),
-        fitted=_fitted(item),
+        fitted=flag(item, "fitted"),
     )
-
-
-def _fitted(item: Item) -> bool:
-    found = member(item, "fitted")
-    return found is not None and found.flag()
 
 
 def _gaps(item: Item, count: int) -> dict[int, float]:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from .lens import DESIGN_WAVELENGTH_NM, Lens
 from .projections import projected
 from .sag import sag
-from .surface import LensSurface, bounding
+from .surface import LensSurface, bounding, stop_of
 from .zoom import positions, with_stop
 
 #: Number of fields between the axis and the corner, and of points on half the rim of the stop.
@@ -72,7 +72,7 @@ def image_radius(lens: Lens) -> float | None:
 def _with_stop(lens: Lens) -> Lens:
     """Sizes the open iris by the f-number if the table does not give its size."""
     surfaces = list(lens.surfaces)
-    (i,) = (i for i, s in enumerate(surfaces) if s.stop)
+    i = stop_of(surfaces)
     if surfaces[i].semi_diameter is not None or lens.nominal.f_number is None:
         return lens
     surfaces[i] = surfaces[i].replaced(semi_diameter=1.0)

@@ -26,7 +26,7 @@ from .groups import Group, placed
 from .medium import Medium
 from .product import Product
 from .setting import By, LensSetting, MeasuredFrom
-from .surface import LensSurface
+from .surface import LensSurface, stop_of
 
 if TYPE_CHECKING:
     from .focus import Focused
@@ -131,7 +131,7 @@ class Lens(Value):
 
     def _check_stop(self) -> None:
         """Raises an error if other surfaces have a size, and nothing gives the size of the stop."""
-        (i,) = (i for i, surface in enumerate(self.surfaces) if surface.stop)
+        i = stop_of(self.surfaces)
         size, f_number = self.surfaces[i].semi_diameter, self.nominal.f_number
         if size is None and all(s.semi_diameter is None for s in self.surfaces):
             return  # a prescription without diameters

@@ -25,6 +25,12 @@ def text(item: Item, key: str) -> str | None:
     return None if found is None else clean(found.text())
 
 
+def flag(item: Item, key: str) -> bool:
+    """Reads true or false; false if absent or null."""
+    found = member(item, key)
+    return found is not None and found.flag()
+
+
 def triple(item: Item, key: str, limit: float) -> Triple:
     """Reads three numbers of at most ``limit`` in magnitude; zeros if absent."""
     found = member(item, key)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .checking import in_file, ray_to_pupil
 from .errors import LensError
 from .lens import DESIGN_WAVELENGTH_NM, Lens
-from .surface import LensSurface
+from .surface import LensSurface, stop_of
 
 #: Semi-diameter of a stop of unknown size while the paraxial beam is traced, mm.
 PROBE = 1e-3
@@ -34,7 +34,7 @@ def with_stop_of_other_diameters(lens: Lens, unsized: LensSurface) -> Lens:
     Raises:
         LensError: None of the surfaces with a clear diameter meets the axial beam.
     """
-    (stop,) = (i for i, s in enumerate(lens.surfaces) if s.stop)
+    stop = stop_of(lens.surfaces)
     heights = _heights(lens)
     known = [(i, clear) for i, s in enumerate(lens.surfaces) if (clear := _clear(s)) and i != stop]
     growth = {i: clear / heights[i] for i, clear in known if heights[i] > 0}
@@ -62,7 +62,7 @@ def check_stop_size(lens: Lens) -> None:
 
 def no_stop_size(lens: Lens) -> LensError:
     """Returns the error of a lens with a stop of unknown size."""
-    (stop,) = (i for i, s in enumerate(lens.surfaces) if s.stop)
+    stop = stop_of(lens.surfaces)
     return LensError(
         f"{lens.source}: surface {stop}{in_file(lens, stop)}: wanted a clear diameter of the "
         "stop, an f-number, or clear diameters of other surfaces, got none",

@@ -109,6 +109,11 @@ class LensSurface:
         )
 
 
+def stop_of(surfaces: Sequence[LensSurface]) -> int:
+    """Index of the stop."""
+    return next(i for i, surface in enumerate(surfaces) if surface.stop)
+
+
 def bounding(surfaces: Sequence[LensSurface]) -> list[int]:
     """Indices of surfaces that bound an element or an air gap: all but planes within air."""
     before = [True, *(not s.glass for s in surfaces)]

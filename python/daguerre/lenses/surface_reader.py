@@ -9,7 +9,7 @@ from daguerre.files.json_item import Item, short
 from .errors import LensError, reported
 from .glass_json import glass_from_json
 from .glass_rules import Origin
-from .reading import member, number, triple
+from .reading import flag, member, number, triple
 from .surface import KINDS, TWO_SECTIONS, LensSurface
 
 #: Highest power of r in an asphere.
@@ -32,7 +32,6 @@ def _surface(item: Item, gap: float | None, origin: Origin, *, last: bool) -> Le
     kind = item.need("kind").choice(KINDS)
     radius = _radius(item, "radius")
     radius_x = _radius(item, "radius_x") if kind in TWO_SECTIONS else None
-    flag = member(item, "stop")
     semi_diameter = _semi_diameter(item, radius)
     glass = glass_from_json(member(item, "glass"), origin)
     coating = member(item, "coating")
@@ -42,7 +41,7 @@ def _surface(item: Item, gap: float | None, origin: Origin, *, last: bool) -> Le
         thickness=_thickness(item, gap, last),
         semi_diameter=semi_diameter,
         glass=glass.label,
-        stop=kind == "stop" or (flag is not None and flag.flag()),
+        stop=kind == "stop" or flag(item, "stop"),
         medium=glass.medium,
         conic=number(item, "conic") or 0.0,
         asphere=_asphere(item),
@@ -114,12 +113,11 @@ def _widened_from(item: Item, semi_diameter: float | None) -> float | None:
 
 
 def _fitted(item: Item, semi_diameter: float | None) -> bool:
-    flag = member(item, "fitted")
-    if flag is None or not flag.flag():
+    if not flag(item, "fitted"):
         return False
     bends = any(member(item, key) for key in ("radius", "glass", "asphere"))
     if bends or semi_diameter is None:
-        flag.fail("wanted a plane in air with a semi_diameter: a mount")
+        item.need("fitted").fail("wanted a plane in air with a semi_diameter: a mount")
     return True
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from .configurations import Configuration
 from .errors import LensError
 from .lens import DESIGN_WAVELENGTH_NM, Lens
+from .surface import stop_of
 
 #: Focal lengths beyond the range by this share are set to its end: printed lengths are rounded.
 TOLERANCE = 0.005
@@ -118,7 +119,7 @@ def with_stop(lens: Lens, semi_diameter: float | None) -> Lens:
     """Returns the lens with another semi-diameter of its open iris, mm."""
     if semi_diameter is None:
         return lens
-    i = next(i for i, s in enumerate(lens.surfaces) if s.stop)
+    i = stop_of(lens.surfaces)
     surfaces = list(lens.surfaces)
     surfaces[i] = surfaces[i].replaced(semi_diameter=semi_diameter)
     return lens.rebuilt(surfaces)
@@ -191,6 +192,6 @@ def _table_gap(lens: Lens, i: int) -> float:
 
 
 def _table_stop(lens: Lens) -> float | None:
-    i = next(i for i, s in enumerate(lens.surfaces) if s.stop)
+    i = stop_of(lens.surfaces)
     size = lens.data["surfaces"][i].get("semi_diameter")
     return None if size is None else float(size)

@@ -65,7 +65,7 @@ def facts_and_notes(shot: ShotTags, size: tuple[int, int]) -> tuple[dict[str, An
     turns = (_turn(shot.exif), _turn(shot.xmp))
     if None not in turns and turns[0] != turns[1]:
         notes.append(f"orientation: EXIF has {turns[0]}, XMP {turns[1]}: took EXIF's")
-    return with_sensor(xmp | exif, {**shot.xmp, **shot.exif}, size), notes
+    return _with_sensor(xmp | exif, {**shot.xmp, **shot.exif}, size), notes
 
 
 def _rounding(name: str, shot: ShotTags) -> float:
@@ -91,10 +91,10 @@ def shot_facts(tags: Mapping[str, Any], size: tuple[int, int]) -> dict[str, Any]
         Values that are present; ``sensorOverallDimensions`` (mm) if the resolution of the focal
         plane or the equivalent focal length determines it.
     """
-    return with_sensor(_plain(tags), tags, size)
+    return _with_sensor(_plain(tags), tags, size)
 
 
-def with_sensor(
+def _with_sensor(
     facts: dict[str, Any], tags: Mapping[str, Any], size: tuple[int, int]
 ) -> dict[str, Any]:
     """Returns metadata with the size of the sensor, mm, if the tags determine it."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from daguerre.lenses.image_circle import half_image as stated_half
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM, Lens
+from daguerre.lenses.surface import stop_of
 
 from .lens_outline import Points, clear_heights, element_outlines
 
@@ -132,7 +133,7 @@ def _fill(n: float) -> str:
 
 
 def _stop(lens: Lens, heights: list[float]) -> list[Line]:
-    i = next(k for k, s in enumerate(lens.surfaces) if s.stop)
+    i = stop_of(lens.surfaces)
     edge, at = heights[i], float(lens.vertices[i])
     outer = max(edge + 0.12 * max(heights), min(1.08 * max(heights), 1.6 * edge))
     return [Line([(at, side * edge), (at, side * outer)], "#000000", 2.5) for side in (-1, 1)]

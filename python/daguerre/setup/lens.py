@@ -133,12 +133,18 @@ class _Glass:
     def __init__(self, camera: Camera, lens: lenses.Lens, model: str) -> None:
         self._camera, self._model = camera, model
         self.chosen = _chosen(camera, lens, model)
+        self.whole = lru_cache(_KEPT)(self._whole)
         self.notes = lru_cache(_KEPT)(self._notes)
         self.in_focus = lru_cache(_KEPT)(self._focused)
         self.exact = lru_cache(_KEPT)(self._exact)
 
-    def _notes(self, whole: str | None) -> tuple[str, ...]:
-        return tuple(_notes(self._camera, self.chosen, whole))
+    def _whole(self, distance: float) -> str | None:
+        sharp = self.in_focus(distance)
+        magnification = (sharp.order.back_focal_point - sharp.film_z) / sharp.order.efl
+        return whole_lens_note(self.chosen.lens, magnification)
+
+    def _notes(self, distance: float) -> tuple[str, ...]:
+        return tuple(_notes(self._camera, self.chosen, self.whole(distance)))
 
     def _focused(self, distance: float) -> _InFocus:
         return _focused(self._camera, self.chosen, distance)
@@ -177,7 +183,6 @@ def set_up(framing: Framing, lens: lenses.Lens, model: str) -> ResolvedLens:
         drawn = _ideal(framing, model, sharp, film)
     offset = (sharp.film_z - sharp.order.entrance_pupil.z) * tilt.cosine(camera.tilt)
     fit = drawn.fit
-    whole = whole_lens_note(lens, (sharp.order.back_focal_point - sharp.film_z) / sharp.order.efl)
     return ResolvedLens(
         core=drawn.core,
         model=model if fit is None or fit.used else "exact",
@@ -194,9 +199,9 @@ def set_up(framing: Framing, lens: lenses.Lens, model: str) -> ResolvedLens:
             transmittance=chosen.transmittance,
             h0=drawn.h0,
             fit=fit,
-            whole=whole,
+            whole=glass.whole(found.distance_m),
         ),
-        notes=(*found.notes, *lens.notes, *glass.notes(whole), *drawn.notes),
+        notes=(*found.notes, *lens.notes, *glass.notes(found.distance_m), *drawn.notes),
     )
 
 

@@ -59,7 +59,7 @@ bool GhostPlaces::set_lens(const Camera& camera, const Sensor& sensor) {
     if (key == lens_) return true;
     lens_ = std::move(key);
     const double far = hypot(std::abs(sensor.center_mm.x + shift.x) + 0.5 * sensor.width_mm,
-                                  std::abs(sensor.center_mm.y + shift.y) + 0.5 * sensor.height_mm);
+                             std::abs(sensor.center_mm.y + shift.y) + 0.5 * sensor.height_mm);
     const auto square = [far](double pitch) { return int(std::ceil(2 * far / pitch)); };
     const double pitch_x = sensor.width_mm / sensor.width, pitch_y = sensor.height_mm / sensor.height;
     frame_.width = square(pitch_x), frame_.height = square(pitch_y);

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.lenses.image_circle import FULL_FRAME
+
 FloatArray = NDArray[np.float64]
 
 PIXELS = 24e6  # for residuals
-FULL_DIAGONAL_MM = math.hypot(36, 24)  # of crop factor 1
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ class Frame:
     @property
     def crop_factor(self) -> float:
         """Diagonal of 36 x 24 mm over this one's."""
-        return 0.5 * FULL_DIAGONAL_MM / self.corner_mm
+        return FULL_FRAME / self.corner_mm
 
     @property
     def pixel_mm(self) -> float:

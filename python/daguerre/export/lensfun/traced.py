@@ -82,14 +82,15 @@ def geometry(lens: Lens, frame: Frame) -> Geometry:
 
 def vignetting(lens: Lens, frame: Frame) -> list[Vignetting]:
     """Fits vignetting of a lens at its focal length, by f-stop, at infinity and near."""
-    near_m = max(CLOSE * closest_focus_m(lens), 1e-3 * NEAR * abs(lens.first_order().efl))
+    order = lens.first_order()
+    focal = abs(order.efl)
+    near_m = max(CLOSE * closest_focus_m(lens), 1e-3 * NEAR * focal)
     made = []
     for stops in NARROWER:
-        f_stop = lens.first_order().f_number * 2 ** (stops / 2)
+        f_stop = order.f_number * 2 ** (stops / 2)
         for distance_m in (math.inf, near_m):
             bench = set_up(lens, f_stop=f_stop, focus_m=distance_m, by="paraxial")
             fit = _light(bench, frame)
-            focal = abs(lens.first_order().efl)
             made.append(Vignetting(focal, f_stop, min(distance_m, FAR_M), fit))
     return made
 
