@@ -19,7 +19,7 @@ FLOORS = [
     {"kinds"},
     {"doors"},
     {"units", "memory", "files"},
-    {"parameters"},
+    {"parameters", "apart"},
     {"color", "motion", "convolution"},
     {"lenses", "sensors"},
     {"camera"},

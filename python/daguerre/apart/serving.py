@@ -1,0 +1,76 @@
+"""The helper's side: runs tasks one after the other, until the connection closes."""
+
+from __future__ import annotations
+
+import importlib
+import itertools
+import socket
+import traceback
+from typing import Any
+
+from daguerre.errors import (
+    DaguerreError,
+    InputError,
+    MismatchError,
+    OutputError,
+    UsageError,
+)
+from daguerre.files.packing import pack, unpack
+
+from .link import ANSWER, ERROR, FAULT, READY, TASK, TOLD, Link
+
+#: Classes of errors that cross, by name.
+ERRORS = {kind.__name__: kind for kind in (InputError, UsageError, MismatchError, OutputError)}
+
+
+def serve(end: socket.socket) -> None:
+    """Runs tasks until the other end closes."""
+    end.setblocking(True)
+    link = Link(end)
+    link.send(READY, [])
+    while True:
+        try:
+            kind, blocks = link.receive(lambda: float("inf"))
+        except EOFError:
+            return
+        if kind == TASK:
+            link.send(*_answer(link, blocks))
+
+
+def _answer(link: Link, blocks: list[Any]) -> tuple[bytes, list[Any]]:
+    """Runs a task and returns the message that answers it."""
+    try:
+        name, request = unpack(bytes(blocks[0]), lambda number: blocks[int(number)])
+        return ANSWER, packed(_function(name)(request, lambda text: _tell(link, text)))
+    except DaguerreError as error:
+        kind = next(
+            base for base in type(error).__mro__ if base in (*ERRORS.values(), DaguerreError)
+        )
+        name = kind.__name__ if kind.__name__ in ERRORS else InputError.__name__
+        return ERROR, [_bytes(name), _bytes(str(error))]
+    except Exception as error:
+        words = " ".join(str(error).split())
+        return FAULT, [
+            *(_bytes(type(error).__name__), _bytes(words)),
+            _bytes("".join(traceback.format_exception(error))),
+        ]
+
+
+def packed(value: Any) -> list[Any]:
+    """Blocks of a message: a packed value, and its large arrays, by the number of their block."""
+    numbers = itertools.count(1)
+    made = pack(value, lambda array: str(next(numbers)))
+    return [made.data, *(made.large[name] for name in sorted(made.large, key=int))]
+
+
+def _function(name: str) -> Any:
+    module, _, function = name.partition(":")
+    return getattr(importlib.import_module(module), function)
+
+
+def _tell(link: Link, text: str) -> None:
+    link.send(TOLD, [_bytes(text)])
+
+
+def _bytes(text: str) -> bytes:
+    return text.encode("utf-8", "surrogateescape")
