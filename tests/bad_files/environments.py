@@ -77,6 +77,18 @@ BAD: dict[str, tuple[str, bytes | Callable[[Path], bytes], str]] = {
     "text": ("e.hdr", b"hello", "cannot be decoded"),
     "unknown kind": ("e.txt", b"hello", "cannot be decoded"),
     "no suffix": ("e", hdr(), "cannot be decoded"),
+    "a video": (
+        "e.png",
+        b"\0\0\0 ftypisom" + bytes(90),
+        "wanted one of OpenEXR, PNG, .*; got a video",
+    ),
+    "a HEIF": ("e.jpg", b"\0\0\0 ftypheic" + bytes(90), "cannot be decoded: .*; got HEIF"),
+    "a cut sgi": (
+        "e.hdr",
+        b"\x01\xda\x01\x01\0\x03" + bytes(600),
+        "cannot be decoded: damaged SGI",
+    ),
+    "a dpx of zeros": ("e.png", b"SDPX" + bytes(4000), "cannot be decoded: damaged DPX"),
     "hdr without a size": ("e.hdr", hdr(size=b""), "cannot be decoded"),
     "hdr 0x0": ("e.hdr", hdr(size=b"-Y 0 +X 0"), "cannot be decoded|image size"),
     "hdr -4x7": ("e.hdr", hdr(size=b"-Y -4 +X 7"), "cannot be decoded|image size"),

@@ -85,7 +85,10 @@ BAD: dict[str, tuple[bytes | Callable[[Path], bytes], str]] = {
         "truncated PNG: wanted at least 4294967340 bytes",
     ),
     "cut jpeg": (lambda d: jpeg(PIXELS, d)[:-10], "truncated JPEG: the end marker is missing"),
-    "jpeg of 20 bytes": (lambda d: jpeg(PIXELS, d)[:20], "cannot be decoded: .*Premature end"),
+    "jpeg of 20 bytes": (
+        lambda d: jpeg(PIXELS, d)[:20],
+        "cannot be decoded: a JPEG without a frame",
+    ),
     "jpeg of a magic": (b"\xff\xd8\xff", "cannot be decoded|truncated JPEG"),
     "jpeg 65535x65535": (
         lambda d: wide_jpeg(jpeg(PIXELS, d)),

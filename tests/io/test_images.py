@@ -10,8 +10,8 @@ import pytest
 
 from daguerre.color.srgb import to_linear
 from daguerre.errors import InputError
-from daguerre.io import images
 from daguerre.io.images import decode, read_environment
+from daguerre.io.pictures import size
 from tests.support.make_gltf import jpeg, png
 
 HDRI = Path(__file__).parents[3] / "shared" / "data" / "hdri"
@@ -157,9 +157,9 @@ def test_absurd_sizes_are_refused_before_memory_is_taken(tmp_path):
 
 def test_limit_of_size(tmp_path, monkeypatch):
     path = write(tmp_path / "a.exr", ramp(4, 8))
-    monkeypatch.setattr(images, "MAX_PIXELS", 32)
+    monkeypatch.setattr(size, "MAX_PIXELS", 32)
     read_environment(path)
-    monkeypatch.setattr(images, "MAX_PIXELS", 31)
+    monkeypatch.setattr(size, "MAX_PIXELS", 31)
     with pytest.raises(InputError, match=r"a\.exr: image size: wanted at most 31 .* got 8x4"):
         read_environment(path)
 

@@ -1,38 +1,32 @@
 """Decodes pictures: textures from bytes, environments from files.
 
-OpenImageIO decodes. Truncated and corrupt files are rejected here first, as it fills a truncated
-JPEG with grey and libpng writes to stderr. Its Python wheel cannot read from memory, so bytes pass
-through a temporary file.
+:mod:`daguerre.io.pictures` reads them. OpenImageIO's Python wheel cannot read from memory, so bytes
+pass through a temporary file.
 """
 
 from __future__ import annotations
 
-import os
-import struct
-import zlib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.checks import DEFLATE_LIMIT
 from daguerre.color import srgb
 from daguerre.errors import InputError
 from daguerre.files.json_item import short
 from daguerre.files.reading import size_of
 
 from . import ktx2
+from .pictures.kinds import KINDS
+from .pictures.read import Picture, read
+from .pictures.size import MAX_ENVIRONMENT_BYTES, check_size
+from .pictures.source import Source
 
-MAX_PIXELS = 16384 * 16384
-#: Largest decoded size of a texture and of an environment (16384 x 8192 in float is 1.5 GiB).
-MAX_BYTES = 1 << 30
-MAX_ENVIRONMENT_BYTES = 2 << 30
 #: Largest colour channel of an environment: the sum of three still fits a float.
 MAX_LIGHT = 1e38
-_PNG_MAGIC = b"\x89PNG\r\n\x1a\n"
-# Bits by colour type (PNG specification, 11.2.1).
-_PNG_DEPTHS = {0: (1, 2, 4, 8, 16), 2: (8, 16), 3: (1, 2, 4, 8), 4: (8, 16), 6: (8, 16)}
+#: Kinds of pictures that glTF has beside KTX2.
+_OF_GLTF = ("png", "jpeg", "webp")
 
 
 def decode(data: bytes | memoryview, where: str) -> NDArray[np.uint8] | NDArray[np.float32]:
@@ -51,30 +45,11 @@ def decode(data: bytes | memoryview, where: str) -> NDArray[np.uint8] | NDArray[
     """
     data = bytes(data)
     if data.startswith(ktx2.MAGIC):
-        _check_size(*ktx2.size(data, where), 4, 1, where)
+        check_size(*ktx2.size(data, where), 4, 1, where)
         return ktx2.decode(data, where)
-    if data.startswith(_PNG_MAGIC):
-        _check_png(data, where)
-        suffix = ".png"
-    elif data.startswith(b"\xff\xd8\xff"):
-        _check_jpeg(data, where)
-        suffix = ".jpg"
-    elif data[:4] == b"RIFF" and data[8:12] == b"WEBP":
-        wanted = 8 + int.from_bytes(data[4:8], "little")
-        if len(data) < wanted:
-            raise InputError(f"{where}: truncated WebP: wanted {wanted} bytes, got {len(data)}")
-        suffix = ".webp"
-    else:
+    if not is_of_gltf(data):
         raise InputError(f"{where}: wanted a PNG, JPEG, WebP or KTX2 image, got {short(data[:8])}")
-    import tempfile
-
-    descriptor, name = tempfile.mkstemp(suffix=suffix, prefix="daguerre-")
-    try:
-        with os.fdopen(descriptor, "wb") as stream:
-            stream.write(data)
-        pixels, _, _ = _read(name, where)
-    finally:
-        Path(name).unlink(missing_ok=True)
+    pixels = read(Source(data=data), where).pixels
     if pixels.shape[2] > 4:
         raise InputError(f"{where}: wanted 1 to 4 channels, got {pixels.shape[2]}")
     if pixels.dtype == np.uint8:
@@ -82,6 +57,13 @@ def decode(data: bytes | memoryview, where: str) -> NDArray[np.uint8] | NDArray[
     if pixels.dtype == np.uint16:
         return pixels.astype(np.float32) / np.float32(65535)
     return pixels.astype(np.float32)
+
+
+def is_of_gltf(start: bytes) -> bool:
+    """Whether a file begins as a PNG, JPEG, WebP or KTX2."""
+    return start.startswith(ktx2.MAGIC) or any(
+        kind.matches(start) for kind in KINDS if kind.name in _OF_GLTF
+    )
 
 
 def read_environment(path: str | Path) -> NDArray[np.float32]:
@@ -102,15 +84,16 @@ def read_environment(path: str | Path) -> NDArray[np.float32]:
     size_of(file)
     if is_exr(file):
         return _checked_light(file, upright(*_linear(file)))
-    pixels, spec, kind = _read(str(file), str(file), MAX_ENVIRONMENT_BYTES)
+    picture = read(Source(file), str(file), MAX_ENVIRONMENT_BYTES)
+    pixels = picture.pixels
     if np.issubdtype(pixels.dtype, np.integer):
         scale = np.float32(np.iinfo(pixels.dtype).max)
-        rgb = srgb.to_linear(_rgb(pixels, spec, file).astype(np.float32) / scale)
+        rgb = srgb.to_linear(_rgb(picture, file).astype(np.float32) / scale)
     else:
-        rgb = _rgb(pixels, spec, file).astype(np.float32)
-    if kind == "hdr":
+        rgb = _rgb(picture, file).astype(np.float32)
+    if picture.kind == "hdr":
         rgb /= np.float32(_radiance_exposure(file))
-    return _checked_light(file, upright(rgb, spec.get_int_attribute("Orientation", 1)))
+    return _checked_light(file, upright(rgb, picture.orientation))
 
 
 def _checked_light(file: Path, rgb: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -126,130 +109,31 @@ def _checked_light(file: Path, rgb: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.ascontiguousarray(rgb)
 
 
-def read_file(path: Path, *, floats: bool = False) -> tuple[NDArray[Any], Any]:
-    """Reads pixels in the type of the file, shape (H, W, C), not turned upright, and its header.
+def read_file(path: Path, *, floats: bool = False) -> NDArray[Any]:
+    """Reads pixels in the type of the file, shape (H, W, C), not turned upright.
 
     Args:
-        path: File in a format that OpenImageIO decodes.
+        path: Picture of any kind of :mod:`daguerre.io.pictures`.
         floats: Return float32 instead: integers scaled to 0 .. 1, premultiplied by alpha.
 
     Returns:
-        The pixels, with straight alpha unless ``floats``, and OpenImageIO's ``ImageSpec``.
+        The pixels, with straight alpha unless ``floats``.
 
     Raises:
         InputError: The file cannot be decoded, is truncated or too large.
     """
     from .exr.reader import is_exr
 
-    with path.open("rb") as stream:
-        start = stream.read(8)
+    source = Source(path)
     if is_exr(path):
         raise InputError(f"{path}: OpenEXR is not supported here")
-    if start.startswith(_PNG_MAGIC):
-        _check_png(path.read_bytes(), str(path))
-    elif start.startswith(b"\xff\xd8\xff"):
-        _check_jpeg(path.read_bytes(), str(path))
-    pixels, spec, _ = _read(str(path), str(path), floats=floats)
-    return pixels, spec
+    return read(source, str(path), floats=floats).pixels
 
 
-def _check_jpeg(data: bytes, where: str) -> None:
-    """Checks for an end marker, as libjpeg fills missing pixels with grey."""
-    if data.rfind(b"\xff\xd9") < data.rfind(b"\xff\xda"):
-        raise InputError(f"{where}: truncated JPEG: the end marker is missing")
-
-
-def _read(
-    name: str, where: str, limit: int = MAX_BYTES, *, floats: bool = False
-) -> tuple[NDArray[Any], Any, str]:
-    """Returns pixels, ``ImageSpec`` and the name of the format; see :func:`read_file`."""
-    import OpenImageIO as oiio  # takes 30 MB, which scenes without pictures save
-
-    try:
-        name.encode()
-    except UnicodeEncodeError:
-        raise InputError(f"{where}: cannot be decoded: wanted a name in UTF-8") from None
-    config = oiio.ImageSpec()
-    config.attribute("oiio:UnassociatedAlpha", int(not floats))
-    source = oiio.ImageInput.open(name, config)
-    if source is None:
-        raise InputError(f"{where}: cannot be decoded: {_reason(oiio.geterror(), name)}")
-    try:
-        spec = source.spec()
-        format = oiio.TypeDesc(oiio.FLOAT) if floats else spec.format
-        _check_size(spec.width, spec.height, spec.nchannels, format.basesize(), where, limit)
-        pixels = source.read_image(0, 0, 0, spec.nchannels, format)
-        error, kind = source.geterror(), str(source.format_name())
-    finally:
-        source.close()
-    if pixels is None or (error and "extraneous bytes" not in error):
-        raise InputError(f"{where}: cannot be decoded: {_reason(error, name)}")
-    return np.asarray(pixels).reshape(spec.height, spec.width, spec.nchannels), spec, kind
-
-
-def _reason(error: str, name: str) -> str:
-    line = error.strip().splitlines()[0] if error.strip() else "no reason given"
-    return line.replace(f'("{name}")', "").replace(name, Path(name).name).strip()[:200]
-
-
-def _check_size(
-    width: int, height: int, channels: int, bytes_each: int, where: str, limit: int = MAX_BYTES
-) -> None:
-    if min(width, height, channels) < 1:
-        raise InputError(f"{where}: image size: wanted at least 1x1, got {width}x{height}")
-    size = width * height * channels * bytes_each
-    if width * height > MAX_PIXELS or size > limit:
-        raise InputError(
-            f"{where}: image size: wanted at most {MAX_PIXELS} pixels and {limit >> 20} MiB, "
-            f"got {width}x{height} ({size >> 20} MiB)"
-        )
-
-
-def _check_png(data: bytes, where: str) -> None:
-    """Checks chunks, checksums and header (PNG specification, chapters 5 and 11)."""
-    offset, packed, header, start = len(_PNG_MAGIC), 0, b"", b""
-    while True:
-        if offset + 12 > len(data):
-            raise InputError(f"{where}: truncated PNG: the IEND chunk is missing")
-        length, kind = struct.unpack_from(">I4s", data, offset)
-        end = offset + 12 + length
-        if end > len(data):
-            raise InputError(
-                f"{where}: truncated PNG: wanted at least {end} bytes, got {len(data)}"
-            )
-        (stored,) = struct.unpack_from(">I", data, end - 4)
-        if kind[:1].isupper() and zlib.crc32(data[offset + 4 : end - 4]) != stored:
-            raise InputError(f"{where}: corrupt PNG: wrong checksum of chunk {short(kind)}")
-        if kind == b"IHDR":
-            header = data[offset + 8 : end - 4]
-        if kind == b"IDAT":
-            start += data[offset + 8 : offset + 8 + min(length, 2 - len(start))]
-            packed += length
-        if kind == b"IEND":
-            break
-        offset = end
-    if len(header) != 13:
-        raise InputError(f"{where}: corrupt PNG: wanted 13 bytes of IHDR, got {len(header)}")
-    width, height, depth, color = struct.unpack_from(">IIBB", header)
-    if depth not in _PNG_DEPTHS.get(color, ()):
-        raise InputError(
-            f"{where}: corrupt PNG: wanted a known kind of pixels, got colour type {color} "
-            f"of {depth} bits"
-        )
-    channels = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[color]
-    _check_size(width, height, channels, max(depth // 8, 1), where)
-    if len(start) < 2 or start[0] & 15 != 8 or int.from_bytes(start, "big") % 31:  # RFC 1950, 2.2
-        raise InputError(f"{where}: corrupt PNG: wanted a deflate stream, got {short(start)}")
-    unpacked = height * ((width * depth * channels + 7) // 8)
-    if unpacked > packed * DEFLATE_LIMIT + 64:
-        raise InputError(
-            f"{where}: truncated PNG: {packed} bytes cannot hold {width}x{height} pixels"
-        )
-
-
-def _rgb(pixels: NDArray[Any], spec: Any, file: Path) -> NDArray[Any]:
+def _rgb(picture: Picture, file: Path) -> NDArray[Any]:
     """Selects the colour channels: R, G, B in any position, or one grey."""
-    names = [str(name).rsplit(".", 1)[-1].upper() for name in spec.channelnames]
+    pixels = picture.pixels
+    names = [name.rsplit(".", 1)[-1].upper() for name in picture.names]
     if all(name in names for name in "RGB"):
         return pixels[:, :, [names.index(name) for name in "RGB"]]
     if names[:1] in (["Y"], ["I"], ["L"]) or len(names) == 1:
@@ -264,8 +148,8 @@ def _linear(file: Path) -> tuple[NDArray[np.float32], int]:
     with ExrReader(file) as reader:
         names = light_names(list(reader.channels), str(file))
         full = (reader.full_size[1], reader.full_size[0])
-        _check_size(reader.width, reader.height, 3, 4, str(file), MAX_ENVIRONMENT_BYTES)
-        _check_size(full[1], full[0], 3, 4, f"{file}: display window", MAX_ENVIRONMENT_BYTES)
+        check_size(reader.width, reader.height, 3, 4, str(file), MAX_ENVIRONMENT_BYTES)
+        check_size(full[1], full[0], 3, 4, f"{file}: display window", MAX_ENVIRONMENT_BYTES)
         planes = reader.rows(0, reader.height, names)
         x, y = (a - b for a, b in zip(reader.corner, reader.full_corner, strict=True))
         turn = reader.facts.get("Orientation", 1)

@@ -32,7 +32,7 @@ def _read(path: Path) -> NDArray[np.float32]:
     size_of(path)
     if is_exr(path):
         return _of_exr(path)
-    return np.asarray(read_file(path, floats=True)[0], np.float32)
+    return np.asarray(read_file(path, floats=True), np.float32)
 
 
 def _of_exr(path: Path) -> NDArray[np.float32]:

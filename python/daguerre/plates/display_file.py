@@ -24,7 +24,7 @@ def read_display(path: Path) -> Photograph:
     Raises:
         InputError: The file cannot be decoded, or its pixels are not integers.
     """
-    pixels, _ = read_file(path)
+    pixels = read_file(path)
     if pixels.dtype not in _WHOLE:
         raise InputError(
             f"{path}: pixels: wanted 8 or 16 bits (linear light only as .exr), got {pixels.dtype}"

@@ -23,9 +23,8 @@ from daguerre.files.json_item import short
 from daguerre.files.reading import read_bytes
 from daguerre.io import images
 from daguerre.io.exr.reader import ExrReader, is_exr, light_names
-
-#: First bytes of the formats that glTF has, too.
-_DECODED = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"RIFF", b"\xabKTX")
+from daguerre.io.pictures import kinds
+from daguerre.io.pictures.size import MAX_BYTES
 
 
 class UnknownFormat(InputError):
@@ -33,7 +32,7 @@ class UnknownFormat(InputError):
 
 
 def decoded(data: bytes, name: str, where: str) -> NDArray[Any]:
-    """Decodes a picture: those of glTF, and every other that OpenImageIO and OpenEXR read.
+    """Decodes a picture of any kind that :mod:`daguerre.io.pictures` reads, or OpenEXR.
 
     Args:
         data: Bytes of the file.
@@ -47,7 +46,7 @@ def decoded(data: bytes, name: str, where: str) -> NDArray[Any]:
         InputError: It is damaged or too large.
         UnknownFormat: It is no picture, by its name either.
     """
-    if data.startswith(_DECODED):
+    if images.is_of_gltf(data):
         return images.decode(data, where)
     descriptor, temporary = tempfile.mkstemp(suffix=_suffix(name), prefix="daguerre-")
     try:
@@ -63,11 +62,8 @@ def decoded(data: bytes, name: str, where: str) -> NDArray[Any]:
 
 def is_known(name: str) -> bool:
     """Whether a picture has no suffix, or one that a reader knows."""
-    import OpenImageIO as oiio
-
     suffix = _suffix(name).lower().removeprefix(".")
-    listed = str(oiio.get_string_attribute("extension_list"))
-    return suffix in ("", "ktx2", *re.split("[;:,]", listed))
+    return suffix in ("", "ktx2") or kinds.is_known(suffix)
 
 
 def _suffix(name: str) -> str:
@@ -79,8 +75,8 @@ def _exr(file: Path) -> NDArray[np.float32]:
     """Reads the data window of an OpenEXR; textures may be negative, but are finite."""
     with ExrReader(file) as reader:
         size = reader.width * reader.height * 16
-        if size > images.MAX_BYTES:
-            most = memory.shown(images.MAX_BYTES)
+        if size > MAX_BYTES:
+            most = memory.shown(MAX_BYTES)
             raise InputError(f"{file}: image size: the limit is {most}")
         names = light_names(list(reader.channels), str(file))
         names += [name for name in reader.channels if name == "A"]
@@ -93,10 +89,10 @@ def _other(file: Path) -> NDArray[Any]:
     """Decodes a format that glTF does not have: light as it is, integers to 0 .. 1."""
     if is_exr(file):
         return _exr(file)
-    if file.suffix.lower() == ".hdr":
-        return images.read_environment(file)
-    pixels, _ = images.read_file(file)
-    pixels = pixels[:, :, :4]
+    with file.open("rb") as stream:
+        if stream.read(2) == b"#?":
+            return images.read_environment(file)
+    pixels = images.read_file(file)[:, :, :4]
     if pixels.dtype == np.uint8:
         return np.ascontiguousarray(pixels)
     if np.issubdtype(pixels.dtype, np.integer):
@@ -107,7 +103,7 @@ def _other(file: Path) -> NDArray[Any]:
 def bytes_of(file: Path, where: str) -> bytes:
     """Bytes of a file, if there are not too many."""
     with asked_by(where):
-        return read_bytes(file, images.MAX_BYTES)
+        return read_bytes(file, MAX_BYTES)
 
 
 @contextmanager
@@ -123,6 +119,6 @@ def opened_package(file: Path, where: str) -> Iterator[zipfile.ZipFile]:
 def member(archive: zipfile.ZipFile, name: str, where: str) -> bytes:
     """Bytes of a file in a package, which stores them without compression (usdz specification)."""
     info = archive.getinfo(name)
-    if info.compress_type != zipfile.ZIP_STORED or info.file_size > images.MAX_BYTES:
+    if info.compress_type != zipfile.ZIP_STORED or info.file_size > MAX_BYTES:
         raise InputError(f"{where}: the file in the package is compressed or too large")
     return archive.read(name)
