@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from itertools import pairwise
 
 import numpy as np
@@ -52,6 +53,31 @@ def test_damage_is_found() -> None:
     for wrong in (data[:-1], data[:-5] + b"x" + data[-4:], data[:-1] + b"x", b"", b"{}\n"):
         with pytest.raises(InputError, match="damaged answer"):
             answer_of(wrong)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("key", True), ("key", "x"), ("key", ["scene"]), ("facts", None), ("facts", [["rays", 1]]),
+        ("facts", {"rays": "many"}), ("facts", {"seconds": -1}), ("facts", {"tasks": 1e300}),
+        ("facts", {"piloted": 3}), ("facts", {"piloted": [1, "x"]}), ("facts", {"seconds": True}),
+        ("parts", [["x" * 100, [1], 0, 0]]), ("parts", 7),
+    ],
+)  # fmt: skip
+def test_heads_of_another_form_are_damage(name: str, value: object) -> None:
+    session = drawn(0, 1)
+    line, words = bytes(packed_sums("worker", session.key, session.state(), {})).split(b"\n", 1)
+    data = json.dumps(json.loads(line) | {name: value}).encode() + b"\n" + words
+    with pytest.raises(InputError, match="damaged answer"):
+        answer_of(data)
+    with pytest.raises(InputError, match="damaged answer"):
+        answer_of(b'{"failed": ' + b"[" * 100_000 + b"\n")
+
+
+def test_facts_that_are_missing_are_zero() -> None:
+    sums = Sums("worker", {}, {}, {"seconds": 0.5, "piloted": [1, 2]})
+    assert (sums.fact("seconds"), sums.fact("tasks"), sums.piloted) == (0.5, 0, (1, 2))
+    assert Sums("worker", {}, {}, {"piloted": None}).piloted is None
 
 
 @pytest.mark.parametrize("name", ["scene", "camera", "settings", "build"])

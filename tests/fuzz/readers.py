@@ -54,18 +54,33 @@ READERS = {
     "ply": Reader("plys", "mesh"),
     "mesh": Reader("meshes", "mesh"),
     "grid": Reader("grids", "grid"),
-    "pbrt": Reader("pbrts", "read_scene"),
-    "mitsuba": Reader("mitsubas", "scene"),
+    "raw": Reader("raws", "raw"),
+    "exif": Reader("tagged", "picture"),
+    "pbrt": Reader("pbrts", "drawn"),
+    "mitsuba": Reader("mitsubas", "drawn"),
+    "usda": Reader("usdas", "drawn"),
+    "usdc": Reader("usdcs", "drawn"),
+    "usdz": Reader("usdzs", "drawn"),
+    "cluster": Reader("answers", "answered"),
+    "viewfinder": Reader("requests", "requested"),
 }
 
 
 def changed(rng: Random, name: str, data: bytes) -> bytes:
     """A file changed as its format allows, by its name."""
-    from . import changes
+    from . import changes, container_changes
 
     suffix = Path(name).suffix
-    if suffix in (".ply", ".serialized", ".vol", ".nvdb") and rng.random() < 0.7:
+    if suffix in (".ply", ".serialized", ".vol", ".nvdb", ".dng") and rng.random() < 0.7:
         return changes.in_part(rng, data)
+    if name.startswith(("tagged", "packet")) and rng.random() < 0.8:
+        return container_changes.in_metadata(rng, data)
+    if suffix == ".usdc" and rng.random() < 0.8:
+        return container_changes.in_crate(rng, data)
+    if suffix == ".usdz" and rng.random() < 0.8:
+        return container_changes.in_package(rng, data)
+    if suffix == ".answer":
+        return container_changes.in_answer(rng, data)
     if rng.random() < 0.1:
         return changes.in_bytes(rng, data)
     if name == "exact.glb":

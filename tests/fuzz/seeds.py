@@ -31,6 +31,14 @@ from tests.support.nanovdb_files import Writer, segment
 from tests.support.packed_scenes import everything
 from tests.support.plate_frames import of_light
 
+from .messages import answers as answers
+from .messages import requests as requests
+from .shot_seeds import raws as raws
+from .shot_seeds import tagged as tagged
+from .stage_seeds import usdas as usdas
+from .stage_seeds import usdcs as usdcs
+from .stage_seeds import usdzs as usdzs
+
 #: A file's name and bytes.
 Seed = tuple[str, bytes]
 ROOT = Path(__file__).resolve().parents[2]

@@ -11,6 +11,7 @@ import numpy as np
 
 import daguerre as dg
 from daguerre import calibration
+from daguerre.development.camera_raw import read_shot
 from daguerre.errors import InputError
 from daguerre.files import formats
 from daguerre.files.notes import Notes
@@ -22,6 +23,9 @@ from daguerre.plates import files as plates
 from daguerre.post import recipe as effects
 from daguerre.stocks import load as load_stock
 
+from .messages import answered as answered
+from .messages import requested as requested
+
 TINY = {"resolution": (8, 6), "spp": 1, "threads": 1}
 
 
@@ -31,8 +35,16 @@ def scene(path: Path) -> None:
     dg.render(made, camera, **TINY)
 
 
-def read_scene(path: Path) -> None:
-    dg.load(path)
+def drawn(path: Path) -> None:
+    """Reads a scene, through its own camera if it has one, and draws 4 x 4 px."""
+    made = dg.load(path)
+    camera = made.camera() if made.cameras else dg.Camera(lens_model="pinhole")
+    dg.render(made, camera, **{**TINY, "resolution": (4, 4)})
+
+
+def raw(path: Path) -> None:
+    """Reads a raw photograph as plate, and develops it."""
+    _all(lambda: plates.read(path), lambda: dg.development.develop(read_shot(path)))
 
 
 def lens(path: Path) -> None:

@@ -15,6 +15,7 @@ from zlib import crc32
 import numpy as np
 
 from daguerre.errors import InputError, MismatchError
+from daguerre.files.json_item import short
 from daguerre.rendering.columns import Columns, Words, kept_of, take
 
 
@@ -68,6 +69,16 @@ class Sums:
     parts: Mapping[str, Columns]
     facts: dict[str, Any]
 
+    def fact(self, name: str) -> float:
+        """A number among the facts; 0: there is none."""
+        return float(self.facts.get(name) or 0)
+
+    @property
+    def piloted(self) -> tuple[float, float] | None:
+        """Result of the pilot render; None: there is none."""
+        found = self.facts.get("piloted")
+        return None if found is None else (float(found[0]), float(found[1]))
+
     def check_key(self, wanted: dict[str, str], *, mixed: bool = False) -> None:
         """Checks that the sums belong to a picture.
 
@@ -82,12 +93,14 @@ class Sums:
             got = self.key.get(name)
             if got != value and not (mixed and name == "build"):
                 raise MismatchError(
-                    f"{name}: wanted the same as the client's, {value[:60]}, got {got}"
+                    f"{name}: wanted the same as the client's, {value[:60]}, got {short(got)}"
                 )
 
 
 #: Most bytes of the line.
 _LINE = 1 << 20
+#: Most characters of the name of a part, and largest number of a fact.
+_NAME, _MOST = 64, 1e18
 
 Answer = Needs | Failed | Sums
 
@@ -136,9 +149,10 @@ def answer_of(data: bytes | memoryview) -> Answer:
         words, check = rest[:-4], rest[-4:]
         if crc32(words) != int.from_bytes(check, "little"):
             raise ValueError("another checksum")
-        return Sums(worker, head["key"], dict(_parts(head["parts"], words)), head["facts"])
-    except (ValueError, LookupError, TypeError, AttributeError) as error:
-        raise InputError(f"damaged answer: {error}") from None
+        key = {str(name): str(value) for name, value in head["key"].items()}
+        return Sums(worker, key, dict(_parts(head["parts"], words)), _facts(head["facts"]))
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
+        raise InputError(f"damaged answer: {str(error)[:200]}") from None
 
 
 def head_line(**head: Any) -> bytes:
@@ -147,10 +161,27 @@ def head_line(**head: Any) -> bytes:
     return text + b" " * (-(len(text) + 1) % 8) + b"\n"
 
 
+def _facts(facts: Any) -> dict[str, Any]:
+    """Facts by name: numbers of at least 0, and the result of a pilot render."""
+    if not isinstance(facts, dict):
+        raise TypeError(f"wanted facts by name, got {short(facts)}")
+    for name, value in facts.items():
+        values = [value]
+        if name == "piloted":
+            values = [] if value is None else value
+            if not isinstance(values, list) or len(values) not in (0, 2):
+                raise ValueError(f"piloted: wanted two numbers, got {short(value)}")
+        if not all(type(one) in (int, float) and 0 <= one < _MOST for one in values):
+            raise ValueError(f"{short(name)}: wanted numbers, got {short(value)}")
+    return facts
+
+
 def _parts(facts: Any, data: memoryview) -> Iterator[tuple[str, Columns]]:
     """Parts over bytes, not copied."""
     begin = 0
     for name, shape, *counts in facts:
+        if not isinstance(name, str) or len(name) > _NAME or not _is_shape(shape):
+            raise ValueError(f"wanted a part and its shape, got {short([name, shape])}")
         blocks = []
         for count in counts:
             words = np.frombuffer(data[begin : begin + 4 * count], np.uint32)
@@ -159,4 +190,13 @@ def _parts(facts: Any, data: memoryview) -> Iterator[tuple[str, Columns]]:
             blocks.append(words)
             begin += 4 * count
         kept, words = blocks
-        yield str(name), Columns(tuple(shape), np.require(kept, requirements="A"), words)
+        yield name, Columns(tuple(shape), np.require(kept, requirements="A"), words)
+
+
+def _is_shape(shape: Any) -> bool:
+    """Whether a value can be the shape of a part's words."""
+    return (
+        isinstance(shape, list)
+        and 1 <= len(shape) <= 3
+        and all(type(count) is int and 0 <= count < _MOST for count in shape)
+    )

@@ -198,10 +198,7 @@ class Crew:
     def piloted(self, flight: Flight) -> Plan | None:
         """Result of the pilot render of the worker whose sums have landed; None: none is known."""
         flight.answer = self._answer(flight)
-        if not isinstance(flight.answer, Sums) or flight.answer.facts["piloted"] is None:
-            return None
-        m1, m2 = flight.answer.facts["piloted"]
-        return float(m1), float(m2)
+        return flight.answer.piloted if isinstance(flight.answer, Sums) else None
 
     def is_late(self, flight: Flight) -> bool:
         """Whether a task takes much longer than it should, by the speed of workers."""

@@ -102,11 +102,11 @@ class Sharing:
         began = time.process_time()
         yield
         self._add_s = self._take_s + time.process_time() - began
-        self.session.counters.rays += int(sums.facts["rays"])
-        seconds = float(sums.facts["seconds"])
+        self.session.counters.rays += int(sums.fact("rays"))
+        seconds, tasks = sums.fact("seconds"), max(sums.fact("tasks"), 1.0)
         if seconds > 0:
-            self._task_s = seconds / sums.facts["tasks"]
-            packing = float(sums.facts["pack_s"]) / sums.facts["tasks"]
+            self._task_s = seconds / tasks
+            packing = sums.fact("pack_s") / tasks
             self.crew.answer_s = packing + self._add_s
             self.crew.per_second = max(samples / seconds, 1e-3)
 

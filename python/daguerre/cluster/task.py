@@ -145,7 +145,7 @@ def _folded(task: Task, answers: tuple[memoryview, ...]) -> memoryview:
             raise MismatchError("fold: wanted sums of all tasks")
         found.check_key(session.key)
         session.add(found.parts)
-        facts = {name: value + found.facts[name] for name, value in facts.items()}
+        facts = {name: value + found.fact(name) for name, value in facts.items()}
     return _packed(session, facts)
 
 

@@ -78,10 +78,18 @@ def opened_raw(path: str | os.PathLike[str]) -> Iterator[Any]:
         ) from None
 
 
+def is_flat(opened: Any) -> bool:
+    """Whether an opened raw file has one value per photosite, as mosaics and grey pictures have."""
+    import rawpy
+
+    return bool(opened.raw_type == rawpy.RawType.Flat and opened.raw_image is not None)
+
+
 def _shot(path: Any, opened: Any, tags: Mapping[str, Any], demosaic: Demosaic) -> Channels:
     grey = opened.num_colors == 1
-    if not grey and (opened.num_colors != 3 or opened.raw_pattern is None):
-        mosaic = "without a mosaic" if opened.raw_pattern is None else "in a mosaic"
+    flat = is_flat(opened)
+    if not flat or (not grey and (opened.num_colors != 3 or opened.raw_pattern is None)):
+        mosaic = "in a mosaic" if flat and opened.raw_pattern is not None else "without a mosaic"
         raise InputError(
             f"{path}: colours: wanted a mosaic of red, green and blue, or grey alone; got "
             f"{opened.num_colors} colours {mosaic}"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.development.camera_raw import opened_raw, tags_of, white_of_shot
+from daguerre.development.camera_raw import is_flat, opened_raw, tags_of, white_of_shot
 from daguerre.errors import InputError
 from daguerre.io.images import upright
 from daguerre.io.shot_blocks import read_tags
@@ -40,7 +40,7 @@ def read_raw(path: Path) -> Photograph:
 
 
 def _numbers(path: Path, opened: Any, tags: Mapping[str, Any], turn: int) -> RawNumbers:
-    if opened.raw_image is None or opened.num_colors not in (1, 3):
+    if not is_flat(opened) or opened.num_colors not in (1, 3):
         raise InputError(
             f"{path}: mosaic: wanted a mosaic of red, green and blue, or grey; got "
             f"{opened.num_colors} colours without a mosaic"
