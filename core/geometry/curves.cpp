@@ -51,8 +51,8 @@ void Curves::validate(const Mesh& mesh) const {
         throw input_error(where, "length of radii", std::to_string(n) + " (one per position)",
                           std::to_string(radii.size()));
     for (std::size_t i = 0; i < n; ++i)
-        if (!(radii[i] >= 0 && std::isfinite(radii[i])))
-            throw input_error(where, whole("radius of position", i), "a finite number >= 0",
+        if (!(radii[i] >= 0 && radii[i] < kFar))
+            throw input_error(where, whole("radius of position", i), "a number from 0 to below 1e18",
                               std::to_string(radii[i]));
     check_layout(where, *this, n);
 }

@@ -267,6 +267,7 @@ std::optional<RawHit> EmbreeIntersector::intersect(const Ray& ray) const {
     context.ray = &ray;
     RTCRayHit ray_hit;
     ray_hit.ray = embree_ray(ray);
+    if (!is_traceable(ray_hit.ray)) return std::nullopt;
     ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     query(top_of(ray), context.embree, ray_hit);
@@ -275,13 +276,13 @@ std::optional<RawHit> EmbreeIntersector::intersect(const Ray& ray) const {
 }
 
 bool EmbreeIntersector::occluded(const Ray& ray, Crossings* crossings) const {
-    // Found by fuzz_scene: lamps so far away that no ray to them can be traced. No light comes along those.
-    if (!is_traceable(ray) || std::isnan(ray.t_min) || std::isnan(ray.t_max)) return true;
     Context context;
     init_context(context.embree);
     context.ray = &ray;
     context.crossings = crossings;
     RTCRay shadow_ray = embree_ray(ray);
+    // Found by fuzz_scene: lamps so far away that no ray to them can be traced. No light comes along those.
+    if (!is_traceable(shadow_ray)) return true;
     query(top_of(ray), context.embree, shadow_ray);
     return shadow_ray.tfar < 0;  // Embree's sign for "something was met"
 }

@@ -23,13 +23,11 @@ class TracedCurves {
     /// Geometry 1: the flat ends of cubic segments; empty where nothing ends.
     GeometryOwner caps(Device& device);
 
-    /// From the mesh's space to Embree's; distances along the ray stay. False where its numbers would
-    /// overflow: such a ray meets nothing.
-    bool scale(RTCRay& ray) const {
+    /// From the mesh's space to Embree's; distances along the ray stay.
+    void scale(RTCRay& ray) const {
         const float by = cubic() ? scale_ : 1;
         ray.org_x *= by, ray.org_y *= by, ray.org_z *= by;
         ray.dir_x *= by, ray.dir_y *= by, ray.dir_z *= by;
-        return is_traceable({ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z});
     }
     /// Turns primID, u and v into segment and place; `ray` is Embree's, with tfar at the hit.
     void set_place(const RTCRay& ray, RTCHit& hit) const;

@@ -1,6 +1,6 @@
 // embree_inside.h -- user geometries of one primitive: a mesh that is traced in its own space.
 #pragma once
-#include <limits>
+#include <cmath>
 
 #include "geometry/embree_curves.h"
 
@@ -21,12 +21,10 @@ RTCRay transformed(const RTCRay& ray, const Affine<Real>& m) {
     return local;
 }
 
-/// A ray that begins behind everything.
-inline RTCRay nowhere(RTCRay ray) {
-    ray.org_x = ray.org_y = ray.org_z = 0;
-    ray.dir_x = ray.dir_y = ray.dir_z = 1;
-    ray.tnear = std::numeric_limits<float>::infinity();
-    return ray;
+/// Embree must not see other rays: its own numbers overflow.
+inline bool is_traceable(const RTCRay& ray) {
+    return dg::is_traceable({ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}) &&
+           !std::isnan(ray.tnear) && !std::isnan(ray.tfar);
 }
 
 /// The context of a query inside, which tells hits and filters the instance.
@@ -41,6 +39,8 @@ inline Context inside(std::uint32_t id, const void* outer) {
 
 // The rest is for a `Placed` with: RTCScene scene; std::uint32_t id; const TracedCurves* curves;
 // bool near(const RTCRay&); RTCRay to_local(const RTCRay&); void bounds(unsigned step, RTCBounds&); unsigned steps().
+// A ray that is not traceable in the mesh's space meets nothing: the transform has no inverse at its time, or shrinks
+// what it places beyond what floats hold.
 // Only single rays are traced, so N is 1 and the packets are plain structures.
 
 template <typename Placed>
@@ -57,7 +57,8 @@ void intersect_inside(const RTCIntersectFunctionNArguments* a) {
     Context context = inside(placed.id, a->context);
     RTCRayHit local;
     local.ray = placed.to_local(world.ray);
-    if (placed.curves && !placed.curves->scale(local.ray)) return;
+    if (placed.curves) placed.curves->scale(local.ray);
+    if (!is_traceable(local.ray)) return;
     local.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query(placed.scene, context.embree, local);
     if (local.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
@@ -75,7 +76,8 @@ void occlude_inside(const RTCOccludedFunctionNArguments* a) {
     if (!placed.near(world)) return;
     Context context = inside(placed.id, a->context);
     RTCRay local = placed.to_local(world);
-    if (placed.curves && !placed.curves->scale(local)) return;
+    if (placed.curves) placed.curves->scale(local);
+    if (!is_traceable(local)) return;
     query(placed.scene, context.embree, local);
     if (local.tfar < 0) world.tfar = local.tfar;
 }

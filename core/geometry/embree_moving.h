@@ -19,12 +19,13 @@ class MovingMesh {
     const TracedCurves* curves = nullptr;  // see PlacedMesh
 
     bool near(const RTCRay& ray) const;
-    /// Where the transform has no inverse at the time of the ray, a ray that meets nothing.
+    /// Not traceable where the transform has no inverse at the time of the ray.
     RTCRay to_local(const RTCRay& ray) const {
-        const RTCRay local = transformed(ray, inverse(motion_.at(ray.time)));
-        const bool good = is_traceable({local.org_x, local.org_y, local.org_z},
-                                       {local.dir_x, local.dir_y, local.dir_z});
-        return good ? local : nowhere(ray);
+        const Affine3d now = motion_.at(ray.time);
+        if (is_invertible(now)) return transformed(ray, inverse(now));
+        RTCRay nowhere = ray;
+        nowhere.tnear = std::numeric_limits<float>::quiet_NaN();
+        return nowhere;
     }
     Box box() const;  // at all times
     unsigned steps() const { return unsigned(boxes_.size()); }

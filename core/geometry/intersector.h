@@ -47,7 +47,7 @@ class Intersector {
         const std::vector<Mesh>& meshes, const std::vector<InstanceGeometry>& instances,
         std::vector<Keyed<Sphere>> spheres, CutoutFunction cutout);
     virtual ~Intersector() = default;
-    /// Takes a ray that is_traceable(), here and below.
+    /// A ray that is not is_traceable() meets nothing, and is occluded.
     virtual std::optional<RawHit> intersect(const Ray& ray) const = 0;
     /// With `crossings` the ray goes through clear surfaces and notes them there.
     virtual bool occluded(const Ray& ray, Crossings* crossings = nullptr) const = 0;

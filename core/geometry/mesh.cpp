@@ -69,6 +69,9 @@ void Mesh::validate() const {
                           std::to_string(steps));
     const std::size_t n = vertex_count();
     check_array(where, "positions", positions, n, steps);
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        if (!within_limits(positions[i]))
+            throw input_error(where, "position of vertex " + std::to_string(i), "numbers below 1e18", text(positions[i]));
     if (!curves.empty()) {
         curves.validate(*this);
         check_curve_values(where, *this);

@@ -20,7 +20,6 @@ struct Ray {
 
 /// Whether a ray tracer bears it: no NaN, nothing infinite, and nothing at which its own numbers overflow.
 inline bool is_traceable(Vec3f origin, Vec3f direction) {
-    constexpr float kFar = 1e18f;
     return std::abs(origin.x) + std::abs(origin.y) + std::abs(origin.z) + std::abs(direction.x) +
                std::abs(direction.y) + std::abs(direction.z) <
            kFar;

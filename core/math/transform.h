@@ -37,6 +37,15 @@ Affine<T> inverse(const Affine<T>& a) {
     return r;
 }
 
+/// Whether rays can be traced through it in single precision: the box that it makes of a cube keeps more than
+/// 1e-7, the precision of a float, of the volume that its edges would have at right angles.
+inline bool is_invertible(const Affine<double>& a) {
+    constexpr double kSmallest = 1e-7;
+    const double edges = length_squared(a.x) * length_squared(a.y) * length_squared(a.z);
+    const double volume = a.determinant();
+    return edges > 1e-120 && volume * volume > kSmallest * kSmallest * edges;
+}
+
 inline Affine<double> to_double(const Affine<float>& a) {
     return {to_double(a.x), to_double(a.y), to_double(a.z), to_double(a.origin)};
 }

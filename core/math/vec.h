@@ -63,6 +63,15 @@ T max_component(Vec3<T> a) { return std::max(a.x, std::max(a.y, a.z)); }
 template <typename T>
 T largest_coordinate(Vec3<T> a) { return max_component(Vec3<T>{std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 
+/// Limit of coordinates and of the numbers of transforms, m: squares of longer ones overflow a float. Scenes are held
+/// to it when they are made (Python's scene/limits.py has the same number), rays when they are traced.
+inline constexpr float kFar = 1e18f;
+/// False for NaN, too.
+template <typename T>
+bool within_limits(Vec3<T> a) {
+    return std::abs(a.x) < T(kFar) && std::abs(a.y) < T(kFar) && std::abs(a.z) < T(kFar);
+}
+
 using Vec2f = Vec2<float>;
 using Vec3f = Vec3<float>;
 using Vec2d = Vec2<double>;

@@ -53,10 +53,8 @@ std::uint32_t place_on_curve(const InstanceRecord& record, const RawHit& hit) {
 // Parts of mixtures are chosen by other numbers than what passes their holes.
 constexpr std::uint32_t kOfChoice = 0x9e3779b9u;
 
-/// Whether a transform can be inverted well enough to trace rays through it.
-bool is_singular(const Affine3d& m) {
-    const double volume = length(m.x) * length(m.y) * length(m.z);
-    return !(volume > 0) || std::abs(m.determinant()) < 1e-12 * volume;
+bool within_limits(const Affine3d& m) {
+    return dg::within_limits(m.x) && dg::within_limits(m.y) && dg::within_limits(m.z) && dg::within_limits(m.origin);
 }
 
 /// The wall between seconds and fractions of the interval. What has no extent all the while, as
@@ -70,7 +68,8 @@ void place_in(Instance& instance, const TimeInterval& interval) {
     const Motion motion = instance.motion->over(interval.open, interval.close);
     instance.motion = motion.moves() ? std::make_shared<const Motion>(motion) : nullptr;
     instance.world_from_local = to_float(motion.at(0));
-    if (motion.moves() || !is_singular(motion.at(0))) return;
+    const Affine3d still = to_double(instance.world_from_local);
+    if (motion.moves() || (within_limits(still) && is_invertible(still))) return;
     instance.world_from_local = {};
     instance.shown = std::make_shared<const Shown>();
 }

@@ -70,7 +70,7 @@ class Scene {
         std::int64_t sphere_light = -1;
         Hit() {}  // written, so that nothing is cleared first and then set (measured)
     };
-    /// The ray is_traceable().
+    /// Nothing for a ray that is not is_traceable().
     std::optional<Hit> intersect(const Ray& ray) const;
     /// The same in two steps (follow.cpp): which point of which surface, and what it is like. The
     /// point can be followed through time, and through scenes that differ in nothing but time.

@@ -6,9 +6,6 @@
 namespace dg {
 namespace {
 
-// Relative to the lengths of the axes: below, a float transform cannot be inverted.
-constexpr double kSmallestDeterminant = 1e-7;
-
 void check_index(const std::string& where, const char* what, std::uint32_t index,
                  std::size_t count) {
     if (index < count) return;
@@ -18,17 +15,14 @@ void check_index(const std::string& where, const char* what, std::uint32_t index
 
 void check_transform(const std::string& where, const Affine3f& m) {
     for (Vec3f v : {m.x, m.y, m.z, m.origin}) {
-        if (std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) continue;
-        throw input_error(where, "transform", "finite numbers",
+        if (within_limits(v)) continue;
+        throw input_error(where, "transform", "finite numbers below 1e18",
                           "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " +
                               std::to_string(v.z) + ") in a column");
     }
-    const Vec3d x = to_double(m.x), y = to_double(m.y), z = to_double(m.z);
-    const double volume = length(x) * length(y) * length(z);
-    const double det = std::abs(dot(x, cross(y, z)));
-    if (volume > 1e-60 && det > kSmallestDeterminant * volume) return;
-    throw input_error(where, "transform", "an invertible matrix (no scale of 0)",
-                      "determinant " + std::to_string(det));
+    if (is_invertible(to_double(m))) return;
+    throw input_error(where, "transform", "an invertible matrix (no scale of 0, no shear beyond single precision)",
+                      "determinant " + std::to_string(to_double(m).determinant()));
 }
 
 template <typename T>

@@ -7,11 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.errors import InputError
-
 Matrix = NDArray[np.float64]
-#: Coordinates beyond it would overflow single precision on the way of light.
-MAX_SIZE = 1e18
 
 #: (x, y, z) of Blender is (x, z, -y) here.
 AXES: Matrix = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
@@ -31,14 +27,3 @@ def world_from_blender(scene: Any) -> Matrix:
 def seconds_per_frame(scene: Any) -> float:
     """Time of a frame of a Blender scene, s."""
     return float(scene.render.fps_base) / float(scene.render.fps)
-
-
-def check_size(values: NDArray[Any], where: str) -> None:
-    """Checks coordinates or transforms.
-
-    Raises:
-        InputError: A number is not finite, or ``MAX_SIZE`` and beyond.
-    """
-    size = float(np.abs(values).max(initial=0))
-    if not size < MAX_SIZE:  # also catches NaN
-        raise InputError(f"{where}: wanted numbers below {MAX_SIZE:g}, got {size:g}")

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.files.notes import Notes
+from daguerre.scene.limits import check_size
 from daguerre.scene.scene import Scene
 
 from .arrays import attribute, points_of, read
-from .frames import check_size
 from .meshes import Materials, Parts, Steps, slots_of
 
 #: Radius of curves without an attribute of it, units of the scene.

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from daguerre.checks import freeze_in_place
 from daguerre.files.notes import Notes
+from daguerre.scene.limits import check_size
 from daguerre.scene.polygons import weld
 from daguerre.scene.scene import Scene
 
 from .arrays import attribute, points_of, read
-from .frames import check_size
 from .shading.surfaces import Surface
 
 #: Times (S,) in s, and points of all vertices at each, shape (S, N, 3).

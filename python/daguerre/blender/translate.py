@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from daguerre.camera.camera import Camera
 from daguerre.files.notes import Notes, Silence
 from daguerre.motion.values import keys
+from daguerre.scene.limits import check_size
 from daguerre.scene.scene import Scene
 
 from . import materials
 from .cameras import camera_of
-from .frames import check_size, metres_per_unit, world_from_blender
+from .frames import metres_per_unit, world_from_blender
 from .hair import Hair
 from .lights import add_light, note_visibility
 from .meshes import Materials, Meshes

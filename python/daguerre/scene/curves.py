@@ -16,6 +16,7 @@ from daguerre.motion.values import Dynamic
 from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
 
+from .limits import check_coordinates
 from .mesh import with_alpha
 from .motion import Vertices
 from .parts import Curves, vertices_of
@@ -189,7 +190,9 @@ def _counts(counts: Any, where: str, basis: str, wrap: str) -> NDArray[np.int64]
 def _positions(form: BezierForm, points: FloatArray, where: str) -> FloatArray:
     with np.errstate(over="ignore"):
         made = form.of(points).astype(np.float32)
-    return freeze_in_place(array(made, where, "points of segments", 3))
+    placed = array(made, where, "points of segments", 3)
+    check_coordinates(placed, where, "points of segments")
+    return freeze_in_place(placed)
 
 
 def _radii(widths: Any, where: str, counts: NDArray[np.int64], form: BezierForm) -> FloatArray:
@@ -199,6 +202,7 @@ def _radii(widths: Any, where: str, counts: NDArray[np.int64], form: BezierForm)
     if numbers.ndim > 1:
         raise InputError(f"{where}: widths: wanted {wanted}, got shape {numbers.shape}")
     flat = array(np.atleast_1d(numbers)[:, None], where, "widths", 1)
+    check_coordinates(flat, where, "widths")
     if (flat < 0).any():
         bad = int(np.flatnonzero(flat < 0)[0])
         raise InputError(f"{where}: widths[{bad}]: wanted at least 0 m, got {flat[bad, 0]:g}")

@@ -14,6 +14,7 @@ from daguerre.motion.values import Dynamic
 from daguerre.parameters.parameter import Parameter
 from daguerre.parameters.table import Table
 
+from .limits import check_coordinates
 from .parts import Mesh
 
 if TYPE_CHECKING:
@@ -77,6 +78,7 @@ def mesh_of(
         InputError: A shape, an index or a number is wrong; the message names it.
     """
     points = array(positions, where, "positions", 3)
+    check_coordinates(points, where)
     triangles = as_readonly(_triangles(indices, where, len(points)), np.uint32)
     given = {**attributes, "colors": with_alpha(attributes["colors"], where)}
     made = {

@@ -7,10 +7,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.cached import cached_property
 from daguerre.camera.camera import Camera
 from daguerre.files.array_value import ArrayValue
 from daguerre.files.value import FixedArrays, Value
 
+from .limits import largest
 from .motion import Vertices
 
 
@@ -26,6 +28,11 @@ class Mesh(FixedArrays):
     tangents: NDArray[np.float32] | None = None
     colors: NDArray[np.float32] | None = None
     name: str = ""
+
+    @cached_property
+    def extent(self) -> float:
+        """Largest coordinate at the scene's time, with the radii of curves, m."""
+        return largest(self.positions) + reach_of(self)
 
     def __repr__(self) -> str:
         return (

@@ -15,6 +15,7 @@ from daguerre.errors import InputError
 from daguerre.files.value import Value
 from daguerre.motion.values import Dynamic, is_dynamic, keys
 
+from .limits import check_coordinates
 from .motion import Vertices
 
 FloatArray = NDArray[np.float32]
@@ -43,6 +44,7 @@ class PointCache(Value):
         count = len(self.rest.positions)
         points = optional_array(self.positions.at(time_s), self.where, "positions", 3, count)
         assert points is not None
+        check_coordinates(points, self.where)
         normals, tangents = self.rest.normals, self.rest.tangents
         turn = None if normals is None else _Turn(self._faces, self._smooth(points))
         if self.normals is not None:

@@ -14,6 +14,7 @@ from daguerre.errors import InputError
 from daguerre.files.value import Value
 from daguerre.motion.values import Dynamic
 
+from .limits import check_coordinates
 from .mesh import COLUMNS, mesh_of, with_alpha
 from .motion import Vertices
 from .parts import Mesh, vertices_of
@@ -64,6 +65,7 @@ def polygons_of(
         InputError: Numbers do not fit together.
     """
     points = array(positions, where, "positions", 3)
+    check_coordinates(points, where)
     vertices = integers(indices, where, "indices", len(points))
     if sizes is None:
         columns = vertices.shape[1] if vertices.ndim == 2 else 3

@@ -39,6 +39,7 @@ from .catcher import EFFECTS, check_effects
 from .curves import CURVES, CurveKeywords, curves_of, moving_curves
 from .illuminance import scale_for
 from .lights import Light, check_light
+from .limits import check_place, check_places, check_size
 from .materials import Diffuse, Kind, Material, bounds_media, check_material, check_parts
 from .media import Medium, check_fog
 from .mesh import MESH, MeshKeywords, mesh_of
@@ -414,7 +415,9 @@ class Scene(Value):
             motion: The transform over time; ``transform`` then is its state at the scene's time.
 
         Raises:
-            InputError: No such mesh or material, or the transform is not a finite matrix.
+            InputError: No such mesh or material, or the transform is not a finite matrix. One that
+                does not change must also have an inverse, and place the mesh within 1e18 m of the
+                origin; while a motion does not, the instance is not there.
             UsageError: The transform is a list of (time, matrix); pass it through ``dg.keys``.
         """
         where = f"instance {name or len(self.instances)!r}"
@@ -433,7 +436,9 @@ class Scene(Value):
             material = self.add_material(material)
         material = self._index(material, len(self.materials), f"{where}: material")
         index = len(self.instances)
-        if motion is not None:
+        if motion is None:
+            check_place(world, self.meshes[mesh].extent, f"{where}: transform")
+        else:
             self.motion.instances[index] = motion
         if presence is not None:
             self.motion.shown[index] = presence
@@ -462,8 +467,8 @@ class Scene(Value):
                 scene's time.
 
         Raises:
-            InputError: No such mesh or material, a transform is not a finite matrix, or the number
-                of motions is another.
+            InputError: No such mesh or material, a transform is wrong (:meth:`add_instance`), or
+                the number of motions is another.
         """
         where = f"instances {name or len(self.instances)!r}"
         mesh = self._index(mesh, len(self.meshes), f"{where}: mesh")
@@ -474,6 +479,8 @@ class Scene(Value):
         if not np.isfinite(worlds).all():
             raise InputError(f"{where}: transforms: wanted finite numbers, got NaN or infinity")
         over = _motions(motions, len(worlds), where)
+        if not over:
+            check_places(worlds, self.meshes[mesh].extent, f"{where}: transforms")
         first = len(self.instances)
         self.instances.extend(Instance(mesh, material, world, name) for world in worlds)
         self.motion.instances.update(enumerate(over, first))
@@ -495,6 +502,7 @@ class Scene(Value):
         shown = at(light, self.time)
         check_light(shown)
         world = matrix(self._now(transform), f"light {shown.name!r}")
+        check_size(world, f"light {shown.name!r}: transform")
         if motion is None:
             motion = _motion_of((light, _dynamic(transform) or world))
         if motion is not None:

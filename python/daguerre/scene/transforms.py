@@ -10,7 +10,11 @@ from numpy.typing import NDArray
 
 from daguerre.files.json_item import Item
 
+from .limits import invertible
+
 Matrix = NDArray[np.float64]
+#: Description for notes of a transform with a rank below 3.
+FLAT = "scaled to zero or sheared flat"
 
 
 def affine(matrices: Matrix, item: Item) -> Matrix:
@@ -65,10 +69,11 @@ def _cross(a: Matrix, b: Matrix) -> Matrix:
 
 
 def ranks(linear: Matrix) -> NDArray[np.int64]:
-    """Ranks of transforms; 2 also where the determinant vanishes in single precision."""
+    """Ranks of transforms, shape (N, 3, 3); 2 also where single precision cannot invert them."""
     volumes, sizes = np.abs(np.linalg.det(linear)), np.abs(linear).max(axis=(1, 2))
     found = np.full(len(linear), 3)
-    for i in np.flatnonzero(~((volumes > 1e-30) & (volumes > 1e-12 * sizes**3))):
+    solid = (volumes > 1e-30) & (volumes > 1e-12 * sizes**3) & invertible(linear)
+    for i in np.flatnonzero(~solid):
         rank = int(np.linalg.matrix_rank(linear[i], tol=1e-12 * sizes[i]))
-        found[i] = min(rank, 2) if volumes[i] <= 1e-30 else rank
+        found[i] = min(rank, 2)
     return found

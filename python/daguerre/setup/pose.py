@@ -18,6 +18,7 @@ from daguerre.checks import short
 from daguerre.errors import UsageError
 from daguerre.motion.resample import resample_transform
 from daguerre.motion.values import Dynamic, Keys, Spin
+from daguerre.scene.limits import MAX_SIZE
 
 #: Interpolations that stay rigid between rigid keys; linear matrices would shear the camera.
 _STAY_RIGID = ("decomposed", "twist", "slerp")
@@ -151,10 +152,6 @@ def _near(keys: Keys, begin: float, end: float) -> Keys:
     return replace(keys, times=keys.times[first:last], values=values)
 
 
-#: Maximum distance of a camera from the origin, m: longer rays overflow in the ray tracer.
-MAX_DISTANCE = 1e18
-
-
 def rigid(transform: NDArray[np.float64]) -> NDArray[np.float64]:
     """Rotation and position of a transform, without scale.
 
@@ -169,9 +166,9 @@ def rigid(transform: NDArray[np.float64]) -> NDArray[np.float64]:
         ) from None
     if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
         raise UsageError("camera: transform: wanted a finite 4x4 matrix")
-    if np.abs(matrix[:3, 3]).max() > MAX_DISTANCE:
+    if not np.abs(matrix[:3, 3]).max() < MAX_SIZE:
         raise UsageError(
-            f"camera: transform: wanted a position within {MAX_DISTANCE:g} m of the origin, "
+            f"camera: transform: wanted a position within {MAX_SIZE:g} m of the origin, "
             f"got {matrix[:3, 3].tolist()}"
         )
     forward, up = -matrix[:3, 2], matrix[:3, 1]

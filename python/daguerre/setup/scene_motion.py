@@ -76,8 +76,8 @@ class MovingParts:
         if dynamic is None:
             return instance.transform
         begin, end = self.interval
-        if begin == end:
-            return given_matrix(dynamic.at(begin), _where(instance, index))
+        if begin == end:  # a motion all the same: it may have no inverse now, and then is not there
+            return _core.Motion.still(given_matrix(dynamic.at(begin), _where(instance, index)))
         if isinstance(dynamic, Keys | Spin):  # as they were meant, without a key too many
             return dynamic.motion
         return self._resampled(dynamic, instance, index)

@@ -347,6 +347,17 @@ def test_no_scenes_shows_all_roots(tmp_path):
     assert scene.warnings == ["the file has no scene: all nodes are shown (1 use)"]
 
 
+def test_what_is_sheared_flat_stands_in_the_world(tmp_path):
+    b = triangle()
+    columns = [(1, 0, 0, 0), (0, 1, 0, 0), (1e9, 0, 1, 0), (0, 0, 0, 1)]
+    b.node(mesh=0, name="sheared", matrix=[number for column in columns for number in column])
+    scene = gltf.read(b.glb(tmp_path / "a.glb"))
+    (sheared,) = (one for one in scene.instances if one.name == "sheared")
+    assert np.array_equal(sheared.transform, np.eye(4))
+    assert scene.meshes[sheared.mesh].positions.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    assert not scene.warnings
+
+
 def test_scaled_to_nothing_is_hidden_and_flat_is_kept(tmp_path):
     b = triangle()
     b.node(mesh=0, name="hidden", scale=[0, 0, 0])

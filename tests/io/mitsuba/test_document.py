@@ -361,4 +361,4 @@ def test_shapes_that_are_scaled_to_nothing_are_left_out(tmp_path: Path) -> None:
     flat = '<transform name="to_world"><scale x="0"/></transform>'
     scene = dg.load(written(tmp_path, f'<shape type="cube">{flat}</shape>', sphere("1e-30")))
     assert not scene.instances
-    assert "a shape that is scaled to zero is left out (2 uses)" in scene.warnings
+    assert "a shape that is scaled to zero or sheared flat is left out (2 uses)" in scene.warnings

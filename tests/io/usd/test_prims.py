@@ -93,6 +93,18 @@ def test_visibility_changes_over_time(tmp_path: Path) -> None:
     assert scene == dg.load(path)
 
 
+def test_what_blinks_may_be_scaled_to_zero(tmp_path: Path) -> None:
+    stage = stages.new_stage(tmp_path / "x.usda", rate=10.0)
+    card = stages.mesh(stage, "/card")
+    stages.place(card, scale=(0, 0, 0))
+    for code, token in enumerate(("invisible", "inherited")):
+        card.CreateVisibilityAttr().Set(token, code)
+    scene = dg.load(stages.save(stage))
+    assert not scene.instances
+    note = "a prim that is scaled to zero or sheared flat is left out (1 use)"
+    assert any(note in said for said in scene.warnings)
+
+
 def test_instances_share_meshes_and_have_names(tmp_path: Path) -> None:
     stage = stages.new_stage(tmp_path / "x.usda")
     UsdGeom.Xform.Define(stage, "/Thing")

@@ -9,7 +9,7 @@
 namespace dg {
 namespace {
 
-constexpr float kFar = 1;           // beyond what stops light: nobody asks how it lands
+constexpr float kBeyond = 1;           // beyond what stops light: nobody asks how it lands
 constexpr float kHalfway = 0.7f;    // from a node to the one beside it: half, and some more
 constexpr float kAlone = 0.3f;      // beyond an edge, of a ray beside which all others end elsewhere
 constexpr float kClear = 0.02f;     // beyond an edge, in cells that are small
@@ -108,7 +108,7 @@ MapLanding GhostMapMaker::by_cubics(const MapLanding* nodes, Vec2f u) const {
 
 /// The landing, the edge and the iris; errors of the latter two as they move the picture.
 bool GhostMapMaker::agree(const MapLanding& map, const MapLanding& ray, const Scale& of) const {
-    if (rays_.stopped(map) > kFar && rays_.stopped(ray) > kFar) return true;
+    if (rays_.stopped(map) > kBeyond && rays_.stopped(ray) > kBeyond) return true;
     if (!ray.sound) return false;
     if (!(std::abs(map.pass - ray.pass) <= accuracy_.light * (ray.pass + of.light))) return false;
     const float blur = accuracy_.of_blur * of.slack * of.blur.light;

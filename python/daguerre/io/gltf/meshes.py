@@ -17,6 +17,7 @@ from daguerre.checks import freeze_in_place
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, clean
 from daguerre.files.notes import Notes
+from daguerre.scene.limits import MAX_SIZE, largest
 from daguerre.scene.scene import Scene
 from daguerre.scene.skinning import Influences
 
@@ -33,7 +34,6 @@ from .morphs import (
     morph,
     weights_of,
 )
-from .nodes import MAX_SIZE
 from .over_time import PartOverTime
 from .skins import Skins, skin
 from .triangles import triangles_of
@@ -213,7 +213,7 @@ class Meshes:
         triangles, influences = self._deform(source, arrays, triangles)
         positions = arrays["POSITION"]
         # This also catches NaN.
-        if not max(positions.max(), -positions.min()) < MAX_SIZE:
+        if not largest(positions) < MAX_SIZE:
             far = np.flatnonzero(~(np.abs(positions) < MAX_SIZE).all(axis=1))
             attributes["POSITION"].fail(
                 f"vertex {far[0]}: wanted coordinates below {MAX_SIZE:g}, "

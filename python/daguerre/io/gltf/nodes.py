@@ -11,10 +11,9 @@ import numpy as np
 
 from daguerre.files.json_item import Item
 from daguerre.files.value import Value
+from daguerre.scene.limits import MAX_SIZE, largest
 from daguerre.scene.transforms import Matrix, affine, compose
 
-#: Limit of lengths, m; squares of longer ones overflow a float.
-MAX_SIZE = 1e18
 #: Parts of a node's transform, with their defaults.
 _DEFAULTS = {
     "translation": (0.0, 0.0, 0.0),
@@ -137,7 +136,7 @@ class Tree(Value):
 
     def check_size(self, node: int, world: Matrix) -> None:
         """Checks transforms (..., 4, 4) for NaN and numbers of ``MAX_SIZE`` and beyond."""
-        size = float(np.abs(world).max())
+        size = largest(world)
         if not size < MAX_SIZE:  # also catches NaN
             self.items[node].fail(
                 f"world transform: wanted numbers below {MAX_SIZE:g}, got {size:g}"

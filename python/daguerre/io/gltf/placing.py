@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item
 from daguerre.files.notes import Notes
+from daguerre.scene.limits import MAX_SIZE, largest
 from daguerre.scene.materials import Gltf, Material
 from daguerre.scene.parts import vertices_of
 from daguerre.scene.scene import Scene
 from daguerre.scene.transforms import ranks
 
 from .instancing import MAX_INSTANCES
-from .nodes import MAX_SIZE
 from .over_time import FlatOverTime, NodeOverTime, ShownOverTime
 
 Matrices = NDArray[np.float64]
@@ -79,7 +79,7 @@ class Placing:
         """
         scene = self._scene
         self._instances.spend(len(worlds), node)
-        size = np.abs(worlds).max()
+        size = largest(worlds)
         if not size < MAX_SIZE:  # NaN is not smaller than anything
             node.fail(f"world transform: wanted numbers below {MAX_SIZE:g}, got {size:g}")
         if material is None:

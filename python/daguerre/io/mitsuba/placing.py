@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from daguerre.files.json_item import clean
 from daguerre.scene.media import Medium
-from daguerre.scene.transforms import ranks
+from daguerre.scene.transforms import FLAT, ranks
 
 from .charts import chart_of
 from .context import Context
@@ -99,7 +99,7 @@ class Placing:
         mesh, inner = made
         placed = pose @ local @ inner
         if ranks(placed[None, :3, :3])[0] < 3:
-            self._notes.add("a shape that is scaled to zero is left out")
+            self._notes.add(f"a shape that is {FLAT} is left out")
             return
         name = name or self._named(node, placed)
         chart = Chart()

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from daguerre.files.json_item import clean
 from daguerre.motion.values import Keys
 from daguerre.scene.scene import Scene
-from daguerre.scene.transforms import ranks
+from daguerre.scene.transforms import FLAT, ranks
 
 from .ledger import Ledger
 from .place import Place
@@ -74,20 +74,23 @@ class Placing:
             spots.place.fail(f"too many instances: the limit is {MAX_INSTANCES}")
         values = [self._in_scene(inner.after(outer)).value() for outer in spots.outer]
         still = np.array([self._now(value) for value in values], np.float64).reshape(-1, 4, 4)
-        moving = any(isinstance(value, Keys) for value in values)
-        flat = ranks(still[:, :3, :3]) < 3
-        if flat.any() and not moving:
-            self._ledger.notes.add("a shape that is scaled to zero is left out", int(flat.sum()))
-            still = still[~flat]
+        moves = np.array([isinstance(value, Keys) for value in values], bool)
+        lost = (ranks(still[:, :3, :3]) < 3) & ~moves
+        if lost.any():
+            self._ledger.notes.add(f"a shape that is {FLAT} is left out", int(lost.sum()))
+            still = still[~lost]
         if not len(still):
             return
         if spots.name not in self._scene.node_positions:
             self._scene.add_node(spots.name, still[0, :3, 3].copy())
-        if not moving:
+        if not moves.any():
             self._scene.add_instances(mesh, material, still, name=spots.name)
             return
-        for world, value in zip(still, values, strict=True):
+        kept = [value for value, gone in zip(values, lost, strict=True) if not gone]
+        for world, value in zip(still, kept, strict=True):
             motion = value if isinstance(value, Keys) else None
+            if motion and (ranks(np.array(motion.values)[:, :3, :3]) < 3).any():
+                self._ledger.notes.add(f"a moving shape is not drawn while it is {FLAT}")
             self._scene.add_instance(mesh, material, world, name=spots.name, motion=motion)
 
     def _in_scene(self, moving: Moving) -> Moving:

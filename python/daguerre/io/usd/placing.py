@@ -14,7 +14,7 @@ from daguerre.files.notes import Notes
 from daguerre.motion.values import Dynamic, is_dynamic
 from daguerre.motion.values import at as value_at
 from daguerre.scene.scene import Scene
-from daguerre.scene.transforms import ranks
+from daguerre.scene.transforms import FLAT, ranks
 
 from .instancers import Copies
 from .transforms import Matrix, Transform
@@ -115,14 +115,16 @@ class Placing:
         """
         self.spend(len(spots), f"/{name}")
         scene, node, still, moving = self._scene, spots.name or name, spots.still, spots.moving
+        flat = ranks(still[:, :3, :3]) < 3
+        if moving is None:
+            if flat.any():
+                self._notes.add(f"a prim that is {FLAT} is left out", int(flat.sum()))
+            still = still[~flat]
+        elif flat.any():
+            self._notes.add(f"a moving prim is not drawn while it is {FLAT}", int(flat.sum()))
         if shown is not True:
             motions = [None] * len(still) if moving is None else moving
             for world, motion in zip(still, motions, strict=True):
                 scene.add_instance(mesh, material, world, name=node, shown=shown, motion=motion)
             return
-        if moving is None:
-            flat = ranks(still[:, :3, :3]) < 3
-            if flat.any():
-                self._notes.add("a prim that is scaled to zero is left out", int(flat.sum()))
-            still = still[~flat]
         scene.add_instances(mesh, material, still, name=node, motions=moving)
