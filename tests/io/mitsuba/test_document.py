@@ -362,3 +362,16 @@ def test_shapes_that_are_scaled_to_nothing_are_left_out(tmp_path: Path) -> None:
     scene = dg.load(written(tmp_path, f'<shape type="cube">{flat}</shape>', sphere("1e-30")))
     assert not scene.instances
     assert "a shape that is scaled to zero or sheared flat is left out (2 uses)" in scene.warnings
+
+
+def test_a_few_files_cannot_ask_for_files_without_end(tmp_path: Path) -> None:
+    for i in range(12):
+        written(tmp_path, f'<include filename="f{i + 1}.xml"/>' * 3, name=f"f{i}.xml")
+    written(tmp_path, name="f12.xml")
+    begun = time.process_time()
+    with pytest.raises(dg.InputError, match=r"too many files are included again: .* 10000"):
+        loaded(tmp_path, '<include filename="f0.xml"/>')
+    assert time.process_time() - begun < 60
+    (tmp_path / "long.xml").write_bytes(b"<!--" + b"a" * (8 << 20) + b'--><scene version="3.0.0"/>')
+    with pytest.raises(dg.InputError, match=r"included again: wanted at most 67108864 bytes"):
+        loaded(tmp_path, '<include filename="long.xml"/>' * 12)

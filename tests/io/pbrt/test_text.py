@@ -116,8 +116,13 @@ def test_files_within_files_have_limits(tmp_path: Path, monkeypatch: pytest.Monk
     with pytest.raises(dg.InputError, match="too many nested files: the limit is 32"):
         read(tmp_path, 'Include "f0.pbrt"')
     (tmp_path / "f30.pbrt").write_text("")
-    monkeypatch.setattr("daguerre.io.pbrt.files.MAX_FILES", 500)
-    with pytest.raises(dg.InputError, match="too many files: the limit is 500"):
+    with pytest.raises(dg.InputError, match=r"too many files are included again: .* 10000"):
+        read(tmp_path, 'Include "f10.pbrt"')
+    (tmp_path / "long.pbrt").write_text("# " + "a" * (1 << 20))
+    with pytest.raises(dg.InputError, match="included again: wanted at most 67108864 bytes"):
+        read(tmp_path, 'Include "long.pbrt"\n' * 70)
+    monkeypatch.setattr("daguerre.files.includes.MAX_FILES", 10)
+    with pytest.raises(dg.InputError, match="too many files: the limit is 10"):
         read(tmp_path, 'Include "f10.pbrt"')
     monkeypatch.setattr("daguerre.io.pbrt.files.MAX_BYTES", 100)
     with pytest.raises(dg.InputError, match="wanted at most"):

@@ -15,6 +15,7 @@ from pathlib import Path
 
 from daguerre.errors import asked_by
 from daguerre.files.budget import Budget
+from daguerre.files.includes import Includes
 from daguerre.files.json_item import Item, short
 from daguerre.files.reading import read_bytes
 from daguerre.io.materialx.elements import MAX_BYTES, MAX_ELEMENTS, Element, parse
@@ -58,6 +59,7 @@ class Document:
     Attributes:
         root: The scene, with all references resolved.
         ledger: All elements.
+        includes: Counts the files that it includes.
 
     Raises:
         InputError: A file is no scene of Mitsuba; the message names file, line, column and element.
@@ -71,6 +73,7 @@ class Document:
         self._ids: dict[str, Node] = {}
         self._budget = Budget(MAX_ELEMENTS, "elements in all files")
         self._files: dict[int, Files] = {}
+        self.includes = Includes()
         self.root = _Reader(self, files, str(file), 0, 0).root(read_bytes(file, MAX_BYTES))
         if self.root.kind != "scene":
             self.root.fail("the root element must be <scene>")
@@ -234,6 +237,7 @@ class _Reader:
         reader = _Reader(self._document, inside, str(path), self._includes + 1, self._depth)
         with asked_by(entry):
             data = read_bytes(path, MAX_BYTES)
+        self._document.includes.count(path, len(data), entry)
         found = reader.root(data)
         entry.used = True
         if found.kind == "scene":

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from daguerre.errors import InputError, asked_by
+from daguerre.files.includes import Includes
 from daguerre.files.json_item import Item
 from daguerre.files.uris import Folder
 from daguerre.io.meshes.file_bytes import read_bytes
@@ -19,10 +20,9 @@ from daguerre.io.meshes.file_bytes import read_bytes
 from .lexer import Lexer
 from .place import Place, Source
 
-#: Limits of all texts together, and of the files within files.
+#: Limits of all texts together, and of files within files; ``Includes`` has those of their number.
 MAX_BYTES = 4 << 30
 MAX_DEPTH = 32
-MAX_FILES = 100_000
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -45,7 +45,7 @@ class Files:
         self._folder = Folder(path, allow_dirs)
         self._open: list[Path] = []
         self._bytes = MAX_BYTES
-        self._files = MAX_FILES
+        self._includes = Includes()
 
     def first(self, path: Path) -> Lexer:
         """Opens the first file.
@@ -78,13 +78,12 @@ class Files:
             place.fail(f"includes form a cycle: {path.name} includes itself")
         if len(self._open) >= MAX_DEPTH:
             place.fail(f"too many nested files: the limit is {MAX_DEPTH}")
-        self._files -= 1
-        if self._files < 0:
-            place.fail(f"too many files: the limit is {MAX_FILES}")
         self._open.append(path)
         self._included(place)
         with asked_by(place):
-            return self._source(path)
+            source = self._source(path)
+        self._includes.count(path, len(source.data), place)
+        return source
 
     def leave(self) -> None:
         """Closes the last one that is open."""
