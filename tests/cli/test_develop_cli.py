@@ -135,7 +135,7 @@ def test_mono_files(tmp_path):
     [
         (["-o", "x.dng"], 2, "no raw data; add --sensor NAME"),
         (["-o", "x.gif"], 2, "wanted a name ending in"),
-        (["-o", "in.exr"], 2, "this is the file to develop"),
+        (["-o", "in.exr"], 2, "this command reads this file"),
         (["-o", "x.jpg", "--sensor", "ideel"], 3, "ideal"),
         (["-o", "x.jpg", "--sensor", "ideal", "--iso", "1e9"], 2, "iso: wanted"),
         (["-o", "x.jpg", "--iso", "-5"], 2, "--iso"),

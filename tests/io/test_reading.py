@@ -10,7 +10,15 @@ import pytest
 
 import daguerre as dg
 from daguerre.errors import InputError
-from daguerre.files.reading import decoded, document, read_bytes
+from daguerre.files.notes import Notes
+from daguerre.files.reading import decoded, document, opened, read_bytes
+from daguerre.io.exr.reader import ExrReader
+from daguerre.io.images import read_environment
+from daguerre.io.iris import read_grey
+from daguerre.io.meshes import ply
+from daguerre.plates.files import read
+from daguerre.post import recipe
+from daguerre.rendering.passes import read_pass
 
 
 def _folder(path: Path) -> None:
@@ -36,6 +44,17 @@ READERS: dict[str, Callable[[Path], object]] = {
     "a.zmx": dg.lenses.read,
     "a.yaml": dg.calibration.read_opencv,
     "a.json": dg.Categories.read,
+    "recipe.json": recipe.from_file,
+    "photo.jpg": read,
+    "raw.dng": read,
+    "env.hdr": read_environment,
+    "psf.exr": read_environment,
+    "map.exr": ExrReader,
+    "iris.png": read_grey,
+    "sensor.json": dg.sensors.read,
+    "stock.json": dg.stocks.read,
+    "pass.exr": read_pass,
+    "a.ply": lambda path: ply.read(path, Notes()),
 }
 
 
@@ -47,6 +66,13 @@ def test_each_reader_has_the_same_words(tmp_path: Path, name: str, fault: str) -
     with pytest.raises(InputError) as caught:
         READERS[name](tmp_path / name)
     assert str(caught.value).startswith(f"{tmp_path / name}: {words}")
+
+
+@pytest.mark.parametrize("name", ["cameras.txt", "camera.json", "camera.xml", "camera.bin", "c"])
+def test_calibrations_wait_for_no_pipe(tmp_path: Path, name: str) -> None:
+    os.mkfifo(tmp_path / name)
+    with pytest.raises(InputError, match="not a regular file"):
+        dg.calibration.read_all(tmp_path / name)
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may read anything")
@@ -65,3 +91,13 @@ def test_sizes_and_texts(tmp_path: Path) -> None:
         decoded(b"ab\xff", "x")
     with pytest.raises(InputError, match="x: empty file"):
         document(b" \n", "x")
+
+
+def test_a_pipe_that_takes_the_place_of_a_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Even between check and opening, nothing is waited for."""
+    os.mkfifo(tmp_path / "pipe")
+    monkeypatch.setattr("daguerre.files.reading.fault_of", lambda path: "")
+    with pytest.raises(InputError, match="not a regular file"):
+        opened(tmp_path / "pipe")

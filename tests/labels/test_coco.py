@@ -172,7 +172,7 @@ def test_annotations_change_nothing_of_the_picture(folder: Path) -> None:
         (
             ["--coco", "k.json", "--categories", "k.json"],
             2,
-            "another file of this command has this name",
+            "k.json: cannot write: this command reads this file",
         ),
         (["--coco", "c.json", "--categories", "none.json"], 3, "none.json: no such file"),
         (["--coco", "c.json", "--categories", "k.json"], 2, "did you mean 'Tent'"),

@@ -133,7 +133,7 @@ def test_what_is_missing_is_named_before_anything_is_made(
             "object.####.exr",
             "object.####.exr",
             ("--frames", "1-3"),
-            "this is one of the inputs",
+            "this command reads this file",
         ),
         ("object.####.exr", "out.#.png", ("--frames", "3-1"), "--frames: wanted frames such as"),
     ],

@@ -105,7 +105,7 @@ def test_flags_reach_the_ball(tmp_path, capfd):
         ),
         (["pano.exr", "--sun-out", "sun.gltf"], 2, "wanted a name ending in .glb"),
         (["pano.exr", "-o", "env.png"], 2, "wanted a name ending in .exr or .hdr"),
-        (["pano.exr", "-o", "pano.exr"], 2, "this is one of the photographs"),
+        (["pano.exr", "-o", "pano.exr"], 2, "pano.exr: cannot write: this command reads this file"),
         (["pano.exr", "-o", "no/env.exr"], 5, "cannot write: no such folder"),
         (["dark.exr", "--sun-out", "sun.glb"], 3, "no sun was found in the photographs"),
     ],

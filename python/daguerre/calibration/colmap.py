@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from io import TextIOWrapper
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,7 @@ from daguerre.camera.projection import Projection
 from daguerre.checks import short
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
-from daguerre.files.reading import not_utf8, reading, size_of
+from daguerre.files.reading import not_utf8, opened, reading
 
 from . import colmap_bin
 from .calibration import FLIP, Calibration, projection
@@ -99,9 +100,9 @@ def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[
 
 def _lines(path: Path, every: int = 1) -> Iterator[tuple[str, list[str]]]:
     """Yields place and words of every ``every``-th line that is not a comment."""
-    size_of(path, MAX_BYTES)
     try:
-        with reading(path), path.open(encoding="utf-8") as file:
+        with opened(path, MAX_BYTES) as data, reading(path):
+            file = TextIOWrapper(data, encoding="utf-8")
             count = 0
             for number, line in enumerate(file, 1):
                 # An empty line is a picture without points, or the end of the file.

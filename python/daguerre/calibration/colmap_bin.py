@@ -6,13 +6,14 @@ those of src/colmap/sensor/models.h.
 
 from __future__ import annotations
 
+import os
 import struct
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import BinaryIO, NoReturn
 
 from daguerre.errors import InputError
-from daguerre.files.reading import not_utf8, reading, size_of
+from daguerre.files.reading import not_utf8, opened, reading
 
 from .colmap_rows import MOST, CameraRow, ImageRow
 
@@ -30,8 +31,9 @@ _POINT_BYTES = 24
 class _Reader:
     """Reads numbers in order; a file that ends too early is an error."""
 
-    def __init__(self, file: BinaryIO, path: Path, size: int) -> None:
-        self.file, self.path, self.size = file, path, size
+    def __init__(self, file: BinaryIO, path: Path) -> None:
+        self.file, self.path = file, path
+        self.size = os.fstat(file.fileno()).st_size
 
     def take(self, form: str) -> tuple[float, ...]:
         data = self.file.read(struct.calcsize("<" + form))
@@ -74,9 +76,8 @@ def cameras(path: Path, models: Mapping[str, tuple[str, int, int]]) -> Iterator[
     Raises:
         InputError: The file cannot be read, or has another model.
     """
-    size = size_of(path, MAX_BYTES)
-    with reading(path), path.open("rb") as file:
-        reader = _Reader(file, path, size)
+    with opened(path, MAX_BYTES) as file, reading(path):
+        reader = _Reader(file, path)
         for index in range(reader.count(48)):
             camera, model, width, height = (int(v) for v in reader.take("IiQQ"))
             where = f"{path}: camera {index + 1}"
@@ -95,9 +96,8 @@ def images(path: Path) -> Iterator[ImageRow]:
     Raises:
         InputError: The file cannot be read.
     """
-    size = size_of(path, MAX_BYTES)
-    with reading(path), path.open("rb") as file:
-        reader = _Reader(file, path, size)
+    with opened(path, MAX_BYTES) as file, reading(path):
+        reader = _Reader(file, path)
         for index in range(reader.count(73)):
             where = f"{path}: picture {index + 1}"
             _, *pose = reader.take("I7d")

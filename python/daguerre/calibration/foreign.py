@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 from daguerre.errors import InputError
-from daguerre.files.reading import reading
+from daguerre.files.reading import opened, reading
 
 #: Formats that are read, for errors.
 READ = (
@@ -57,7 +57,7 @@ def refuse(source: object) -> None:
     """
     if not isinstance(source, str | os.PathLike) or not Path(source).is_file():
         return
-    with reading(source), Path(source).open("rb") as file:
+    with opened(source) as file, reading(source):
         start = file.read(_START)
     for sign, name, way in _SIGNS:
         if re.search(sign, start):

@@ -18,7 +18,7 @@ import numpy as np
 
 from daguerre.errors import InputError
 from daguerre.files.json_item import Item
-from daguerre.files.reading import document
+from daguerre.files.reading import document, opened
 from daguerre.files.source import Source
 
 from .calibration import FLIP, Calibration, FloatArray, projection
@@ -36,7 +36,7 @@ def is_kitti(source: object) -> bool:
     path = Path(source)
     if path.suffix.lower() != ".txt" or not path.is_file():
         return False
-    with path.open("rb") as file:
+    with opened(path) as file:
         return _PROJECTION.search(file.read(_START)) is not None
 
 

@@ -58,11 +58,14 @@ def _run(arguments: Sequence[str]) -> int:
         from .completion.shells import complete
 
         return complete(console.argv[1:])
+    from daguerre.files import in_use
+
     console.quiet, console.writer = False, None
     console.open_streams()
     try:
         name = next((word for word in console.argv if not word.startswith("-")), "")
-        code = _command(name)(args=console.argv, prog_name="daguerre", standalone_mode=False)
+        with in_use.command():
+            code = _command(name)(args=console.argv, prog_name="daguerre", standalone_mode=False)
         sys.stdout.flush()
         return int(code or 0)
     except DaguerreError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -76,7 +77,7 @@ def calibrate(
     map_flags.check()
     for path in map_flags.files:
         check_writable(path)
-    written = [path.resolve() for path in (output, residuals, *map_flags.files) if path]
+    written = [os.path.realpath(path) for path in (output, residuals, *map_flags.files) if path]
     if len(set(written)) < len(written):
         raise UsageError("-o: the same file is named twice")
     model = use.pop("model", MODEL.default)

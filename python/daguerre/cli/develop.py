@@ -134,10 +134,6 @@ def _check(source: Path, outputs: list[Path]) -> None:
     _check_source(source)
     for path in outputs:
         check_written(path, (*written("picture"), ".dng"))
-        if path.exists() and source.exists() and path.samefile(source):
-            raise UsageError(
-                f"-o {path}: this is the file to develop; choose another name for the picture"
-            )
         check_writable(path)
         if path.suffix.lower() == ".dng" and source.suffix.lower() != ".exr":
             raise UsageError(

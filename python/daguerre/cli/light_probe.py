@@ -71,21 +71,17 @@ def light_probe(
 
 def _check(photographs: list[Path], output: Path, sun_out: Path | None) -> None:
     """Checks the outputs before anything is read."""
-    from daguerre.errors import UsageError
     from daguerre.files.atomic import check_writable
     from daguerre.files.formats import check_written
+    from daguerre.files.in_use import note_read
     from daguerre.plates.probe.save import ENVIRONMENTS, SUNS
 
     check_written(output, ENVIRONMENTS)
     if sun_out is not None:
         check_written(sun_out, SUNS)
         check_writable(sun_out)
-    for path in photographs:
-        if output.exists() and path.exists() and path.samefile(output):
-            raise UsageError(
-                f"-o {output}: this is one of the photographs; choose another name for the map"
-            )
     check_writable(output)
+    note_read(photographs)
 
 
 def _rows(made: LightProbe) -> dict[str, str]:

@@ -43,7 +43,7 @@ def merge(
 
     The result is bit-identical to a render in one go.
     """
-    from daguerre.files import atomic
+    from daguerre.files import atomic, in_use
     from daguerre.frame.frame import TONES, check_format
     from daguerre.io.exr.crops import are_crops
     from daguerre.rendering import merged, merging
@@ -60,9 +60,10 @@ def merge(
         from daguerre.rendering.denoise import check_available
 
         check_available()
-    if are_crops(passes):
-        return _join(passes, output, plain=not (strict or keep_sums or denoise))
-    frame, total = merging.merge(passes)
+    with in_use.in_place():  # the result may replace a pass
+        if are_crops(passes):
+            return _join(passes, output, plain=not (strict or keep_sums or denoise))
+        frame, total = merging.merge(passes)
     for remark in total.notes:
         console.note(remark)
     if strict:

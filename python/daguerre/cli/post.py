@@ -119,7 +119,7 @@ def _run(
     from daguerre.files.atomic import check_writable
     from daguerre.post.run import process
 
-    check_writable(output)
+    check_writable(output, over=picture)
     start = time.monotonic()
 
     def update(rows: int, height: int, width: int) -> None:

@@ -4,6 +4,8 @@ A temporary file is written, synced and renamed. A power failure at any moment l
 or the new one: the bytes reach the disk before the name, and the folder is synced after it. Writers
 hold a lock on their temporary file. One without a lock was left by a killed writer, and is removed
 when the same file is written or removed next.
+
+All outputs are opened here, so here a file that the command reads is refused.
 """
 
 from __future__ import annotations
@@ -11,17 +13,21 @@ from __future__ import annotations
 import errno
 import fcntl
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from daguerre.errors import OutputError
 
+from .in_use import claim, note_made
+
+Name = str | os.PathLike[str]
 _HEX = frozenset("0123456789abcdef")
 
 
 @contextmanager
-def atomic_path(target: str | os.PathLike[str]) -> Iterator[Path]:
+def atomic_path(target: Name, *, over: Name | None = None) -> Iterator[Path]:
     """Yields a temporary path that replaces ``target`` when the block ends without error.
 
     The temporary file has the suffix of the target, since image writers choose by it. If the block
@@ -29,11 +35,13 @@ def atomic_path(target: str | os.PathLike[str]) -> Iterator[Path]:
 
     Args:
         target: Final path; a link is followed, and the file that it points to is replaced.
+        over: File that the command reads, and that the target may replace all the same.
 
     Raises:
         OutputError: No such folder, no permission, disk full; the message names the path.
+        UsageError: The command reads this file (``in_use``).
     """
-    path = _resolved(target)
+    path = _resolved(target, over)
     _drop_left(path)
     temp = _temporary(path)
     lock = None
@@ -45,6 +53,7 @@ def atomic_path(target: str | os.PathLike[str]) -> Iterator[Path]:
             _sync(temp)
             temp.replace(path)
             _sync(path.parent)
+        note_made(path)
     finally:
         with suppress(OSError):
             temp.unlink()
@@ -52,21 +61,26 @@ def atomic_path(target: str | os.PathLike[str]) -> Iterator[Path]:
             os.close(lock)
 
 
-def write_bytes(target: str | os.PathLike[str], data: bytes) -> None:
+def write_bytes(target: Name, data: bytes) -> None:
     """Writes a whole file atomically."""
     with atomic_path(target) as temp, _os_errors(Path(target)):
         temp.write_bytes(data)
 
 
-def check_writable(target: str | os.PathLike[str]) -> None:
+def check_writable(target: Name, *, over: Name | None = None) -> None:
     """Checks that a file can be written, by making and removing an empty one beside it.
 
     It also removes temporary files of killed writers; the file itself is not touched.
 
+    Args:
+        target: Final path.
+        over: See :func:`atomic_path`.
+
     Raises:
         OutputError: It cannot be written. Call this before hours are spent on a picture.
+        UsageError: The command reads this file (``in_use``).
     """
-    path = _resolved(target)
+    path = _resolved(target, over)
     _drop_left(path)
     temp = _temporary(path)
     with _os_errors(path):
@@ -74,31 +88,45 @@ def check_writable(target: str | os.PathLike[str]) -> None:
         temp.unlink()
 
 
-def remove(target: str | os.PathLike[str]) -> None:
+def remove(target: Name) -> None:
     """Removes a file, if it exists, and temporary files that killed writers of it left.
 
     Raises:
         OutputError: It cannot be removed.
+        UsageError: The command reads this file (``in_use``).
     """
     path = Path(target)
+    claim(path)
     with _os_errors(path):
         path.unlink(missing_ok=True)
     _drop_left(path)
 
 
-def _resolved(target: str | os.PathLike[str]) -> Path:
+def _resolved(target: Name, over: Name | None) -> Path:
     path = Path(target)
     try:
         os.fspath(path).encode()
     except UnicodeEncodeError:  # writers of pictures take text alone
         raise OutputError(f"{target}: cannot write: wanted a name in UTF-8") from None
     with _os_errors(path):
-        path = path.resolve()
+        mode = _mode(path)
+        path = Path(os.path.realpath(path))
         if not path.parent.is_dir():
             raise OutputError(f"{target}: cannot write: no such folder: {path.parent}")
-        if path.is_dir():
+        if stat.S_ISDIR(mode):
             raise OutputError(f"{target}: cannot write: wanted a file name, got a folder")
+        if mode and not stat.S_ISREG(mode):
+            raise OutputError(f"{target}: cannot write: not a regular file")
+    claim(target, over)
     return path
+
+
+def _mode(path: Path) -> int:
+    """Mode of a file, links followed; 0: there is none. A link to itself is an error."""
+    try:
+        return path.stat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return 0
 
 
 def _temporary(path: Path) -> Path:

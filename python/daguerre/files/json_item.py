@@ -82,10 +82,15 @@ class Item:
             item = item.parent
         return str(item.key)
 
+    @property
+    def where(self) -> str:
+        """File and path, for messages."""
+        path = self.path
+        return f"{self.file}: {path}" if path else self.file
+
     def fail(self, message: str) -> NoReturn:
         """Raises ``InputError`` for this value."""
-        path = self.path
-        raise InputError(f"{self.file}: {path}: {message}" if path else f"{self.file}: {message}")
+        raise InputError(f"{self.where}: {message}")
 
     def _type(self, wanted: str) -> NoReturn:
         self.fail(f"wrong type: wanted {wanted}, got {short(self.value)}")

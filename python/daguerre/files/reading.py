@@ -1,4 +1,9 @@
-"""Files before they are read: one wording for all that are missing, too large or not files."""
+"""Opens files to read: one wording for all that are missing, too large or not files.
+
+Every file of a user is opened by ``opened`` or ``read_bytes``, or checked by ``size_of`` before a
+library opens it by its name. So none is a pipe or a device, which might never end, and all are
+noted as read (``in_use``).
+"""
 
 from __future__ import annotations
 
@@ -6,14 +11,18 @@ import os
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import BufferedReader
 from pathlib import Path
 
 from daguerre.errors import InputError
+
+from .in_use import note_read
 
 #: Maximum number of characters of a path in a message.
 _LONGEST = 1000
 MISSING = "no such file"
 FOLDER = "wanted a file, got a folder"
+_ODD = "not a regular file"
 
 
 def why(error: OSError | ValueError) -> str:
@@ -46,24 +55,49 @@ def fault_of(path: Path) -> str:
         mode = path.stat().st_mode
     except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
         return why(error)
+    return _fault(mode)
+
+
+def _fault(mode: int) -> str:
     if stat.S_ISDIR(mode):
         return FOLDER
-    return "" if stat.S_ISREG(mode) else "not a regular file"
+    return "" if stat.S_ISREG(mode) else _ODD
 
 
 def size_of(path: Path, most: int | None = None) -> int:
-    """Returns the size of a file, bytes.
+    """Returns the size of a file, bytes, and notes that it is read, as by a library.
 
     Raises:
         InputError: There is no such file, it is larger than ``most`` bytes, or it is a folder, a
             pipe or a device, which might never end.
+        UsageError: The command is about to write it.
     """
     if fault := fault_of(path):
         raise InputError(f"{shown(path)}: {fault}")
     with reading(path):
         size = path.stat().st_size
     check_size(size, shown(path), most)
+    note_read([path])
     return size
+
+
+def opened(path: str | os.PathLike[str], most: int | None = None) -> BufferedReader:
+    """Opens a file to read its bytes, and notes that it is read.
+
+    Raises:
+        InputError: See :func:`size_of`; or it cannot be read.
+        UsageError: The command is about to write it.
+    """
+    size_of(Path(path), most)
+    with reading(path):
+        # A pipe that took the file's place since then would be waited for, but for O_NONBLOCK.
+        wait = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+        descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC | wait)
+    stream = os.fdopen(descriptor, "rb")
+    if fault := _fault(os.fstat(descriptor).st_mode):
+        stream.close()
+        raise InputError(f"{shown(path)}: {fault}")
+    return stream
 
 
 def check_size(size: int, where: str, most: int | None) -> None:
@@ -77,10 +111,16 @@ def read_bytes(path: Path, most: int | None = None) -> bytes:
 
     Raises:
         InputError: See :func:`size_of`; or it cannot be read.
+        UsageError: The command is about to write it.
     """
-    size_of(path, most)
-    with reading(path):
-        return path.read_bytes()
+    with opened(path, most) as stream, reading(path):
+        return stream.read() if most is None else _at_most(stream, path, most)
+
+
+def _at_most(stream: BufferedReader, path: Path, most: int) -> bytes:
+    data = stream.read(most + 1)  # a file of /proc has size 0
+    check_size(len(data), shown(path), most)
+    return data
 
 
 def decoded(data: bytes, where: str, encoding: str = "utf-8") -> str:

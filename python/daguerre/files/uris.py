@@ -14,6 +14,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from urllib.parse import unquote, unquote_to_bytes, urlsplit
 
+from .in_use import note_read
 from .json_item import Item, short
 from .reading import MISSING, fault_of
 
@@ -22,13 +23,23 @@ class Folder:
     """Folder of a scene and further allowed folders, both with links resolved.
 
     Args:
-        scene: Path of the scene file.
+        scene: Path of the scene file, or of another that names files.
         allow_dirs: Further folders whose files may be read.
+        what: Kind of the file that names others, for messages.
+        way: Way to name files elsewhere, for messages.
     """
 
-    def __init__(self, scene: Path, allow_dirs: Iterable[str | os.PathLike[str]] = ()) -> None:
+    def __init__(
+        self,
+        scene: Path,
+        allow_dirs: Iterable[str | os.PathLike[str]] = (),
+        *,
+        what: str = "scene",
+        way: str = "--allow-dir allows more folders",
+    ) -> None:
         if isinstance(allow_dirs, (str, os.PathLike)):
             allow_dirs = (allow_dirs,)
+        self._what, self._way = what, way
         self.base = Path(os.path.realpath(scene.parent))
         self.allowed = [self.base, *(Path(os.path.realpath(d)) for d in allow_dirs)]
 
@@ -52,13 +63,15 @@ class Folder:
         path = self._path(uri)
         if not any(path.is_relative_to(directory) for directory in self.allowed):
             uri.fail(
-                f"leaves the scene's folder: wanted a file under {str(self.base)!r} "
-                f"(--allow-dir allows more folders), got {short(uri.text())}"
+                f"leaves the {self._what}'s folder: wanted a file under {str(self.base)!r} "
+                f"({self._way}), got {short(uri.text())}"
             )
         # Only regular files: a pipe or a device would never end.
         fault = fault_of(path)
         if fault and fault != MISSING:
             uri.fail(f"{short(str(path), 200)}: {fault}")
+        if not fault:
+            note_read([path])
         return None if fault else path
 
     def _path(self, uri: Item) -> Path:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from daguerre.color import srgb
 from daguerre.errors import InputError
 from daguerre.files.json_item import short
-from daguerre.files.reading import size_of
+from daguerre.files.reading import opened, size_of
 
 from . import ktx2
 from .pictures.kinds import KINDS
@@ -164,7 +164,7 @@ def _linear(file: Path) -> tuple[NDArray[np.float32], int]:
 
 def _radiance_exposure(file: Path) -> float:
     """Product of the EXPOSURE lines, by which Radiance multiplies light (filefmts.pdf)."""
-    with file.open("rb") as stream:
+    with opened(file) as stream:
         lines = stream.read(8192).split(b"\n\n", 1)[0].splitlines()
     exposure = 1.0
     for line in lines:

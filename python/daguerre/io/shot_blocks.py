@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from daguerre.files.reading import reading
+from daguerre.files.reading import opened, reading
 
 from . import png_chunks
 from .exif_reader import exif_tags
@@ -39,7 +39,7 @@ class ShotTags:
 
 def read_tags(path: Path) -> ShotTags:
     """Reads the tags of a file; other formats have none."""
-    with reading(path), path.open("rb") as file:
+    with opened(path) as file, reading(path):
         head = file.read(12)
         if head[:2] in (b"II", b"MM"):
             with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:

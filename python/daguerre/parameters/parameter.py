@@ -17,8 +17,9 @@ from .need import Need
 
 #: Kinds of values; ``value`` is a Python object, which a row describes but does not check.
 Kind = Literal[
-    "number", "whole", "flag", "choice", "text", "size", "numbers", "file", "picture", "value"
-]
+    "number", "whole", "flag", "choice", "text", "size", "numbers", "file", "library", "output",
+    "picture", "value",
+]  # fmt: skip
 
 REQUIRED = object()
 #: Parsers of numbers by unit: texts may have another unit of the same kind, as in 2.5m, 250cm.
@@ -43,7 +44,8 @@ class Parameter:
         unit: Unit such as mm, px, stops; empty: none.
         default: Default; None: not given; REQUIRED: there is none.
         kind: number; whole; flag (0 or 1); choice; text (a name); size (two lengths such as 36x24,
-            in the unit); numbers (``count`` of them); file; picture (a file, or an array); value.
+            in the unit); numbers (``count`` of them); file (to read); library (a name of a library,
+            or a file); output (a file to write); picture (a file, or an array); value.
         choices: Values of a choice.
         low: Smallest number allowed.
         high: Largest number allowed.
@@ -246,7 +248,7 @@ class Parameter:
     def _read(self, value: Any, where: str) -> Any:
         """Parses a value; None: it is not accepted."""
         match self.kind:
-            case "text" | "file" | "picture":
+            case "text" | "file" | "library" | "output" | "picture":
                 return value if isinstance(value, str) and value else None
             case "choice":
                 return value if isinstance(value, str) and value in self.choices else None

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color import srgb
+from daguerre.files.reading import opened
 from daguerre.files.value import BriefRecord
 
 Kind = Literal["raw", "display", "linear"]
@@ -82,7 +83,7 @@ class Photograph(BriefRecord):
 
     def sha256(self) -> str:
         """SHA-256 of the file."""
-        with self.path.open("rb") as stream:
+        with opened(self.path) as stream:
             return hashlib.file_digest(stream, "sha256").hexdigest()
 
 

@@ -28,7 +28,7 @@ BLADES = (
         high=1,
     ),
     Parameter(
-        "aperture_image", "path of a grey picture of the opening, instead of blades", kind="text"
+        "aperture_image", "path of a grey picture of the opening, instead of blades", kind="file"
     ),
 )
 _ROUND = 256  # corners of a circle: 0.04 px off at a radius of 500 px

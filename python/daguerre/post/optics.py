@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 FOCAL_LENGTH = Parameter("focal_length", "focal length; default: from the file", "mm", low=1e-3)
 SENSOR = Parameter("sensor", "sensor width x height; default: from the file", "mm", kind="size")
 LENS = (
-    Parameter("lens", "a name from `daguerre lenses`, or a lens file", kind="text"),
+    Parameter("lens", "a name from `daguerre lenses`, or a lens file", kind="library"),
     Parameter("focus", "focus distance from the entrance pupil", "m", math.inf, low=1e-3),
     Parameter("zoom", "focal length of a zoom", "mm", low=1e-3),
     Parameter(

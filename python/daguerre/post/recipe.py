@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from daguerre import lenses
 from daguerre.errors import InputError, UsageError, suggest
-from daguerre.files.json_item import short
+from daguerre.files.json_item import Item, short
+from daguerre.files.uris import Folder
 
 from .effect import Effect, Values
 from .effects.catalogue import EFFECTS
@@ -25,6 +27,12 @@ class Planned:
     values: Values
     where: str
     given: Values
+
+    @property
+    def written(self) -> list[str]:
+        """Files that it writes beside the picture."""
+        rows = (row for row in self.effect.parameters if row.kind == "output")
+        return [self.values[row.name] for row in rows if self.values[row.name] is not None]
 
 
 def from_words(words: Sequence[str]) -> list[Planned]:
@@ -60,6 +68,9 @@ def from_words(words: Sequence[str]) -> list[Planned]:
 def from_file(path: Path) -> list[Planned]:
     """Reads a recipe: a list of objects such as ``{"effect": "vignetting", "model": "natural"}``.
 
+    Recipes may come from strangers: an effect reads files of the recipe's folder alone, and writes
+    none beside the picture.
+
     Raises:
         InputError: The file cannot be read, or an effect, parameter or value is invalid; the
             message has its place in the file.
@@ -70,12 +81,35 @@ def from_file(path: Path) -> list[Planned]:
     root = parse(read_bytes(path, _MOST_BYTES), str(path)).value
     if not isinstance(root, list) or not all(isinstance(entry, dict) for entry in root):
         raise InputError(f'{path}: wanted a list of objects such as {{"effect": "vignetting"}}')
+    folder = Folder(path, what="recipe", way="--effect may name others")
     planned = []
     for k, entry in enumerate(root):
         where = f"{path}: [{k}]"
         given = {key: value for key, value in entry.items() if key != "effect"}
-        planned.append(plan(entry.get("effect"), given, where, InputError))
+        one = plan(entry.get("effect"), given, where, InputError)
+        planned.append(replace(one, values={**one.values, **_files(one, folder)}))
     return planned
+
+
+def _files(planned: Planned, folder: Folder) -> dict[str, str]:
+    """Files that an effect of a recipe may read, by parameter.
+
+    Raises:
+        InputError: One is outside of the recipe's folder or missing, or the effect writes one.
+    """
+    found = {}
+    for row in planned.effect.parameters:
+        if row.name not in planned.given:
+            continue
+        item = Item(planned.values[row.name], row.name, Item(None, planned.where))
+        if row.kind == "output":
+            item.fail(
+                f"a recipe writes no file: write it by --effect {planned.effect.name}:...,"
+                f"{row.name}=FILE"
+            )
+        if row.kind == "file" or (row.kind == "library" and item.value not in lenses.names()):
+            found[row.name] = str(folder.resolve(item))
+    return found
 
 
 def plan(
@@ -102,5 +136,9 @@ def in_order(planned: Sequence[Planned]) -> tuple[list[Planned], list[str]]:
 
 def as_json(planned: Sequence[Planned]) -> str:
     """Formats effects as a recipe, for the metadata of the result."""
-    entries: list[Mapping[str, Any]] = [{"effect": p.effect.name, **p.given} for p in planned]
+    entries: list[Mapping[str, Any]] = []
+    for one in planned:
+        writes = {row.name for row in one.effect.parameters if row.kind == "output"}
+        given = {name: value for name, value in one.given.items() if name not in writes}
+        entries.append({"effect": one.effect.name, **given})
     return json.dumps(entries)

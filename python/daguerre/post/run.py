@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from daguerre.errors import UsageError
 from daguerre.files.atomic import atomic_path
 from daguerre.io.exr.rows import ExrWriter
 
@@ -68,8 +69,9 @@ def process(
     if not shown:
         check_target(target)
     planned, _ = in_order(planned)
+    _check_distinct(target, planned)
     picture = ExrPicture(source, roles)
-    with picture.reader as reader, atomic_path(target) as temp:
+    with picture.reader as reader, atomic_path(target, over=source) as temp:
         steps = [step_of(p, picture) for p in planned]
         made = chained(steps, picture)
         before = reader.facts.get(HISTORY)
@@ -91,6 +93,20 @@ def process(
     if reader.header.parts > 1:
         remarks.append(f"{source}: only the first of its {reader.header.parts} parts is written")
     return Report(reader.width, reader.height, picture.bad_pixels, remarks)
+
+
+def _check_distinct(target: str | os.PathLike[str], planned: Sequence[Planned]) -> None:
+    """Checks that no effect writes to the picture's file, or to that of another effect.
+
+    Raises:
+        UsageError: One does; the message names the effect.
+    """
+    taken = {os.path.realpath(target)}
+    for one in planned:
+        for path in one.written:
+            if os.path.realpath(path) in taken:
+                raise UsageError(f"{one.where}: {path}: another output has this name")
+            taken.add(os.path.realpath(path))
 
 
 def step_of(planned: Planned, picture: ExrPicture) -> Step:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from daguerre.errors import DaguerreError
-from daguerre.files import atomic
+from daguerre.files import atomic, in_use
 
 if TYPE_CHECKING:
     from .schedule import Work
@@ -83,7 +83,8 @@ class Checkpoint:
             return False
         from . import passes
 
-        saved = passes.read_pass(self.path)
+        with in_use.in_place():
+            saved = passes.read_pass(self.path)
         passes.check_key(passes.pass_of(session), saved)
         work.check(saved)
         session.set_state(saved.state, saved.ranges, saved.round)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from pathlib import Path
 
 from daguerre.camera.camera import Camera
 from daguerre.doors import guarded
-from daguerre.errors import UsageError
-from daguerre.files import formats
+from daguerre.files import formats, in_use
 from daguerre.files.atomic import check_writable
 from daguerre.files.notes import Notes
 from daguerre.io.outgoing.record import Outgoing
@@ -51,9 +49,16 @@ def export_scene(
         OutputError: A file cannot be written.
     """
     formats.check_written(path, formats.written("exchange"))
-    check_writable(path)
-    _check_other(scene, Path(path))
-    settings = RenderSettings().with_(resolution=resolution, spp=spp)
+    with in_use.call():
+        in_use.note_read([] if scene.path is None else [scene.path])
+        check_writable(path)
+        settings = RenderSettings().with_(resolution=resolution, spp=spp)
+        return _exported(scene, path, camera, settings)
+
+
+def _exported(
+    scene: Scene, path: str | Path, camera: Camera | str | None, settings: RenderSettings
+) -> list[str]:
     prepared = prepare(scene, camera, settings)
     notes = Notes()
     if scene.motion:
@@ -65,14 +70,3 @@ def export_scene(
     outgoing = Outgoing(scene, view, prepared.size, settings.sampling.most, depth, notes)
     formats.write("exchange", path, outgoing)
     return [*prepared.notes, *notes.sentences()]
-
-
-def _check_other(scene: Scene, path: Path) -> None:
-    """Refuses to write over the file that the scene was read from.
-
-    Raises:
-        UsageError: It is that file.
-    """
-    with suppress(OSError):  # one of them is not there
-        if scene.path is not None and path.samefile(scene.path):
-            raise UsageError(f"{path}: this is the scene's own file; choose another name")

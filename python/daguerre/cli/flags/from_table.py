@@ -10,7 +10,7 @@ from daguerre.parameters.table import Table
 
 from .groups import option
 
-_TYPES: dict[str, Any] = {"number": float, "whole": int, "flag": bool, "file": Path}
+_TYPES: dict[str, Any] = {"number": float, "whole": int, "flag": bool, "output": Path}
 _TYPES |= {"picture": Path}
 
 

@@ -142,6 +142,7 @@ class SceneFlags(SceneFileFlags):
             InputError: One is missing; the message names the first frame and its file.
         """
         from daguerre.errors import InputError, UsageError
+        from daguerre.files.in_use import note_read
         from daguerre.files.reading import fault_of
 
         if self.plate is None or not self.plate_moves:
@@ -154,6 +155,7 @@ class SceneFlags(SceneFileFlags):
             path = numbered(self.plate, frame)
             if fault := fault_of(path):
                 raise InputError(f"frame {frame}: {path}: {fault}")
+            note_read([path])
 
     def throw_plate(self, scene: Any, taken: Any, frame: int = 0) -> None:
         """Sets the plate of the scene, in a sequence that of a frame.

@@ -44,15 +44,15 @@ _FIT = (
 _FILES = Table(
     Parameter(
         "plot", "Write a one-page data sheet; with --psf or --flare their plots (needs extra "
-        "`plot`)", kind="file", flags=("--plot", "-o"), metavar="FILE.svg|png|pdf",
+        "`plot`)", kind="output", flags=("--plot", "-o"), metavar="FILE.svg|png|pdf",
     ),
     Parameter(
         "drawing", "Write a section with rays of three field points (.png and .pdf need extra "
-        "`plot`)", kind="file", flags=("--drawing",), metavar="FILE.svg|png|pdf",
+        "`plot`)", kind="output", flags=("--drawing",), metavar="FILE.svg|png|pdf",
     ),
     Parameter(
         "export", "Write the lens as polynomials: OSL for Blender's camera, C, GLSL, NumPy or "
-        "JSON data", kind="file", flags=("--export",), metavar="FILE.osl|c|glsl|py|json",
+        "JSON data", kind="output", flags=("--export",), metavar="FILE.osl|c|glsl|py|json",
     ),
     _FIT,
 )

@@ -11,6 +11,7 @@ import numpy as np
 
 from daguerre.cli import console
 from daguerre.errors import DaguerreError
+from daguerre.files import atomic
 from daguerre.rendering.reporter import Look
 
 from .protocols import Pixels
@@ -46,7 +47,7 @@ class Preview:
             if screen is not None:
                 screen.picture(_pixels(look))
             elif look.complete:
-                look.path.unlink(missing_ok=True)
+                atomic.remove(look.path)
             else:
                 self._write(look)
         except (DaguerreError, OSError) as error:

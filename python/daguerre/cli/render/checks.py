@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 from daguerre import units as q
@@ -140,16 +141,19 @@ def check_truth(groups: list[str], rows: SettingsFlags, maps: MapFlags) -> None:
 def check_writable(output: Output) -> None:
     """Checks that files can be written, before hours are spent."""
     from daguerre.files.atomic import check_writable as check
+    from daguerre.files.in_use import claim
 
-    names = [path.resolve() for path in output.written]
+    names = [os.path.realpath(path) for path in output.written]
     if len(set(names)) < len(names):
         raise UsageError("-o: the same file is named twice")
-    if output.paths and output.checkpoint.resolve() in names:
+    if output.paths and os.path.realpath(output.checkpoint) in names:
         raise UsageError(f"-o {output.checkpoint}: this name is reserved for the checkpoint")
-    if output.paths and output.preview.resolve() in names:
+    if output.paths and os.path.realpath(output.preview) in names:
         raise UsageError(f"-o {output.preview}: this name is reserved for --preview")
     for path in output.written:
         check(path)
+    if output.paths:
+        claim(output.checkpoint)
 
 
 def _groups(names: list[str], *, everything: bool) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -73,10 +74,8 @@ def coco_of(path: Path | None, categories: Path | None, plan: Plan) -> Labels:
         raise UsageError("--coco needs a picture (-o NAME.png): only maps are written")
     if plan.pictures[0].settings.film.overscan is not None:
         raise UsageError("--coco and --overscan: wanted one of them, got both")
-    taken = {file.resolve() for picture in plan.pictures for file in picture.output.written}
-    if path.resolve() in taken or (
-        categories is not None and path.resolve() == categories.resolve()
-    ):
+    taken = {os.path.realpath(file) for picture in plan.pictures for file in picture.output.written}
+    if os.path.realpath(path) in taken:
         raise UsageError(f"--coco {path}: another file of this command has this name")
     from daguerre.labels.categories import Categories
     from daguerre.labels.coco import CocoFile

@@ -5,6 +5,7 @@ Layout: "OpenEXR File Layout", https://openexr.com/en/latest/OpenEXRFileLayout.h
 
 from __future__ import annotations
 
+import os
 import struct
 from dataclasses import dataclass
 from fractions import Fraction
@@ -13,7 +14,7 @@ from typing import Any
 
 from daguerre.checks import short
 from daguerre.errors import InputError
-from daguerre.files.reading import reading, size_of
+from daguerre.files.reading import opened, reading
 
 MAGIC = 20000630
 TILED, LONG_NAMES, DEEP, MULTIPART = 0x200, 0x400, 0x800, 0x1000
@@ -95,8 +96,8 @@ def read_headers(path: Path) -> ExrHeaders:
     Raises:
         InputError: It is not an OpenEXR file, is truncated, or a header is damaged or too long.
     """
-    size = size_of(path)
-    with reading(path), path.open("rb") as stream:
+    with opened(path) as stream, reading(path):
+        size = os.fstat(stream.fileno()).st_size
         data, wanted = b"", FIRST_READ
         while True:
             data += stream.read(wanted - len(data))

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError
-from daguerre.files.reading import reading
+from daguerre.files.reading import opened
 from daguerre.memory import free_bytes, shown
 
 from .apart import plain_copy
@@ -51,8 +51,7 @@ class PartReader:
         self._folder: TemporaryDirectory[str] | None = None
         self._copy: PartReader | None = None
         self._kept: tuple[int, list[NDArray[np.uint8]]] = (-1, [])
-        with reading(self.path):
-            self._stream: BinaryIO = layout.path.open("rb")
+        self._stream: BinaryIO = opened(layout.path)
         try:
             self._chunks = Chunks(self._stream, layout)
         except BaseException:

@@ -9,6 +9,7 @@ from pathlib import Path
 from daguerre.checks import MAX_RESOLUTION
 from daguerre.errors import InputError
 from daguerre.files.json_item import clean
+from daguerre.files.reading import opened
 
 from .header import MAGIC
 from .layout import read_layouts
@@ -59,9 +60,9 @@ class ExrReader(PartReader):
 def is_exr(path: str | os.PathLike[str]) -> bool:
     """Whether a file begins like OpenEXR, whatever its name; False if it cannot be read."""
     try:
-        with Path(path).open("rb") as stream:
+        with opened(path) as stream:
             return stream.read(4) == MAGIC.to_bytes(4, "little")
-    except OSError:
+    except (InputError, OSError):
         return False
 
 

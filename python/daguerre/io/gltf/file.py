@@ -7,17 +7,18 @@ Source: glTF 2.0 specification, chapters 3.6 (buffers) and 4 (GLB).
 
 from __future__ import annotations
 
+import os
 import re
 import struct
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 
-from daguerre.errors import InputError
+from daguerre.errors import InputError, asked_by
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, short
 from daguerre.files.json_text import parse
-from daguerre.files.reading import reading, size_of, why
+from daguerre.files.reading import opened, reading, size_of
 from daguerre.files.uris import Folder, data_bytes, is_data
 from daguerre.scene.packed import CHUNK as PACKED_CHUNK
 
@@ -77,7 +78,7 @@ def open_document(path: Path, folder: Folder) -> Document:
 def _read(path: Path) -> tuple[bytes, int]:
     """Reads a file, a .glb up to the length in its header; also counts the bytes after it."""
     size = size_of(path)
-    with reading(path), path.open("rb") as stream:
+    with opened(path) as stream, reading(path):
         start = stream.read(12)
         wanted = size
         if start[:4] == b"glTF" and len(start) == 12:
@@ -166,12 +167,9 @@ def _load_buffer(document: Document, item: Item, budget: Budget) -> memoryview:
     else:
         file = document.folder.resolve(uri)
         source = repr(file.name)
-        try:
-            with file.open("rb") as stream:  # limited by the size, as byteLength may be wrong
-                size = file.stat().st_size
-                data = memoryview(stream.read(min(length, size)))
-        except OSError as error:
-            uri.fail(why(error))
+        with asked_by(uri.where), opened(file) as stream, reading(file):
+            size = os.fstat(stream.fileno()).st_size  # a limit, as byteLength may be wrong
+            data = memoryview(stream.read(min(length, size)))
     if len(data) < length:
         length_item.fail(f"{source} is too short: wanted {short(length)} bytes, got {len(data)}")
     return data[:length]

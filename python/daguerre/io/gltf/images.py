@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from daguerre import memory
 from daguerre.checks import freeze_in_place
 from daguerre.color import srgb as srgb_curve
+from daguerre.errors import asked_by
 from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, clean
-from daguerre.files.reading import why
+from daguerre.files.reading import read_bytes
 from daguerre.files.uris import data_bytes, is_data
 from daguerre.io import images
 from daguerre.scene.scene import Scene
@@ -116,10 +117,8 @@ class Images:
     def _bytes(self, index: int) -> bytes | memoryview:
         item, path = self._images[index], self._paths[index]
         if path is not None:
-            try:
-                return path.read_bytes()
-            except OSError as error:
-                item.need("uri").fail(why(error))
+            with asked_by(item.need("uri").where):
+                return read_bytes(path)
         uri = item.get("uri")
         if uri is not None:
             return data_bytes(uri)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from daguerre import memory
 from daguerre.errors import InputError
-from daguerre.files.reading import check_size, reading, size_of
+from daguerre.files.reading import check_size, opened, reading, size_of
 
 Bytes = NDArray[np.uint8]
 #: Maximum size of a file.
@@ -35,8 +35,8 @@ def read_bytes(file: Path, most: int = MAX_BYTES) -> Bytes:
         InputError: It cannot be read, is too large, or its gzip data are damaged or grow too much.
     """
     check_room(size_of(file), str(file), most)
-    with reading(file):
-        data = np.fromfile(file, np.uint8)
+    with opened(file) as stream, reading(file):
+        data = np.fromfile(stream, np.uint8)
     if data[:2].tobytes() != _GZIP_MAGIC:
         return data
     return np.frombuffer(b"".join(_gunzipped(data, str(file), most)), np.uint8)

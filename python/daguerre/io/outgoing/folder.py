@@ -15,6 +15,7 @@ from pathlib import Path
 
 from daguerre.errors import OutputError
 from daguerre.files.atomic import atomic_path, remove, write_bytes
+from daguerre.files.in_use import is_read
 
 _OURS = re.compile(r"[a-z]+-[0-9a-f]{16}\.[a-z]{3}")
 _ODD = re.compile(r"[^\w.\- ]")
@@ -80,7 +81,8 @@ class OutgoingFolder:
         if not self.path.is_dir():
             return
         for found in self.path.iterdir():
-            if found.name not in self._names and _OURS.fullmatch(found.name):
+            ours = found.name not in self._names and _OURS.fullmatch(found.name)
+            if ours and not is_read(found):  # a scene that the command reads may be beside this
                 remove(found)
         if not self._names:
             with suppress(OSError):  # it holds something else

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from daguerre.files.reading import read_bytes, reading, size_of
+from daguerre.files.reading import opened, read_bytes, reading, size_of
 
 #: Size of the largest file of a picture, bytes.
 MAX_FILE = 4 << 30
@@ -49,7 +49,7 @@ class Source:
         """Reads bytes; fewer at the end."""
         if self._data is not None:
             return self._data[offset : offset + count]
-        with reading(self._file), self._file.open("rb") as stream:
+        with opened(self._file, MAX_FILE) as stream, reading(self._file):
             stream.seek(offset)
             return stream.read(count)
 

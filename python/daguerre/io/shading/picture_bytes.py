@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from daguerre import memory
 from daguerre.errors import InputError, asked_by
 from daguerre.files.json_item import short
-from daguerre.files.reading import read_bytes
+from daguerre.files.reading import opened, read_bytes
 from daguerre.io import images
 from daguerre.io.exr.reader import ExrReader, is_exr, light_names
 from daguerre.io.pictures import kinds
@@ -89,7 +89,7 @@ def _other(file: Path) -> NDArray[Any]:
     """Decodes a format that glTF does not have: light as it is, integers to 0 .. 1."""
     if is_exr(file):
         return _exr(file)
-    with file.open("rb") as stream:
+    with opened(file) as stream:
         if stream.read(2) == b"#?":
             return images.read_environment(file)
     pixels = images.read_file(file)[:, :, :4]
@@ -110,7 +110,7 @@ def bytes_of(file: Path, where: str) -> bytes:
 def opened_package(file: Path, where: str) -> Iterator[zipfile.ZipFile]:
     """Opens a package; damaged ones are errors."""
     try:
-        with zipfile.ZipFile(file) as archive:
+        with opened(file) as stream, zipfile.ZipFile(stream) as archive:
             yield archive
     except (zipfile.BadZipFile, EOFError, NotImplementedError, OSError, RuntimeError) as error:
         raise InputError(f"{where}: wanted a usdz package, got {short(str(error))}") from None

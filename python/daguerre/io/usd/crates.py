@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError
+from daguerre.files.reading import opened
 
 _MAGIC = b"PXR-USDC"
 #: Bytes that a byte of LZ4 can stand for, and 32-bit numbers that a byte of packed ones can.
@@ -42,7 +43,7 @@ def check_crates(path: Path, file: str) -> None:
     """
     if path.stat().st_size == 0:
         return
-    with path.open("rb") as stream:
+    with opened(path) as stream:
         whole = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
     for begin, size in _crates(path, whole):
         try:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from daguerre.errors import InputError, UsageError
+from daguerre.files.in_use import note_read
 from daguerre.files.reading import fault_of
 from daguerre.rendering.names import has_frame, numbered
 
@@ -96,11 +97,8 @@ def _check_places(plate: Path, objects: Path, frames: Sequence[int] | None) -> N
 
 def _check_files(shots: list[Shot]) -> None:
     """Checks all files before the first frame is made."""
-    read = {path.resolve() for shot in shots for path in (shot.plate, shot.objects)}
+    note_read(path for shot in shots for path in (shot.plate, shot.objects))
     written = [path for shot in shots for path in shot.outputs]
-    for path in written:
-        if path.resolve() in read:
-            raise UsageError(f"-o {path}: this is one of the inputs; choose another name")
     if twice := [path for path, count in Counter(written).items() if count > 1]:
         raise UsageError(f"-o {twice[0]}: several frames have this name; put #### into it")
     missing = [

@@ -235,7 +235,7 @@ DISTORTION = Effect(
         Parameter("scale", "magnification of the ideal picture; below 1 shows more of the scene",
                   default=1.0, low=1e-3),
         *FILTER,
-        Parameter("stmap", "path of an .exr for the map of green, written as well", kind="text"),
+        Parameter("stmap", "path of an .exr for the map of green, written as well", kind="output"),
         Parameter("inverse", "undistort instead of distorting", kind="flag", default=False),
     ),
     _make,

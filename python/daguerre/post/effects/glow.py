@@ -41,7 +41,7 @@ IRIS = (
     Parameter(
         "curvature", "curvature of the blades; 0: straight, 1: round", default=0.0, low=-1, high=1
     ),
-    Parameter("dust", "path of a picture of dust on the iris; white is clear", kind="text"),
+    Parameter("dust", "path of a picture of dust on the iris; white is clear", kind="file"),
 )
 
 
@@ -223,7 +223,7 @@ PSF = Effect(
         Parameter(
             "file",
             "path of the kernel, a picture; linear if .exr or .hdr",
-            kind="text",
+            kind="file",
             default=REQUIRED,
         ),
         Parameter(

@@ -86,7 +86,7 @@ def _make(canvas: Canvas, values: Values) -> Step:
 STMAP = Effect(
     "stmap",
     "warp by an STMap: R is s from the left, G is t from the bottom",
-    (Parameter("file", "path of the STMap, an .exr", kind="text", default=REQUIRED), *FILTER),
+    (Parameter("file", "path of the STMap, an .exr", kind="file", default=REQUIRED), *FILTER),
     _make,
 )
 

@@ -1,0 +1,36 @@
+"""Files of users are opened in one place, which refuses pipes and notes what is read."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+PACKAGE = Path(__file__).parents[2] / "python" / "daguerre"
+#: Other files, each of the package itself, of the system, or just written by the same function.
+OTHERS = {
+    "cluster/store.py",  # the worker's own cache
+    "cli/completion/installing.py",  # the shell's start file, which is changed
+    "compiled.py",  # /proc/cpuinfo
+    "development/shown.py",  # a temporary picture
+    "files/reading.py",  # the place
+    "frame/picture.py",  # a temporary picture
+    "io/picture_files.py",  # a pipe of this process
+    "io/png.py",  # the temporary file that it writes
+    "scene/packed/chunk.py",  # the .glb that was written just now
+    "setup/aim_cache.py",  # the cache
+    "viewfinder/lens_list.py",  # drawings of the package
+    "viewfinder/server.py",  # the page, and photographs that it has written
+}
+OPENS = re.compile(
+    r"""\.read_bytes\(\)|open\([^()]*["']rb["']|\.open\(\)|fromfile\((?!stream)|np\.load\("""
+)
+
+
+def test_readers_open_files_in_one_place() -> None:
+    found = {
+        path.relative_to(PACKAGE).as_posix()
+        for path in PACKAGE.rglob("*.py")
+        if OPENS.search(path.read_text("utf-8"))
+    }
+    assert found - OTHERS == set()
+    assert OTHERS - found == set(), "not needed any more"
