@@ -5,10 +5,7 @@ from __future__ import annotations
 import logging
 import math
 import os
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
-from dataclasses import replace
-from pathlib import Path
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -17,10 +14,10 @@ from numpy.typing import NDArray
 from daguerre.color import illuminants
 from daguerre.errors import InputError
 from daguerre.files import extras
-from daguerre.files.reading import size_of
 
+from . import libraw
 from .channels import USUAL, XY, Channels, Demosaic
-from .dng import LEAST_XTRANS
+from .libraw import RawFile
 
 FloatArray = NDArray[np.float64]
 Matrix = Callable[[XY], FloatArray]
@@ -52,96 +49,41 @@ def read_shot(path: str | os.PathLike[str], demosaic: Demosaic = USUAL) -> Chann
         InputError: The file is not a raw file, or the colours of its camera are unknown.
     """
     tags = tags_of(path)
-    with opened_raw(path) as opened:
-        return _shot(path, opened, tags, demosaic)
-
-
-@contextmanager
-def opened_raw(path: str | os.PathLike[str]) -> Iterator[Any]:
-    """Opens a raw file with rawpy.
-
-    Raises:
-        InputError: The file is not a raw file; also if LibRaw finds that out within the block.
-    """
-    size_of(Path(path))
-    extras.need("rawpy", f"{path}: a raw file")
-    import rawpy
-
-    try:
-        with rawpy.imread(str(path)) as opened:
-            yield opened
-    except rawpy.LibRawError as error:
-        reason = error.args[0] if error.args else error
-        reason = reason.decode() if isinstance(reason, bytes) else str(reason)
-        raise InputError(
-            f"{path}: wanted a camera raw file; LibRaw cannot read this one: {reason}"
-        ) from None
-
-
-def is_flat(opened: Any) -> bool:
-    """Whether an opened raw file has one value per photosite, as mosaics and grey pictures have."""
-    import rawpy
-
-    return bool(opened.raw_type == rawpy.RawType.Flat and opened.raw_image is not None)
-
-
-def _shot(path: Any, opened: Any, tags: Mapping[str, Any], demosaic: Demosaic) -> Channels:
-    grey = opened.num_colors == 1
-    flat = is_flat(opened)
-    if not flat or (not grey and (opened.num_colors != 3 or opened.raw_pattern is None)):
-        mosaic = "in a mosaic" if flat and opened.raw_pattern is not None else "without a mosaic"
-        raise InputError(
-            f"{path}: colours: wanted a mosaic of red, green and blue, or grey alone; got "
-            f"{opened.num_colors} colours {mosaic}"
-        )
-    neutral = np.ones(3) if grey else _neutral(path, opened)
-    matrix = _grey if grey else _camera_from_xyz(path, opened, tags)
-    balance = 1 / np.clip(neutral, 0.05, 1)
-    xtrans = not grey and opened.raw_pattern.shape == (6, 6)
-    if xtrans and min(opened.raw_image.shape) < LEAST_XTRANS:
-        demosaic = replace(demosaic, method="fast")
-    pixels = demosaic.run(opened, balance, xtrans, turn=True)
-    white = demosaic.scale(balance, 1.0)
-    three = np.broadcast_to(pixels.reshape(*pixels.shape[:2], -1), (*pixels.shape[:2], 3))
+    file = libraw.read(path, "picture", demosaic)
+    libraw.check_colors(file, path)
+    matrix = _grey if file.colors == 1 else _camera_from_xyz(path, file, tags)
+    if file.pixels is None:
+        raise InputError(f"{path}: cannot read: the helper process sent no picture")
+    white = demosaic.scale(libraw.balance_of(file, path), 1.0)
+    three = np.broadcast_to(file.pixels, (*file.pixels.shape[:2], 3))
     return Channels(
         pixels=np.ascontiguousarray(three),
         unit=white / 2.0 ** _number(tags.get("BaselineExposure"), 0.0),
         full=np.minimum(white, 65535.0),
         xyz_from=lambda white: np.asarray(np.linalg.inv(matrix(white)), np.float64),
-        as_shot=white_of_shot(path, opened, tags),
+        as_shot=white_of_shot(path, file, tags),
         metadata=_facts(tags),
     )
 
 
-def white_of_shot(path: Any, opened: Any, tags: Mapping[str, Any]) -> XY:
+def white_of_shot(path: Any, file: RawFile, tags: Mapping[str, Any]) -> XY:
     """Returns the white balance of a raw file, without developing it.
 
     Args:
         path: Name of the file, for messages.
-        opened: File opened by rawpy.
+        file: The file as LibRaw reads it.
         tags: Tags from ``tags_of``.
     """
-    if opened.num_colors == 1:
+    if file.colors == 1:
         return illuminants.D65_XY
-    return _white(_neutral(path, opened), _camera_from_xyz(path, opened, tags))
-
-
-def _neutral(path: Any, opened: Any) -> FloatArray:
-    factors = np.array(opened.camera_whitebalance[:3], np.float64)
-    if not (factors > 0).all():
-        factors = np.array(opened.daylight_whitebalance[:3], np.float64)
-    if not (factors > 0).all():
-        raise InputError(
-            f"{path}: white balance: wanted the camera's or daylight factors, got none"
-        )
-    return np.asarray(factors.min() / factors)
+    return _white(libraw.neutral_of(file, path), _camera_from_xyz(path, file, tags))
 
 
 def _grey(white: XY) -> FloatArray:
     return np.asarray(np.diag(1 / illuminants.xyz_of_xy(white)))
 
 
-def _camera_from_xyz(path: Any, opened: Any, tags: Mapping[str, Any]) -> Matrix:
+def _camera_from_xyz(path: Any, file: RawFile, tags: Mapping[str, Any]) -> Matrix:
     """Interpolates a DNG's two matrices by reciprocal temperature; else LibRaw's for daylight."""
     known = [
         (_ILLUMINANTS.get(int(_number(tags.get(f"CalibrationIlluminant{k}"), 21)), 6504.0), table)
@@ -149,8 +91,8 @@ def _camera_from_xyz(path: Any, opened: Any, tags: Mapping[str, Any]) -> Matrix:
         if (table := _matrix(tags.get(f"ColorMatrix{k}"))) is not None
     ]
     if not known:
-        daylight = np.asarray(opened.rgb_xyz_matrix, np.float64)[:3]
-        if not daylight.any():
+        daylight = file.xyz_matrix
+        if not daylight.any() or daylight.shape != (3, 3):
             raise InputError(f"{path}: ColorMatrix1: wanted the camera's colour matrix, got none")
         known = [(6504.0, daylight)]
     (first, one), (last, other) = known[0], known[-1]

@@ -1,4 +1,4 @@
-"""Reads raw photographs with LibRaw: unprocessed values of the mosaic."""
+"""Reads raw photographs: unprocessed values of the mosaic."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.development.camera_raw import is_flat, opened_raw, tags_of, white_of_shot
+from daguerre.development import libraw
+from daguerre.development.camera_raw import tags_of, white_of_shot
+from daguerre.development.libraw import RawFile
 from daguerre.errors import InputError
 from daguerre.io.images import upright
 from daguerre.io.shot_blocks import read_tags
@@ -20,8 +22,6 @@ from .shot_facts import facts_and_notes, shot_facts
 
 #: EXIF orientation by LibRaw's flip.
 _TURNS = {0: 1, 3: 3, 5: 8, 6: 6}
-#: Common period of all known mosaics, photosites.
-_PERIOD = 12
 
 
 def read_raw(path: Path) -> Photograph:
@@ -31,72 +31,62 @@ def read_raw(path: Path) -> Photograph:
         InputError: LibRaw cannot read the file, or it has no mosaic.
     """
     tags = tags_of(path)
-    with opened_raw(path) as opened:
-        turn = _TURNS.get(int(opened.sizes.flip), 1)
-        raw = _numbers(path, opened, tags, turn)
-        facts, notes = raw_facts(path, opened)
+    file = libraw.read(path, "mosaic")
+    turn = _TURNS.get(file.flip, 1)
+    raw = _numbers(path, file, tags, turn)
+    facts, notes = raw_facts(path, file)
     notes = [*turn_notes(turn), *notes]
     return Photograph(path, "raw", None, raw, turned(facts, turn), tuple(notes))
 
 
-def _numbers(path: Path, opened: Any, tags: Mapping[str, Any], turn: int) -> RawNumbers:
-    if not is_flat(opened) or opened.num_colors not in (1, 3):
+def _numbers(path: Path, file: RawFile, tags: Mapping[str, Any], turn: int) -> RawNumbers:
+    if file.mosaic is None or file.colors not in (1, 3):
         raise InputError(
             f"{path}: mosaic: wanted a mosaic of red, green and blue, or grey; got "
-            f"{opened.num_colors} colours without a mosaic"
+            f"{file.colors} colours without a mosaic"
         )
-    grey = opened.num_colors == 1
+    grey = file.colors == 1
     channels = ("Y",) if grey else ("R", "G", "B")
-    letters = "YYYYYYY" if grey else opened.color_desc.decode("ascii", "replace")
-    numbers = opened.raw_colors_visible[:_PERIOD, :_PERIOD]
-    height, width = opened.raw_image_visible.shape
-    cells = np.zeros(numbers.shape, np.uint8)
+    letters = "YYYYYYY" if grey else file.letters
+    height, width = file.mosaic.shape
+    cells = np.zeros(file.cells.shape, np.uint8)
     black = np.zeros(len(channels))
-    for at, level in enumerate(opened.black_level_per_channel):
+    for at, level in enumerate(file.black):
         if not grey and letters[at] not in channels:
             raise InputError(f"{path}: mosaic: wanted red, green and blue, got {letters[at]}")
         index = 0 if grey else channels.index(letters[at])
-        cells[numbers == at] = index
+        cells[file.cells == at] = index
         black[index] = level
-    all_cells = cells[np.ix_(np.arange(height) % _PERIOD, np.arange(width) % _PERIOD)]
+    rows, columns = np.arange(height) % libraw.PERIOD, np.arange(width) % libraw.PERIOD
+    all_cells = cells[np.ix_(rows, columns)]
     return RawNumbers(
-        # A copy: LibRaw frees its own values when the file is closed.
-        mosaic=np.array(upright(opened.raw_image_visible, turn), np.uint16, order="C"),
-        cells=shortest(upright(all_cells, turn)[:_PERIOD, :_PERIOD]),
+        mosaic=np.array(upright(file.mosaic, turn), np.uint16, order="C"),
+        cells=shortest(upright(all_cells, turn)[: libraw.PERIOD, : libraw.PERIOD]),
         channels=channels,
         black=black,
-        white=int(opened.white_level),
-        white_balance=white_of_shot(path, opened, tags),
+        white=int(file.white),
+        white_balance=white_of_shot(path, file, tags),
     )
 
 
 def shortest(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """Finds the smallest square cell that repeats."""
     for side in (1, 2, 4, 6):
-        tiled = np.tile(cells[:side, :side], (_PERIOD // side, _PERIOD // side))
+        tiled = np.tile(cells[:side, :side], (libraw.PERIOD // side, libraw.PERIOD // side))
         if np.array_equal(tiled[: cells.shape[0], : cells.shape[1]], cells):
             return np.ascontiguousarray(cells[:side, :side])
     return cells
 
 
-def raw_facts(path: Path, opened: Any) -> tuple[dict[str, Any], list[str]]:
+def raw_facts(path: Path, file: RawFile) -> tuple[dict[str, Any], list[str]]:
     """Returns metadata of a raw file as stored, by OpenEXR's names, and notes.
 
     LibRaw gives values of files without EXIF that can be read, such as CR3.
 
     Args:
         path: The file.
-        opened: The same, opened by rawpy.
+        file: The same, as LibRaw reads it.
     """
-    height, width = opened.raw_image_visible.shape
+    height, width = file.size
     facts, notes = facts_and_notes(read_tags(path), (width, height))
-    other, lens = getattr(opened, "other", None), getattr(opened, "lens", None)
-    more = {
-        "PhotographicSensitivity": getattr(other, "iso_speed", None),
-        "ExposureTime": getattr(other, "shutter_speed", None),
-        "FNumber": getattr(other, "aperture", None),
-        "FocalLength": getattr(other, "focal_length", None),
-        "LensModel": getattr(lens, "model", None),
-        "LensMake": getattr(lens, "make", None),
-    }
-    return shot_facts(more, (width, height)) | facts, notes
+    return shot_facts(file.facts, (width, height)) | facts, notes

@@ -113,15 +113,14 @@ def read_shot(path: str | Path, white: White, notes: Notes, one_of: int = 1) -> 
 
 def _raw(file: Path, white: White, notes: Notes) -> Shot:
     """Reads a raw file as linear light; developed white is 1."""
-    from daguerre.development.camera_raw import opened_raw
+    from daguerre.development import libraw
     from daguerre.development.camera_raw import read_shot as read_raw
 
     channels = read_raw(file)
     at = channels.as_shot if white is None else illuminants.white_xy(white)
     rgb = rgb_from_xyz() @ adaptation(at, illuminants.D65_XY) @ channels.xyz_from(at)
     unit = channels.unit.astype(np.float32)
-    with opened_raw(file) as opened:
-        facts, told = raw_facts(file, opened)
+    facts, told = raw_facts(file, libraw.read(file))
     for note in told:
         notes.add(note)
     if white is None:
