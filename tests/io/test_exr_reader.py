@@ -67,7 +67,8 @@ def test_sums_of_differences_go_on_through_a_large_block(tmp_path: Path) -> None
 def test_facts_of_other_types_are_none(tmp_path: Path) -> None:
     (tmp_path / "a.exr").write_bytes(READ["facts of other types"].data())
     frame = dg.load_frame(tmp_path / "a.exr")
-    assert set(frame.metadata) == {"resolution", "crop", "pixelAspectRatio"}
+    assert set(frame.metadata) == {"resolution", "crop", "pixelAspectRatio", "notes"}
+    assert "wanted 8 numbers" in frame.metadata["notes"][0]
     assert frame.bad_samples == (0, [])
     assert (frame.rgb == 1).all()
 

@@ -10,7 +10,8 @@ import pytest
 
 from daguerre.color.srgb import to_linear
 from daguerre.errors import InputError
-from daguerre.io.images import decode, read_environment
+from daguerre.io.images import decode
+from daguerre.io.light import read_environment
 from daguerre.io.pictures import size
 from tests.support.make_gltf import jpeg, png
 

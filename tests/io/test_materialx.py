@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 import daguerre as dg
+from daguerre.color.encodings import encoding_of, rec709_from
 from daguerre.files.notes import Notes
 from daguerre.io.materialx.document import Document
 from daguerre.io.materialx.graph import Constant, Link
-from daguerre.io.shading.color_spaces import encoding_of, rec709_from
 from tests.io.shading_scenes import Read, color_at, shining, surface, write
 
 A = (0.25, 0.5, 0.75)

@@ -12,8 +12,9 @@ import pytest
 
 from daguerre.errors import InputError
 from daguerre.io import decoder
-from daguerre.io.images import read_environment, read_file
+from daguerre.io.images import read_file
 from daguerre.io.iris import read_grey
+from daguerre.io.light import read_environment
 from daguerre.io.pictures import apart, jpeg, kinds, library, read, tiff
 from daguerre.io.pictures.source import Source
 from daguerre.io.shading.picture_bytes import UnknownFormat, decoded

@@ -92,6 +92,11 @@ def develop(
     wanted, used, saved = recipe.given(), taker.given(), file.given()
     _FILE["quality"].check(saved.get("quality"), "--quality")
     _check(source, output)
+    from daguerre.io.picture_files import check_space
+
+    for path in output if "colour_space" in wanted else ():
+        if path.suffix.lower() != ".dng":
+            check_space(path, wanted["colour_space"])
     if used.get("stock") is not None:
         _check_stock(source, output, used)
     with _named(source):
@@ -101,6 +106,7 @@ def develop(
             taken = _shot(source, used, wanted)
         else:
             frame, notes = in_mode(_frame(source), source, used, wanted)
+            notes += frame.metadata.get("notes", [])
             taken = _taken(frame, used, wanted)
         picture: Picture | None = None
         for path in output:

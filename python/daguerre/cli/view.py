@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from daguerre import memory, units
+from daguerre.color.spaces import check_linear
 from daguerre.files import extras
 from daguerre.parameters.parameter import Parameter
 
@@ -97,6 +99,9 @@ def view(
     (settings,) = crops.placed([settings], settings_flags.crop, tell=True)
     settings = dials.before(settings)
     photograph = photograph_of({}, None, None, settings.sampling.seed)
+    if job_flags.colorspace is not None:
+        space = check_linear(job_flags.colorspace, "--colorspace")
+        photograph = replace(photograph, colorspace=space)
     stage = Stage(scene, camera, settings, photograph, job_flags.tone, load)
     in_background(lambda: stage.try_out(dials))
     dials, said = opened(stage, dials)

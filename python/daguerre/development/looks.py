@@ -81,8 +81,10 @@ def tone_table(look: Look, most: float) -> list[float] | None:
 
 
 @cache
-def encode_table(space: str) -> list[float]:
-    """Transfer curve of a colour space at the core's breakpoints."""
+def encode_table(space: str) -> list[float] | None:
+    """Transfer curve of a colour space at the core's breakpoints; None: it is linear."""
+    if spaces.COLOR_SPACES[space].is_linear:
+        return None
     values: list[float] = np.minimum(spaces.encoded(_breakpoints(), space), 1.0).tolist()
     return values
 

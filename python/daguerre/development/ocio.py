@@ -43,6 +43,9 @@ def check_view(view: str, space: str = "srgb") -> None:
     Raises:
         UsageError: The view is unknown, or OpenColorIO is not installed.
     """
+    if space not in DISPLAYS:
+        wanted = " or ".join(DISPLAYS)
+        raise UsageError(f"develop: colour_space: wanted {wanted} for OCIO, got {space!r}")
     known = list(_config(_module()).getViews(DISPLAYS[space]))
     if view not in known:
         raise UsageError(

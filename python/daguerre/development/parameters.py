@@ -107,10 +107,12 @@ DEVELOP = Table(
         "high ISO; 0: none, 2 to 5 are usual. Only for raw pictures with colours.",
     ),
     Parameter(
-        "colour_space", "Color space of the file", default="srgb", kind="choice",
-        choices=tuple(COLOR_SPACES), wants=f"one of {', '.join(COLOR_SPACES)}",
+        "colour_space", "Color space of the file; the linear ones need .exr", default="srgb",
+        kind="choice", choices=tuple(COLOR_SPACES), wants=f"one of {', '.join(COLOR_SPACES)}",
         flags=("--colorspace",), panel=FILE, tells_default=True,
-        in_python="Colour space of the picture: ``srgb``, ``p3`` or ``rec2020``.",
+        in_python="Colour space of the picture: ``srgb``, ``p3`` or ``rec2020`` for displays; "
+        "``lin_rec709``, ``acescg``, ``aces``, ``xyz`` or a raw picture's ``camera`` for "
+        "scene-linear light in an ``.exr``, which is neither clipped nor toned.",
     ),
 )
 # fmt: on

@@ -16,6 +16,7 @@ from daguerre.camera.exposure_mode import meter_of, retaken_mode
 from daguerre.checks import shown
 from daguerre.color import illuminants, spaces
 from daguerre.color.adaptation import adaptation
+from daguerre.color.encodings import encoding_of_space, rec709_from
 from daguerre.color.spectra import rgb_from_xyz
 from daguerre.doors import guarded
 from daguerre.errors import UsageError
@@ -70,12 +71,17 @@ class Recipe:
                 parse(f"develop: {name}", text)
         if not self.view:
             look_of(self.look)
-        elif self.colour_space == "rec2020":
-            raise UsageError("develop: colour_space: wanted srgb or p3 for OCIO, got 'rec2020'")
         else:
             from .ocio import check_view
 
             check_view(self.view, self.colour_space)
+        if spaces.COLOR_SPACES[self.colour_space].is_linear and self.look != "neutral":
+            raise UsageError(
+                f"develop: look {self.look}: colour_space {self.colour_space} is linear light, "
+                "without a tone curve"
+            )
+        if self.grain and self.colour_space == spaces.CAMERA:
+            raise UsageError("develop: grain: colour_space camera has no film; leave one out")
 
     @property
     def view(self) -> str:
@@ -108,6 +114,8 @@ def develop(source: Raw | Frame | Channels, **keywords: Unpack[RecipeKeywords]) 
     """
     recipe = Recipe.of(**keywords)
     source, recipe = _exposed(source, recipe)
+    if recipe.colour_space == spaces.CAMERA:
+        _check_camera(source)
     source = _channels(source, recipe.demosaicing)
     white = white_of(source, recipe.wb)
     if recipe.view or recipe.grain:
@@ -118,6 +126,21 @@ def develop(source: Raw | Frame | Channels, **keywords: Unpack[RecipeKeywords]) 
         luminance = _luminance(recipe.colour_space).tolist()
         sharpen_picture(pixels, luminance, recipe.sharpen, SHARPEN_RADIUS)
     return Picture(pixels, recipe.colour_space, dict(source.metadata))
+
+
+def _check_camera(source: Any) -> None:
+    """Checks that a source has colours of a camera.
+
+    Raises:
+        UsageError: It is a frame, which no sensor has taken.
+    """
+    from daguerre.frame.frame import Frame
+
+    if isinstance(source, Frame):
+        raise UsageError(
+            "develop: colour_space camera: wanted a raw picture, got a frame, which no sensor has "
+            "taken (--sensor takes it; in Python frame.expose)"
+        )
 
 
 def _renamed(keywords: Any) -> dict[str, Any]:
@@ -173,17 +196,23 @@ def _balance(source: Channels, white: XY) -> FloatArray:
 
 def _rgb_from_balanced(source: Channels, white: XY, space: str) -> FloatArray:
     """Matrix from balanced channels to linear light of a colour space; equal channels are grey."""
+    if space == spaces.CAMERA:
+        return np.eye(3)
     balanced = source.unit * _balance(source, white)
     rgb = _space_from_709(space) @ rgb_from_xyz() @ adaptation(white, illuminants.D65_XY)
     return np.asarray(rgb @ source.xyz_from(white) / balanced)
 
 
 def _space_from_709(space: str) -> FloatArray:
+    if spaces.COLOR_SPACES[space].is_linear:
+        return np.linalg.inv(np.array(rec709_from(encoding_of_space(space))))
     to, of = spaces.COLOR_SPACES[space], spaces.COLOR_SPACES["srgb"]
     return np.asarray(np.linalg.solve(spaces.xyz_from_rgb(to), spaces.xyz_from_rgb(of)))
 
 
 def _luminance(space: str) -> FloatArray:
+    if space == spaces.CAMERA:
+        return np.full(3, 1 / 3)
     return np.asarray(spaces.xyz_from_rgb(spaces.COLOR_SPACES[space])[1])
 
 

@@ -17,6 +17,7 @@ from typing import Any, Literal
 from daguerre.errors import InputError, UsageError, suggest
 
 from . import extras
+from .notes import Notes
 
 Kind = Literal[
     "scene", "frame", "picture", "raw", "environment", "camera", "exchange", "profile", "density"
@@ -88,7 +89,8 @@ _FORMATS = [
            ("pxr", "")),
     Format("pbrt-v4", "exchange", (".pbrt",), None, "daguerre.io.pbrt.writer:write"),
     Format("Mitsuba 3", "exchange", (".xml",), None, "daguerre.io.mitsuba.writer:write"),
-    Format("an image", "environment", (ANY,), "daguerre.io.images:read_environment"),
+    Format("an image", "environment", (ANY,), "daguerre.io.light:read_environment",
+           takes=("notes",)),
     Format("IES LM-63", "profile", (".ies",), "daguerre.io.ies:read"),
     Format("NanoVDB", "density", (".nvdb",), f"{_DENSITY}:of_nanovdb", takes=("grid",)),
     Format("Mitsuba's grid", "density", (".vol",), f"{_DENSITY}:of_vol"),
@@ -130,8 +132,16 @@ def readable(kind: Kind) -> str:
     return _either([f"{row.name} ({', '.join(row.suffixes)})" for row in rows])
 
 
-def read(kind: Kind, path: str | os.PathLike[str], **options: Any) -> Any:
+def read(
+    kind: Kind, path: str | os.PathLike[str], notes: Notes | None = None, **options: Any
+) -> Any:
     """Reads a file in the format of its suffix.
+
+    Args:
+        kind: Kind of its content.
+        path: The file.
+        notes: Receives the notes of a format that takes some.
+        options: Options of the format.
 
     Raises:
         InputError: No format of the kind has this suffix, or the file cannot be used.
@@ -143,6 +153,8 @@ def read(kind: Kind, path: str | os.PathLike[str], **options: Any) -> Any:
     if row is None or row.reads is None:
         known = _either([s for row in rows for s in row.suffixes])
         raise InputError(f"{path}: format: wanted {known}, got {suffix or 'no suffix'}")
+    if notes is not None and "notes" in (row.takes or ()):
+        options["notes"] = notes
     return _ready(row, row.reads, path, options)(path, **options)
 
 

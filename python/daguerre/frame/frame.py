@@ -217,7 +217,9 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
             linear = _into_gamut(linear)
             yield rows, _srgb(_shoulder(linear) if tone == "soft" else linear)
 
-    def save(self, path: str | os.PathLike[str], *, tone: str = "srgb") -> None:
+    def save(
+        self, path: str | os.PathLike[str], *, tone: str = "srgb", colour_space: str | None = None
+    ) -> None:
         """Writes the frame atomically; the suffix chooses the format.
 
         Args:
@@ -226,11 +228,17 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
                 without overscan. For a photograph use ``expose`` and
                 ``daguerre.development.develop``.
             tone: Tone curve of pictures for display; see :meth:`display`.
+            colour_space: Colour space of an ``.exr``: ``lin_rec709``, ``acescg``, ``aces`` or
+                ``xyz``; None: that of the file that the frame was read from, else ``lin_rec709``.
+                See ``docs/colour.md``.
 
         Raises:
-            UsageError: Unknown suffix.
+            UsageError: Unknown suffix or colour space.
             OutputError: The file cannot be written.
         """
+        if colour_space is not None:
+            in_space(self, path, colour_space).save(path, tone=tone)
+            return
         formats.write("frame", path, self, tone=tone)
 
     def expose(
@@ -327,6 +335,20 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
         if facts.get("samples") is not None:
             words.append(f"{facts['samples']} samples")
         return ", ".join(words)
+
+
+def in_space(frame: Frame, path: str | os.PathLike[str], colour_space: str) -> Frame:
+    """Returns a frame with another colour space of its file.
+
+    Raises:
+        UsageError: The space is not one of linear files, or the file is no ``.exr``.
+    """
+    from daguerre.color.spaces import check_linear
+
+    if not str(path).lower().endswith(".exr"):
+        raise UsageError(f"{path}: colour_space is for .exr; other pictures are sRGB")
+    name = check_linear(colour_space, "frame: colour_space")
+    return replace(frame, metadata={**frame.metadata, "colorspace": name})
 
 
 def check_format(path: str | os.PathLike[str], more: tuple[str, ...] = ()) -> str:

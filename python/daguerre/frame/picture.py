@@ -28,8 +28,9 @@ class Picture(ArrayValue, Shown, array="pixels"):
 
     Attributes:
         pixels: Red, green and blue, encoded with the transfer curve of the colour space, 0 to 1,
-            float32, shape (H, W, 3).
-        colour_space: ``srgb``, ``p3`` (Display P3) or ``rec2020``.
+            float32, shape (H, W, 3); in a linear space light, of any value.
+        colour_space: ``srgb``, ``p3`` (Display P3) or ``rec2020``; linear: ``lin_rec709``,
+            ``acescg``, ``aces``, ``xyz`` or ``camera``.
         metadata: Data of the shot, for EXIF.
     """
 
@@ -66,10 +67,18 @@ class Picture(ArrayValue, Shown, array="pixels"):
             bits: Bits per channel, 8 or 16; default: 16 for TIFF, 8 for others.
 
         Raises:
-            UsageError: Another suffix, or a bit depth that the format lacks.
+            UsageError: Another suffix, a bit depth that the format lacks, or linear light in a
+                format for displays.
             OutputError: The file cannot be written.
         """
         formats.write("picture", path, self, quality=quality, bits=bits)
+
+    def _shown(self) -> Picture:
+        """The picture for a screen: light is encoded as sRGB, clipped at 1."""
+        if self.colour_space in spaces.ENCODED:
+            return self
+        light = np.clip(_rec709(self.pixels, self.colour_space).astype(np.float64), 0, 1)
+        return Picture(np.asarray(spaces.encoded(light, "srgb"), np.float32), "srgb", self.metadata)
 
     def __repr__(self) -> str:
         return f"<Picture {self.width}x{self.height}, {self.colour_space}>"
@@ -80,8 +89,17 @@ class Picture(ArrayValue, Shown, array="pixels"):
 
         with TemporaryDirectory() as folder:
             path = Path(folder) / "picture.png"
-            self.save(path)
+            self._shown().save(path)
             return path.read_bytes()
+
+
+def _rec709(pixels: NDArray[np.float32], space: str) -> NDArray[np.float32]:
+    """Linear Rec.709 of linear light in a space; a camera's colours stay."""
+    from daguerre.color.encodings import encoding_of_space, rec709_from, through
+
+    if space == spaces.CAMERA:
+        return pixels
+    return through(pixels, np.array(rec709_from(encoding_of_space(space))))
 
 
 def quantized(pixels: NDArray[np.float32], bits: int) -> NDArray[Any]:

@@ -27,6 +27,8 @@ def profile(name: str) -> bytes:
     space = COLOR_SPACES[name]
     to_d50 = adaptation_of_xyz(xyz_of_xy(D65_STATED), np.array(D50_XYZ))
     columns = (to_d50 @ xyz_from_rgb(space)).T
+    if space.curve is None:
+        raise ValueError(f"{name} has no curve")
     curve = struct.pack(">4s4xH2x", b"para", 3) + _fixed(space.curve)
     tags = {
         b"desc": _text(space.title),

@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from daguerre.checks import whole
 from daguerre.color import spaces
-from daguerre.color.illuminants import D65_STATED
 from daguerre.errors import OutputError, UsageError
 from daguerre.files.atomic import atomic_path
 from daguerre.files.formats import check_written, written
@@ -43,8 +42,8 @@ def write_picture(
     Args:
         path: File; its suffix sets the format: JPEG with 8 bits, TIFF with 16 or 8, PNG with 8 or
             16, EXR with linear floats.
-        pixels: Values encoded with the curve of ``space``, 0 to 1, shape (H, W, 3).
-        space: Name in ``daguerre.color.spaces.COLOR_SPACES``.
+        pixels: Values encoded with the curve of ``space``, 0 to 1, or light, shape (H, W, 3).
+        space: Name in ``daguerre.color.spaces.COLOR_SPACES``; the linear ones need EXR.
         metadata: Metadata for EXIF, with OpenEXR's names.
         quality: JPEG quality, 1 to 100.
         bits: Bits per channel; default: 16 for TIFF, else 8.
@@ -55,6 +54,7 @@ def write_picture(
     """
     suffix = check_written(path, written("picture"))
     whole(quality, f"{path}: quality", 1, 100)
+    check_space(path, space)
     if suffix == ".exr":
         _write_linear(path, pixels, space, metadata)
         return
@@ -68,6 +68,19 @@ def write_picture(
         data = exif.block(metadata, size, srgb=space == "srgb")
         add = _jpeg_with if suffix in (".jpg", ".jpeg") else _png_with
         temp.write_bytes(add(_coded(suffix, numbers, space, quality, str(path)), data, space))
+
+
+def check_space(path: str | os.PathLike[str], space: str) -> None:
+    """Checks that a file can hold a colour space.
+
+    Raises:
+        UsageError: Linear light would be encoded for a display.
+    """
+    if space not in spaces.ENCODED and not str(path).lower().endswith(".exr"):
+        wanted = ", ".join(spaces.ENCODED)
+        raise UsageError(
+            f"{path}: color space {space}: linear light needs .exr; other files take {wanted}"
+        )
 
 
 def _bits(path: str | os.PathLike[str], suffix: str, bits: int | None) -> int:
@@ -139,7 +152,7 @@ def _png_with(data: bytes, block: bytes, space: str) -> bytes:
     """Sets the EXIF block and cICP code points of a PNG file (PNG 3rd edition, 11.3)."""
     if not png_chunks.is_complete(BytesIO(data)):
         raise OutputError("PNG: the file is not complete; is the disk full?")
-    cicp = bytes([*spaces.COLOR_SPACES[space].cicp, 0, 1])
+    cicp = bytes([*(spaces.COLOR_SPACES[space].cicp or ()), 0, 1])
     head, *rest = png_chunks.chunks(BytesIO(data))
     kept = [(c.kind, c.data) for c in rest if c.kind not in (b"eXIf", b"cICP")]
     all_ = [(head.kind, head.data), (b"cICP", cicp), (b"eXIf", block), *kept]
@@ -171,14 +184,22 @@ def _write_linear(
     """Writes linear light in the primaries of the space, with the attributes of a frame."""
     from daguerre.frame.frame import Frame
 
+    from .exr import color_space
     from .exr.write import attributes, write_parts
 
     linear = np.empty_like(pixels)
     for row in range(0, len(pixels), 64):
         linear[row : row + 64] = spaces.decoded(pixels[row : row + 64], space)
-    header = attributes(metadata)
-    corners = (*spaces.COLOR_SPACES[space].primaries, D65_STATED)
-    header["chromaticities"] = tuple(value for corner in corners for value in corner)
-    header["colorInteropID"] = f"lin_{spaces.COLOR_SPACES[space].interop}_scene"
+    own = {"colorspace": space if space in spaces.LINEAR else None}
+    header = attributes({**metadata, **own})
+    if space == spaces.CAMERA:
+        del header["chromaticities"]
+        header["colorInteropID"] = "unknown"
+    else:
+        header |= color_space.space_attributes(space)
+    planes: dict[str, Any] = {"RGB": linear}
+    if space == color_space.ACES:
+        header |= color_space.container_attributes()
+        planes = color_space.container_planes(planes)
     frame = Frame(rgb=linear, metadata=_of_size(metadata, linear.shape[1], linear.shape[0]))
-    write_parts(path, [("picture", header, {"RGB": linear})], frame)
+    write_parts(path, [("picture", header, planes)], frame)

@@ -28,5 +28,11 @@ def read_linear(path: Path) -> Photograph:
             f"({len(bad)} such pixels)"
         )
     notes = alpha_notes(frame.alpha) if (frame.alpha != 1).any() else []
-    facts = {name: value for name, value in frame.metadata.items() if value is not None}
+    notes += frame.metadata.get("notes", [])
+    of_file = ("notes", "colorspace")
+    facts = {
+        name: value
+        for name, value in frame.metadata.items()
+        if value is not None and name not in of_file
+    }
     return Photograph(path, "linear", frame.rgb, None, facts, tuple(notes))

@@ -1,4 +1,8 @@
-"""Reads pictures in OpenEXR files by rows; channels other than colour pass through unchanged."""
+"""Reads pictures in OpenEXR files by rows; channels other than colour pass through unchanged.
+
+Effects work in linear Rec.709. Colours of a file that states other primaries are converted, and
+back where the file is written.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +16,7 @@ from daguerre.errors import InputError, UsageError
 from daguerre.files.json_item import clean
 from daguerre.io.exr.parts import Planes
 from daguerre.io.exr.reader import ExrReader
+from daguerre.io.stated_colors import of_exr
 
 from .picture import Band, Canvas, Image
 
@@ -42,13 +47,28 @@ class ExrPicture:
             str(path),
             roles,
         )
+        self._colors = of_exr(reader.facts, colors[:3])
         self._counted = np.zeros(reader.height, bool)
         self.bad_pixels = 0
 
+    @property
+    def converts(self) -> bool:
+        """Whether colours are converted for the effects, and back for the file."""
+        return len(self.canvas.colors) > 2 and not self._colors.is_plain
+
+    @property
+    def remarks(self) -> list[str]:
+        """Notes on the file's colours."""
+        if not self.converts:
+            return list(self._colors.remarks)
+        return [f"{self._colors.sentence}; a written .exr has the file's again"]
+
     def rows(self, rows: Rows) -> Band:
-        """Reads rows."""
+        """Reads rows, in linear Rec.709."""
         found = self.reader.rows(rows.begin, rows.end)
         image = np.stack([found[name] for name in self.canvas.colors], axis=2, dtype=np.float32)
+        if self.converts:
+            image[..., :3] = self._colors.light(image[..., :3])
         new = ~self._counted[rows.begin : rows.end]
         if new.any():
             self.bad_pixels += int((~np.isfinite(image[new])).any(axis=2).sum())
@@ -59,8 +79,12 @@ class ExrPicture:
         """Converts a band to channels of the file, in their types; halves are clamped."""
         types = self.reader.channels
         out = dict(band.planes)
+        image = band.image
+        if self.converts:
+            numbers = self._colors.numbers(image[..., :3])
+            image = np.concatenate([numbers, image[..., 3:]], axis=2)
         for k, name in enumerate(self.canvas.colors):
-            out[name] = _typed(band.image[..., k], types[name])
+            out[name] = _typed(image[..., k], types[name])
         return {name: _typed(plane, types[name]) for name, plane in out.items()}
 
 

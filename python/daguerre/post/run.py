@@ -88,7 +88,8 @@ def process(
                 else:
                     writer.write(picture.planes(band))
                 progress(band.rows.end, reader.height, reader.width)
-    remarks = [f"{p.effect.name}: {r}" for p, s in zip(planned, steps, strict=True)
+    remarks = [f"{source}: {text}" for text in picture.remarks]
+    remarks += [f"{p.effect.name}: {r}" for p, s in zip(planned, steps, strict=True)
                for r in s.remarks()]  # fmt: skip
     if reader.header.parts > 1:
         remarks.append(f"{source}: only the first of its {reader.header.parts} parts is written")

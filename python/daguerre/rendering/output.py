@@ -156,6 +156,7 @@ class Output:
             "crop": session.crop,
             "samples": samples,
             "aovs": list(self.aovs),
+            "colorspace": self.photograph.colorspace,
         }
         frame = replace(frame, metadata={**frame.metadata, **facts})
         if self.denoise:
@@ -217,6 +218,18 @@ class Output:
             write_pass(path, frame, replace(pass_of(session), metadata=frame.metadata))
         pictures = [path for path in paths if path not in passes]
         self.photograph.write(frame, pictures, self.tone, tell)
+        if any(path.suffix.lower() == ".exr" for path in pictures):
+            self._tell_no_container(frame, tell)
+
+    def _tell_no_container(self, frame: Frame, tell: Reporter) -> None:
+        """Notes channels that keep a file of ACES from being an image container."""
+        from daguerre.io.exr.color_space import ACES, beside_color
+
+        if self.photograph.colorspace == ACES and (names := beside_color(frame)):
+            tell.note(
+                "the .exr is not an ACES image container (ST 2065-4), which holds R, G, B and A "
+                f"alone: it has {', '.join(names)}"
+            )
 
 
 def only(frame: Frame, groups: Sequence[str]) -> Frame:

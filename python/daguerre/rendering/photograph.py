@@ -52,6 +52,7 @@ class Photograph:
         look: Tone curve; None: neutral.
         seed: Seed of the noise.
         like: Camera whose look pictures imitate; None: none.
+        colorspace: Colour space of .exr files, of ``color.spaces.LINEAR``; None: linear Rec.709.
     """
 
     sensor: Sensor | None = None
@@ -60,6 +61,7 @@ class Photograph:
     look: str | None = None
     seed: int = 0
     like: Like | None = None
+    colorspace: str | None = None
 
     def develops(self, metadata: Mapping[str, Any]) -> bool:
         """Whether pictures of a frame with such metadata are developed, not just encoded."""
@@ -113,7 +115,7 @@ class Photograph:
         exposed = [path for path in paths if shows_exposure(path)]
         for path in paths:
             if path not in exposed:
-                frame.save(path, tone=tone)
+                frame.save(path, tone=tone, colour_space=self.colorspace)
         offsets = self.bracket or (0.0,)
         for offset in offsets if exposed else ():
             files = [file for path in exposed for file, ev in self.files(path) if ev == offset]

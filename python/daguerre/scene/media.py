@@ -89,7 +89,7 @@ class DensityGrid(FixedArrays, ArrayValue, array="values"):
             InputError: The file is damaged, has no such grid, or its numbers are no densities.
             UsageError: A file of Mitsuba has no grids by name.
         """
-        given = {"grid": grid} if grid else {}
+        given: dict[str, Any] = {"grid": grid} if grid else {}
         return formats.read("density", path, **given)  # type: ignore[no-any-return]
 
     def __repr__(self) -> str:

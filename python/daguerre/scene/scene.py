@@ -31,6 +31,7 @@ from daguerre.checks import number as check_number
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files import formats
+from daguerre.files.notes import Notes
 from daguerre.files.value import Value
 from daguerre.motion.values import Composite, Dynamic, at, is_dynamic, moves
 from daguerre.parameters.keywords import takes
@@ -566,7 +567,9 @@ class Scene(Value):
             raise UsageError("environment: wanted either an image or a color")
         pixels = None
         if isinstance(image, str | Path):
-            pixels = formats.read("environment", image)
+            notes = Notes()
+            pixels = formats.read("environment", image, notes)
+            self.note(*notes.sentences())
         elif image is not None:
             pixels = _panorama(image)
         given = Environment(pixels, cast("Any", color), cast("Any", scale), cast("Any", rotation))

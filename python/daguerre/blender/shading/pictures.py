@@ -50,6 +50,14 @@ def space_of(image: Any) -> str:
     return _SPACES.get(name, name)
 
 
+def _is_open(image: Any) -> bool:
+    """Whether Blender names no other colours than linear ones, so that the file's primaries count.
+
+    Blender converts pictures itself, but tiles are read from their files.
+    """
+    return space_of(image) == "lin_rec709"
+
+
 def alpha_of(image: Any) -> str:
     """How an image means opacity; that of data is a channel like the others."""
     if image.colorspace_settings.is_data and image.alpha_mode != "NONE":
@@ -84,7 +92,7 @@ class Pictures(Textures):
         finally:
             self._notes = notes
 
-    def picture(self, place: str, path: str) -> Picture | None:
+    def picture(self, place: str, path: str, *, is_data: bool = False) -> Picture | None:
         """Pixels of an image by its full name; None, and a note: it has none.
 
         Raises:
@@ -117,7 +125,12 @@ class Pictures(Textures):
     def _tiled(self, place: str, image: Any) -> Picture | None:
         tiles = {}
         for number, name, data in _tiles(place, image):
-            tiles[number] = decoded(data, name, f"{place}: {name}")
+            tiles[number], colors = decoded(data, name, f"{place}: {name}")
+            if _is_open(image) and tiles[number].shape[2] > 2 and not colors.is_plain:
+                tile = tiles[number].astype(np.float32)
+                tile[:, :, :3] = colors.light(tile[:, :, :3])
+                colors.tell(self._notes, name)
+                tiles[number] = tile
             self._charge(place, tiles[number].nbytes)
         if not tiles:
             return None

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color import srgb
+from daguerre.color.encodings import Encoding
 from daguerre.io.materialx.graph import Constant
 from daguerre.io.shading.bake import Canvas
 from daguerre.io.shading.channels import (
@@ -25,7 +26,6 @@ from daguerre.io.shading.channels import (
     coordinates,
     fit,
 )
-from daguerre.io.shading.color_spaces import Encoding
 from daguerre.io.shading.evaluate import Arguments, known_encoding
 from daguerre.io.shading.lookup import looked_up
 from daguerre.io.shading.texture_nodes import file_of, sampled

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Annotated
 
 from daguerre.camera.parameters.exposure import EXPOSURE_PANEL
+from daguerre.color.spaces import LINEAR, WORKING
 from daguerre.rendering.parameters import DEFAULT, FILES, PICTURE, SAMPLING, TRUTH
 
 from .cluster import ClusterFlags
@@ -81,6 +82,15 @@ class JobFlags(ClusterFlags):
             panel=PICTURE,
         ),
     ] = "srgb"
+    colorspace: Annotated[
+        Text,
+        option(
+            "--colorspace",
+            metavar="|".join(LINEAR),
+            help=f"Color space of an .exr [{WORKING}].",
+            panel=FILES,
+        ),
+    ] = None
     bracket: Annotated[
         Text,
         option(

@@ -239,11 +239,21 @@ class SceneFlags(SceneFileFlags):
                 raise UsageError(f"--sky: wanted colours of at least 0, got {self.sky!r}")
             return {"color": color, "scale": self._scale()}
         if self.env is not None:
-            from daguerre.io.images import read_environment
-
-            image = read_environment(self.env)
+            image = self._panorama(self.env)
             return {"image": image, "scale": self._scale(), "rotation": self._rotation()}
         return {}
+
+    @staticmethod
+    def _panorama(path: Path) -> Any:
+        from daguerre.cli import console
+        from daguerre.files.notes import Notes
+        from daguerre.io.light import read_environment
+
+        notes = Notes()
+        image = read_environment(path, notes)
+        for sentence in notes.sentences():
+            console.note(sentence)
+        return image
 
     def _change(self, scene: Any) -> None:
         from dataclasses import replace

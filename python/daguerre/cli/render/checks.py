@@ -9,6 +9,7 @@ from daguerre import units as q
 from daguerre.cli.flags.job import JobFlags
 from daguerre.cli.flags.map import MapFlags
 from daguerre.cli.flags.settings import SettingsFlags
+from daguerre.color.spaces import check_linear
 from daguerre.errors import UsageError, suggest
 from daguerre.frame.aovs import BY_NAME, EXACT_ONLY, Source, names_of
 from daguerre.rendering.output import DISPARITY, EXPOSED, Output
@@ -47,6 +48,10 @@ def check_files(flags: JobFlags, rows: SettingsFlags, maps: MapFlags) -> list[st
         raise UsageError(
             "--aov needs an .exr output (-o NAME.exr): PNG and JPEG cannot store channels"
         )
+    if flags.colorspace is not None:
+        check_linear(flags.colorspace, "--colorspace")
+        if ".exr" not in formats:
+            raise UsageError("--colorspace needs an .exr output (-o NAME.exr); others are sRGB")
     if flags.samples and ".exr" not in formats:
         raise UsageError(
             "--samples needs an .exr output (-o NAME.exr), which stores the sums of the pass"

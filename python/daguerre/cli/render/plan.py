@@ -106,6 +106,7 @@ def _output(
     photograph = photograph_of(cameras.changes, *asked, settings.sampling.seed, cameras.plate)
     is_pass = flags.samples is not None
     noisy = tuple(flags.noisy or ())
+    photograph = replace(photograph, colorspace=flags.colorspace)
     return Output(flags.paths, tuple(groups), flags.denoise, noisy, flags.tone, photograph, is_pass)
 
 

@@ -1,7 +1,7 @@
 """Reads OpenEXR files as frames: Daguerre's own completely, others as far as they go.
 
-The counterpart of :mod:`daguerre.io.exr.write`. Colours of other primaries become Rec.709, with
-white adapted, so that (1, 1, 1) stays white.
+The counterpart of :mod:`daguerre.io.exr.write`. Colours that the file states become linear Rec.709
+(:mod:`daguerre.io.stated_colors`).
 """
 
 from __future__ import annotations
@@ -13,18 +13,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.color.adaptation import adaptation_of_xyz
-from daguerre.color.spectra import rgb_from_xyz, xyz_of
+from daguerre.color.spaces import LINEAR
+from daguerre.color.spectra import xyz_of
 from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files.json_item import clean
 from daguerre.frame.cryptomatte import taken
 from daguerre.frame.frame import Frame
+from daguerre.io.stated_colors import of_exr
 
-from . import write as exr
+from .color_space import Converter, in_rec709
 from .facts import read_facts
 from .parts import Planes
-from .reader import ExrReader
+from .reader import ExrReader, refuse_chroma
 
 
 @guarded
@@ -38,7 +39,7 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
 
     Returns:
         The frame. ``xyz`` is computed from ``rgb``; other channels are in ``aovs``, by name. Half
-        floats become floats.
+        floats become floats. ``metadata["notes"]`` lists conversions of colours, if there are any.
 
     Raises:
         InputError: The file cannot be read, or has neither R, G, B nor Y.
@@ -49,9 +50,7 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
         metadata = read_facts(facts)
         metadata |= _place(reader)
     planes = {name: _writable(plane) for name, plane in planes.items()}
-    rgb = _rgb(planes, path)
-    if (matrix := _to_rec709(reader.facts.get("chromaticities"))) is not None:
-        rgb = np.asarray(rgb @ matrix.T.astype(np.float32))
+    rgb = _light(planes, facts, metadata, path)
     names = metadata.get("sensor_channels") or []
     bands = sorted(name for name in planes if name.startswith("bands."))
     samples = planes.pop("samples.Y", None)
@@ -101,30 +100,33 @@ def _group(planes: Planes, names: list[str]) -> NDArray[np.float32] | None:
     return np.stack([planes.pop(name) for name in names], axis=2)
 
 
-def _rgb(planes: Planes, path: str | os.PathLike[str]) -> NDArray[np.float32]:
-    rgb = _group(planes, ["R", "G", "B"])
-    if rgb is not None:
-        return rgb.astype(np.float32, copy=False)
+def _light(
+    planes: Planes, facts: dict[str, Any], metadata: dict[str, Any], path: str | os.PathLike[str]
+) -> NDArray[np.float32]:
+    """Takes the picture from ``planes``, and converts it and the layers of light to Rec.709."""
+    rgb, names = _rgb(planes, path)
+    colors = of_exr(facts, names)
+    if colors.sentences:
+        metadata["notes"] = colors.sentences
+    own = metadata.pop("colorspace", None)
+    if own in LINEAR:  # the frame is saved in the same space again
+        metadata["colorspace"] = own
+    if not colors.is_plain:
+        space = Converter(own) if own in LINEAR else None
+        in_rec709(planes, space.read if space else lambda _, light: colors.light(light))
+    return colors.light(rgb)
+
+
+def _rgb(
+    planes: Planes, path: str | os.PathLike[str]
+) -> tuple[NDArray[np.float32], tuple[str, ...]]:
+    """The picture, and the names of its channels."""
+    for names in (("R", "G", "B"), ("X", "Y", "Z")):
+        if (found := _group(planes, list(names))) is not None:
+            return found.astype(np.float32, copy=False), names
+    refuse_chroma(list(planes), str(path))
     if "Y" in planes:
-        return np.repeat(planes.pop("Y")[:, :, None], 3, axis=2).astype(np.float32, copy=False)
-    names = ", ".join(clean(name) for name in list(planes)[:12])
-    raise InputError(f"{path}: channels: wanted R, G, B or Y, got {names}")
-
-
-def _to_rec709(chromaticities: Any) -> NDArray[np.float64] | None:
-    """Matrix to Rec.709 from other primaries and white; None: already Rec.709, or invalid."""
-    if not isinstance(chromaticities, tuple) or len(chromaticities) != 8:
-        return None
-    if np.allclose(chromaticities, exr.REC709, atol=2e-4):
-        return None
-    x, y = np.reshape(chromaticities, (4, 2)).T
-    if not (np.isfinite([x, y]).all() and (y > 0).all()):
-        return None
-    xyz = np.stack([x / y, np.ones(4), (1 - x - y) / y])
-    try:
-        primaries = xyz[:, :3] * np.linalg.solve(xyz[:, :3], xyz[:, 3])
-        to_rgb = rgb_from_xyz()
-        white = np.linalg.inv(to_rgb).sum(axis=1)
-        return np.asarray(to_rgb @ adaptation_of_xyz(xyz[:, 3], white) @ primaries)
-    except np.linalg.LinAlgError:
-        return None
+        grey = np.repeat(planes.pop("Y")[:, :, None], 3, axis=2)
+        return grey.astype(np.float32, copy=False), ("Y",)
+    listed = ", ".join(clean(name) for name in list(planes)[:12])
+    raise InputError(f"{path}: channels: wanted R, G, B or Y, got {listed}")

@@ -66,10 +66,23 @@ def is_exr(path: str | os.PathLike[str]) -> bool:
         return False
 
 
-def light_names(names: Sequence[str], where: str) -> list[str]:
-    """Finds the channels of red, green and blue, or a grey one, which is returned three times.
+def refuse_chroma(names: Sequence[str], where: str) -> None:
+    """Refuses luminance with chroma, whose grey would lose the colours.
 
-    Channels without a layer come first; else all three come from one layer.
+    Raises:
+        InputError: Channels are Y, RY and BY.
+    """
+    if {"Y", "RY", "BY"} <= set(names):
+        raise InputError(
+            f"{where}: channels: wanted R, G, B or one grey, got luminance and chroma (Y, RY, BY)"
+        )
+
+
+def light_names(names: Sequence[str], where: str) -> list[str]:
+    """Finds the channels of red, green and blue, or X, Y and Z, or a grey one, three times.
+
+    Channels without a layer come first; else all three come from one layer. X, Y and Z without a
+    layer are colours (CIE XYZ); in a layer they are places or directions.
 
     Args:
         names: Names of all channels.
@@ -86,6 +99,9 @@ def light_names(names: Sequence[str], where: str) -> list[str]:
         wanted = [f"{layer}.{color}".lstrip(".").lower() for color in "RGB"]
         if all(name in plain for name in wanted):
             return [plain[name] for name in wanted]
+    if all(name in plain for name in "xyz"):
+        return [plain[name] for name in "xyz"]
+    refuse_chroma(names, where)
     grey = [name for name in names if name.rpartition(".")[2].upper() in ("Y", "I", "L")]
     if not grey and len(names) > 1:
         got = ", ".join(clean(name) for name in names[:8])

@@ -17,19 +17,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.color.illuminants import D65_STATED
-from daguerre.color.spaces import P709
 from daguerre.errors import OutputError
 from daguerre.files.atomic import atomic_path
 from daguerre.frame import cryptomatte
 
+from . import color_space
 from .threads import threads
 
 if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
-
-#: Rec.709 primaries and white: x, y of red, green, blue and white.
-REC709 = (*itertools.chain(*P709), *D65_STATED)
 
 FLOATS = (
     "isoSpeed", "expTime", "aperture", "tStop", "focus", "nominalFocalLength",
@@ -51,6 +47,7 @@ OWN_STRINGS = (
     "version", "scene_hash", "filter", "denoised", "noise_of", "gt_time", "gt_lens",
     "light_paths", "flare", "scatter", "exposure", "metering",
     "diffraction", "sensor", "sensor_hash", "sensor_from", "overscan", "background",
+    "colorspace",
 )  # fmt: skip
 OWN_JSON = ("bad_sample_places", "sensor_channels", "white_balance", "plate")
 
@@ -62,11 +59,11 @@ def attributes(metadata: Mapping[str, Any]) -> dict[str, Any]:
 
     Args:
         metadata: Metadata by name, with the standard's units and frames (matrices act on row
-            vectors). Unknown names and None are left out.
+            vectors). Unknown names and None are left out. ``colorspace`` names the space of
+            colours; default: linear Rec.709.
     """
     found: dict[str, Any] = {
-        "chromaticities": REC709,
-        "colorInteropID": "lin_rec709_scene",
+        **color_space.space_attributes(color_space.space_of(metadata)),
         "software": f"daguerre {metadata.get('version', '')}".strip(),
     }
     known = {key: value for key, value in metadata.items() if value is not None}
@@ -96,7 +93,8 @@ def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]
     These are R G B A, AOVs, flare.R/G/B, catcher.R/G/B and catcher_ratio.R/G/B, variance.R/G/B,
     samples.Y, mattes (CryptoObject00.R), sensor channels (sensor.R; catcher_sensor.R,
     catcher_ratio_sensor.R) and wavelength bands (bands.0380-0405, nm). An array of three planes is
-    three channels, as in the package OpenEXR, which saves copies.
+    three channels, as in the package OpenEXR, which saves copies. Light is in the space that the
+    metadata name (:mod:`.color_space`).
     """
     planes: dict[str, NDArray[np.float32] | NDArray[np.uint32]] = {"RGB": frame.rgb}
     planes["A"] = frame.alpha
@@ -120,6 +118,7 @@ def channels(frame: Frame) -> dict[str, NDArray[np.float32] | NDArray[np.uint32]
         planes["variance"] = frame.variance
     if frame.samples is not None:
         planes["samples.Y"] = frame.samples.astype(np.float32)
+    planes = color_space.in_space(planes, color_space.space_of(frame.metadata))
     return {name: _plane(name, plane) for name, plane in planes.items()}
 
 
@@ -143,8 +142,12 @@ def header(frame: Frame) -> dict[str, Any]:
 
 
 def write_exr(path: str | os.PathLike[str], frame: Frame) -> None:
-    """Writes a frame atomically as one multichannel part."""
-    write_parts(path, [("beauty", header(frame), channels(frame))], frame)
+    """Writes a frame atomically as one multichannel part, or as an ACES image container."""
+    facts, planes = header(frame), channels(frame)
+    if color_space.is_container(frame):
+        facts |= color_space.container_attributes()
+        planes = color_space.container_planes(planes)
+    write_parts(path, [("beauty", facts, planes)], frame)
 
 
 def as_exr(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import asked_by
-from daguerre.io.images import read_environment
+from daguerre.io.light import read_environment
 from daguerre.io.shading.channels import Texel, Value
 from daguerre.scene.light_profile import LightProfile
 from daguerre.scene.lights import Color, DirectionalLight, PointLight
@@ -159,7 +159,7 @@ class Emitters:
             self._notes.add(missing, name=node.text("filename"))
             return
         with asked_by(node.entry):
-            picture = read_environment(file)
+            picture = read_environment(file, self._notes)
         pixels, rotation = panorama(picture, turn)
         self._scene.set_environment(pixels, scale=scale, rotation=rotation)
 

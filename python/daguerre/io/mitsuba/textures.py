@@ -212,7 +212,7 @@ class Textures:
         wrap = node.choice("wrap_mode", "repeat", _WRAPS)
         files = self._document.files_of(node)
         file = files.find(name, entry) or files.first(name, entry)
-        picture = self.images.picture(str(entry), str(file))
+        picture = self.images.picture(str(entry), str(file), is_data=raw)
         if picture is None:
             return None
         encoded = not raw and file.suffix.lower() not in _LINEAR

@@ -105,7 +105,7 @@ class Skies:
         self, made: Made, path: Path, color: Color, illuminance: float, turn: Array, old: bool
     ) -> Sky:
         with asked_by(made.place):
-            image: Picture = formats.read("environment", path)
+            image: Picture = formats.read("environment", path, self._ledger.notes)
         if old:
             if illuminance > 0:
                 self._ledger.notes.add("'illuminance' of a light of pbrt-v3 is left out")

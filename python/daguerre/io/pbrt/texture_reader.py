@@ -164,7 +164,7 @@ class TextureReader:
         name = made.parameters.text("filename")
         if not name:
             made.place.fail("filename: missing")
-        picture = self._images.picture(str(made.place), name)
+        picture = self._images.picture(str(made.place), name, is_data=kind == "float")
         image = self._pictured(made, kind, name, picture)
         return _grey(0.5) if picture is None else image
 

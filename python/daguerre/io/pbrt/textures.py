@@ -98,7 +98,7 @@ class Textures:
             name: Its name.
             srgb: Whether bytes are encoded by sRGB's curve.
         """
-        found = self._images.picture(place, name)
+        found = self._images.picture(place, name, is_data=not srgb)
         if found is None:
             return None
         encoded = srgb and found.pixels.dtype == np.uint8

@@ -16,7 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from daguerre.color import srgb
-from daguerre.color.spaces import P709
+from daguerre.color.encodings import Encoding, encoding_of, rec709_from
 from daguerre.errors import InputError
 from daguerre.files.json_item import short
 from daguerre.files.notes import Notes
@@ -25,7 +25,6 @@ from daguerre.motion.values import Keys
 
 from .arithmetic import Arithmetic
 from .channels import Coordinate, UnsupportedError, Value, broadcast
-from .color_spaces import Encoding, encoding_of, rec709_from
 
 Outputs = Value | Mapping[str, Value] | None
 _Key = tuple[str, str]
@@ -34,7 +33,7 @@ _Key = tuple[str, str]
 class Pictures(Protocol):
     """Source of pictures; :class:`daguerre.io.shading.images.Images` is one."""
 
-    def picture(self, place: str, path: str) -> Any:
+    def picture(self, place: str, path: str, *, is_data: bool = False) -> Any:
         """Decodes the picture of an asset path; None: it is missing."""
 
     def keep(self, value: Any) -> None:
@@ -139,7 +138,7 @@ def in_rec709(color: Value, encoding: Encoding, arithmetic: Arithmetic) -> Value
     rgb, rest = color[:3], color[3:]
     if encoding.gamma != 1.0:
         rgb = arithmetic.power(arithmetic.clamp(rgb, (0.0,), (math.inf,)), (encoding.gamma,))
-    if encoding.primaries != P709:
+    if not encoding.is_rec709:
         rgb = tuple(
             arithmetic.baker.combined(partial(_row, row), *rgb) for row in rec709_from(encoding)
         )

@@ -9,16 +9,18 @@ import os
 import re
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from daguerre import memory
 from daguerre.checks import freeze_in_place
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
+from daguerre.io.stated_colors import PLAIN, Colors
 from daguerre.scene.scene import Scene
 
 from . import udim
@@ -47,12 +49,25 @@ class Picture:
         name: Name of its file.
         transform: Transform from texture coordinates to those of the picture, for UDIM.
         tiled: Whether it was stitched from tiles.
+        colors: Meaning of its colours, by its file.
     """
 
     pixels: NDArray[Any]
     name: str
     transform: Six = IDENTITY
     tiled: bool = False
+    colors: Colors = PLAIN
+
+    @property
+    def is_light(self) -> bool:
+        """Whether colours are in linear Rec.709, or sRGB, already; grey is grey in every space."""
+        return self.colors.is_plain or self.pixels.shape[2] < 3
+
+    def light(self) -> Picture:
+        """The picture with colours converted to linear Rec.709 from what its file states."""
+        made = self.pixels.astype(np.float32)
+        made[:, :, :3] = self.colors.light(made[:, :, :3])
+        return replace(self, pixels=freeze_in_place(made), colors=PLAIN)
 
     def planes(self, *, srgb: bool) -> tuple[Plane, Plane, Plane, Plane | None]:
         """Red, green, blue and opacity; ``srgb``: the colours are encoded by sRGB's curve."""
@@ -123,13 +138,20 @@ class Images(Textures):
         self.resolve = resolve
         self._notes = notes
         self._pictures: dict[str, Picture | None] = {}
+        self._lit: dict[str, Picture] = {}
         self._unknown: set[str] = set()
         self._left = _most_bytes()
         self._begun: dict[str, Future[Picture | None]] = {}
         self._pool = ThreadPoolExecutor(min(8, os.cpu_count() or 1))
 
-    def picture(self, place: str, path: str) -> Picture | None:
+    def picture(self, place: str, path: str, *, is_data: bool = False) -> Picture | None:
         """Decodes the picture of an asset path.
+
+        Args:
+            place: Place that names it, for messages.
+            path: The asset path.
+            is_data: Whether its numbers are no colours, or the scene itself says which: they stay
+                as they are in the file. Else they are converted if the file states primaries.
 
         Returns:
             The picture; None, and a note: there is no such file, or its format is unknown.
@@ -143,9 +165,22 @@ class Images(Textures):
             except UnknownFormat:
                 self._pictures[path] = None
                 self._unknown.add(path)
-        if self._pictures[path] is None:
+        found = self._pictures[path]
+        if found is None:
             self._notes.add(_UNKNOWN if path in self._unknown else _MISSING, name=path)
-        return self._pictures[path]
+            return None
+        return found if is_data else self._light(place, path, found)
+
+    def _light(self, place: str, path: str, found: Picture) -> Picture:
+        """The picture with its colours converted, once, and notes."""
+        if path not in self._lit:
+            self._lit[path] = found
+            if found.pixels.shape[2] > 2:
+                found.colors.tell(self._notes, found.name)
+            if not found.is_light:
+                self._lit[path] = found.light()
+                self._counted(place, self._lit[path])
+        return self._lit[path]
 
     def _found(self, place: str, path: str) -> Picture | None:
         begun = self._begun.pop(path, None)
@@ -197,13 +232,13 @@ class Images(Textures):
             return None
         where = f"{place}: {path}"
         if packaged is None:
-            return _picture(decoded(bytes_of(file, where), file.name, where), file.name)
+            return _picture(*decoded(bytes_of(file, where), file.name, where), file.name)
         with opened_package(file, where) as archive:
             if packaged["name"] not in archive.namelist():
                 return None
             data = member(archive, packaged["name"], where)
         name = packaged["name"].rsplit("/", 1)[-1]
-        return _picture(decoded(data, name, where), name)
+        return _picture(*decoded(data, name, where), name)
 
     def _tiles(self, place: str, path: str) -> Picture | None:
         """Stitches the tiles of a UDIM pattern."""
@@ -226,11 +261,20 @@ class Images(Textures):
         tiles = {n: one for n, name in paths.items() if (one := self._one(place, name))}
         if not tiles:
             return None
+        colors = next(iter(tiles.values())).colors
+        if any(tile.colors != colors for tile in tiles.values()):
+            tiles, colors = self._alike(tiles), PLAIN
         pixels, grid, halved = udim.stitched({n: one.pixels for n, one in tiles.items()})
         if halved:
             self._notes.add("UDIM tiles are halved in size, because together they are too large")
         name = path.rsplit("/", 1)[-1]
-        return _picture(pixels, name, grid.transform)
+        return _picture(pixels, colors, name, grid.transform)
+
+    def _alike(self, tiles: dict[int, Picture]) -> dict[int, Picture]:
+        """Tiles in linear Rec.709, for files that state different primaries."""
+        for tile in tiles.values():
+            tile.colors.tell(self._notes, tile.name)
+        return {n: tile if tile.is_light else tile.light() for n, tile in tiles.items()}
 
     def _counted(self, place: str, picture: Picture | None) -> Picture | None:
         """Charges a picture to the limit of all."""
@@ -241,9 +285,11 @@ class Images(Textures):
         return picture
 
 
-def _picture(pixels: NDArray[Any], name: str, transform: Six | None = None) -> Picture:
+def _picture(
+    pixels: NDArray[Any], colors: Colors, name: str, transform: Six | None = None
+) -> Picture:
     freeze_in_place(pixels)
-    return Picture(pixels, name, transform or IDENTITY, tiled=transform is not None)
+    return Picture(pixels, name, transform or IDENTITY, transform is not None, colors)
 
 
 def _is_file(path: Path) -> bool:

@@ -23,15 +23,17 @@ from daguerre.files.json_item import short
 from daguerre.files.reading import opened, read_bytes
 from daguerre.io import images
 from daguerre.io.exr.reader import ExrReader, is_exr, light_names
+from daguerre.io.light import checked_light, read_light
 from daguerre.io.pictures import kinds
 from daguerre.io.pictures.size import MAX_BYTES
+from daguerre.io.stated_colors import PLAIN, Colors, of_exr
 
 
 class UnknownFormat(InputError):
     """Reports a picture of a suffix and a content that no reader knows, such as a Ptex."""
 
 
-def decoded(data: bytes, name: str, where: str) -> NDArray[Any]:
+def decoded(data: bytes, name: str, where: str) -> tuple[NDArray[Any], Colors]:
     """Decodes a picture of any kind that :mod:`daguerre.io.pictures` reads, or OpenEXR.
 
     Args:
@@ -40,14 +42,14 @@ def decoded(data: bytes, name: str, where: str) -> NDArray[Any]:
         where: Place and path, for messages.
 
     Returns:
-        Shape (H, W, 1..4), uint8 or float32.
+        Pixels as in the file, shape (H, W, 1..4), uint8 or float32; and what their colours mean.
 
     Raises:
         InputError: It is damaged or too large.
         UnknownFormat: It is no picture, by its name either.
     """
     if images.is_of_gltf(data):
-        return images.decode(data, where)
+        return images.decode(data, where), PLAIN
     descriptor, temporary = tempfile.mkstemp(suffix=_suffix(name), prefix="daguerre-")
     try:
         with os.fdopen(descriptor, "wb") as stream:
@@ -71,7 +73,7 @@ def _suffix(name: str) -> str:
     return re.sub(r"[^.A-Za-z0-9]", "", Path(name).suffix)[:16]
 
 
-def _exr(file: Path) -> NDArray[np.float32]:
+def _exr(file: Path) -> tuple[NDArray[np.float32], Colors]:
     """Reads the data window of an OpenEXR; textures may be negative, but are finite."""
     with ExrReader(file) as reader:
         size = reader.width * reader.height * 16
@@ -79,25 +81,27 @@ def _exr(file: Path) -> NDArray[np.float32]:
             most = memory.shown(MAX_BYTES)
             raise InputError(f"{file}: image size: the limit is {most}")
         names = light_names(list(reader.channels), str(file))
+        colors = of_exr(reader.facts, tuple(names))
         names += [name for name in reader.channels if name == "A"]
         planes = reader.rows(0, reader.height, list(dict.fromkeys(names)))
     pixels = np.stack([planes[name] for name in names], axis=2).astype(np.float32)
-    return np.nan_to_num(pixels, nan=0.0, posinf=0.0, neginf=0.0)
+    return np.nan_to_num(pixels, nan=0.0, posinf=0.0, neginf=0.0), colors
 
 
-def _other(file: Path) -> NDArray[Any]:
+def _other(file: Path) -> tuple[NDArray[Any], Colors]:
     """Decodes a format that glTF does not have: light as it is, integers to 0 .. 1."""
     if is_exr(file):
         return _exr(file)
     with opened(file) as stream:
         if stream.read(2) == b"#?":
-            return images.read_environment(file)
+            light, colors = read_light(file)
+            return checked_light(file, light), colors
     pixels = images.read_file(file)[:, :, :4]
     if pixels.dtype == np.uint8:
-        return np.ascontiguousarray(pixels)
+        return np.ascontiguousarray(pixels), PLAIN
     if np.issubdtype(pixels.dtype, np.integer):
-        return (pixels / np.float64(np.iinfo(pixels.dtype).max)).astype(np.float32)
-    return np.nan_to_num(pixels.astype(np.float32), posinf=0.0, neginf=0.0)
+        return (pixels / np.float64(np.iinfo(pixels.dtype).max)).astype(np.float32), PLAIN
+    return np.nan_to_num(pixels.astype(np.float32), posinf=0.0, neginf=0.0), PLAIN
 
 
 def bytes_of(file: Path, where: str) -> bytes:

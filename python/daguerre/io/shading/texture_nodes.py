@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import freeze_in_place
+from daguerre.color.encodings import Encoding, is_data
 from daguerre.io.materialx.graph import Constant, Node
 
 from .channels import (
@@ -32,7 +33,6 @@ from .channels import (
 from .channels import (
     Mapping as Lie,
 )
-from .color_spaces import Encoding
 from .coordinate_nodes import placed_by_gltf, tiled
 from .evaluate import Arguments, in_rec709, known_encoding
 
@@ -64,7 +64,15 @@ def usd_texture(given: Arguments) -> Mapping[str, Value]:
         given.context.notes.add("a texture without texture coordinates uses the primvar 'st'")
     wraps = (given.text("wrapS", "useMetadata"), given.text("wrapT", "useMetadata"))
     encoding = _usd_encoding(given)
-    found = sampled(given, st or coordinates("st"), wraps, "linear", encoding, (0.0,) * 4)
+    found = sampled(
+        given,
+        st or coordinates("st"),
+        wraps,
+        "linear",
+        encoding,
+        (0.0,) * 4,
+        raw=is_data(_usd_space(given)),
+    )
     if found is None:
         found = fallback
     else:
@@ -138,17 +146,24 @@ def _image(given: Arguments, uv: Value, plain: Value = (0.0,)) -> Value:
     space = file.space if isinstance(file, Constant) else ""
     colored = given.node.type in ("color3", "color4")
     encoding = known_encoding(space, given.context.notes) if colored else Encoding()
-    found = sampled(given, uv, wraps, filter, encoding, fit(default, 4))
+    raw = not colored or is_data(space)
+    found = sampled(given, uv, wraps, filter, encoding, fit(default, 4), raw=raw)
     return default if found is None else found[:size]
 
 
-def _usd_encoding(given: Arguments) -> Encoding | None:
-    """Encoding of a USD texture; None: by the kind of picture."""
+def _usd_space(given: Arguments) -> str:
+    """Colour space of a USD texture by its name; empty: none is named."""
     space = given.text("sourceColorSpace", "")
     if not space or space == "auto":
         file = given.node.inputs.get("file")
         space = file.space if isinstance(file, Constant) else ""
-    if not space or space == "auto":
+    return "" if space == "auto" else space
+
+
+def _usd_encoding(given: Arguments) -> Encoding | None:
+    """Encoding of a USD texture; None: by the kind of picture."""
+    space = _usd_space(given)
+    if not space:
         return None
     return _USD_SPACES.get(space.lower()) or known_encoding(space, given.context.notes)
 
@@ -160,13 +175,27 @@ def sampled(
     filter: str,
     encoding: Encoding | None,
     outside: Value,
+    *,
+    raw: bool = False,
 ) -> Value | None:
-    """Red, green, blue and opacity of the picture in ``file``; None: it is missing."""
+    """Red, green, blue and opacity of the picture in ``file``; None: it is missing.
+
+    Args:
+        given: The node.
+        uv: Texture coordinates.
+        wraps: Wrapping along both.
+        filter: Filter of magnification.
+        encoding: Encoding that the scene names; None: by the kind of picture. Primaries that the
+            file states count unless the scene names others.
+        outside: Values beyond the picture.
+        raw: Whether its numbers are no colours.
+    """
     context, path = given.context, file_of(given.node)
     if path is None:
         context.notes.add("a texture without a file shows its fallback value")
         return None
-    picture = context.images.picture(given.node.place, path)
+    named = encoding is not None and encoding != Encoding()
+    picture = context.images.picture(given.node.place, path, is_data=raw or named)
     if picture is None:
         return None
     if encoding is None:  # "auto": pictures of 8 bits with colour are in sRGB

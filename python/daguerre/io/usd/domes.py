@@ -123,15 +123,19 @@ def _has_pole_on_z(prim: Usd.Prim) -> bool:
     return axis == "Z" or (axis != "Y" and UsdGeom.GetStageUpAxis(prim.GetStage()) == "Z")
 
 
-def read_panorama(path: Path) -> Picture:
+def read_panorama(path: Path, notes: Notes) -> Picture:
     """Reads a picture of a dome, also one inside of a package.
+
+    Args:
+        path: The picture.
+        notes: Receives a note if its colours are converted.
 
     Raises:
         InputError: It cannot be read.
     """
     name = str(path)
     if not Ar.IsPackageRelativePath(name):
-        return formats.read("environment", path)  # type: ignore[no-any-return]
+        return formats.read("environment", path, notes)  # type: ignore[no-any-return]
     asset = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(name))
     if asset is None:
         raise InputError(f"{name}: {MISSING}")
@@ -139,7 +143,7 @@ def read_panorama(path: Path) -> Picture:
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(asset.GetBuffer())
-        return formats.read("environment", Path(copy))  # type: ignore[no-any-return]
+        return formats.read("environment", Path(copy), notes)  # type: ignore[no-any-return]
     except InputError as error:
         raise InputError(str(error).replace(copy, name)) from None
     finally:

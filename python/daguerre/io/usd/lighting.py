@@ -131,7 +131,7 @@ class Lighting:
     def _panorama(self, path: Path) -> Any:
         """Picture of a dome; None, with a note, if its format is unknown."""
         try:
-            return read_panorama(path)
+            return read_panorama(path, self._notes)
         except InputError:
             if is_known(path.name.rstrip("]")):
                 raise

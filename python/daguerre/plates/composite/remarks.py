@@ -25,7 +25,11 @@ def of_camera(camera: PlateCamera | None) -> list[str]:
 
 
 def of_objects(frame: Frame, path: Path) -> list[str]:
-    """Returns a note if the render covers the whole plate."""
+    """Returns notes on converted colours, and if the render covers the whole plate."""
+    notes = [f"{path}: {note}" for note in frame.metadata.get("notes", [])]
     if not bool((frame.alpha >= 1).all()):
-        return []
-    return [f"{path}: alpha is missing or 1 everywhere, so the render covers the whole plate"]
+        return notes
+    return [
+        *notes,
+        f"{path}: alpha is missing or 1 everywhere, so the render covers the whole plate",
+    ]

@@ -16,7 +16,7 @@ from daguerre.color.spectra import rgb_from_xyz
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.files.reading import size_of
-from daguerre.io.images import read_environment
+from daguerre.io.light import read_environment
 from daguerre.plates.display_file import read_display
 from daguerre.plates.files import DISPLAY
 from daguerre.plates.raw_file import raw_facts
@@ -97,7 +97,7 @@ def read_shot(path: str | Path, white: White, notes: Notes, one_of: int = 1) -> 
     file = Path(path)
     suffix = file.suffix.lower()
     if suffix in LINEAR:
-        light = read_environment(file)
+        light = read_environment(file, notes)
         return Shot(file, light, _plateau(light, one_of), None, {})
     size_of(file)
     if suffix not in DISPLAY:

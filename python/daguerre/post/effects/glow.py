@@ -135,9 +135,9 @@ def _needs_rgb(canvas: Canvas, name: str) -> None:
 
 
 def _psf(canvas: Canvas, values: Values) -> Step:
-    from daguerre.io.images import read_environment
+    from daguerre.io.light import read_environment
 
-    kernel: Any = read_environment(Path(values["file"]))
+    kernel: Any = read_environment(Path(values["file"]), is_data=True)
     height, width = kernel.shape[:2]
     if height > canvas.height or width > canvas.width:
         raise InputError(
