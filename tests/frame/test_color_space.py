@@ -43,12 +43,12 @@ def layered() -> Frame:
     )
 
 
-def stored(path: Path) -> Any:
-    """R, G, B as they stand in the file, read by OpenImageIO, and the header."""
+def stored(path: Path, layer: str = "") -> Any:
+    """R, G, B of a layer as they stand in the file, read by OpenImageIO, and the header."""
     picture = oiio.ImageBuf(str(path))
     names = picture.spec().channelnames
     pixels = picture.get_pixels(oiio.FLOAT)
-    return pixels[:, :, [names.index(c) for c in "RGB"]], picture.spec()
+    return pixels[:, :, [names.index(layer + c) for c in "RGB"]], picture.spec()
 
 
 @pytest.mark.parametrize("name", LINEAR)
@@ -61,6 +61,10 @@ def test_a_file_states_its_colors_and_is_read_back(tmp_path: Path, name: str) ->
     if name != "lin_rec709":
         wanted = RGB @ np.linalg.inv(np.array(TO_REC709[CORNERS[name]])).T
         np.testing.assert_allclose(pixels, wanted, atol=2e-4)
+    for layer, share in (("flare", 3), ("catcher", -5), ("albedo", 4)):
+        np.testing.assert_allclose(
+            stored(tmp_path / "a.exr", f"{layer}.")[0] * share, pixels, atol=9e-6
+        )
     back = dg.load_frame(tmp_path / "a.exr")
     for field in ("rgb", "flare", "catcher", "catcher_ratio"):
         np.testing.assert_allclose(getattr(back, field), getattr(frame, field), atol=3e-6)

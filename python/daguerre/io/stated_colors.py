@@ -189,7 +189,7 @@ def of_primaries(values: tuple[float, ...], by: str, *, is_xyz: bool = False) ->
 
     Args:
         values: Eight numbers.
-        by: What states them.
+        by: Attribute that states them.
         is_xyz: Whether the numbers of the file are XYZ, for which only the white counts.
     """
     r, g, b, w = ((values[i], values[i + 1]) for i in range(0, 8, 2))
