@@ -13,8 +13,8 @@ from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.files.reading import decoded, document, opened, read_bytes
 from daguerre.io.exr.reader import ExrReader
-from daguerre.io.images import read_environment
 from daguerre.io.iris import read_grey
+from daguerre.io.light import read_environment
 from daguerre.io.meshes import ply
 from daguerre.plates.files import read
 from daguerre.post import recipe
