@@ -7,7 +7,7 @@ namespace dg {
 namespace {
 
 constexpr int kMaxPower = 16;
-constexpr int kMaxAxialDispersion = 3;  // power of l
+constexpr int kMaxAxialDispersion = 3;  // power of l, but for `dispersion`
 
 int total(const FitTerm& t) {
     return std::accumulate(t.begin(), t.end(), 0);
@@ -31,10 +31,12 @@ std::vector<FitTerm> axial_terms(int degree, int dispersion) {
     std::vector<FitTerm> terms;
     for (int s = 0; s <= k; ++s)
         for (int w = 0; w <= k - s; ++w)
-            for (int u = 0; u <= k - s - w; ++u)
-                for (int l = 0;
-                     l <= std::min(k - s - w - u + dispersion, kMaxAxialDispersion); ++l)
-                    terms.push_back({s, w, u, l, 0});
+            for (int u = 0; u <= k - s - w; ++u) {
+                const int rest = k - s - w - u;
+                const int most = std::min(rest, kMaxAxialDispersion) +
+                                 std::max(dispersion - (k - rest), 0);
+                for (int l = 0; l <= most; ++l) terms.push_back({s, w, u, l, 0});
+            }
     sort_by_degree(terms);
     return terms;
 }
@@ -48,26 +50,28 @@ std::vector<FitTerm> free_terms(int degree, const FitSymmetry& symmetry, bool od
                 for (int fy = 0; fy <= degree - qx - qy - fx; ++fy) {
                     if (!fits(symmetry.mirror_x, odd_x, qx + fx)) continue;
                     if (!fits(symmetry.mirror_y, odd_y, qy + fy)) continue;
-                    const int rest = (degree - qx - qy - fx - fy) / 2 + dispersion;
-                    for (int l = 0; l <= rest; ++l) terms.push_back({qx, qy, fx, fy, l});
+                    const int spatial = qx + qy + fx + fy;
+                    const int most =
+                        (degree - spatial) / 2 + std::max(dispersion - spatial / 2, 0);
+                    for (int l = 0; l <= most; ++l) terms.push_back({qx, qy, fx, fy, l});
                 }
     sort_by_degree(terms);
     return terms;
 }
 
 std::vector<FitTerm> light_terms(const FitSymmetry& symmetry) {
-    constexpr int kMostDispersion = 8,
+    constexpr int kMostPower = 8,
                   kPrice = 3;  // powers of l that a ray degree of 2 costs
     std::vector<FitTerm> terms;
     if (symmetry.axial) {
         for (const FitTerm& t : axial_terms(5))
             if (t[3] == 0)
-                for (int l = 0; l <= kMostDispersion - kPrice * total(t); ++l)
+                for (int l = 0; l <= kMostPower - kPrice * total(t); ++l)
                     terms.push_back({t[0], t[1], t[2], l, 0});
     } else {
         for (const FitTerm& t : free_terms(4, symmetry, false, false))
             if (t[4] == 0)
-                for (int l = 0; 2 * l <= 2 * kMostDispersion - kPrice * total(t); ++l)
+                for (int l = 0; 2 * l <= 2 * kMostPower - kPrice * total(t); ++l)
                     terms.push_back({t[0], t[1], t[2], t[3], l});
     }
     sort_by_degree(terms);

@@ -5,7 +5,8 @@
 // 2|q|^2 - 1, U = |f|^2 over the segment's range mapped to [-1, 1], l the wavelength
 // variable. A ray degree of 2k + 1 is all powers of total degree up to k, those of l up
 // to 3 (symmetry: Hullin, Hanika and Heidrich 2012, CGF 31(4)). Lenses without that
-// symmetry: all monomials of the four coordinates, a power of l costs two.
+// symmetry: all monomials of the four coordinates, a power of l costs two. Dispersion
+// adds powers of l, most of them to the lowest degrees of the other variables.
 #pragma once
 #include <array>
 #include <vector>
@@ -18,14 +19,18 @@ namespace dg {
 using FitTerm = std::array<int, 5>;
 using FitVariables = std::array<double, 5>;
 
+/// Dispersion that a fit tries: the infrared terms of real glass make its index a slow
+/// series in 1 / wavelength^2.
+inline constexpr int kMostDispersion = 3;
+
 /// Symmetry that is left of a lens: planes that may be mirrors.
 struct FitSymmetry {
     bool axial = true, mirror_x = true, mirror_y = true;  // x -> -x, y -> -y
 };
 
 /// Complete basis of a ray degree; constants first, in order of total degree, so that a
-/// lower degree is the head of a higher one. `dispersion`: by how much the total may be
-/// exceeded through powers of l.
+/// lower degree is the head of a higher one. `dispersion`: further powers of l of a
+/// constant; each ray degree of 2 in the other variables has one less.
 std::vector<FitTerm> axial_terms(int degree, int dispersion = 0);
 /// The same for a lens of full ray degree without axial symmetry. `odd_x`: of a function
 /// that changes its sign with x (the x of a vector); mirrors leave odd or even powers

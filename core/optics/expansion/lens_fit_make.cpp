@@ -25,7 +25,7 @@ constexpr int kMountRays = 2000, kErrorRays = 2000;
 constexpr double kClearWidened = 1.015, kPointsWidened = 1.15;
 // More powers of l are worth their time if they lower the error to this part of what it
 // was.
-constexpr double kWorthIt = 1.0 / 3;
+constexpr double kWorthIt = 2.0 / 3;
 // Quantities that need not be as good as the direction are fitted as well as they must be, no better.
 // The offset, in the lowest degree in which it shifts points by no more than the
 // direction does at the distance of focus or, if that is farther, of kFar, and by no more
@@ -116,7 +116,8 @@ DirectionFit fit_direction(const Place& place, const std::vector<FitSample>& bas
                            const std::vector<FitSample>& watched, int terms) {
     const auto to_direction = [](const FitSample& s) { return s.direction; };
     const VectorFit direction{place, base, to_direction};
-    FitBasis basis{place.fit.degree, 0, terms}, more{place.fit.degree, 1, terms};
+    FitBasis basis{place.fit.degree, 0, terms},
+        more{place.fit.degree, kMostDispersion, terms};
     FitBlock found = direction.of(basis);
     const FitBlock with_more = direction.of(more);
     double left = direction.residual(found);
@@ -189,8 +190,8 @@ FitFunctions fit_light(const Place& place, const std::vector<FitSample>& samples
 int rays_wanted(const LensFit& fit) {
     const int terms =
         fit.symmetry.axial
-            ? int(axial_terms(fit.degree, 1).size())
-            : int(free_terms(fit.degree, fit.symmetry, true, false, 1).size());
+            ? int(axial_terms(fit.degree, kMostDispersion).size())
+            : int(free_terms(fit.degree, fit.symmetry, true, false, kMostDispersion).size());
     return std::max({kMinRays, kRaysPerTerm * terms,
                      kRaysPerTerm * int(light_terms(fit.symmetry).size())});
 }
@@ -329,7 +330,7 @@ LensFit refit_rays(const LensFit& fit, const std::vector<FitRay>& rays,
                 &segment - other.segments.data())
                 mine.push_back(s);
         const bool axial = fit.symmetry.axial;
-        const FitBasis basis{fit.degree, 1};
+        const FitBasis basis{fit.degree, kMostDispersion};
         const auto one = [&](bool bent, auto vector) {
             return fit_vectors(fit.symmetry, basis, mine, 1, Place{fit, segment, bent},
                                [&](const FitSample& s, int) { return vector(s); });
