@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 from daguerre.apart import helper as helpers
-from daguerre.apart.helper import Helper, NoHelperError
+from daguerre.apart.helper import Answer, Helper, NoHelperError
 from daguerre.apart.limits import Limits
 from daguerre.errors import InputError, UsageError
 
@@ -41,7 +41,12 @@ def ask(
     helper: Helper, task: str, request: Any = None, limits: Limits = ENOUGH, **more: Any
 ) -> Any:
     """Result of a task of ``tasks.py``."""
-    return helper.ask(f"tests.apart.tasks:{task}", request, limits, where="f.usd", **more)
+    return answer(helper, task, request, limits, **more).value()
+
+
+def answer(helper: Helper, task: str, request: Any, limits: Limits = ENOUGH, **more: Any) -> Answer:
+    """Answer of a task of ``tasks.py``."""
+    return helper.answer(f"tests.apart.tasks:{task}", request, limits, where="f.usd", **more)
 
 
 def gone(number: int) -> bool:
@@ -126,7 +131,7 @@ def test_limits_grow_with_what_a_task_tells(helper: Helper) -> None:
 def test_no_class_comes_unless_it_is_made(helper: Helper) -> None:
     with pytest.raises(InputError, match="a value of a class"):
         ask(helper, "echo", ENOUGH)
-    found = ask(helper, "echo", ENOUGH, make=lambda name, state: (name, state))
+    found = answer(helper, "echo", ENOUGH).value(lambda name, state: (name, state))
     assert found[0] == "daguerre.apart.limits:Limits"
 
 

@@ -8,6 +8,7 @@ import os
 import threading
 import weakref
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from daguerre.errors import InputError
@@ -20,6 +21,8 @@ from .serving import ERRORS, packed
 
 #: Time without a task after which a helper ends, s.
 IDLE = 20.0
+#: Resident memory from which a helper is replaced before its next task, bytes.
+_WORN = 6e8
 #: Most characters of a text from a helper.
 _LONGEST = 1 << 16
 #: Hears a text that a helper tells while it works; returns the limits from then on.
@@ -29,6 +32,41 @@ _all: weakref.WeakSet[Helper] = weakref.WeakSet()
 
 class NoHelperError(InputError):
     """No helper process can be started here."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Answer of a task, in a stranger's bytes.
+
+    Attributes:
+        blocks: A packed value, and its large arrays.
+        where: File, for messages.
+    """
+
+    blocks: list[Any]
+    where: str
+
+    @property
+    def size(self) -> int:
+        """Its bytes."""
+        return sum(map(len, self.blocks))
+
+    def value(self, make: Make | None = None) -> Any:
+        """Unpacks it; large arrays are read-only.
+
+        Args:
+            make: Makes values of classes, with checks; default: none may come.
+
+        Raises:
+            InputError: It is damaged.
+        """
+        if not self.blocks:
+            raise InputError(f"{self.where}: cannot read: the helper process sent nothing")
+        head, large = bytes(self.blocks[0]), self.blocks[1:]
+        try:
+            return unpack(head, lambda name: large[int(name) - 1], make or _no_class)
+        except InputError as error:
+            raise InputError(f"{self.where}: cannot read: {error}") from None
 
 
 class Helper:
@@ -47,15 +85,18 @@ class Helper:
         _all.add(self)
 
     def ask(
-        self,
-        task: str,
-        request: Any,
-        limits: Limits,
-        *,
-        where: str,
-        heard: Heard | None = None,
-        make: Make | None = None,
+        self, task: str, request: Any, limits: Limits, *, where: str, heard: Heard | None = None
     ) -> Any:
+        """Runs a task in the helper that answers with plain values; see :meth:`answer`.
+
+        Returns:
+            Its result; large arrays are read-only.
+        """
+        return self.answer(task, request, limits, where=where, heard=heard).value()
+
+    def answer(
+        self, task: str, request: Any, limits: Limits, *, where: str, heard: Heard | None = None
+    ) -> Answer:
         """Runs a task in the helper.
 
         Args:
@@ -64,10 +105,6 @@ class Helper:
             limits: Limits of the task.
             where: File, for messages.
             heard: Hears what the task tells, and returns new limits.
-            make: Makes values of classes, from a stranger's bytes; default: none may come.
-
-        Returns:
-            Result of the task; large arrays are read-only.
 
         Raises:
             InputError: The helper ended, sent what it must not, or met a fault.
@@ -79,7 +116,7 @@ class Helper:
             kind, answer = self._exchange(blocks, limits, where, heard)
             self._await_idle()
         if kind == ANSWER:
-            return _value(answer, where, make or _no_class)
+            return Answer(answer, where)
         _raise(kind, answer, where, limits)
 
     def end(self) -> None:
@@ -115,7 +152,8 @@ class Helper:
                 self._process = None
 
     def _started(self, where: str) -> Process:
-        if self._process is not None and not self._process.alive:
+        process = self._process
+        if process is not None and (not process.alive or process.resident > _WORN):
             self._stop()
         if self._process is None:
             try:
@@ -180,16 +218,6 @@ class Helper:
         if process is not None:
             with contextlib.suppress(OSError):
                 process.forget()
-
-
-def _value(answer: list[Any], where: str, make: Make) -> Any:
-    """Unpacks an answer, whose bytes are a stranger's."""
-    if not answer:
-        raise InputError(f"{where}: cannot read: the helper process sent nothing")
-    try:
-        return unpack(bytes(answer[0]), lambda name: answer[1:][int(name) - 1], make)
-    except InputError as error:
-        raise InputError(f"{where}: cannot read: {error}") from None
 
 
 def _no_class(name: Any, state: Any) -> NoReturn:

@@ -178,7 +178,7 @@ class Process:
             EndedError: It was.
         """
         self._looked = time.monotonic()
-        self._peak = max(self._peak, self._resident())
+        self._peak = max(self._peak, self.resident)
         if self._peak > self.limits.memory:
             self.end()
             raise EndedError(too_much(self.limits))
@@ -192,7 +192,8 @@ class Process:
             while piece := os.read(self._errors, 1 << 16):
                 self._words = (self._words + piece)[-_KEPT:]
 
-    def _resident(self) -> float:
+    @property
+    def resident(self) -> float:
         """Resident memory, bytes; 0: unknown."""
         words = self._read("statm").split()
         return _PAGE * int(words[1]) if len(words) > 1 else 0.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib
 import itertools
 import socket
@@ -35,6 +36,7 @@ def serve(end: socket.socket) -> None:
             return
         if kind == TASK:
             link.send(*_answer(link, blocks))
+            gc.collect()  # so that a library lets go of the files that it holds
 
 
 def _answer(link: Link, blocks: list[Any]) -> tuple[bytes, list[Any]]:

@@ -41,8 +41,8 @@ class Format:
         takes: Options of reader and writer, besides ``time`` (s) of scenes; None: they check their
             options themselves.
         needs: Package that it needs, and how to install it; empty for a package of an extra.
-        time_of: Converts a time code of a scene to s, called as ``time_of(path, code)``; None: the
-            format has no time codes.
+        time_of: Converts a time code of a scene to s, called as ``time_of(path, code, **options)``;
+            None: the format has no time codes.
     """
 
     name: str
@@ -65,10 +65,10 @@ _SHOWN, _CODED = ("tone",), ("quality", "bits")
 _FORMATS = [
     Format("glTF 2.0", "scene", (".glb", ".gltf"), f"{_GLTF}:read",
            takes=("variant", "allow_dirs", "scene_index", "animated")),
-    Format("OpenUSD", "scene", (".usd", ".usda", ".usdc", ".usdz"), "daguerre.io.usd.reader:read",
-           takes=("variant", "allow_dirs", "purpose", "camera_units"),
+    Format("OpenUSD", "scene", (".usd", ".usda", ".usdc", ".usdz"), "daguerre.io.usd.wall:read",
+           takes=("variant", "allow_dirs", "purpose", "camera_units", "in_process"),
            needs=("pxr", ""),
-           time_of="daguerre.io.usd.stage:time_of_code"),
+           time_of="daguerre.io.usd.wall:time_of_code"),
     Format("pbrt", "scene", (".pbrt",), "daguerre.io.pbrt.reader:read",
            takes=("unit_m", "allow_dirs")),
     Format("Mitsuba", "scene", (".xml",), "daguerre.io.mitsuba.reader:read",
@@ -164,17 +164,17 @@ def takes(kind: Kind, path: str | os.PathLike[str], option: str) -> bool:
     return row is not None and row.takes is not None and option in row.takes
 
 
-def time_of_code(path: str | os.PathLike[str], code: float) -> float:
+def time_of_code(path: str | os.PathLike[str], code: float, **options: Any) -> float:
     """Converts a time code of a scene file to s.
 
     Raises:
-        UsageError: The format has no time codes.
+        UsageError: The format has no time codes, or no such option.
         InputError: The file cannot be used.
     """
     row = _row(formats("scene"), Path(path).suffix.lower())
     if row is None or row.time_of is None:
         raise UsageError(f"{path}: --time-code: wanted a USD stage; --time takes seconds")
-    return float(_ready(row, row.time_of, path, {})(path, code))
+    return float(_ready(row, row.time_of, path, options)(path, code, **options))
 
 
 def write(kind: Kind, path: str | os.PathLike[str], value: Any, **options: Any) -> None:

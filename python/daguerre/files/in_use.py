@@ -22,6 +22,8 @@ from pathlib import Path
 
 from daguerre.errors import UsageError
 
+from . import uses
+
 Name = str | os.PathLike[str]
 #: Device and inode of a file.
 _File = tuple[int, int]
@@ -87,6 +89,9 @@ def note_read(paths: Iterable[Name]) -> None:
     Raises:
         UsageError: The command is about to write one of them.
     """
+    paths = list(paths)
+    for path in paths:
+        uses.opens(path)
     record = _record()
     if record is None or _replacing.get():
         return

@@ -232,12 +232,12 @@ class _Writer:
             _, (held, place) = value.__reduce__()
             return {"item": [self.of(held), self.of(place)]}
         kind = type(value)
-        if _class_of(_name_of(kind)) is not kind:
+        if _class_of(name_of(kind)) is not kind:
             raise UsageError(
                 f"packing: wanted a value of daguerre, numbers or text, got {short(value)}; "
                 "values of your own classes cannot go to another machine"
             )
-        return {"class": _name_of(kind), "state": self.of(_state_of(value))}
+        return {"class": name_of(kind), "state": self.of(_state_of(value))}
 
 
 _SEQUENCES = {kind: kind.__name__ for kind in (list, set, frozenset)}
@@ -251,7 +251,8 @@ def _state_of(value: Any) -> dict[str, Any]:
     return dict(vars(value))
 
 
-def _name_of(kind: type[Any]) -> str:
+def name_of(kind: type[Any]) -> str:
+    """Name of a class in a packed value."""
     return f"{kind.__module__}:{kind.__qualname__}"
 
 
@@ -263,7 +264,7 @@ def _class_of(name: str) -> type[Any] | None:
     found: Any = importlib.import_module(module)
     for part in rest.split("."):
         found = vars(found).get(part)
-    if not isinstance(found, type) or _name_of(found) != name:
+    if not isinstance(found, type) or name_of(found) != name:
         return None
     return found if issubclass(found, Value) or dataclasses.is_dataclass(found) else None
 

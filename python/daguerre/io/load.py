@@ -38,8 +38,9 @@ def load(
         **options: Options of the format; None and empty ones count as absent. USD has ``purpose``,
             names of purposes to draw besides ``default`` (default: ``("render",)``), and
             ``camera_units``, the unit of focal lengths and apertures in mm (default: a tenth of a
-            scene unit). glTF has ``animated``: other moments than ``time`` will be drawn, too.
-            pbrt and Mitsuba have ``unit_m``, the length of a unit in m (default: 1), and Mitsuba
+            scene unit), and ``in_process``: read the stage in this process, which a damaged one can
+            end. glTF has ``animated``: other moments than ``time`` will be drawn, too. pbrt and
+            Mitsuba have ``unit_m``, the length of a unit in m (default: 1), and Mitsuba
             ``define``, values of the file's parameters by name or as ``name=value``.
 
     Raises:

@@ -325,6 +325,7 @@ def test_instancers_nested_too_deep_are_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("moving", [False, True])
+@pytest.mark.in_process
 def test_many_copies_load_fast(tmp_path: Path, moving: bool) -> None:
     count = 100_000
     stage = stages.new_stage(tmp_path / "x.usdc")

@@ -164,6 +164,7 @@ def test_a_deep_tree_is_read(tmp_path: Path) -> None:
     assert np.allclose(scene.node_positions[str(path)[1:]], (1, 0, 0))
 
 
+@pytest.mark.in_process
 def test_prims_too_many_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("daguerre.io.usd.prims._MAX_PRIMS", 20)
     stage = stages.new_stage(tmp_path / "x.usda")

@@ -11,7 +11,13 @@ import pytest
 from pxr import Gf, Sdf, Ts, Usd, Vt
 
 from daguerre.errors import InputError
-from daguerre.io.usd.quaternions import QuaternionKeys, moving_turns, of_vectors, product, slerp
+from daguerre.io.usd.moving.quaternions import (
+    QuaternionKeys,
+    moving_turns,
+    of_vectors,
+    product,
+    slerp,
+)
 from daguerre.io.usd.values import Clock, authored, plain
 from daguerre.motion.values import at as value_at
 from daguerre.motion.values import is_dynamic

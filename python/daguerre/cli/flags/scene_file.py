@@ -68,6 +68,15 @@ class SceneFileFlags:
             panel=_FILE,
         ),
     ] = None
+    usd_in_process: Annotated[
+        bool,
+        option(
+            "--usd-in-process",
+            help="Read a USD stage in this process, without a helper process. A damaged stage can "
+            "then end the program.",
+            panel=_FILE,
+        ),
+    ] = False
     define: Annotated[
         list[str] | None,
         option(
@@ -113,7 +122,8 @@ class SceneFileFlags:
             return 0.0 if self.time is None else q.time_s("--time", self.time)
         if self.time is not None:
             raise UsageError("--time-code: wanted either --time or --time-code, got both")
-        return float(formats.time_of_code(path, self.time_code))
+        options = {"in_process": True} if self.usd_in_process else {}
+        return float(formats.time_of_code(path, self.time_code, **options))
 
     def read(self, path: Path, *, animated: bool = False) -> Any:
         """Reads the scene; ``animated``: other moments of its animation will be drawn, too."""
@@ -149,6 +159,8 @@ class SceneFileFlags:
             options["purpose"] = tuple(self.purpose.split(","))
         if units is not None:
             options["camera_units"] = 1000 * q.unit_m("--camera-units", units)
+        if self.usd_in_process:
+            options["in_process"] = True
         if self.define is not None:
             options["define"] = tuple(self.define)
         if self.scene_unit is not None:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from daguerre import memory
 from daguerre.checks import freeze_in_place
 from daguerre.errors import InputError
+from daguerre.files import uses
 from daguerre.files.notes import Notes
 from daguerre.io.stated_colors import PLAIN, Colors
 from daguerre.scene.scene import Scene
@@ -289,6 +290,7 @@ def _picture(
     pixels: NDArray[Any], colors: Colors, name: str, transform: Six | None = None
 ) -> Picture:
     freeze_in_place(pixels)
+    uses.decoded(pixels.nbytes)
     return Picture(pixels, name, transform or IDENTITY, transform is not None, colors)
 
 

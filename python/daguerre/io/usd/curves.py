@@ -16,9 +16,10 @@ from daguerre.motion.values import at as value_at
 from daguerre.scene.curve_bases import fitting_counts
 from daguerre.scene.scene import Scene
 
-from .deforming import ChosenOverTime
+from .moving.points import ChosenOverTime
+from .moving.surfaces import Array
 from .points import read_points
-from .primvars import Array, note_length, read_primvar
+from .primvars import note_length, read_primvar
 from .spheres import read_widths
 from .values import Clock
 

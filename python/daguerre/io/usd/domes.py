@@ -25,13 +25,13 @@ from daguerre.errors import InputError
 from daguerre.files import formats
 from daguerre.files.notes import Notes
 from daguerre.files.reading import MISSING
-from daguerre.files.value import Value
 from daguerre.io.panorama import resampled
 from daguerre.motion.values import at as value_at
 from daguerre.motion.values import is_dynamic
 from daguerre.scene.scene import Scene
 
-from .lights import MOST, WHITE, Color, Emission
+from .moving.blackbody import Color
+from .moving.emission import MOST, WHITE, Emission, Strength
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.float32]
@@ -76,21 +76,6 @@ class Dome:
         color = np.array(value_at(self.emission, time))
         top = float(color.max())
         return (color / top if top > 0 else color), top
-
-
-@dataclass(frozen=True, eq=False)
-class Strength(Value):
-    """Strength of a white light over time."""
-
-    emission: Emission
-
-    def at(self, time_s: float) -> float:
-        """The strength at a time, s."""
-        return self.emission.at(time_s)[0]
-
-    def breaks(self, begin: float, end: float) -> list[float]:
-        """Times of all keys, s."""
-        return self.emission.breaks(begin, end)
 
 
 def is_dome(prim: Usd.Prim) -> bool:

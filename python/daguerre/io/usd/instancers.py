@@ -12,8 +12,8 @@ from pxr import Usd, UsdGeom
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 
-from .crowds import Crowd
-from .quaternions import normalized, of_vectors, product
+from .moving.crowds import Crowd
+from .moving.quaternions import normalized, of_vectors, product
 from .values import Clock
 
 Array = NDArray[np.float64]

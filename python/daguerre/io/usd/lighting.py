@@ -26,12 +26,12 @@ from daguerre.scene.transforms import without_scale
 from .domes import Dome, is_dome, is_latlong, read_panorama, set_environment, turn_of
 from .light_shapes import area, cylinder, disk, rectangle
 from .lights import Lamp, cone_size, times
+from .moving.operations import Rigid
 from .placing import Placing, Spots
 from .prims import Visit
 from .shapes import ball
 from .shaping import is_shaped, read_profile
 from .stage import Opened
-from .transforms import Rigid
 
 Matrix = NDArray[np.float64]
 Make = Callable[[Visit, Spots, Lamp], None]

@@ -10,7 +10,7 @@ Source: OpenUSD, documentation of UsdLuxLightAPI; its pull requests 3182 (quanti
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,84 +19,13 @@ from pxr import Usd, UsdLux
 from daguerre.cached import cached_property
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
-from daguerre.files.value import Value
 from daguerre.motion.values import at as value_at
-from daguerre.motion.values import is_dynamic
 
-from .prims import Shown
+from .moving.blackbody import Color
+from .moving.emission import MOST, Emission, Shown, bounded
 from .values import Clock, authored, plain
 
-Color = tuple[float, float, float]
-WHITE = (1.0, 1.0, 1.0)
-#: Largest luminance; its product with an area still fits into single precision.
-MOST = 1e30
-#: Most stops, either way; double precision holds the power of two.
-_STOPS = 1000.0
 _SHADOW = ("enable", "color", "distance", "falloff")
-
-
-@dataclass(frozen=True, eq=False)
-class Emission(Value):
-    """Colour and strength of a light, each constant or over time.
-
-    Attributes:
-        intensity: Factor.
-        exposure: Stops.
-        color: Linear Rec.709.
-        temperature: Colour temperature, K; None: no tint.
-        shown: Whether the light is on.
-        factor: Constant factor, such as one over the area.
-    """
-
-    intensity: Any = 1.0
-    exposure: Any = 0.0
-    color: Any = WHITE
-    temperature: Any = None
-    shown: bool | Shown = True
-    factor: float = 1.0
-
-    def at(self, time_s: float) -> Color:
-        """The colour at a time, s, each part from 0 to ``MOST``."""
-        if not value_at(self.shown, time_s):
-            return (0.0, 0.0, 0.0)
-        stops = min(max(value_at(self.exposure, time_s), -_STOPS), _STOPS)
-        strength = value_at(self.intensity, time_s) * 2.0**stops * self.factor
-        r, g, b = (bounded(strength * hue) for hue in self.hue(time_s))
-        return (r, g, b)
-
-    def hue(self, time_s: float) -> Color:
-        """The colour, tinted, without strength."""
-        kelvin = value_at(self.temperature, time_s)
-        tint = WHITE if kelvin is None else _blackbody(kelvin)
-        r, g, b = (c * t for c, t in zip(value_at(self.color, time_s), tint, strict=True))
-        return (r, g, b)
-
-    @property
-    def keeps_hue(self) -> bool:
-        """Whether only the strength changes over time."""
-        return not (is_dynamic(self.color) or is_dynamic(self.temperature))
-
-    def breaks(self, begin: float, end: float) -> list[float]:
-        """Times of all keys, s."""
-        moving = [part for part in self._parts if is_dynamic(part)]
-        return sorted({float(t) for part in moving for t in part.breaks(begin, end)})
-
-    @property
-    def _parts(self) -> tuple[Any, ...]:
-        return (self.intensity, self.exposure, self.color, self.temperature, self.shown)
-
-    def scaled(self, factor: float) -> Emission:
-        """The same light, times a factor."""
-        return replace(self, factor=self.factor * factor)
-
-    def now(self) -> Color | Emission:
-        """A constant colour, if no part changes."""
-        return self if any(map(is_dynamic, self._parts)) else self.at(0.0)
-
-
-def bounded(value: float) -> float:
-    """A luminance within 0 and ``MOST``; 0 for what is no number."""
-    return min(max(0.0, value), MOST)  # max keeps its first argument against a NaN
 
 
 def times(emission: Color | Emission, factor: float) -> Color | Emission:
@@ -105,11 +34,6 @@ def times(emission: Color | Emission, factor: float) -> Color | Emission:
         return emission.scaled(factor)
     r, g, b = (bounded(factor * c) for c in emission)
     return (r, g, b)
-
-
-def _blackbody(kelvin: float) -> Color:
-    r, g, b = UsdLux.BlackbodyTemperatureAsRgb(kelvin)  # a NaN would end the process
-    return float(r), float(g), float(b)
 
 
 def cone_size(degrees: float) -> tuple[float, float]:

@@ -20,9 +20,10 @@ from daguerre.scene.point_cache import PointCache
 from daguerre.scene.polygons import triangulate, weld
 from daguerre.scene.scene import Scene
 
-from .deforming import ChosenOverTime, LimitOverTime
-from .primvars import Array, Primvar, as_rows, note_length, read_primvar
-from .topology import Surface, read_faces, surface_of
+from .moving.points import ChosenOverTime
+from .moving.surfaces import Array, LimitOverTime, Primvar, Surface
+from .primvars import as_rows, note_length, read_primvar
+from .topology import read_faces, surface_of
 from .values import Clock
 
 #: Limit faces of all subdivision surfaces of a stage that decide the level of each.

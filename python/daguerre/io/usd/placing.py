@@ -17,7 +17,7 @@ from daguerre.scene.scene import Scene
 from daguerre.scene.transforms import FLAT, ranks
 
 from .instancers import Copies
-from .transforms import Matrix, Transform
+from .moving.operations import Matrix, Transform
 
 Array = NDArray[np.float64]
 #: Maximum number of instances of a stage.

@@ -5,53 +5,22 @@ Source: OpenUSD, UsdGeomPointBased, "Applying Timesampled Velocities to Geometry
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pxr import Usd
 
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
-from daguerre.files.value import Value
 from daguerre.motion.values import Dynamic, keys
 
-from .primvars import Array, as_rows
+from .moving.points import Ballistic
+from .moving.surfaces import Array
+from .primvars import as_rows
 from .values import Clock
 
 #: Maximum number of coordinates in all time samples of an attribute.
 _MAX_NUMBERS = 1 << 30
-
-
-@dataclass(frozen=True, eq=False)
-class Ballistic(Value):
-    """Points that leave each time sample at a velocity.
-
-    Attributes:
-        times: Times of the samples, rising, shape (K,), s.
-        points: K arrays (N, 3).
-        velocities: K arrays (N, 3), per second.
-        accelerations: K arrays (N, 3), per second squared, or None.
-    """
-
-    times: NDArray[np.float64]
-    points: tuple[Array, ...]
-    velocities: tuple[Array, ...]
-    accelerations: tuple[Array, ...] | None
-
-    def at(self, time_s: float) -> Array:
-        """The points at a time, s, from the sample before it; or from the first one."""
-        i = max(int(np.searchsorted(self.times, time_s, side="right")) - 1, 0)
-        dt = np.float32(time_s - self.times[i])
-        moved = self.points[i] + dt * self.velocities[i]
-        if self.accelerations is not None:
-            moved = moved + np.float32(0.5) * dt * dt * self.accelerations[i]
-        return np.asarray(moved, np.float32)
-
-    def breaks(self, begin: float, end: float) -> list[float]:
-        """Times of the samples inside of (begin, end), s."""
-        return [float(t) for t in self.times if begin < t < end]
 
 
 def read_points(schema: Any, clock: Clock, notes: Notes) -> Array | Dynamic:

@@ -11,10 +11,10 @@ from pxr import Usd, UsdGeom
 from daguerre.cached import cached_property
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
-from daguerre.files.value import Value
-from daguerre.motion.values import Keys
 
-from .transforms import Matrix, Transform, joined, local
+from .moving.emission import Shown
+from .moving.operations import Matrix, Transform
+from .transforms import joined, local
 from .values import Clock
 
 #: Maximum number of prims, instances of the stage counted each.
@@ -23,21 +23,6 @@ _MAX_PRIMS = 10_000_000
 _ALWAYS = "default"
 _PREDICATE = Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)
 PURPOSES = ("default", "render", "proxy", "guide")
-
-
-@dataclass(frozen=True, eq=False)
-class Shown(Value):
-    """Visibility over time: whether all of some flags are set."""
-
-    flags: tuple[Keys, ...]
-
-    def at(self, time_s: float) -> bool:
-        """Whether the prim is visible at a time, s."""
-        return all(flag.at(time_s) for flag in self.flags)
-
-    def breaks(self, begin: float, end: float) -> list[float]:
-        """Times of all keys, s."""
-        return sorted({t for flag in self.flags for t in flag.breaks(begin, end)})
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,41 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pxr import Usd, UsdGeom
 
 from daguerre.files.notes import Notes
 
+from .moving.surfaces import Array, Primvar
 from .values import Clock
-
-Array = NDArray[np.float32]
-
-
-@dataclass(frozen=True, eq=False)
-class Primvar:
-    """Values of a surface.
-
-    Attributes:
-        values: Shape (N, K).
-        interpolation: constant, uniform, vertex, varying or faceVarying.
-        indices: Index of the value of each element, shape (M,); None: values in order.
-    """
-
-    values: Array
-    interpolation: str
-    indices: NDArray[np.int64] | None = None
-
-    @property
-    def flat(self) -> Array:
-        """A value for each element, shape (M, K)."""
-        return self.values if self.indices is None else self.values[self.indices]
-
-    def __len__(self) -> int:
-        return len(self.values if self.indices is None else self.indices)
 
 
 def read_primvar(prim: Usd.Prim, name: str, columns: int, clock: Clock) -> Primvar | None:

@@ -30,6 +30,7 @@ from .lighting import Lighting
 from .lights import is_light
 from .materials import Materials
 from .meshes import Meshes
+from .moving.operations import Matrix, Place, Transform
 from .nesting import Totals
 from .placing import Placing, Spots, one, times
 from .points import read_points
@@ -40,7 +41,7 @@ from .spheres import read_spheres
 from .stage import Opened, duration, open_stage, typed, usd_errors
 from .stage_facts import StageFacts
 from .topology import scheme_of
-from .transforms import Matrix, Place, Transform, position, rigid
+from .transforms import position, rigid
 
 #: Limit of entries in all lists of ``Scene.nodes``, which grow with the depth of the tree.
 _MAX_NODE_ENTRIES = 8_000_000

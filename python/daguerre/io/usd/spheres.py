@@ -13,12 +13,14 @@ from daguerre.motion.values import at as value_at
 from daguerre.scene.scene import Scene
 
 from .bindings import Bindings
-from .crowds import Crowd
 from .instancers import Copies
+from .moving.crowds import Crowd
+from .moving.points import Ballistic
+from .moving.surfaces import Array, Primvar
 from .placing import Placing, Spots, times
-from .points import Ballistic, read_points
+from .points import read_points
 from .prims import Visit
-from .primvars import Array, Primvar, as_rows, note_length
+from .primvars import as_rows, note_length
 from .shapes import ball
 from .values import Clock
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,10 +10,9 @@ from pxr import UsdGeom
 
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
-from daguerre.files.value import Value
 from daguerre.scene.subdivision import Refiner, Rules, edges_of_chains
 
-from .primvars import Array, Primvar
+from .moving.surfaces import Faces, Subdivided, Surface
 from .values import Clock
 
 Indices = NDArray[np.int64]
@@ -28,29 +26,6 @@ _FACE_VARYING = {
     "none": "none",
     "all": "all",
 }
-
-
-@dataclass(frozen=True, eq=False)
-class Faces:
-    """Faces of a mesh that have three corners or more.
-
-    Attributes:
-        count: Number of points.
-        sizes: Number of corners of each face, shape (F,).
-        vertices: Point of each corner, shape (C,).
-        ids: Number of each face in the file, shape (F,).
-        corner_ids: Number of each corner in the file, shape (C,).
-        stated: Numbers of faces and corners in the file.
-        holes: Whether a face is not drawn, shape (F,).
-    """
-
-    count: int
-    sizes: Indices
-    vertices: Indices
-    ids: Indices
-    corner_ids: Indices
-    stated: tuple[int, int]
-    holes: NDArray[np.bool_]
 
 
 def read_faces(mesh: UsdGeom.Mesh, count: int, clock: Clock, notes: Notes) -> Faces:
@@ -94,88 +69,6 @@ def _integers(value: Any) -> Indices:
     return np.zeros(0, np.int64) if value is None else np.asarray(value, np.int64).reshape(-1)
 
 
-class Surface(Value):
-    """Polygons of a mesh as they are drawn, without subdivision."""
-
-    #: whether ``points`` has normals, and takes long
-    smooth = False
-
-    def __init__(self, faces: Faces) -> None:
-        self._faces = faces
-        drawn = ~faces.holes
-        self._corners = np.flatnonzero(np.repeat(drawn, faces.sizes))
-        #: face (of ``Faces``) of each polygon
-        self.parents = np.flatnonzero(drawn)
-        self.sizes = faces.sizes[drawn]
-        self.vertices = faces.vertices[self._corners]
-
-    @property
-    def face_ids(self) -> Indices:
-        """Number of the face in the file for each polygon."""
-        return self._faces.ids[self.parents]
-
-    def points(self, points: Array) -> tuple[Array, Array | None]:
-        """Positions of the vertices, and their normals if the surface is smooth by nature."""
-        return points, None
-
-    def corners(self, primvar: Primvar) -> Array | None:
-        """Values at the corners of the polygons, shape (C, K); None if their number is wrong."""
-        faces, kind = self._faces, primvar.interpolation
-        wanted = {"constant": 1, "uniform": faces.stated[0], "faceVarying": faces.stated[1]}
-        if len(primvar) != wanted.get(kind, faces.count):
-            return None
-        if kind == "faceVarying":
-            return self._face_varying(primvar)
-        if kind in ("constant", "uniform"):
-            each = self.face_ids if kind == "uniform" else np.zeros(len(self.parents), np.int64)
-            return np.repeat(primvar.flat[each], self.sizes, axis=0)
-        return self._smooth(primvar.flat, kind)
-
-    def _face_varying(self, primvar: Primvar) -> Array:
-        return primvar.flat.take(self._faces.corner_ids[self._corners], axis=0)
-
-    def _smooth(self, values: Array, kind: str) -> Array:
-        return values.take(self.vertices, axis=0)
-
-
-class Subdivided(Surface):
-    """The limit surface of a mesh, at a level of refinement."""
-
-    smooth = True
-
-    def __init__(self, faces: Faces, mesh: UsdGeom.Mesh, level: int, clock: Clock) -> None:
-        self._faces = faces
-        self._refiner = Refiner(
-            faces.count,
-            faces.sizes,
-            faces.vertices,
-            scheme=_SCHEMES[scheme_of(mesh, clock)],
-            level=level,
-            rules=_rules(mesh, faces, clock),
-            where=f"{clock.file}: {mesh.GetPath()}",
-        )
-        self.parents = self._refiner.parents
-        self.sizes = self._refiner.sizes
-        self.vertices = self._refiner.vertices
-
-    def points(self, points: Array) -> tuple[Array, Array | None]:
-        """Positions on the limit surface and their normals."""
-        positions, normals = self._refiner.surface(points)
-        return positions.astype(np.float32), normals.astype(np.float32)
-
-    def _face_varying(self, primvar: Primvar) -> Array:
-        corners, indices = self._faces.corner_ids, primvar.indices
-        if indices is None:
-            found = self._refiner.face_varying(primvar.values[corners])
-        else:
-            found = self._refiner.face_varying(primvar.values, indices[corners])
-        return np.asarray(found, np.float32)
-
-    def _smooth(self, values: Array, kind: str) -> Array:
-        refine = self._refiner.vertex if kind == "vertex" else self._refiner.varying
-        return np.asarray(refine(values), np.float32).take(self.vertices, axis=0)
-
-
 def scheme_of(mesh: UsdGeom.Mesh, clock: Clock) -> str:
     """Scheme of subdivision, as USD names it; ``none`` for a polygon mesh."""
     return str(mesh.GetSubdivisionSchemeAttr().Get(clock.code) or "none")
@@ -193,7 +86,12 @@ def surface_of(faces: Faces, mesh: UsdGeom.Mesh, level: int, clock: Clock, notes
             "a mesh for Loop's subdivision has faces other than triangles: it is not subdivided"
         )
         return Surface(faces)
-    return Subdivided(faces, mesh, level, clock)
+    where = f"{clock.file}: {mesh.GetPath()}"
+    rules = _rules(mesh, faces, clock)
+    refiner = Refiner(
+        faces.count, faces.sizes, faces.vertices, _SCHEMES[scheme], level, rules, where
+    )
+    return Subdivided(faces, refiner)
 
 
 def _rules(mesh: UsdGeom.Mesh, faces: Faces, clock: Clock) -> Rules:

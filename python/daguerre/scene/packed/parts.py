@@ -9,11 +9,14 @@ import numpy as np
 
 from daguerre.camera.camera import Camera
 from daguerre.errors import UsageError
+from daguerre.files.packing import name_of
 from daguerre.motion.values import Composite, Keys, Spin
 from daguerre.scene.curves import MovingCurves
 from daguerre.scene.parts import Curves, Mesh
 from daguerre.scene.point_cache import PointCache
 from daguerre.scene.scene import Scene
+
+from .moving import NAMES
 
 #: Arrays of a mesh, and those of one moment of a mesh whose points move.
 ARRAYS = ("positions", "indices", "normals", "uv", "uv1", "tangents", "colors")
@@ -22,10 +25,12 @@ OF_MOMENT = ("positions", "normals", "tangents")
 OF_CURVES = ("radii", "starts", "ends", "cubic", "closed")
 
 
-def parts_of(scene: Scene) -> dict[str, Any]:
+def parts_of(scene: Scene, *, files: bool = False) -> dict[str, Any]:
     """Parts of a scene, from which ``rebuild.py`` makes one that has the bits of its pictures.
 
-    Lenses and sensors from files are left out of cameras: a scene file may name none.
+    Args:
+        scene: The scene.
+        files: Whether cameras keep lenses and sensors that are files; a scene file may name none.
 
     Raises:
         UsageError: Something moves in a way that cannot be packed, or there is a plate.
@@ -40,7 +45,9 @@ def parts_of(scene: Scene) -> dict[str, Any]:
         "meshes": [_mesh(mesh, motion.meshes.get(i)) for i, mesh in enumerate(scene.meshes)],
         "instances": _instances(scene),
         "lights": _with_motion(scene.lights, motion.lights, "lights"),
-        "cameras": [[name, packable(camera)] for name, camera in scene.cameras.items()],
+        "cameras": [
+            [name, camera if files else packable(camera)] for name, camera in scene.cameras.items()
+        ],
         "default camera": scene.default_camera,
         "camera aliases": [list(pair) for pair in scene.camera_aliases.items()],
         "film sizes": [[name, list(size)] for name, size in scene.film_sizes.items()],
@@ -82,9 +89,11 @@ def _with_motion(values: list[Any], motion: dict[int, Any], what: str) -> list[A
 
 
 def _known(motion: Any, where: str) -> Any:
-    if not isinstance(motion, Keys | Spin | Composite | None):
+    kind = type(motion)
+    if not isinstance(motion, Keys | Spin | Composite | None) and name_of(kind) not in NAMES:
         raise UsageError(
-            f"packed scene: {where}: motion: wanted keys or spins, got {type(motion).__name__}"
+            f"packed scene: {where}: motion: wanted keys, spins, or values over time of readers of "
+            f"USD, got {kind.__name__}"
         )
     return motion
 
@@ -100,9 +109,7 @@ def _mesh(mesh: Mesh, motion: Any) -> dict[str, Any]:
         path = _known(motion.points, where)
         return found | {"motion": {"path": path, "layout": _fields(motion.layout)}}
     if not isinstance(motion, PointCache):
-        raise UsageError(
-            f"packed scene: {where}: wanted vertices at steps, got {type(motion).__name__}"
-        )
+        return found | {"motion": _known(motion, where)}
     rest = {name: getattr(motion.rest, name) for name in OF_MOMENT}
     path, normals = _known(motion.positions, where), _known(motion.normals, where)
     return found | {"motion": {"path": path, "normals": normals, "rest": rest}}
@@ -111,11 +118,14 @@ def _mesh(mesh: Mesh, motion: Any) -> dict[str, Any]:
 def _instances(scene: Scene) -> dict[str, Any]:
     placed = scene.instances
     motion = scene.motion
+    names: dict[str, int] = {}
+    named = [names.setdefault(one.name, len(names)) for one in placed]
     return {
         "meshes": np.array([one.mesh for one in placed], np.int64),
         "materials": np.array([one.material for one in placed], np.int64),
         "transforms": np.array([one.transform for one in placed], np.float64).reshape(-1, 4, 4),
-        "names": [one.name for one in placed],
+        "names": list(names),
+        "named": np.array(named, np.int64),
         "hidden": [i for i, one in enumerate(placed) if not one.shown],
         "catchers": [[i, one.catcher] for i, one in enumerate(placed) if one.catcher is not None],
         "motion": [[i, _known(one, f"instances[{i}]")] for i, one in motion.instances.items()],

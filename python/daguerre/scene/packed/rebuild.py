@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from itertools import groupby
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.camera.camera import Camera
-from daguerre.checks import matrix, number, short
+from daguerre.checks import integers, matrix, number, short
 from daguerre.errors import InputError
-from daguerre.motion.values import Composite, Dynamic, Keys, Spin
+from daguerre.motion.values import Composite, Dynamic, Keys, is_dynamic
 from daguerre.scene.catcher import check_effects
 from daguerre.scene.curves import layout_of, moving_curves
 from daguerre.scene.lights import check_light
@@ -36,10 +36,11 @@ class Rebuild:
     Args:
         parts: Result of ``parts.parts_of``, from a file.
         size: Size of the file's packed bytes.
+        verbatim: Whether texts stay as they are; else control characters are replaced.
     """
 
-    def __init__(self, parts: Mapping[str, Any], size: int) -> None:
-        self._parts, self._left = parts, _USES * size + _FREE
+    def __init__(self, parts: Mapping[str, Any], size: int, *, verbatim: bool = False) -> None:
+        self._parts, self._left, self._verbatim = parts, _USES * size + _FREE, verbatim
         time = number(parts["time"], "time", -1e12, 1e12, error=InputError)
         self.scene = Scene(time=time)
 
@@ -73,13 +74,19 @@ class Rebuild:
             raise InputError(f"{where}: arrays are far larger than the file")
         return value
 
-    def _path(self, value: Any, where: str) -> Keys:
-        """Keys of arrays, within the budget of the file."""
-        if not isinstance(value, Keys):
-            raise InputError(f"{where}: wanted keys, got {short(value)}")
-        for one in value.values:
-            self._array(one, where)
-        return value
+    def _text(self, value: Any, where: str) -> str:
+        """A text."""
+        if not isinstance(value, str):
+            raise InputError(f"{where}: wanted a string, got {short(value)}")
+        return value if self._verbatim else printable(value)
+
+    def _path(self, value: Any, where: str, shape: tuple[int, ...]) -> Dynamic:
+        """Points over time, within the budget of the file."""
+        if isinstance(value, Keys):
+            for one in value.values:
+                if self._array(one, where).shape != shape:
+                    raise InputError(f"{where}: wanted shape {shape}, got {one.shape}")
+        return _dynamic(value, where)
 
     def _textures(self) -> None:
         for k, given in enumerate(self._parts["textures"]):
@@ -87,14 +94,14 @@ class Rebuild:
             wrap = given["wrap"]
             if not isinstance(wrap, tuple) or len(wrap) != 2:
                 raise InputError(f"textures[{k}]: wrap: wanted two names, got {short(wrap)}")
-            names = [text(one, f"textures[{k}]") for one in wrap]
+            names = [self._text(one, f"textures[{k}]") for one in wrap]
             self.scene.add_texture(
                 pixels,
                 srgb=bool(given["srgb"]),
                 wrap=(names[0], names[1]),
-                filter=text(given["filter"], f"textures[{k}]: filter"),
-                min_filter=text(given["min_filter"], f"textures[{k}]: min_filter"),
-                name=text(given["name"], f"textures[{k}]: name"),
+                filter=self._text(given["filter"], f"textures[{k}]: filter"),
+                min_filter=self._text(given["min_filter"], f"textures[{k}]: min_filter"),
+                name=self._text(given["name"], f"textures[{k}]: name"),
             )
 
     def _materials(self) -> None:
@@ -110,7 +117,7 @@ class Rebuild:
             name: None if given[name] is None else self._array(given[name], f"{where}: {name}")
             for name in ARRAYS
         }
-        name, motion = text(given["name"], f"{where}: name"), given.get("motion")
+        name, motion = self._text(given["name"], f"{where}: name"), given.get("motion")
         if "curves" in given:
             self._curves(given["curves"], arrays, name, where)
             if motion is not None:
@@ -119,24 +126,24 @@ class Rebuild:
         moving = None if motion is None else self._moving(motion, arrays, name, where)
         self.scene.add_mesh(**arrays, name=name, motion=moving)  # type: ignore[arg-type]
 
-    def _moving(
-        self, given: Mapping[str, Any], arrays: Mapping[str, Any], name: str, where: str
-    ) -> PointCache:
+    def _moving(self, given: Any, arrays: Mapping[str, Any], name: str, where: str) -> Dynamic:
         """Vertices of a mesh over time."""
-        path, normals = self._path(given["path"], f"{where}: motion"), given["normals"]
-        if normals is not None:
-            normals = self._path(normals, f"{where}: motion: normals")
+        if not isinstance(given, Mapping):
+            return _dynamic(given, where)
         moment = {
             key: None if given["rest"][key] is None else self._array(given["rest"][key], where)
             for key in OF_MOMENT
         }
         attributes = {key: arrays[key] for key in ARRAYS[2:]} | moment
         mesh = mesh_of(attributes.pop("positions"), arrays["indices"], attributes, where, name)
-        for one in (arrays["positions"], *path.values, *(normals.values if normals else ())):
-            if one.shape != mesh.positions.shape:
-                raise InputError(
-                    f"{where}: motion: wanted shape {mesh.positions.shape}, got {one.shape}"
-                )
+        shape = mesh.positions.shape
+        if arrays["positions"].shape != shape:
+            raise InputError(
+                f"{where}: motion: wanted shape {shape}, got {arrays['positions'].shape}"
+            )
+        path, normals = self._path(given["path"], f"{where}: motion", shape), given["normals"]
+        if normals is not None:
+            normals = self._path(normals, f"{where}: motion: normals", shape)
         return PointCache(path, normals, vertices_of(mesh), mesh.indices, f"mesh {name!r}")
 
     def _curves(
@@ -173,7 +180,7 @@ class Rebuild:
         )
 
     def _move_curves(self, given: Mapping[str, Any], where: str) -> None:
-        path, made = self._path(given["path"], f"{where}: motion"), self.scene.meshes[-1]
+        made = self.scene.meshes[-1]
         assert isinstance(made, Curves)
         stated = given["layout"]
         counts = self._array(stated["counts"], f"{where}: counts")
@@ -185,8 +192,9 @@ class Rebuild:
             np.array_equal(getattr(layout.form, key), getattr(made, key))
             for key in ("starts", "ends")
         )
-        if not same or any(one.shape != wanted for one in path.values):
+        if not same:
             raise InputError(f"{where}: motion: does not fit these curves")
+        path = self._path(given["path"], f"{where}: motion", wanted)
         index = len(self.scene.meshes) - 1
         self.scene.motion.meshes[index] = moving_curves(path, made, layout)
 
@@ -194,18 +202,18 @@ class Rebuild:
         meshes, materials = (
             self._array(given[key], f"instances: {key}") for key in ("meshes", "materials")
         )
-        transforms, names = self._array(given["transforms"], "instances"), given["names"]
-        count = len(names)
-        if not meshes.shape == materials.shape == (count,) or transforms.shape != (count, 4, 4):
+        transforms, named = (
+            self._array(given[key], "instances") for key in ("transforms", "named")
+        )
+        names = [self._text(name, "instances: names") for name in given["names"]]
+        rows = np.stack([meshes, materials, integers(named, "instances", "names", len(names))])
+        count = rows.shape[1] if rows.ndim == 2 else -1
+        if transforms.shape != (count, 4, 4):
             raise InputError("instances: all lists must have the same length")
-        rows = zip(meshes.tolist(), materials.tolist(), names, strict=True)
-        begin = 0
-        for (mesh, material, name), run in groupby(rows):
-            end = begin + sum(1 for _ in run)
-            self.scene.add_instances(
-                mesh, material, transforms[begin:end], name=text(name, "instances: names")
-            )
-            begin = end
+        edges = np.flatnonzero((np.diff(rows) != 0).any(axis=0)) + 1
+        for begin, end in pairwise([0, *edges.tolist(), count] if count else [0]):
+            mesh, material, name = rows[:, begin].tolist()
+            self.scene.add_instances(mesh, material, transforms[begin:end], name=names[name])
         self._single(given)
 
     def _single(self, given: Mapping[str, Any]) -> None:
@@ -223,7 +231,8 @@ class Rebuild:
             scene.motion.instances[i] = _transform(motion, f"instances[{i}]: motion")
         for k, motion in given["shown"]:
             i = self._index(k, "instances: shown")
-            values = motion.values if isinstance(motion, Keys) else [None]
+            now = _dynamic(motion, f"instances[{i}]: shown").at(scene.time)
+            values = motion.values if isinstance(motion, Keys) else [now]
             if not all(isinstance(one, bool | int | float) for one in values):
                 raise InputError(f"instances[{i}]: shown: keys must be True or False")
             scene.motion.shown[i] = motion
@@ -243,18 +252,22 @@ class Rebuild:
 
     def _cameras(self) -> None:
         scene, chosen = self.scene, self._parts["default camera"]
-        sizes = {text(name, "film sizes"): size for name, size in self._parts.get("film sizes", ())}
+        sizes = {
+            self._text(name, "film sizes"): size for name, size in self._parts.get("film sizes", ())
+        }
         for name, camera in self._parts["cameras"]:
             if isinstance(camera, Camera):
                 matrix(camera.transform, f"camera {short(name)}")
-            size = sizes.get(text(name, "cameras"))
+            size = sizes.get(self._text(name, "cameras"))
             scene.add_camera(name, camera, film_size=size)
         if chosen is not None:
             if chosen not in scene.cameras:
                 raise InputError(f"default camera: wanted a camera, got {short(chosen)}")
             scene.default_camera = chosen
         for alias, name in self._parts["camera aliases"]:
-            scene.camera_aliases[text(alias, "camera aliases")] = text(name, "camera aliases")
+            scene.camera_aliases[self._text(alias, "camera aliases")] = self._text(
+                name, "camera aliases"
+            )
 
     def _environment(self) -> None:
         now, motion = self._parts["environment"], self._parts["environment motion"]
@@ -273,7 +286,7 @@ class Rebuild:
         found = dict(scene.nodes)
         scene.nodes.clear()  # so that they come in their order
         for name, position, motion, members in self._parts["nodes"]:
-            name = text(name, "nodes")
+            name = self._text(name, "nodes")
             where = f"node {name!r}"
             mine = self._array(members, where).tolist()
             if mine and not 0 <= min(mine) <= max(mine) < len(scene.instances):
@@ -295,15 +308,8 @@ class Rebuild:
             duration = number(duration, "duration", 0, error=InputError)
         self.scene.set_clock(duration)
         for name in self._parts["variants"]:
-            self.scene.add_variant(text(name, "variants"))
-        self.scene.note(*(text(one, "warnings") for one in self._parts["warnings"]))
-
-
-def text(value: Any, where: str) -> str:
-    """Checks a text; control characters are replaced."""
-    if not isinstance(value, str):
-        raise InputError(f"{where}: wanted a string, got {short(value)}")
-    return printable(value)
+            self.scene.add_variant(self._text(name, "variants"))
+        self.scene.note(*(self._text(one, "warnings") for one in self._parts["warnings"]))
 
 
 def _composite(motion: Any, where: str) -> Composite:
@@ -314,9 +320,17 @@ def _composite(motion: Any, where: str) -> Composite:
 
 def _transform(motion: Any, where: str) -> Dynamic:
     """Checks a transform over time."""
-    if isinstance(motion, Spin) or (isinstance(motion, Keys) and motion.moves_matrices):
-        return motion
-    raise InputError(f"{where}: wanted transforms over time, got {short(motion)}")
+    if isinstance(motion, Keys) and not motion.moves_matrices:
+        raise InputError(f"{where}: wanted transforms over time, got {short(motion)}")
+    return _dynamic(motion, where)
+
+
+def _dynamic(motion: Any, where: str) -> Dynamic:
+    """Checks a value over time, which is of a class that a packed scene may hold."""
+    if not is_dynamic(motion):
+        raise InputError(f"{where}: motion: wanted values over time, got {short(motion)}")
+    found: Dynamic = motion
+    return found
 
 
 def _point(value: Any, where: str) -> NDArray[Any]:
@@ -328,14 +342,15 @@ def _point(value: Any, where: str) -> NDArray[Any]:
     return value
 
 
-def rebuilt(parts: Mapping[str, Any], size: int) -> Scene:
+def rebuilt(parts: Mapping[str, Any], size: int, *, verbatim: bool = False) -> Scene:
     """Makes a scene from its parts.
 
     Args:
         parts: Result of ``parts.parts_of``, from a file.
         size: Size of the file's packed bytes.
+        verbatim: Whether texts stay as they are; else control characters are replaced.
 
     Raises:
         InputError: A part is wrong; the message names it.
     """
-    return Rebuild(parts, size).run()
+    return Rebuild(parts, size, verbatim=verbatim).run()

@@ -36,18 +36,28 @@ from daguerre.scene.media import DensityGrid, Medium
 from daguerre.scene.parts import Environment
 from daguerre.sensors import names as sensor_names
 
+from . import moving
+
 
 def make(name: Any, state: Any) -> Any:
-    """Makes a value from the name of its class and its attributes.
+    """Makes a value from the name of its class and its attributes, whose texts become printable.
 
     Raises:
         ValueError: A scene holds no values of this class.
         InputError: An attribute is wrong.
     """
+    return make_verbatim(name, {key: _safe(part) for key, part in state.items()})
+
+
+def make_verbatim(name: Any, state: Any) -> Any:
+    """Makes a value like :func:`make`, with its texts as they are."""
+    given = {key: part for key, part in state.items() if key != MADE_BY}
+    if isinstance(name, str) and name in moving.NAMES:
+        return moving.make(name, given)
     maker = _MAKERS.get(name) if isinstance(name, str) else None
     if maker is None:
         raise ValueError(f"unknown kind of value {short(name)}")
-    return maker(**{key: _safe(part) for key, part in state.items() if key != MADE_BY})
+    return maker(**given)
 
 
 def printable(text: str) -> str:
@@ -58,11 +68,13 @@ def printable(text: str) -> str:
 
 
 def _safe(part: Any) -> Any:
+    if isinstance(part, tuple):
+        return tuple(map(_safe, part))
     return printable(part) if isinstance(part, str) else part
 
 
 def _keys(times: Any, values: Any, interpolation: str, pivot: Any = None) -> Keys:
-    pairs = zip(np.asarray(times).tolist(), map(_safe, values), strict=True)
+    pairs = zip(np.asarray(times).tolist(), values, strict=True)
     return keys(pairs, interpolation, pivot)
 
 

@@ -1,0 +1,34 @@
+"""Tells whoever limits a reader what it uses: files, and bytes of decoded pictures."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+#: Hears the name of a file before it is read, or the bytes of a picture after it was decoded.
+Listener = Callable[[str | int], None]
+_listener: Listener | None = None
+
+
+@contextmanager
+def heard_by(listener: Listener) -> Iterator[None]:
+    """Lets a listener hear all uses of this process, from any thread."""
+    global _listener
+    before, _listener = _listener, listener
+    try:
+        yield
+    finally:
+        _listener = before
+
+
+def opens(path: str | os.PathLike[str]) -> None:
+    """Tells that a file is about to be read."""
+    if _listener is not None:
+        _listener(os.fspath(path))
+
+
+def decoded(count: int) -> None:
+    """Tells that a picture of some bytes was decoded."""
+    if _listener is not None:
+        _listener(count)

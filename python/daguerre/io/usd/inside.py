@@ -1,0 +1,51 @@
+"""Tasks of the helper process that reads stages (``wall.py`` asks for them)."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from daguerre import memory
+from daguerre.files import uses
+from daguerre.scene.packed.parts import parts_of
+
+from .reader import read
+from .stage import time_of_code
+
+Tell = Callable[[str], None]
+#: Begin of a told text: a file that is read, and the bytes of a decoded picture.
+FILE, PIXELS = "file ", "pixels "
+
+
+def scene(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Reads a stage and takes its scene apart."""
+    with _beginning(request, tell):
+        return parts_of(read(request["path"], **request["options"]), files=True)
+
+
+def seconds(request: Mapping[str, Any], tell: Tell) -> float:
+    """Converts a time code of a stage to s."""
+    with _beginning(request, tell):
+        return time_of_code(request["path"], request["code"])
+
+
+@contextlib.contextmanager
+def _beginning(request: Mapping[str, Any], tell: Tell) -> Iterator[None]:
+    """Takes over folder and memory of the process that asks, and tells it what is read."""
+    with contextlib.suppress(OSError):
+        os.chdir(request["folder"])
+    left = request["memory"]
+    memory.set_limit(None if left is None else left + memory.own_bytes())
+    lock = threading.Lock()
+
+    def hear(use: str | int) -> None:
+        text = f"{PIXELS}{use}" if isinstance(use, int) else f"{FILE}{Path(use).absolute()}"
+        with lock:
+            tell(text)
+
+    with uses.heard_by(hear):
+        yield

@@ -1,0 +1,1 @@
+"""Values over time that outlive their stage; no file here imports USD."""

@@ -1,0 +1,59 @@
+"""Values over time that a packed scene may hold, besides keys and spins.
+
+Readers and meshes make them. They are plain records of arrays, numbers and one another; their users
+check the shape of their values at a time.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any
+
+_USD, _SUBDIVISION = "daguerre.io.usd.moving", "daguerre.scene.subdivision"
+#: Names of classes by their module, which is imported on first use.
+_RECORDS = {
+    f"{_USD}.operations": ("Operation", "Place", "Rigid", "Transform"),
+    f"{_USD}.points": ("Ballistic", "ChosenOverTime"),
+    f"{_USD}.surfaces": ("Faces", "LimitOverTime"),
+    f"{_USD}.joints": ("JointPoses", "Skinned"),
+    f"{_USD}.shapes": ("BlendShape", "BlendShapes"),
+    f"{_USD}.crowds": ("Crowd", "OneOfCrowd"),
+    f"{_USD}.emission": ("Emission", "Shown", "Strength"),
+    f"{_USD}.quaternions": ("QuaternionKeys",),
+    f"{_SUBDIVISION}.faces": ("Faces",),
+    f"{_SUBDIVISION}.rules": ("Rules",),
+    "daguerre.scene.motion": ("Vertices",),
+    "daguerre.scene.polygon_mesh": ("Picked", "SurfaceOverTime"),
+    "daguerre.scene.skinning": ("Influences",),
+}
+_SUBDIVIDED, _REFINER = f"{_USD}.surfaces:Subdivided", f"{_SUBDIVISION}.refiner:Refiner"
+#: Names of all classes, as ``module:class``.
+NAMES = frozenset(
+    {f"{module}:{name}" for module, names in _RECORDS.items() for name in names}
+    | {_SUBDIVIDED, _REFINER}
+)
+
+
+def make(name: str, state: Mapping[str, Any]) -> Any:
+    """Makes a value from the name of its class, one of ``NAMES``, and its attributes.
+
+    Raises:
+        ValueError: Attributes are not those of the class.
+        InputError: A surface has wrong faces or rules.
+    """
+    module, _, kind = name.partition(":")
+    found = getattr(import_module(module), kind)
+    if name == _SUBDIVIDED:
+        return found(state["_faces"], state["_refiner"])
+    if name == _REFINER:
+        return _refiner(found, **state)
+    wanted = {field.name for field in dataclasses.fields(found)}
+    if {*state} != wanted:
+        raise ValueError(f"attributes of {kind}: wanted {sorted(wanted)}")
+    return found(**state)
+
+
+def _refiner(kind: Any, *, _faces: Any, scheme: Any, level: Any, rules: Any, where: Any) -> Any:
+    return kind(_faces.count, _faces.sizes, _faces.vertices, scheme, level, rules, where)
