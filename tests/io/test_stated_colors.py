@@ -74,7 +74,14 @@ def test_the_flag_of_an_aces_container_counts_most(tmp_path: Path) -> None:
 @pytest.mark.parametrize("key", ["oiio:ColorSpace", "colorspace"])
 @pytest.mark.parametrize(
     ("name", "corners"),
-    [("ACEScg", AP1), ("ACES2065-1", AP0), ("lin_rec2020", REC2020), ("Linear P3-D65", P3)],
+    [
+        ("ACEScg", AP1),
+        ("ACES - ACEScg", AP1),
+        ("ACES2065-1", AP0),
+        ("lin_rec2020", REC2020),
+        ("Linear P3-D65", P3),
+        ("CIE XYZ-D65 - Scene-referred", XYZ),
+    ],
 )
 def test_names_count_where_nothing_else_does(
     tmp_path: Path, key: str, name: str, corners: tuple[float, ...]
@@ -116,7 +123,7 @@ def test_other_whites_are_adapted(tmp_path: Path, white: tuple[float, float]) ->
         {"chromaticities": (*REC709[:6], 0.31271, 0.32902)},
         {"colorInteropID": "lin_rec709_scene"},
         {"oiio:ColorSpace": "scene_linear"},
-        {"whiteLuminance": 100.0},
+        {"whiteLuminance": 1.0},
         {"adoptedNeutral": np.array([0.4476, 0.4074], np.float32)},  # the camera's white balance
     ],
 )
@@ -152,6 +159,14 @@ def test_impossible_primaries_are_a_note(
     (told,) = notes.sentences()
     assert why in told
     assert "read as linear Rec.709" in told
+
+
+def test_the_luminance_of_white_is_a_note(tmp_path: Path) -> None:
+    path = exr(tmp_path / "a.exr", LIGHT, whiteLuminance=100.0)
+    notes = Notes()
+    np.testing.assert_array_equal(read_environment(path, notes), LIGHT)
+    assert "1 is 100 cd/m2" in notes.sentences()[0]
+    assert dg.load_frame(path).metadata["whiteLuminance"] == 100
 
 
 def test_unknown_names_and_wrong_types_are_notes(tmp_path: Path) -> None:

@@ -110,7 +110,11 @@ _IN_FILES = {
     "scene_linear_rec.709_srgb": "lin_rec709",
     "linear_rec.709": "lin_rec709",
     "linear_rec.709_(srgb)": "lin_rec709",
-    "rec709": "lin_rec709",
+    "linear_srgb": "lin_rec709",
+    "utility___linear___srgb": "lin_rec709",
+    "utility___linear___rec.709": "lin_rec709",
+    "utility___linear___rec.2020": "lin_rec2020",
+    "utility___linear___p3_d65": "lin_p3d65",
     "linear_rec.2020": "lin_rec2020",
     "linear_p3_d65": "lin_p3d65",
     "linear_dci_p3_d65": "lin_p3d65",
@@ -120,6 +124,7 @@ _IN_FILES = {
     "aces___aces2065_1": "lin_ap0",
     "aces___acescg": "lin_ap1",
     "linear_cie_xyz_d65": "lin_ciexyzd65",
+    "cie_xyz_d65___scene_referred": "lin_ciexyzd65",
 }
 
 

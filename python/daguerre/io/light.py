@@ -5,7 +5,9 @@ Files that state other colours than linear Rec.709 are converted (:mod:`.stated_
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -126,6 +128,14 @@ def _rgb(picture: Picture, file: Path) -> NDArray[Any]:
     raise InputError(f"{file}: channels: wanted R, G, B or one grey, got {', '.join(names[:8])}")
 
 
+def _white_luminance(facts: Mapping[str, Any]) -> list[str]:
+    """Note on a luminance of (1, 1, 1) that the file states: the scene sets it."""
+    value = facts.get("whiteLuminance")
+    if not isinstance(value, float) or not 0 < value < MAX_LIGHT or value == 1:
+        return []
+    return [f"whiteLuminance says that 1 is {value:g} cd/m2, which the scale of the scene sets"]
+
+
 def _linear(file: Path) -> tuple[NDArray[np.float32], int, Colors]:
     """Reads an EXR's display window, 0 outside its data window, its orientation and colours."""
     from .exr.reader import ExrReader, light_names
@@ -133,6 +143,8 @@ def _linear(file: Path) -> tuple[NDArray[np.float32], int, Colors]:
     with ExrReader(file) as reader:
         names = light_names(list(reader.channels), str(file))
         colors = of_exr(reader.facts, tuple(names))
+        told = _white_luminance(reader.facts)
+        colors = replace(colors, remarks=(*colors.remarks, *told))
         full = (reader.full_size[1], reader.full_size[0])
         most = MAX_ENVIRONMENT_BYTES
         check_size(reader.width, reader.height, 3, 4, str(file), most)

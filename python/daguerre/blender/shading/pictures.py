@@ -20,7 +20,8 @@ from daguerre.checks import freeze_in_place
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes, Silence
 from daguerre.io.shading import udim
-from daguerre.io.shading.images import Picture, Textures
+from daguerre.io.shading.images import Textures
+from daguerre.io.shading.picture import Picture
 from daguerre.io.shading.picture_bytes import bytes_of, decoded
 from daguerre.scene.scene import Scene
 

@@ -9,7 +9,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from daguerre.io.shading.images import Images, Picture
+from daguerre.io.shading.images import Images
+from daguerre.io.shading.picture import Picture
 
 from .description import named
 from .ledger import Ledger

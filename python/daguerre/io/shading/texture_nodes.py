@@ -64,15 +64,8 @@ def usd_texture(given: Arguments) -> Mapping[str, Value]:
         given.context.notes.add("a texture without texture coordinates uses the primvar 'st'")
     wraps = (given.text("wrapS", "useMetadata"), given.text("wrapT", "useMetadata"))
     encoding = _usd_encoding(given)
-    found = sampled(
-        given,
-        st or coordinates("st"),
-        wraps,
-        "linear",
-        encoding,
-        (0.0,) * 4,
-        raw=is_data(_usd_space(given)),
-    )
+    raw = is_data(_usd_space(given))
+    found = sampled(given, st or coordinates("st"), wraps, "linear", encoding, (0.0,) * 4, raw=raw)
     if found is None:
         found = fallback
     else:
