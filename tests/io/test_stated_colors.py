@@ -202,6 +202,16 @@ def test_channels_of_xyz(tmp_path: Path) -> None:
     np.testing.assert_array_equal(read_environment(place), 0.5)
 
 
+def test_grey_keeps_its_bits(tmp_path: Path) -> None:
+    for corners in (XYZ, AP0):
+        path = exr(tmp_path / "a.exr", LIGHT[..., :1], "Y", chromaticities=corners)
+        grey = np.repeat(LIGHT[..., :1], 3, axis=2)
+        np.testing.assert_array_equal(read_environment(path), grey)
+        frame = dg.load_frame(path)
+        np.testing.assert_array_equal(frame.rgb, grey)
+        assert "notes" not in frame.metadata
+
+
 def test_luminance_with_chroma_is_refused(tmp_path: Path) -> None:
     path = exr(tmp_path / "a.exr", LIGHT, ("Y", "RY", "BY"))
     for read in (read_environment, dg.load_frame):
@@ -248,6 +258,8 @@ def test_radiance_corrections_and_bad_lines(tmp_path: Path) -> None:
     assert light[0, 0].tolist() == [1 / 4, 1 / 8, 1 / 16]
     with pytest.raises(InputError, match="PRIMARIES: wanted 8 numbers"):
         read_environment(hdr(tmp_path / "b.hdr", (1.0, 1.0, 1.0), "PRIMARIES= 1 2 3\n"))
+    with pytest.raises(InputError, match="COLORCORR: wanted a positive number"):
+        read_environment(hdr(tmp_path / "d.hdr", (1.0, 1.0, 1.0), "COLORCORR=1 0 1\n"))
     notes = Notes()
     path = hdr(tmp_path / "c.hdr", (1.0, 0.5, 0.25), "PRIMARIES= 0 0 0 0 0 0 0 0\n")
     assert read_environment(path, notes)[0, 0].tolist() == [1, 0.5, 0.25]

@@ -167,6 +167,7 @@ def Material "M" {{
   def Shader "S" {{
     uniform token info:id = "UsdPreviewSurface"
     color3f inputs:emissiveColor.connect = </M/T.outputs:rgb>
+    float inputs:roughness.connect = </M/T.outputs:g>
     token outputs:surface
   }}
   def Shader "T" {{
@@ -174,6 +175,7 @@ def Material "M" {{
     asset inputs:file = @./a.exr@
     token inputs:sourceColorSpace = "{space}"
     float3 outputs:rgb
+    float outputs:g
   }}
 }}
 """
@@ -183,3 +185,7 @@ def Material "M" {{
     assert kind.emissive_texture is not None
     texel = scene.textures[kind.emissive_texture.texture].pixels[0, 0, :3]
     np.testing.assert_allclose(texel, wanted, atol=2e-5)
+    slot = kind.metallic_roughness_texture
+    assert slot is not None
+    rough = kind.roughness * scene.textures[slot.texture].pixels[0, 0, 1]
+    np.testing.assert_allclose(rough, COLOR[1], atol=1e-6)  # a number, whatever the primaries

@@ -29,8 +29,9 @@ from .stated_colors import PLAIN, Colors, of_exr
 
 #: Largest colour channel of an environment: the sum of three still fits a float.
 MAX_LIGHT = 1e38
-#: Rows that are converted at once; share of a pixel's light below which a negative one is rounding.
-_STRIPE, _ROUNDING = 64, 1e-5
+#: Rows that are converted at once; share of a pixel's light below which a negative channel is the
+#: rounding of half floats.
+_STRIPE, _ROUNDING = 64, 2e-3
 
 
 def read_environment(

@@ -69,8 +69,9 @@ def read_header(file: Path) -> RadianceHeader:
             corners = _numbers(file, "PRIMARIES", value, 8)
         elif name == b"FORMAT" and value.strip() == _XYZE:
             format_at = at + line.index(_XYZE)
-    if not ((gains > 1e-30) & (gains < 1e30)).all():
-        raise InputError(f"{file}: EXPOSURE: wanted a positive number, 1e-30 to 1e30")
+        if not ((gains > 1e-30) & (gains < 1e30)).all():
+            said = name.decode("ascii")
+            raise InputError(f"{file}: {said}: wanted a positive number, 1e-30 to 1e30")
     is_xyz = format_at is not None
     colors = Colors(XYZ_E, "format xyze") if is_xyz else PLAIN
     if corners is not None:

@@ -116,9 +116,11 @@ def of_exr(facts: Mapping[str, Any], names: tuple[str, ...] = ()) -> Colors:
 
     Args:
         facts: Values of its attributes.
-        names: Channels of its colour; X, Y and Z are CIE XYZ.
+        names: Channels of its colour; X, Y and Z are CIE XYZ, a single one is grey.
     """
     told, remarks = _said(facts)
+    if len(set(names)) == 1:  # grey is grey by any primaries
+        told = {by: Encoding(one.srgb, one.gamma) for by, one in told.items()}
     if tuple(name.rpartition(".")[2].upper() for name in names) == ("X", "Y", "Z"):
         return Colors(XYZ_D65, "channels X, Y, Z", tuple(remarks))
     if not told:

@@ -64,17 +64,20 @@ def usd_texture(given: Arguments) -> Mapping[str, Value]:
         given.context.notes.add("a texture without texture coordinates uses the primvar 'st'")
     wraps = (given.text("wrapS", "useMetadata"), given.text("wrapT", "useMetadata"))
     encoding = _usd_encoding(given)
-    raw = is_data(_usd_space(given))
-    found = sampled(given, st or coordinates("st"), wraps, "linear", encoding, (0.0,) * 4, raw=raw)
-    if found is None:
-        found = fallback
-    else:
-        arithmetic = given.context.math
-        scale = fit(given.value("scale", (1.0,) * 4), 4)
-        bias = fit(given.value("bias", (0.0,) * 4), 4)
-        found = arithmetic.add(arithmetic.multiply(found, scale), bias)
-    r, g, b, a = found
-    return {"rgb": (r, g, b), "r": (r,), "g": (g,), "b": (b,), "a": (a,), "rgba": found}
+    arithmetic = given.context.math
+    scale = fit(given.value("scale", (1.0,) * 4), 4)
+    bias = fit(given.value("bias", (0.0,) * 4), 4)
+
+    def values(raw: bool) -> Value:
+        lie = (st or coordinates("st"), wraps, "linear", encoding, (0.0,) * 4)
+        found = sampled(given, *lie, raw=raw)
+        if found is None:
+            return fallback
+        return arithmetic.add(arithmetic.multiply(found, scale), bias)
+
+    found = values(is_data(_usd_space(given)))
+    r, g, b, a = values(True) if found is not fallback else fallback  # single channels are numbers
+    return {"rgb": found[:3], "r": (r,), "g": (g,), "b": (b,), "a": (a,), "rgba": found}
 
 
 def image(given: Arguments) -> Value:
