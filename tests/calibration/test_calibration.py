@@ -448,7 +448,7 @@ def test_a_chain_with_a_model_outside_its_field(chain: Path) -> None:
         ("a: !!opencv-matrix [1]", "opencv-matrix"),
         ("a: 1\na: 2", "'a' appears twice"),
         ("? [a]\n: 1", "names must be text"),
-        ("a: [1", "line 1"),
+        ("a: [1", "line 2, column 1: did not find expected"),
         ("a: 1\n---\nb: 1\n", "another document"),
         ("[" * 5000, "nested too deeply"),
         ("a: " + "9" * 5000, "digit"),

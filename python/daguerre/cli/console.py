@@ -7,6 +7,7 @@ import os
 import shlex
 import sys
 from collections.abc import Callable
+from io import TextIOWrapper
 from pathlib import Path
 from typing import TextIO
 
@@ -58,14 +59,19 @@ def nobody_reads(stream: TextIO) -> None:
 
 
 def open_streams() -> None:
-    """Opens streams that were closed before the start, on the null device.
+    r"""Opens streams that were closed before the start, on the null device.
 
     Otherwise the next file to be opened would get the number of one, and messages would go into it.
+    Letters that the encoding of a stream lacks become ``\xe9`` and the like: a name with an accent
+    must not end a command whose terminal has ASCII alone.
     """
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
             mode = "r" if number == 0 else "w"
             setattr(sys, name, Path(os.devnull).open(mode))  # noqa: SIM115
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper) and stream.errors in ("strict", "surrogateescape"):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def is_stuck(error: OSError) -> bool:

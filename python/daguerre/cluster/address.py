@@ -21,6 +21,7 @@ from .certificates import Certificates
 #: Time to reach a scheduler, s.
 TIMEOUT_S = 10
 WANTED = "local, local:N, tcp://HOST:PORT, tls://HOST:PORT or FILE.yaml"
+_MAX_BYTES = 1 << 20
 _KEYS = ("address", "ca", "cert", "key")
 _NO_GUARD = (
     "cluster: local workers run this script again as they start, up to the call that wants them; "
@@ -126,7 +127,7 @@ def _read(path: Path) -> tuple[str, Certificates | None]:
     from daguerre.files import yaml_text
     from daguerre.files.reading import read_bytes
 
-    found = yaml_text.parse(read_bytes(path), str(path)).value
+    found = yaml_text.parse(read_bytes(path, _MAX_BYTES), str(path)).value
     if not isinstance(found, dict) or "address" not in found or found.keys() - set(_KEYS):
         raise InputError(
             f"{path}: wanted address, and optionally ca, cert and key, got {short(found)}"

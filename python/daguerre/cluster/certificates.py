@@ -58,7 +58,7 @@ class Certificates:
 
     def _check(self) -> None:
         for file in (self.ca, self.cert, self.key):
-            read_bytes(file)
+            read_bytes(file, 1 << 20)
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
         try:
             context.load_verify_locations(self.ca)

@@ -24,7 +24,7 @@ def facts(data: dict[str, Any]) -> list[str]:
     )
     return [
         f"{name}{zoom}: polynomials of degree {data['degree']}, fitted to exact rays.",
-        f"Prescription: {clean(setting['source']) or 'source not named'}.",
+        f"Prescription: {clean(setting['source'] or '') or 'source not named'}.",
         f"f/{setting['f_stop']:.3g}, in focus at {distance} from the entrance pupil; {film_size}.",
         f"Error on {error['rays']} fresh rays, RMS and worst: direction {angle[0]:.2g} and "
         f"{angle[1]:.2g} rad;",

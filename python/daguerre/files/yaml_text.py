@@ -5,13 +5,17 @@ can grow without bounds or name Python objects. The exceptions are OpenCV's tag 
 first line ``%YAML:1.0``, which is not valid YAML. Numbers are those of YAML 1.2: YAML 1.1 reads
 ``1e-08``, as OpenCV and Python write it, as text.
 
+LibYAML finds the events of a text (PyYAML's own parser takes 30 times as long), and this file makes
+values of them.
+
 Source: YAML 1.2.2, chapter 10.3 (the core schema).
 """
 
 from __future__ import annotations
 
 import re
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, NoReturn
 
 import yaml
 
@@ -22,6 +26,19 @@ from .reading import document
 
 OPENCV_MATRIX = "tag:yaml.org,2002:opencv-matrix"
 _OPENCV_HEAD = re.compile(r"\A\ufeff?%YAML:1\.0[^\n]*")
+#: Most levels of lists and mappings, as many as JSON's parser takes; LibYAML stops there, too.
+_DEEPEST = 1000
+_PARSER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # packages without LibYAML have the other
+_INT = re.compile(r"[-+]?[0-9]+")
+_FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
+_WORDS: dict[str, Any] = {
+    **dict.fromkeys(("", "~", "null", "Null", "NULL")),
+    **dict.fromkeys(("true", "True", "TRUE"), True),
+    **dict.fromkeys(("false", "False", "FALSE"), False),
+    **dict.fromkeys((".nan", ".NaN", ".NAN", ".Nan"), float("nan")),
+    **{f"{sign}{word}": float(f"{sign}inf") for sign in ("", "+", "-")
+       for word in (".inf", ".Inf", ".INF")},
+}  # fmt: skip
 
 
 def parse(data: bytes, file: str) -> Item:
@@ -34,11 +51,13 @@ def parse(data: bytes, file: str) -> Item:
     text = _OPENCV_HEAD.sub("", text, count=1)
     text = re.sub(r"\n---\s*\Z", "\n", text)  # as `rostopic echo` ends each message
     try:
-        return Item(yaml.load(text, _Plain), file)
+        return Item(_Values(yaml.parse(text, Loader=_PARSER)).only(), file)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        raise InputError(f"{file}: YAML: {place}{error.problem or error.context}") from None
+        fault = str(error.problem or error.context)
+        fault = "nested too deeply" if "nesting depth" in fault else fault
+        raise InputError(f"{file}: YAML: {place}{fault}") from None
     except yaml.YAMLError as error:
         raise InputError(f"{file}: YAML: {' '.join(str(error).split())}") from None
     except RecursionError:
@@ -49,63 +68,75 @@ def parse(data: bytes, file: str) -> Item:
         raise InputError(f"{file}: YAML: {reason}") from None
 
 
-class _Plain(yaml.SafeLoader):
-    """Mappings, lists, numbers, text, true, false and null."""
+class _Values:
+    """Values of the events of a text: mappings, lists, numbers, text, true, false and null."""
 
-    yaml_implicit_resolvers: dict[str, Any] = {}  # noqa: RUF012 (PyYAML's own way)
+    def __init__(self, events: Iterator[Any]) -> None:
+        self._events = events
+        self._depth = 0
 
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        event: Any = self.peek_event()  # type: ignore[no-untyped-call]
+    def only(self) -> Any:
+        """Value of the only document; None: there is none."""
+        next(self._events)  # the start of the stream
+        event = next(self._events)
+        if isinstance(event, yaml.StreamEndEvent):
+            return None
+        value = self._value(next(self._events))
+        next(self._events)  # the end of the document
+        more = next(self._events)
+        if not isinstance(more, yaml.StreamEndEvent):
+            _refuse("wanted one document: another document begins here", more)
+        return value
+
+    def _value(self, event: Any) -> Any:
         if isinstance(event, yaml.AliasEvent) or event.anchor is not None:
             kind = "alias" if isinstance(event, yaml.AliasEvent) else "anchor"
-            self._refuse(
-                f"anchors and aliases are not supported, got {kind} {short(event.anchor)}", event
-            )
+            text = f"anchors and aliases are not supported, got {kind} {short(event.anchor)}"
+            _refuse(text, event)
         if event.tag not in (None, OPENCV_MATRIX):
-            self._refuse(
-                f"the only supported tag is !!opencv-matrix, got {short(event.tag)}", event
-            )
+            _refuse(f"the only supported tag is !!opencv-matrix, got {short(event.tag)}", event)
         if event.tag and not isinstance(event, yaml.MappingStartEvent):
-            self._refuse("!!opencv-matrix: wanted rows, cols, dt and data", event)
-        return super().compose_node(parent, index)
-
-    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
-        """Accepts only text as names, each once; PyYAML would take the last of two."""
-        found: dict[str, Any] = {}
-        for key, value in node.value:
-            if not isinstance(key, yaml.ScalarNode):
-                self._refuse("names must be text", key)
-            if key.value in found:
-                self._refuse(f"{short(key.value)} appears twice", key)
-            found[key.value] = self.construct_object(value, deep=deep)
+            _refuse("!!opencv-matrix: wanted rows, cols, dt and data", event)
+        if isinstance(event, yaml.ScalarEvent):
+            return _plain(event.value) if event.implicit[0] else event.value
+        self._depth += 1
+        if self._depth > _DEEPEST:
+            _refuse("nested too deeply", event)
+        found = self._list() if isinstance(event, yaml.SequenceStartEvent) else self._mapping()
+        self._depth -= 1
         return found
 
-    def _refuse(self, what: str, at: Any) -> None:
-        raise yaml.constructor.ConstructorError(None, None, what, at.start_mark)
+    def _list(self) -> list[Any]:
+        found = []
+        for event in self._events:
+            if isinstance(event, yaml.SequenceEndEvent):
+                break
+            found.append(self._value(event))
+        return found
+
+    def _mapping(self) -> dict[str, Any]:
+        """Accepts only text as names, each once; PyYAML would take the last of two."""
+        found: dict[str, Any] = {}
+        for event in self._events:
+            if isinstance(event, yaml.MappingEndEvent):
+                break
+            if not isinstance(event, yaml.ScalarEvent):
+                _refuse("names must be text", event)
+            self._value(event)  # checks anchor and tag
+            if event.value in found:
+                _refuse(f"{short(event.value)} appears twice", event)
+            found[event.value] = self._value(next(self._events))
+        return found
 
 
-_CORE = {
-    "null": (r"(?:~|null|Null|NULL|)", ["~", "n", "N", ""]),
-    "bool": (r"(?:true|True|TRUE|false|False|FALSE)", list("tTfF")),
-    "int": (r"[-+]?[0-9]+", list("-+0123456789")),
-    "float": (
-        r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?"
-        r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN|Nan)",
-        list("-+.0123456789"),
-    ),
-}
-for _name, (_form, _first) in _CORE.items():
-    _form = f"(?:{_form})\\Z"
-    _Plain.add_implicit_resolver(f"tag:yaml.org,2002:{_name}", re.compile(_form), _first)
+def _refuse(what: str, at: Any) -> NoReturn:
+    raise yaml.MarkedYAMLError(None, None, what, at.start_mark)
 
 
-def _whole(loader: _Plain, node: Any) -> int:
-    return int(loader.construct_scalar(node))  # 1.1 would take 010 for 8
-
-
-def _matrix(loader: _Plain, node: Any) -> dict[Any, Any]:
-    return loader.construct_mapping(node, deep=True)
-
-
-_Plain.add_constructor("tag:yaml.org,2002:int", _whole)
-_Plain.add_constructor(OPENCV_MATRIX, _matrix)
+def _plain(text: str) -> Any:
+    """Value of a text without quotes, by the core schema."""
+    if text in _WORDS:
+        return _WORDS[text]
+    if _INT.fullmatch(text):
+        return int(text)  # YAML 1.1 would take 010 for 8
+    return float(text) if _FLOAT.fullmatch(text) else text

@@ -10,6 +10,22 @@ from .projections import projected
 
 #: Half of the diagonal of 36 x 24 mm.
 FULL_FRAME = 0.5 * math.hypot(36, 24)
+#: Pictures on film and common sensors by the name of their format, mm. Sheet film is named in
+#: inches and roll film in cm, both by the film and not by its picture.
+FORMATS = {
+    **dict.fromkeys(("135", "ff", "full-frame", "35mm-full-frame"), (36.0, 24.0)),
+    "4x5": (121.0, 97.0),
+    "5x7": (170.0, 121.0),
+    "8x10": (246.0, 195.0),
+    "6x9": (84.0, 56.0),
+    "6x7": (69.5, 56.0),
+    "6x6": (56.0, 56.0),
+    **dict.fromkeys(("645", "6x4.5"), (56.0, 41.5)),
+    "aps-c": (23.6, 15.7),
+    **dict.fromkeys(("four-thirds", "micro-four-thirds", "mft"), (17.3, 13.0)),
+    **dict.fromkeys(("super-35", "s35"), (24.9, 18.7)),
+}
+_NUMBER, _LARGEST_MM = r"(\d+(?:\.\d+)?)", 1000.0
 
 
 def stated_half_image(lens: Lens, order: FirstOrder) -> float | None:
@@ -37,12 +53,39 @@ def half_image(lens: Lens, order: FirstOrder) -> float:
 
 
 def format_mm(lens: Lens) -> tuple[float, float] | None:
-    """Width and height of the file's format, such as ``36x24``, mm; None: no such format."""
-    text = str(lens.data.get("format"))
-    sides = re.fullmatch(r"(\d+(?:\.\d+)?)x(\d+(?:\.\d+)?)", text)
-    if sides is None or not min(map(float, sides.groups())):
+    """Width and height of the file's format, mm; None: it states none that is known.
+
+    A format is a size such as ``36x24``, a name such as ``4x5`` (inches), ``6x7`` (cm) or
+    ``135-full-frame``, or a text that has one of them, such as ``135 full frame (36x24 mm)``.
+    """
+    text = lens.data.get("format")
+    if not isinstance(text, str):
         return None
-    return float(sides[1]), float(sides[2])
+    text = re.sub(r"(?<=\d)\s*[x\u00d7]\s*(?=\d)", "x", text.lower())
+    if text.strip() in FORMATS:
+        return FORMATS[text.strip()]
+    sides = re.search(rf"(?<![\w.]){_NUMBER}x{_NUMBER}(?:\s*mm|\s*$)", text)
+    if sides is not None and min(found := (float(sides[1]), float(sides[2]))) > 0:
+        return found if max(found) < _LARGEST_MM else None
+    words = " ".join(re.findall(r"[a-z0-9.]+", text))
+    named = (name for name in FORMATS if f" {name.replace('-', ' ')} " in f" {words} ")
+    longest = max(named, key=len, default=None)
+    return None if longest is None else FORMATS[longest]
+
+
+def film_mm(lens: Lens, most: float = math.inf) -> tuple[float, float]:
+    """Width and height of a lens's film, mm: its format, or 3:2 within its image circle.
+
+    Args:
+        lens: The lens; if it states no circle, it has that of 36 x 24 mm.
+        most: Largest half of the diagonal where no format is stated, mm.
+    """
+    stated = format_mm(lens)
+    if stated:
+        return stated
+    half = stated_half_image(lens, lens.first_order()) or FULL_FRAME
+    share = min(half, most) / FULL_FRAME
+    return share * 36, share * 24
 
 
 def _half_format(lens: Lens) -> float | None:

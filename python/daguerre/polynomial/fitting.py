@@ -12,7 +12,7 @@ from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.lenses.errors import reported
 from daguerre.lenses.focus import focused
-from daguerre.lenses.image_circle import format_mm
+from daguerre.lenses.image_circle import FULL_FRAME, film_mm
 from daguerre.lenses.setting import LensSetting
 from daguerre.parameters.keywords import takes
 
@@ -77,7 +77,7 @@ def fit(lens: lenses.Lens | str, degree: int = 7, **keywords: Unpack[FitKeywords
 
 def _film(lens: lenses.Lens, given: tuple[float, float] | None) -> tuple[float, float]:
     if given is None:
-        return format_mm(lens) or (36.0, 24.0)
+        return film_mm(lens, FULL_FRAME)
     width, height = numbers(given, "lens fit: film", 2, "width and height in mm")
     if not (0 < width < 1e4 and 0 < height < 1e4):
         raise UsageError(

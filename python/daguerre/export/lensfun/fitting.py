@@ -14,7 +14,7 @@ from daguerre.errors import InputError, UsageError
 from daguerre.files.atomic import write_bytes
 from daguerre.files.formats import check_written
 from daguerre.lenses import load
-from daguerre.lenses.image_circle import FULL_FRAME, format_mm, stated_half_image
+from daguerre.lenses.image_circle import film_mm
 from daguerre.lenses.lens import Lens
 from daguerre.lenses.zoom import positions
 
@@ -84,7 +84,7 @@ def _check(lens: Lens) -> None:
 
 def _frame(lens: Lens, given: tuple[float, float] | None) -> Frame:
     if given is None:
-        given = _format(lens)
+        given = film_mm(lens)
     sides = numbers(given, "lensfun: sensor_size", 2, "width and height, mm")
     if min(sides) <= 0 or max(sides) >= 1e4:
         raise UsageError(
@@ -92,15 +92,6 @@ def _frame(lens: Lens, given: tuple[float, float] | None) -> Frame:
             f"{sides[0]:g} x {sides[1]:g}"
         )
     return Frame(max(sides), min(sides))
-
-
-def _format(lens: Lens) -> tuple[float, float]:
-    """Sides of a lens's film, mm: as stated, or 3:2 within its image circle."""
-    stated = format_mm(lens)
-    if stated:
-        return stated
-    share = (stated_half_image(lens, lens.first_order()) or FULL_FRAME) / FULL_FRAME
-    return share * 36, share * 24
 
 
 def _focal_lengths(lens: Lens) -> list[float]:

@@ -22,6 +22,7 @@ from daguerre.files.json_item import Item, clean
 from daguerre.files.reading import read_bytes
 from daguerre.files.uris import data_bytes, is_data
 from daguerre.io import images
+from daguerre.io.pictures.source import MAX_FILE
 from daguerre.scene.scene import Scene
 
 from .accessors import Accessors
@@ -118,7 +119,7 @@ class Images:
         item, path = self._images[index], self._paths[index]
         if path is not None:
             with asked_by(item.need("uri").where):
-                return read_bytes(path)
+                return read_bytes(path, MAX_FILE)
         uri = item.get("uri")
         if uri is not None:
             return data_bytes(uri)

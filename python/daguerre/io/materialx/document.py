@@ -23,6 +23,7 @@ from .values import fail, value_of
 
 #: Limits on definitions inside definitions, and on the links that one input follows.
 _MAX_NESTING = 32
+_MAX_BYTES = 1 << 28
 _MAX_HOPS = 1000
 #: Types whose values have a colour space.
 _COLORED = ("color3", "color4", "filename")
@@ -283,4 +284,4 @@ def read(path: Path, notes: Notes) -> Document:
     Raises:
         InputError: The file cannot be read, or is no MaterialX document.
     """
-    return Document(read_bytes(path), str(path), notes)
+    return Document(read_bytes(path, _MAX_BYTES), str(path), notes)
