@@ -15,9 +15,9 @@ from daguerre.camera.ideal import IDEAL
 from daguerre.errors import InputError
 from daguerre.lenses import library
 from daguerre.lenses.checking import SPILL
+from daguerre.lenses.engraved import ROUNDED
 from daguerre.lenses.errors import LensError
 from daguerre.lenses.image_circle import stated_half_image
-from daguerre.setup.lens import GRANTED
 
 from .reports import told
 
@@ -120,7 +120,7 @@ def warnings(group: Any, reach_mm: float) -> dict[str, str]:
 def _stop(group: Any, facts: Facts) -> tuple[str, str]:
     name = "t_stop" if group.use_t_stop else "f_stop"
     widest = facts.lens.t_stop() if group.use_t_stop else facts.f_number
-    if getattr(group, name) >= GRANTED * widest:
+    if getattr(group, name) >= ROUNDED * widest:
         return name, ""
     return name, f"Wider than the lens opens: {name[0]}/{widest:.3g}"
 

@@ -16,11 +16,11 @@ from daguerre import export, lenses
 from daguerre.camera.camera import Camera
 from daguerre.camera.ideal import IDEAL, WITHOUT_IRIS
 from daguerre.errors import InputError
+from daguerre.lenses.engraved import ROUNDED
 from daguerre.lenses.errors import LensError
 from daguerre.polynomial import LensFit, fit
 from daguerre.polynomial.segments import fewest
 from daguerre.setup.iris import iris_of
-from daguerre.setup.lens import GRANTED
 
 from . import translation
 
@@ -80,7 +80,7 @@ def _f_stop(camera: Camera, lens: lenses.Lens) -> float:
     asked = camera.f_stop or widest
     if camera.t_stop is not None:
         asked = camera.t_stop * widest / lens.t_stop()
-    if asked < GRANTED * widest:
+    if asked < ROUNDED * widest:
         text = f"{lens.source}: f-stop: wanted f/{widest:.3g} or narrower, got f/{asked:.3g}"
         raise LensError(text, "lens-f-stop")
     return float(max(asked, widest))

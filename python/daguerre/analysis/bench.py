@@ -16,6 +16,7 @@ from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.files.value import BriefRecord
 from daguerre.lenses import FirstOrder, Lens
+from daguerre.lenses.engraved import AS_GIVEN, opened
 from daguerre.lenses.errors import LensError
 from daguerre.lenses.focus import focused
 from daguerre.lenses.glasses.catalogue import LINE_C, LINE_D, LINE_F
@@ -161,7 +162,7 @@ def set_up(
 
     Args:
         lens: A lens of the library, or read from a file.
-        f_stop: F-stop; None: wide open.
+        f_stop: F-stop; None, or up to 3 % wider than the lens opens: wide open.
         focus_m: Focus distance from the entrance pupil, m; may be infinite.
         zoom_mm: Focal length of a zoom, mm.
         by: Position of the film: ``best``: where the spot on the axis is smallest; ``paraxial``:
@@ -179,7 +180,7 @@ def on_bench(lens: Lens, setting: LensSetting, field_mm: float | None = None) ->
     if setting.zoom_mm is not None:
         lens = lens.at_zoom(setting.zoom_mm)
     far = lens.first_order()
-    stop = far.f_number if setting.f_stop is None else setting.f_stop
+    stop = far.f_number if setting.f_stop is None else opened(setting.f_stop, far.f_number)
     radius = _iris_radius(lens, far, stop)
     found = focused(lens, replace(setting, f_stop=stop, zoom_mm=None))
     order = found.lens.first_order()
@@ -219,7 +220,7 @@ def _iris_radius(lens: Lens, order: FirstOrder, f_stop: float) -> float:
         raise LensError(
             f"{lens.name}: f-stop: wanted a positive number, got {f_stop:g}", "lens-f-stop"
         )
-    if f_stop < 0.99 * order.f_number:
+    if f_stop < AS_GIVEN * order.f_number:
         raise LensError(
             f"{lens.name}: f-stop: wanted f/{order.f_number:.3g} or narrower "
             f"(the widest of this lens), got f/{f_stop:g}",

@@ -70,6 +70,7 @@ def calibrate(
     from daguerre.analysis.calibrate import calibrate as fit
     from daguerre.analysis.calibrate import calibrate_all
     from daguerre.files.atomic import check_writable
+    from daguerre.lenses.engraved import stop_remark
 
     use: dict[str, Any] = USUAL | flags.given()
     CAMERA["focus_by"].check(use.get("focus_by"), "--focus-by")
@@ -92,6 +93,9 @@ def calibrate(
     if file_format == "kalibr" and model == "opencv":
         use.setdefault("terms", 4)  # Kalibr's radtan has no k3
     made = fit(name, model, **use)
+    bench = made.bench
+    if text := stop_remark(bench.lens, f_stop=use.get("f_stop"), widest=bench.f_stop):
+        console.note(text)
     if made.largest > WELL:
         console.note(
             f"note: {made.projection.model} is up to {made.largest:.3g} px off; --model all shows "

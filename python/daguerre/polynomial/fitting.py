@@ -10,6 +10,7 @@ from daguerre import lenses
 from daguerre.checks import numbers, short, shown, whole
 from daguerre.doors import guarded
 from daguerre.errors import UsageError
+from daguerre.lenses.engraved import opened
 from daguerre.lenses.errors import reported
 from daguerre.lenses.focus import focused
 from daguerre.lenses.image_circle import FULL_FRAME, film_mm
@@ -52,6 +53,9 @@ def fit(lens: lenses.Lens | str, degree: int = 7, **keywords: Unpack[FitKeywords
     if not isinstance(asked["iris"], _core.Iris | None):
         raise UsageError(f"lens fit: iris: wanted an Iris, got {shown(asked['iris'])}")
     f_stop, focus, iris = asked["f_stop"], asked["focus"], asked["iris"]
+    if f_stop is not None:
+        at = lens if asked["zoom"] is None else lens.at_zoom(asked["zoom"])
+        f_stop = opened(f_stop, at.first_order().f_number)
     width, height = _film(lens, asked["film"])
     sharp = focused(lens, LensSetting(f_stop, focus, asked["zoom"], asked["focus_by"]))
     request = _core.LensFitRequest(

@@ -133,6 +133,16 @@ def bench(values: Values) -> Bench:
     return on_bench(lenses.load(values["lens"]), setting)
 
 
+def stop_remark_of(values: Values) -> str | None:
+    """Note that a lens is wide open, as the given f-stop is a little wider than it opens."""
+    if values.get("lens") is None or values.get("f_stop") is None:
+        return None
+    from daguerre import lenses
+    from daguerre.lenses.engraved import stop_remark
+
+    return stop_remark(lenses.load(values["lens"]), values["f_stop"], values.get("zoom"))
+
+
 def _finite(pair: Any) -> TypeGuard[tuple[float, float]]:
     return isinstance(pair, tuple) and len(pair) == 2 and all(math.isfinite(v) for v in pair)
 

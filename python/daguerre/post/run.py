@@ -15,6 +15,7 @@ from . import channels
 from .display import Display
 from .effect import Step
 from .exr_picture import ExrPicture, check_target
+from .optics import stop_remark_of
 from .picture import bands
 from .recipe import Planned, as_json, in_order
 from .tiles import BLOCK, chained
@@ -91,6 +92,7 @@ def process(
     remarks = [f"{source}: {text}" for text in picture.remarks]
     remarks += [f"{p.effect.name}: {r}" for p, s in zip(planned, steps, strict=True)
                for r in s.remarks()]  # fmt: skip
+    remarks += [text for p in planned if (text := stop_remark_of(p.values))]
     if reader.header.parts > 1:
         remarks.append(f"{source}: only the first of its {reader.header.parts} parts is written")
     return Report(reader.width, reader.height, picture.bad_pixels, remarks)

@@ -19,6 +19,7 @@ from daguerre.camera.exposure import without_brightness
 from daguerre.camera.ideal import WITHOUT_IRIS
 from daguerre.camera.parameters.needs import TRACED
 from daguerre.lenses.checking import frame_notes
+from daguerre.lenses.engraved import AS_GIVEN, opened, remark
 from daguerre.lenses.errors import LensError, reported
 from daguerre.lenses.focus import focused
 from daguerre.lenses.focusing import whole_lens_note
@@ -39,8 +40,6 @@ from .resolved import Glass, ResolvedLens
 
 #: Lenses that are kept, and focuses of each.
 _KEPT = 4
-#: Share of the widest f-number that a stop may have, as in the core: stops are round numbers.
-GRANTED = 0.99
 
 
 @dataclass(frozen=True)
@@ -225,6 +224,7 @@ def _notes(camera: Camera, chosen: _Chosen, whole: str | None) -> list[str]:
         )
     if whole is not None:
         notes.append(whole)
+    notes += _stop_notes(camera, chosen)
     if camera.t_stop is not None:
         notes.append(
             f"T/{camera.t_stop:.3g} of {lens.name} is f/{chosen.f_stop:.3g}: the glass "
@@ -243,6 +243,18 @@ def _notes(camera: Camera, chosen: _Chosen, whole: str | None) -> list[str]:
     return notes
 
 
+def _stop_notes(camera: Camera, chosen: _Chosen) -> list[str]:
+    """Note that the lens is wide open, as its engraved stop is a little wider than it opens."""
+    if camera.t_stop is not None:
+        widest = chosen.order.f_number / math.sqrt(chosen.transmittance)
+        text = remark(chosen.lens.name, camera.t_stop, widest, "T")
+    elif camera.f_stop is not None and chosen.model not in WITHOUT_IRIS:
+        text = remark(chosen.lens.name, camera.f_stop, chosen.order.f_number)
+    else:
+        return []
+    return [] if text is None else [text]
+
+
 def _transmittance(lens: lenses.Lens, order: lenses.FirstOrder) -> float:
     """Luminous transmittance on the axis for D65, which is the same at any f-stop."""
     check_stop_size(lens)
@@ -259,19 +271,19 @@ def _f_stop(
     transmittance: float,
 ) -> float:
     if camera.t_stop is None:
-        f_stop = camera.f_stop or max(DEFAULT_F_STOP, order.f_number)
+        f_stop = opened(camera.f_stop or max(DEFAULT_F_STOP, order.f_number), order.f_number)
         # A pinhole has no f-stop, so a scene's f-stop that the lens lacks is no error.
         if model in WITHOUT_IRIS:
             return max(f_stop, order.f_number)
-        if f_stop < GRANTED * order.f_number:
+        if f_stop < AS_GIVEN * order.f_number:
             raise LensError(
                 f"{lens.source}: f_stop: wanted {order.f_number:.3g} or more, as this lens opens "
                 f"to f/{order.f_number:.3g}; got {f_stop:.4g}",
                 "lens-f-stop",
             )
         return f_stop
-    f_stop = camera.t_stop * math.sqrt(transmittance)
-    if f_stop < GRANTED * order.f_number:
+    f_stop = opened(camera.t_stop * math.sqrt(transmittance), order.f_number)
+    if f_stop < AS_GIVEN * order.f_number:
         widest = order.f_number / math.sqrt(transmittance)
         raise LensError(
             f"{lens.source}: t_stop: wanted {widest:.3g} or more, as this lens opens to "

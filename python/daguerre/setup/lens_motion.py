@@ -24,6 +24,7 @@ from daguerre.cached import cached_property
 from daguerre.camera.camera import Camera
 from daguerre.camera.parameters.needs import TRACED
 from daguerre.errors import UsageError
+from daguerre.lenses.engraved import opened
 from daguerre.motion.resample import resample
 
 from .resolved import ResolvedLens
@@ -188,7 +189,8 @@ class LensMotion:
 
     def _stop(self, camera: Camera) -> float:
         if "f_stop" in self.changing and camera.f_stop is not None:
-            return float(camera.f_stop)
+            stop = float(camera.f_stop)
+            return stop if self.lens.glass is None else opened(stop, self.lens.widest_stop)
         assert self.lens.f_stop is not None  # an exact lens has one
         return self.lens.f_stop
 

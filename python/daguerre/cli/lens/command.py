@@ -85,6 +85,7 @@ def lens(
     """
     from daguerre import lenses as library
     from daguerre.analysis import set_up
+    from daguerre.lenses.engraved import stop_remark
     from daguerre.lenses.stop_size import check_stop_size
 
     files.check(film_serves=flare.wanted)
@@ -95,6 +96,8 @@ def lens(
     check_stop_size(item)
     for text in item.notes:
         note(text)
+    if told := stop_remark(item, **setting.given_mm()):
+        note(told)
     if files.export is not None:
         files.write(item, files.export, {**setting.given_mm(), "by": setting.by})
         return 0
