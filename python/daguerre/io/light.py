@@ -60,7 +60,7 @@ def read_environment(
         colors.tell(notes, file.name)
     if colors.is_plain:
         return rgb
-    return _in_gamut(colors.light(rgb), notes, file.name)
+    return _in_gamut(colors.light(rgb, in_place=rgb.flags.writeable), notes, file.name)
 
 
 def read_light(file: Path) -> tuple[NDArray[np.float32], Colors]:

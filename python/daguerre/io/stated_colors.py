@@ -81,15 +81,20 @@ class Colors:
         for sentence in self.sentences:
             notes.add(sentence, name=name)
 
-    def light(self, values: Light) -> Light:
+    def light(self, values: Light, *, in_place: bool = False) -> Light:
         """Linear Rec.709, which may be negative, of numbers of the file, shape (H, W, 3).
 
+        Args:
+            values: The numbers.
+            in_place: Whether they may be overwritten, which saves memory.
+
         Returns:
-            The same array if nothing is converted, else a new one.
+            The same array if nothing is converted, or in place; else a new one.
         """
         if self.is_plain:
             return values
-        made, matrix = np.empty(values.shape, np.float32), np.array(rec709_from(self.encoding))
+        made = values if in_place else np.empty(values.shape, np.float32)
+        matrix = np.array(rec709_from(self.encoding))
         for row in range(0, len(values), _STRIPE):
             part = linear(values[row : row + _STRIPE], self.encoding)
             made[row : row + _STRIPE] = through(part, matrix)
