@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 
 import pytest
@@ -30,3 +31,13 @@ def test_kinds_of_raw_files(tmp_path: Path, name: str) -> None:
     else:
         assert plates.read(path).raw.mosaic.shape == (64, 96)
         assert read_shot(path).pixels.shape == (64, 96, 3)
+
+
+def test_an_impossible_baseline_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "shot.dng"
+    data = bytearray(next(raws(tmp_path))[1])
+    entry = data.index(struct.pack("<HHI", 50730, 10, 1))
+    struct.pack_into("<ii", data, struct.unpack_from("<I", data, entry + 8)[0], 9999, 1)
+    path.write_bytes(data)
+    with pytest.raises(InputError, match=r"BaselineExposure: wanted -32 to 32, got 9999\.0"):
+        read_shot(path)

@@ -19,6 +19,8 @@ from . import libraw
 from .channels import USUAL, XY, Channels, Demosaic
 from .libraw import RawFile
 
+#: Largest exposure by which a DNG may be brightened or darkened, EV.
+MOST_STOPS = 32
 FloatArray = NDArray[np.float64]
 Matrix = Callable[[XY], FloatArray]
 #: Correlated colour temperatures of EXIF's light sources, K (DNG 1.7.1, CalibrationIlluminant1).
@@ -58,7 +60,7 @@ def read_shot(path: str | os.PathLike[str], demosaic: Demosaic = USUAL) -> Chann
     three = np.broadcast_to(file.pixels, (*file.pixels.shape[:2], 3))
     return Channels(
         pixels=np.ascontiguousarray(three),
-        unit=white / 2.0 ** _number(tags.get("BaselineExposure"), 0.0),
+        unit=white / 2.0 ** _baseline(path, tags),
         full=np.minimum(white, 65535.0),
         xyz_from=lambda white: np.asarray(np.linalg.inv(matrix(white)), np.float64),
         as_shot=white_of_shot(path, file, tags),
@@ -155,6 +157,16 @@ def tags_of(path: str | os.PathLike[str]) -> dict[str, Any]:
         return {}
     finally:
         log.setLevel(level)
+
+
+def _baseline(path: Any, tags: Mapping[str, Any]) -> float:
+    """Exposure by which a DNG is brightened, EV."""
+    stops = _number(tags.get("BaselineExposure"), 0.0)
+    if not abs(stops) <= MOST_STOPS:
+        raise InputError(
+            f"{path}: BaselineExposure: wanted -{MOST_STOPS} to {MOST_STOPS}, got {stops}"
+        )
+    return stops
 
 
 def _facts(tags: Mapping[str, Any]) -> dict[str, Any]:
