@@ -20,6 +20,7 @@ from daguerre.apart.limits import Limits
 from daguerre.errors import InputError
 from daguerre.files import extras
 from daguerre.files.reading import size_of
+from daguerre.files.value import BriefRecord
 
 from .channels import USUAL, Demosaic
 from .dng import LEAST_XTRANS
@@ -37,8 +38,8 @@ _TASK = f"{__name__}:answer"
 _helper = Helper()
 
 
-@dataclass(frozen=True)
-class RawFile:
+@dataclass(frozen=True, repr=False)
+class RawFile(BriefRecord):
     """A raw file as LibRaw reads it.
 
     Attributes:
