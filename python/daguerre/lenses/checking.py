@@ -30,6 +30,9 @@ ENOUGH_LIGHT = 0.6
 #: One of so many draws of each point of the film comes first: most points need no more.
 _EACH = 9
 _RADII = 129
+#: Rays by their share of the entrance pupil's radius: to find one that passes, and the widest.
+_TRACED = (1.0, 0.97, 0.9, 0.8, 0.65, 0.5, 0.25, 0.1)
+_PASSING = tuple(round(1 - 0.02 * k, 2) for k in range(50))
 #: A frame may exceed the stated image circle by this factor.
 SPILL = 1.01
 
@@ -51,24 +54,12 @@ def checked(lens: Lens) -> Lens:
             f"{lens.source}: nominal.f_number: wanted a finite stop, got f/{order.f_number:g}",
             "lens-f-stop",
         )
-    beam = _beam(lens)
     surfaces, notes = list(lens.surfaces), list(lens.notes)
-    for i, j in _neighbors(surfaces):
-        crossing = _crossing(lens, i, j, beam)
-        if crossing is None:
-            continue
-        inner = min(beam[i], beam[j])
-        where = f"surfaces {i} and {j}{in_file(lens, i, j)}"
-        if crossing < ROUNDING * inner:
-            raise LensError(
-                f"{lens.source}: {where}: edge: surfaces cross {crossing:.4g} mm off the axis, "
-                f"within the axial beam (radius {inner:.4g} mm)",
-                "lens-edge",
-                i,
-            )
-        end = max(crossing, inner)
+    for i, j, at, inner in _crossings(lens):
+        end = max(at, inner)
         notes.append(
-            f"{where} cross {crossing:.4g} mm off the axis: clear radii are cut to {end:.4g} mm"
+            f"surfaces {i} and {j}{in_file(lens, i, j)} cross {at:.4g} mm off the axis: clear "
+            f"radii are cut to {end:.4g} mm"
         )
         for k in (i, j):
             semi = surfaces[k].semi_diameter
@@ -78,6 +69,37 @@ def checked(lens: Lens) -> Lens:
         return lens
     with reported(lens.source):
         return lens.rebuilt(surfaces, notes=tuple(notes))
+
+
+def _crossings(lens: Lens) -> list[tuple[int, int, float, float]]:
+    """Pairs of surfaces that cross: where, and the axial beam's radius there, mm.
+
+    Raises:
+        LensError: Surfaces cross within the beam that the clear diameters pass; the message names
+            the pair that crosses deepest in it.
+    """
+    beam, passing = _beam(lens, within=False), None
+    found, faults = [], []
+    for i, j in _neighbors(list(lens.surfaces)):
+        at = _crossing(lens, i, j, beam)
+        if at is None:
+            continue
+        inner = float(min(beam[i], beam[j]))
+        if at < ROUNDING * inner:  # the stop may be wider than the diameters let it be
+            passing = _beam(lens, within=True) if passing is None else passing
+            inner = float(min(passing[i], passing[j]))
+        found.append((i, j, at, inner))
+        if at < ROUNDING * inner:
+            faults.append((at / inner, i, j, at, inner))
+    if faults:
+        _, i, j, at, inner = min(faults)
+        raise LensError(
+            f"{lens.source}: surfaces {i} and {j}{in_file(lens, i, j)}: edge: surfaces cross "
+            f"{at:.4g} mm off the axis, within the axial beam (radius {inner:.4g} mm)",
+            "lens-edge",
+            i,
+        )
+    return found
 
 
 def in_file(lens: Lens, *indices: int) -> str:
@@ -119,18 +141,27 @@ def _crossing(lens: Lens, i: int, j: int, beam: NDArray[np.float64]) -> float | 
     return nearest if nearest < math.inf else None
 
 
-def _beam(lens: Lens) -> NDArray[np.float64]:
-    """Radius of the axial beam at each surface, mm, shape (surfaces,)."""
+def _beam(lens: Lens, *, within: bool) -> NDArray[np.float64]:
+    """Radius of the axial beam at each surface, mm, shape (surfaces,).
+
+    Args:
+        lens: The lens.
+        within: Whether to bound it by the clear diameters, which may pass less than the stop.
+    """
     order = lens.first_order()
     radius = 0.5 * order.entrance_pupil.diameter
     out = np.zeros(len(lens.surfaces))
     if not math.isfinite(radius) or not math.isfinite(order.entrance_pupil.z):
         return out
-    for share in (1.0, 0.97, 0.9, 0.8, 0.65, 0.5, 0.25, 0.1):
+    sizes = [math.inf if s.semi_diameter is None else s.semi_diameter for s in lens.surfaces]
+    for share in _PASSING if within else _TRACED:
         origin, direction = ray_to_pupil(lens, order.entrance_pupil.z, 0.0, share * radius)
         path = lens.prescription.path(origin[None], direction[None], DESIGN_WAVELENGTH_NM, False)
-        if len(path) == len(out):
-            return np.asarray(np.hypot(path[:, 0], path[:, 1]), np.float64)
+        if len(path) != len(out):
+            continue
+        heights = np.asarray(np.hypot(path[:, 0], path[:, 1]), np.float64)
+        if not within or (heights <= sizes).all():
+            return heights
     return out
 
 

@@ -22,6 +22,7 @@ from .lens import Lens, Nominal
 from .product import read_product
 from .projections import PROJECTION_NAMES
 from .reading import member, number, text, triple
+from .remarks import eased
 from .stop_size import probe, with_stop_of_other_diameters
 from .surface import LensSurface
 from .surface_reader import COATINGS, read_surfaces
@@ -43,6 +44,7 @@ def lens_of(data: dict[str, Any], source: str, configuration: str | None = None)
 def lens_from(root: Item, path: Path, name: str | None) -> Lens:
     """Builds a lens from a file's value, at a configuration by name; None: the first."""
     foreign_json.refuse(root)
+    root, told = eased(root)
     schema = root.need("schema")
     if schema.text() != SCHEMA:
         schema.fail(f"wanted {SCHEMA!r}, got {short(schema.value)}")
@@ -76,7 +78,8 @@ def lens_from(root: Item, path: Path, name: str | None) -> Lens:
     lens = _assembled(root, path, surfaces, nominal, configurations)
     if unsized:
         lens = with_stop_of_other_diameters(lens, stop)
-    lens = dataclasses.replace(lens, zoom_mm=standing_mm(lens, configuration))
+    zoom_mm, notes = standing_mm(lens, configuration), (*lens.notes, *told)
+    lens = dataclasses.replace(lens, zoom_mm=zoom_mm, notes=notes)
     return with_derived_diameters(lens)
 
 
