@@ -166,7 +166,7 @@ def test_a_deep_tree_is_read(tmp_path: Path) -> None:
 
 @pytest.mark.in_process
 def test_prims_too_many_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("daguerre.io.usd.prims._MAX_PRIMS", 20)
+    monkeypatch.setattr("daguerre.io.usd.prims.MAX_PRIMS", 20)
     stage = stages.new_stage(tmp_path / "x.usda")
     for i in range(21):
         UsdGeom.Xform.Define(stage, f"/n{i}")

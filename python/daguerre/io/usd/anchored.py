@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from pxr import Sdf
+from pxr import Ar, Sdf
 
 #: Beginning of a URI, which names no file here.
 SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
@@ -22,5 +22,7 @@ def anchored(layer: Sdf.Layer, name: str) -> str:
     if SCHEME.match(plain):
         return str(plain)
     found = Sdf.ComputeAssetPathRelativeToLayer(layer, plain)
-    # A name without ./ is searched for; where nothing is found it comes back as it is.
+    if not Path(found).is_absolute():
+        # A name without ./ is searched for, beside the stage as well; if in vain it stays as it is.
+        found = str(Ar.GetResolver().Resolve(found)) or found
     return str(found if Path(found).is_absolute() else Path(layer.realPath).parent / found)

@@ -18,7 +18,7 @@ from .transforms import joined, local
 from .values import Clock
 
 #: Maximum number of prims, instances of the stage counted each.
-_MAX_PRIMS = 10_000_000
+MAX_PRIMS = 10_000_000
 #: Purposes of prims that are drawn anyway.
 _ALWAYS = "default"
 _PREDICATE = Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)
@@ -116,9 +116,9 @@ class Walk:
 
     def _child(self, parent: Visit, prim: Usd.Prim) -> Visit:
         self._count += 1
-        if self._count > _MAX_PRIMS:
+        if self._count > MAX_PRIMS:
             raise InputError(
-                f"{self._clock.file}: too many prims and instances: the limit is {_MAX_PRIMS}"
+                f"{self._clock.file}: too many prims and instances: the limit is {MAX_PRIMS}"
             )
         world, shown, purpose = parent.world, parent.shown, parent.purpose
         imageable = UsdGeom.Imageable(prim)

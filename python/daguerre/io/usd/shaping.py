@@ -9,8 +9,8 @@ from pxr import Usd, UsdLux
 from daguerre.files.notes import Notes
 from daguerre.scene.light_profile import LightProfile
 
+from .assets import Assets
 from .lights import Lamp
-from .stage import Assets
 from .values import authored
 
 _FILE = "inputs:shaping:ies:file"

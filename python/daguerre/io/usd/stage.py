@@ -17,20 +17,19 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Ar, Sdf, Tf, Usd, UsdGeom, UsdUtils
+from pxr import Sdf, Tf, Usd, UsdGeom, UsdUtils
 
 from daguerre.checks import short
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files.notes import Notes
 from daguerre.files.reading import size_of
-from daguerre.files.uris import Folder
 
-from .anchored import SCHEME, anchored
-from .crates import check_crates
+from .assets import Assets
+from .composed import check_count
+from .layer_files import check_file
+from .layers import Layers
 from .values import Clock
 
-#: Maximum number of layers of a stage.
-_MAX_LAYERS = 100_000
 _Z_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], np.float64)
 
 
@@ -55,77 +54,6 @@ class Opened:
     root: NDArray[np.float64]
     assets: Assets
     fps: float | None
-
-
-class Assets:
-    """Files that a stage may read: those of its folder and of the allowed ones.
-
-    Args:
-        path: File of the stage.
-        allow_dirs: Further folders.
-    """
-
-    def __init__(self, path: Path, allow_dirs: Iterable[str | os.PathLike[str]]) -> None:
-        self._file = str(path)
-        self._folders = Folder(path, allow_dirs).allowed
-
-    def check(self, place: str, name: str) -> str:
-        """Returns the absolute path of an asset; of a file inside of a package, with brackets.
-
-        Args:
-            place: Prim or layer that names it, for messages.
-            name: Path of the asset, anchored to its layer.
-
-        Raises:
-            InputError: It leaves the folders.
-        """
-        if SCHEME.match(name):
-            raise InputError(
-                f"{self._file}: {place}: refused: wanted a file, got {short(name, 200)}"
-            )
-        package = name.partition("[")[0] if Ar.IsPackageRelativePath(name) else name
-        if "\0" in package:
-            raise InputError(f"{self._file}: {place}: refused: wanted a file, got {short(name)}")
-        real = Path(os.path.realpath(package))
-        if not any(real.is_relative_to(folder) for folder in self._folders):
-            raise InputError(
-                f"{self._file}: {place}: leaves the stage's folder: wanted a file under "
-                f"{str(self._folders[0])!r} (--allow-dir allows more folders), got "
-                f"{short(name, 200)}"
-            )
-        return str(real) + name[len(package) :]
-
-    def file_of(self, place: str, name: str) -> Path:
-        """Returns the file of an anchored asset path, which need not exist.
-
-        Raises:
-            InputError: It leaves the folders.
-        """
-        return Path(self.check(place, name))
-
-    def resolve(
-        self, place: str, asset: Sdf.AssetPath, attribute: Usd.Attribute | None = None
-    ) -> Path | None:
-        """Returns the file of an asset; None if there is no such file.
-
-        Args:
-            place: Prim and attribute, for messages.
-            asset: The asset.
-            attribute: Attribute whose layer a relative path starts from.
-
-        Raises:
-            InputError: It leaves the folders.
-        """
-        name = asset.resolvedPath
-        if not name and attribute is not None and asset.path:
-            specs = attribute.GetPropertyStack(Usd.TimeCode.Default())
-            name = anchored(specs[0].layer, asset.path) if specs else ""
-        if not name:
-            return None
-        found = Path(self.check(place, name))
-        if Ar.IsPackageRelativePath(str(found)):
-            return found
-        return found if found.is_file() else None
 
 
 @contextmanager
@@ -202,8 +130,9 @@ def open_stage(
     file = str(path)
     size_of(path)
     assets = Assets(path, allow_dirs)
-    layer = _layers(path, assets)
-    stage = Usd.Stage.Open(layer, Usd.Stage.LoadAll)
+    layers = Layers(path, assets)
+    check_count(layers.root, file)
+    stage = Usd.Stage.Open(layers.root.root, Usd.Stage.LoadAll)
     _select(stage, file, list(variants))
     for used in stage.GetUsedLayers():  # those of value clips, too
         if used.realPath:
@@ -215,57 +144,6 @@ def open_stage(
     stated = stage.HasAuthoredMetadata("framesPerSecond")
     fps = _rate(file, "framesPerSecond", stage.GetFramesPerSecond()) if stated else None
     return Opened(file, stage, clock, metres, root, assets, fps)
-
-
-def _layers(path: Path, assets: Assets) -> Sdf.Layer:
-    """Opens the layers of a stage, after a check of each name; returns the root layer."""
-    check_crates(path, str(path))
-    first = _whole(Sdf.Layer.FindOrOpen(os.path.realpath(path)))
-    if first is None:
-        raise InputError(f"{path}: not a stage that USD can open")
-    seen, waiting = {first.identifier}, [first]
-    while waiting:
-        layer = waiting.pop()
-        for name in layer.GetCompositionAssetDependencies():
-            place = f"layer {layer.GetDisplayName()}"
-            absolute = anchored(layer, name)
-            if not absolute or absolute in seen:
-                continue
-            seen.add(absolute)
-            if len(seen) > _MAX_LAYERS:
-                raise InputError(f"{path}: too many layers: the limit is {_MAX_LAYERS}")
-            found = _opened(absolute, assets.check(place, absolute))
-            if found is not None:
-                waiting.append(found)
-    return first
-
-
-def _opened(name: str, real: str) -> Sdf.Layer | None:
-    """Opens a layer; None if there is none.
-
-    Args:
-        name: Its name for USD.
-        real: Its file, or a place inside of a package.
-    """
-    file = Path(real.partition("[")[0] if Ar.IsPackageRelativePath(real) else real)
-    if not file.exists():
-        return None
-    size_of(file)
-    if Sdf.FileFormat.FindByExtension(name) is None:
-        return None
-    check_crates(file, str(file))
-    return _whole(Sdf.Layer.FindOrOpen(name)) if Ar.GetResolver().Resolve(name) else None
-
-
-def _whole(layer: Sdf.Layer | None) -> Sdf.Layer | None:
-    """Checks that each prim that a layer names is there, as USD ends the process if one is not."""
-    if layer is not None:
-        paths: list[Sdf.Path] = []
-        layer.Traverse(Sdf.Path.absoluteRootPath, paths.append)
-        for path in paths:
-            if path.isEmpty or (path.IsPrimPath() and not layer.GetPrimAtPath(path)):
-                raise InputError(f"{layer.realPath}: damaged layer: it refers to a missing prim")
-    return layer
 
 
 def _select(stage: Usd.Stage, file: str, variants: list[str]) -> None:
@@ -342,8 +220,10 @@ def time_of_code(path: str | os.PathLike[str], code: float) -> float:
     Raises:
         InputError: The file cannot be read, or states no valid rate.
     """
+    check_file(Path(path), str(path))
     with usd_errors(str(path)):
         layer = Sdf.Layer.FindOrOpen(os.path.realpath(path))
         if layer is None:
             raise InputError(f"{path}: not a stage that USD can open")
-        return _clock(Usd.Stage.Open(layer, Usd.Stage.LoadNone), str(path), 0.0).seconds(code)
+        rate = _rate(str(path), "timeCodesPerSecond", layer.timeCodesPerSecond)
+        return Clock(str(path), rate, 0.0).seconds(code)

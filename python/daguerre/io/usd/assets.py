@@ -1,0 +1,86 @@
+"""Files that a stage may read: those in its folder and in further allowed ones."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from pxr import Ar, Sdf, Usd
+
+from daguerre.checks import short
+from daguerre.errors import InputError
+from daguerre.files.uris import Folder
+
+from .anchored import SCHEME, anchored
+
+
+class Assets:
+    """Files that a stage may read: those of its folder and of the allowed ones.
+
+    Args:
+        path: File of the stage.
+        allow_dirs: Further folders.
+    """
+
+    def __init__(self, path: Path, allow_dirs: Iterable[str | os.PathLike[str]]) -> None:
+        self._file = str(path)
+        self._folders = Folder(path, allow_dirs).allowed
+
+    def check(self, place: str, name: str) -> str:
+        """Returns the absolute path of an asset; of a file inside of a package, with brackets.
+
+        Args:
+            place: Prim or layer that names it, for messages.
+            name: Path of the asset, anchored to its layer.
+
+        Raises:
+            InputError: It leaves the folders.
+        """
+        if SCHEME.match(name):
+            raise InputError(
+                f"{self._file}: {place}: refused: wanted a file, got {short(name, 200)}"
+            )
+        package = name.partition("[")[0] if Ar.IsPackageRelativePath(name) else name
+        if "\0" in package:
+            raise InputError(f"{self._file}: {place}: refused: wanted a file, got {short(name)}")
+        real = Path(os.path.realpath(package))
+        if not any(real.is_relative_to(folder) for folder in self._folders):
+            raise InputError(
+                f"{self._file}: {place}: leaves the stage's folder: wanted a file under "
+                f"{str(self._folders[0])!r} (--allow-dir allows more folders), got "
+                f"{short(name, 200)}"
+            )
+        return str(real) + name[len(package) :]
+
+    def file_of(self, place: str, name: str) -> Path:
+        """Returns the file of an anchored asset path, which need not exist.
+
+        Raises:
+            InputError: It leaves the folders.
+        """
+        return Path(self.check(place, name))
+
+    def resolve(
+        self, place: str, asset: Sdf.AssetPath, attribute: Usd.Attribute | None = None
+    ) -> Path | None:
+        """Returns the file of an asset; None if there is no such file.
+
+        Args:
+            place: Prim and attribute, for messages.
+            asset: The asset.
+            attribute: Attribute whose layer a relative path starts from.
+
+        Raises:
+            InputError: It leaves the folders.
+        """
+        name = asset.resolvedPath
+        if not name and attribute is not None and asset.path:
+            specs = attribute.GetPropertyStack(Usd.TimeCode.Default())
+            name = anchored(specs[0].layer, asset.path) if specs else ""
+        if not name:
+            return None
+        found = Path(self.check(place, name))
+        if Ar.IsPackageRelativePath(str(found)):
+            return found
+        return found if found.is_file() else None

@@ -1,0 +1,173 @@
+"""A stage that would compose too many prims is refused before USD composes any."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from pxr import Sdf, Tf, Usd, UsdUtils
+
+import daguerre as dg
+from daguerre.io.usd import composed
+from daguerre.io.usd.assets import Assets
+from daguerre.io.usd.layers import Layers
+from tests.io.usd.random_stages import write_stage
+
+_TEN = range(10)
+
+
+def _stage(path: Path, body: str, header: str = "") -> Path:
+    path.write_text(f"#usda 1.0\n(\nmetersPerUnit = 1\n{header}\n)\n{body}")
+    return path
+
+
+def _prim(name: str, arcs: str = "", inside: str = "", word: str = "def") -> str:
+    return f'{word} "{name}" (\n{arcs}\n) {{\n{inside}\n}}\n'
+
+
+def _levels(arc: str, more: str = "") -> str:
+    """Nine levels, each with ten children that refer to the level below."""
+    body = 'def "L0" { def Cube "c" {\n}\n}\n'
+    for level in range(1, 10):
+        below = f"{arc} = </L{level - 1}>\n{more}"
+        body += _prim(f"L{level}", "", "".join(_prim(f"r{i}", below) for i in _TEN))
+    return body
+
+
+def _in_layers(folder: Path) -> Path:
+    for level in range(9):
+        arcs = f"references = @{level + 1}.usda@</a>"
+        _stage(
+            folder / f"{level}.usda", _prim("a", "", "".join(_prim(f"r{i}", arcs) for i in _TEN))
+        )
+    return _stage(folder / "9.usda", _prim("a")).with_name("0.usda")
+
+
+def _in_variants(folder: Path) -> Path:
+    body = _prim("L0")
+    for level in range(1, 10):
+        inside = "".join(_prim(f"r{i}", f"references = </L{level - 1}>") for i in _TEN)
+        arcs = 'variants = { string v = "x"\n}\nprepend variantSets = "v"'
+        body += _prim(f"L{level}", arcs, f'variantSet "v" = {{\n"x" {{\n{inside}\n}}\n}}')
+    return _stage(folder / "s.usda", body)
+
+
+def _below_targets(folder: Path) -> Path:
+    """References to prims that exist by references above them alone."""
+    body = 'def "L0" { def "x" { def "y" {\n}\n}\n}\n'
+    for level in range(1, 10):
+        inside = "".join(_prim(f"r{i}", f"references = </L{level - 1}/x>") for i in _TEN)
+        body += _prim(f"L{level}", f"references = </L{level - 1}>", _prim("x", "", inside, "over"))
+    return _stage(folder / "s.usda", body)
+
+
+def _by_implied_classes(folder: Path) -> Path:
+    """Classes of a layer that stand for more in the layer that refers to it."""
+    users = "".join(_prim(f"n{i}", "inherits = </T/_c>") for i in _TEN)
+    _stage(folder / "t.usda", _prim("T", "", _prim("_c", "", "", "class") + users))
+    body = _prim("P0")
+    for level in range(1, 10):
+        own = _prim("_c", "", _prim("x", f"references = </P{level - 1}>"), "over")
+        body += _prim(f"P{level}", "references = @t.usda@</T>", own)
+    return _stage(folder / "s.usda", body)
+
+
+def _loops(folder: Path) -> Path:
+    """Every prim refers to every other one."""
+    names = [f"p{i}" for i in range(12)]
+    body = "".join(
+        _prim(a, f"references = [{', '.join(f'</{b}>' for b in names if b != a)}]") for a in names
+    )
+    return _stage(folder / "s.usda", body)
+
+
+BOMBS: dict[str, Callable[[Path], Path]] = {
+    "references": lambda f: _stage(f / "s.usda", _levels("references")),
+    "instances": lambda f: _stage(f / "s.usda", _levels("references", "instanceable = true")),
+    "payloads": lambda f: _stage(f / "s.usda", _levels("payload")),
+    "inherits": lambda f: _stage(f / "s.usda", _levels("inherits")),
+    "specializes": lambda f: _stage(f / "s.usda", _levels("specializes")),
+    "layers": _in_layers,
+    "variants": _in_variants,
+    "prims below targets": _below_targets,
+    "implied classes": _by_implied_classes,
+    "loops": _loops,
+}
+
+
+@pytest.mark.parametrize("name", BOMBS)
+def test_stages_of_too_many_prims_are_refused_at_once(tmp_path: Path, name: str) -> None:
+    stage = BOMBS[name](tmp_path)
+    begin = time.process_time()
+    with pytest.raises(dg.InputError, match=r"too many prims: wanted|form too many loops"):
+        dg.load(stage, in_process=True)
+    assert time.process_time() - begin < 10
+
+
+def test_a_long_chain_of_references_is_refused(tmp_path: Path) -> None:
+    body = _prim("p0") + "".join(_prim(f"p{i + 1}", f"references = </p{i}>") for i in range(1000))
+    with pytest.raises(dg.InputError, match="references are nested too deeply: the limit is 128"):
+        dg.load(_stage(tmp_path / "s.usda", body))
+
+
+def test_deep_prims_of_references_are_refused(tmp_path: Path) -> None:
+    deep = "".join(f'def "c{i}" {{\n' for i in range(500)) + "}\n" * 500
+    body = f'def "q0" {{\n{deep}}}\n'
+    overs = "".join(f'over "c{k}" {{\n' for k in range(499))
+    for i in range(1, 6):
+        tip = f'over "c499" (references = </q{i - 1}>) {{\n}}\n'
+        body += f'def "q{i}" (references = </q0>) {{\n{overs}{tip}' + "}\n" * 500
+    with pytest.raises(dg.InputError, match="nested too deeply: the limit is 2000"):
+        dg.load(_stage(tmp_path / "s.usda", body))
+
+
+def test_the_largest_variant_counts_and_not_all(tmp_path: Path) -> None:
+    inside = "".join(
+        f'"v{i}" {{\n' + "".join(_prim(f"c{k}") for k in range(i)) + "}\n" for i in range(1, 8)
+    )
+    body = _prim("a", 'prepend variantSets = "v"', f'variantSet "v" = {{\n{inside}\n}}')
+    path = _stage(tmp_path / "s.usda", body)
+    assert _bound(path).prims == 1 + 1 + 7  # the root of all, too
+
+
+def _bound(path: Path) -> composed._Sum:
+    layers = Layers(path, Assets(path, ()))
+    count = composed._Composed(str(path))
+    return composed._run(count.specs(layers.root, Sdf.Path.absoluteRootPath))
+
+
+def _compare(path: Path) -> None:
+    bound = _bound(path)
+    if bound.prims > 3000:
+        return
+    stage = Usd.Stage.Open(str(path), Usd.Stage.LoadAll)
+    found = list(Usd.PrimRange(stage.GetPseudoRoot(), Usd.PrimAllPrimsPredicate))
+    assert len(found) <= bound.prims
+    assert max(prim.GetPath().pathElementCount for prim in found) < bound.depth
+
+
+def test_the_count_is_a_bound_on_what_usd_composes(tmp_path: Path) -> None:
+    """A process for each stage, as USD does not come to an end with a few of them."""
+    ended = 0
+    for seed in range(40):
+        path = write_stage(tmp_path, seed)
+        child = os.fork()
+        if not child:
+            signal.alarm(10)
+            delegate = UsdUtils.CoalescingDiagnosticDelegate()
+            try:
+                _compare(path)
+            except AssertionError:
+                os._exit(1)
+            except Tf.ErrorException:  # a fault of USD
+                os._exit(2)
+            del delegate
+            os._exit(0)
+        _, status = os.waitpid(child, 0)
+        assert not os.WIFEXITED(status) or os.WEXITSTATUS(status) != 1, seed
+        ended += status == 0
+    assert ended >= 30
