@@ -156,6 +156,10 @@ def good_jobs(folder: Path) -> list[list[str]]:
     passes = [
         draw(wall, "--sky", "1,1,1", "--spp", "2", "--samples", part) for part in ("0:1", "1:2")
     ]
+    stage = folder / "stage.usda"
+    (folder / "ball.usda").write_text('#usda 1.0\ndef Sphere "A"\n{\n}\n')
+    stage.write_text("#usda 1.0\n(\n subLayers = [@ball.usda@]\n metersPerUnit = 1\n)\n")
+    draw(str(stage), "--sky", "1,1,1")
     raw = next(words[-1] for words in made if words[-1].endswith(".dng"))
     return [
         *made,

@@ -6,6 +6,7 @@ import atexit
 import contextlib
 import os
 import threading
+import time
 import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -153,7 +154,7 @@ class Helper:
 
     def _started(self, where: str) -> Process:
         process = self._process
-        if process is not None and (not process.alive or process.resident > _WORN):
+        if process is not None and (not process.alive or _is_worn(process)):
             self._stop()
         if self._process is None:
             try:
@@ -218,6 +219,15 @@ class Helper:
         if process is not None:
             with contextlib.suppress(OSError):
                 process.forget()
+
+
+def _is_worn(process: Process) -> bool:
+    """Whether a helper keeps much memory; it may still let go of that of the last task."""
+    for _ in range(20):
+        if process.resident <= _WORN:
+            return False
+        time.sleep(0.02)
+    return True
 
 
 def _no_class(name: Any, state: Any) -> NoReturn:

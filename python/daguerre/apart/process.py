@@ -27,6 +27,9 @@ from .link import DamagedError, Link
 
 #: Time between two looks at the memory of the helper, s.
 _TICK = 0.02
+#: Most time of waiting for a processor that does not count, for each second of the limit: threads
+#: of the helper may compete with one another.
+_PATIENCE = 2.0
 #: Time for the start of a helper, s.
 _START = Limits(60.0, 1 << 31)
 #: Address space of a thread's stack, bytes, and threads besides those for each processor.
@@ -183,7 +186,7 @@ class Process:
             self.end()
             raise EndedError(too_much(self.limits))
         used, most = self._looked - self._begin, self.limits.seconds
-        if used > most and used - (self._waited() - self._waits) > most:
+        if used > most and used - min(self._waited() - self._waits, _PATIENCE * most) > most:
             self.end()
             raise EndedError(too_long(self.limits))
 

@@ -483,10 +483,14 @@ class Scene(Value):
         if not over:
             check_places(worlds, self.meshes[mesh].extent, f"{where}: transforms")
         first = len(self.instances)
-        self.instances.extend(Instance(mesh, material, world, name) for world in worlds)
+        self._place(mesh, material, worlds, name)
         self.motion.instances.update(enumerate(over, first))
         if name:
             self.nodes.setdefault(name, []).extend(range(first, len(self.instances)))
+
+    def _place(self, mesh: int, material: int, worlds: NDArray[np.float64], name: str) -> None:
+        """Appends instances of checked numbers."""
+        self.instances.extend(Instance(mesh, material, world, name) for world in worlds)
 
     def add_light(
         self,

@@ -11,6 +11,7 @@ from typing import Any
 
 from daguerre import memory
 from daguerre.files import uses
+from daguerre.scene.packed.gathered import Gathered
 from daguerre.scene.packed.parts import parts_of
 
 from .reader import read
@@ -24,7 +25,7 @@ FILE, PIXELS = "file ", "pixels "
 def scene(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     """Reads a stage and takes its scene apart."""
     with _beginning(request, tell):
-        return parts_of(read(request["path"], **request["options"]), files=True)
+        return parts_of(read(request["path"], kind=Gathered, **request["options"]), files=True)
 
 
 def seconds(request: Mapping[str, Any], tell: Tell) -> float:

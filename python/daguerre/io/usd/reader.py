@@ -55,6 +55,7 @@ def read(
     allow_dirs: Iterable[str | os.PathLike[str]] = (),
     purpose: Sequence[str] = ("render",),
     camera_units: float | None = None,
+    kind: type[Scene] = Scene,
 ) -> Scene:
     """Reads a stage: .usd, .usda, .usdc or .usdz.
 
@@ -66,6 +67,7 @@ def read(
         purpose: Purposes of prims to draw, besides ``default``.
         camera_units: Length of a unit of focal lengths and apertures, mm; default: a tenth of a
             scene unit.
+        kind: Class of the scene.
 
     Returns:
         The scene; ``warnings`` has notes on unsupported content.
@@ -85,7 +87,7 @@ def read(
     # Huge finite numbers may overflow in between; results are checked.
     with np.errstate(all="ignore"), usd_errors(str(file)):
         opened = open_stage(file, float(time), chosen, allow_dirs, notes)
-        scene = _Reader(opened, Scene(path=file, time=float(time)), notes).read(
+        scene = _Reader(opened, kind(path=file, time=float(time)), notes).read(
             purpose, camera_units
         )
     scene.note(*notes.sentences())

@@ -16,6 +16,7 @@ from daguerre.scene.parts import Curves, Mesh
 from daguerre.scene.point_cache import PointCache
 from daguerre.scene.scene import Scene
 
+from .gathered import Gathered
 from .moving import NAMES
 
 #: Arrays of a mesh, and those of one moment of a mesh whose points move.
@@ -116,9 +117,14 @@ def _mesh(mesh: Mesh, motion: Any) -> dict[str, Any]:
 
 
 def _instances(scene: Scene) -> dict[str, Any]:
-    placed = scene.instances
     motion = scene.motion
-    names: dict[str, int] = {}
+    over = {
+        "motion": [[i, _known(one, f"instances[{i}]")] for i, one in motion.instances.items()],
+        "shown": [[i, _known(one, f"instances[{i}]")] for i, one in motion.shown.items()],
+    }
+    if isinstance(scene, Gathered):
+        return scene.instances.columns() | over
+    placed, names = scene.instances, dict[str, int]()
     named = [names.setdefault(one.name, len(names)) for one in placed]
     return {
         "meshes": np.array([one.mesh for one in placed], np.int64),
@@ -128,9 +134,7 @@ def _instances(scene: Scene) -> dict[str, Any]:
         "named": np.array(named, np.int64),
         "hidden": [i for i, one in enumerate(placed) if not one.shown],
         "catchers": [[i, one.catcher] for i, one in enumerate(placed) if one.catcher is not None],
-        "motion": [[i, _known(one, f"instances[{i}]")] for i, one in motion.instances.items()],
-        "shown": [[i, _known(one, f"instances[{i}]")] for i, one in motion.shown.items()],
-    }
+    } | over
 
 
 def _nodes(scene: Scene) -> list[Any]:
