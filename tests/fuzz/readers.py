@@ -54,6 +54,7 @@ READERS = {
     "ply": Reader("plys", "mesh"),
     "mesh": Reader("meshes", "mesh"),
     "grid": Reader("grids", "grid"),
+    "rare": Reader("rares", "texture"),
     "raw": Reader("raws", "raw"),
     "exif": Reader("tagged", "picture"),
     "pbrt": Reader("pbrts", "drawn"),
@@ -75,6 +76,8 @@ def changed(rng: Random, name: str, data: bytes) -> bytes:
         return changes.in_part(rng, data)
     if name.startswith(("tagged", "packet")) and rng.random() < 0.8:
         return container_changes.in_metadata(rng, data)
+    if name.startswith("rare") and rng.random() < 0.7:
+        return changes.in_part(rng, data)
     if suffix == ".usdc" and rng.random() < 0.8:
         return container_changes.in_crate(rng, data)
     if suffix == ".usdz" and rng.random() < 0.8:

@@ -33,6 +33,7 @@ from tests.support.plate_frames import of_light
 
 from .messages import answers as answers
 from .messages import requests as requests
+from .shot_seeds import rares as rares
 from .shot_seeds import raws as raws
 from .shot_seeds import tagged as tagged
 from .stage_seeds import usdas as usdas

@@ -45,3 +45,21 @@ def tagged(folder: Path) -> Iterator[Seed]:
             path = photograph(folder / f"made.{ending}", block(SHOT, order=order), packet)
             yield f"tagged.{ending}", path.read_bytes()
     yield "packet.jpg", photograph(folder / "packet.jpg", packet=packet).read_bytes()
+
+
+def rares(folder: Path) -> Iterator[Seed]:
+    """Pictures of the kinds that are decoded apart."""
+    import OpenImageIO as oiio
+
+    from tests.io.test_pictures import APART, dds, psd
+
+    pixels = (np.arange(40 * 60 * 3) % 251).astype(np.uint8).reshape(40, 60, 3)
+    for ending in (*APART, "gif", "tga"):
+        path = folder / f"made.{ending}"
+        out = oiio.ImageOutput.create(str(path))
+        out.open(str(path), oiio.ImageSpec(60, 40, 3, oiio.UINT8))
+        out.write_image(pixels)
+        out.close()
+        yield f"rare.{ending}", path.read_bytes()
+    yield "rare.dds", dds(pixels)
+    yield "rare.psd", psd(pixels)

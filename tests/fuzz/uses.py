@@ -17,6 +17,7 @@ from daguerre.files import formats
 from daguerre.files.notes import Notes
 from daguerre.io.iris import read_grey
 from daguerre.io.meshes import obj, ply, serialized
+from daguerre.io.shading.picture_bytes import decoded
 from daguerre.io.volumes import nanovdb, vol
 from daguerre.labels.categories import Categories
 from daguerre.plates import files as plates
@@ -128,6 +129,11 @@ def picture(path: Path) -> None:
             lambda: plates.read(path),
             lambda: read_grey(path),
         )
+
+
+def texture(path: Path) -> None:
+    """Reads a picture as a texture."""
+    decoded(path.read_bytes(), path.name, "texture")
 
 
 def _all(*ways: Callable[[], object]) -> None:

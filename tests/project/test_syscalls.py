@@ -214,8 +214,6 @@ def test_a_link_to_another_file_is_not_followed(tmp_path: Path) -> None:
     scene = str(b.glb(tmp_path / "s.glb"))
     job = ["render", scene, "-o", str(tmp_path / "o.exr"), "--spp", "1", "--res", "8x8"]
     assert refused(traced([job], tmp_path), [tmp_path]) == []
-    wall = (
-        "from daguerre.files import uris; uris.Folder.find = lambda self, uri: self._path(uri)\n"
-    )
+    wall = "from daguerre.files import uris; uris.Folder.find = lambda self, uri: self._path(uri)\n"
     without = traced([job], tmp_path, wall + PROGRAM)
     assert any("passwd" in line or "t.png" in line for line in refused(without, [tmp_path]))
