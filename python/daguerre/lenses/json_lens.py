@@ -26,7 +26,7 @@ from .remarks import eased
 from .stop_size import probe, with_stop_of_other_diameters
 from .surface import LensSurface
 from .surface_reader import COATINGS, read_surfaces
-from .zoom import standing_mm
+from .zoom import standing_mm, stop_notes
 
 SCHEMA = "daguerre-lens/0.1"
 
@@ -78,7 +78,8 @@ def lens_from(root: Item, path: Path, name: str | None) -> Lens:
     lens = _assembled(root, path, surfaces, nominal, configurations)
     if unsized:
         lens = with_stop_of_other_diameters(lens, stop)
-    zoom_mm, notes = standing_mm(lens, configuration), (*lens.notes, *told)
+    zoom_mm = standing_mm(lens, configuration)
+    notes = (*lens.notes, *told, *stop_notes(lens))
     lens = dataclasses.replace(lens, zoom_mm=zoom_mm, notes=notes)
     return with_derived_diameters(lens)
 

@@ -17,6 +17,8 @@ from .surface import stop_of
 
 #: Focal lengths beyond the range by this share are set to its end: printed lengths are rounded.
 TOLERANCE = 0.005
+#: Stop and f-number of a position may disagree by this share, as both are rounded.
+_AGREES = 0.02
 _STEP = 1e-4  # step of numerical derivatives, mm
 
 
@@ -73,7 +75,7 @@ def at_zoom(lens: Lens, zoom_mm: float) -> Lens:
     if share in (0, 1):
         return _standing(lens, high if share else low, zoom_mm)
     gaps = _between(lens, low, high, zoom_mm)
-    f_number = _mix(low.f_number, high.f_number, share)
+    f_number = _mix(_opening(lens, low), _opening(lens, high), share)
     moved = lens.with_gaps(gaps)
     stop = _mix(low.stop, high.stop, share)
     if f_number is not None and stop is not None:  # to first order, the pupil scales with the iris
@@ -113,6 +115,35 @@ def _share(lens: Lens, low: Position, high: Position, mm: float) -> float:
             "lens-zoom",
         )
     return math.log(mm / low.efl) / math.log(high.efl / low.efl)
+
+
+def _opening(lens: Lens, position: Position) -> float | None:
+    """F-number of a position: that of its stop, if the file states another by more than 2 %.
+
+    So nothing jumps beside a position, which has the size of its stop.
+    """
+    traced, stated = _traced(lens, position), position.f_number
+    return traced if traced and stated and abs(traced / stated - 1) > _AGREES else stated
+
+
+def _traced(lens: Lens, position: Position) -> float | None:
+    """F-number by the size of the stop at a position; None: the file has no size."""
+    if position.stop is None:
+        return None
+    f_number = with_stop(lens.with_gaps(position.gaps), position.stop).first_order().f_number
+    return f_number if math.isfinite(f_number) and f_number > 0 else None
+
+
+def stop_notes(lens: Lens) -> list[str]:
+    """Notes on positions of a zoom whose stop and stated f-number disagree."""
+    if sum(c.at_infinity for c in lens.configurations) < 2:
+        return []
+    return [
+        f"zoom: at {p.efl:.4g} mm the file states f/{p.f_number:.3g}, but the size of its stop is "
+        f"f/{traced:.3g}, which is used there and on the way to the next positions"
+        for p in positions(lens)
+        if p.f_number and (traced := _traced(lens, p)) and _opening(lens, p) != p.f_number
+    ]
 
 
 def with_stop(lens: Lens, semi_diameter: float | None) -> Lens:
