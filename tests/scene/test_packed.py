@@ -265,15 +265,18 @@ def test_what_cannot_be_packed_is_refused(glb: Path) -> None:
     made.motion.instances[0] = Odd()
     with pytest.raises(UsageError, match=r"packed scene: instances\[0\]: motion: wanted keys"):
         embed(glb, made)
-    plate = everything()
-    plate.set_plate(np.ones((2, 2, 3)))
-    with pytest.raises(UsageError, match="packed scene: a scene with a plate"):
-        embed(glb, plate)
     assert glb.read_bytes() == before
     text = glb.with_suffix(".txt")
     text.write_text("no glb")
     with pytest.raises(InputError, match=r"not a \.glb file"):
         embed(text, everything())
+
+
+def test_a_plate_is_the_same_afterwards(glb: Path) -> None:
+    made = everything()
+    made.set_plate(np.random.default_rng(1).random((20, 30, 3)), dg.Camera(focal_length=35.0))
+    embed(glb, made)
+    assert same(dg.load(glb).plate, made.plate)
 
 
 def test_lens_and_sensor_files_are_left_out_of_cameras() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import Any
 
@@ -12,7 +13,7 @@ from daguerre.errors import UsageError
 from daguerre.files.packing import name_of
 from daguerre.motion.values import Composite, Keys, Spin
 from daguerre.scene.curves import MovingCurves
-from daguerre.scene.parts import Curves, Mesh
+from daguerre.scene.parts import Curves, Mesh, Plate
 from daguerre.scene.point_cache import PointCache
 from daguerre.scene.scene import Scene
 
@@ -34,11 +35,10 @@ def parts_of(scene: Scene, *, files: bool = False) -> dict[str, Any]:
         files: Whether cameras keep lenses and sensors that are files; a scene file may name none.
 
     Raises:
-        UsageError: Something moves in a way that cannot be packed, or there is a plate.
+        UsageError: Something moves in a way that cannot be packed.
     """
-    if scene.plate is not None:
-        raise UsageError("packed scene: a scene with a plate cannot be packed")
     motion = scene.motion
+    kept = (lambda camera: camera) if files else packable
     return {
         "time": scene.time,
         "textures": [_fields(texture) for texture in scene.textures],
@@ -46,15 +46,14 @@ def parts_of(scene: Scene, *, files: bool = False) -> dict[str, Any]:
         "meshes": [_mesh(mesh, motion.meshes.get(i)) for i, mesh in enumerate(scene.meshes)],
         "instances": _instances(scene),
         "lights": _with_motion(scene.lights, motion.lights, "lights"),
-        "cameras": [
-            [name, camera if files else packable(camera)] for name, camera in scene.cameras.items()
-        ],
+        "cameras": [[name, kept(camera)] for name, camera in scene.cameras.items()],
         "default camera": scene.default_camera,
         "camera aliases": [list(pair) for pair in scene.camera_aliases.items()],
         "film sizes": [[name, list(size)] for name, size in scene.film_sizes.items()],
         "environment": scene.environment,
         "environment motion": _known(motion.environment, "environment"),
         "fog": scene.fog,
+        "plate": scene.plate and _plate(scene.plate, kept),
         "nodes": _nodes(scene),
         "duration": scene.duration,
         "variants": list(scene.variants),
@@ -78,6 +77,10 @@ def packable(camera: Camera) -> Camera:
 
 def _is_one_of(value: Any, names: Any) -> bool:
     return value is None or (isinstance(value, str) and value in names)
+
+
+def _plate(plate: Plate, kept: Callable[[Camera], Camera]) -> list[Any]:
+    return [plate.pixels, plate.camera and kept(plate.camera)]
 
 
 def _fields(value: Any) -> dict[str, Any]:

@@ -61,6 +61,9 @@ class Rebuild:
         self._environment()
         if (fog := self._parts.get("fog")) is not None:
             self.scene.set_fog(fog)
+        if (plate := self._parts.get("plate")) is not None:
+            pixels, camera = plate
+            self.scene.set_plate(self._array(pixels, "plate: pixels"), camera)
         self._nodes()
         self._rest()
         return self.scene
