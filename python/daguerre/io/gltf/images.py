@@ -21,8 +21,6 @@ from daguerre.files.budget import Budget
 from daguerre.files.json_item import Item, clean
 from daguerre.files.reading import read_bytes
 from daguerre.files.uris import data_bytes, is_data
-from daguerre.io import images
-from daguerre.io.pictures.source import MAX_FILE
 from daguerre.scene.scene import Scene
 
 from .accessors import Accessors
@@ -62,6 +60,8 @@ class Images:
         budget = _budget()
 
         def load(index: int) -> NDArray[Any]:
+            from daguerre.io import images  # whose readers scenes without pictures do not need
+
             pixels = images.decode(self._bytes(index), self._where(index))
             budget.spend(pixels.nbytes, self._images[index])
             return pixels
@@ -118,6 +118,8 @@ class Images:
     def _bytes(self, index: int) -> bytes | memoryview:
         item, path = self._images[index], self._paths[index]
         if path is not None:
+            from daguerre.io.pictures.source import MAX_FILE
+
             with asked_by(item.need("uri").where):
                 return read_bytes(path, MAX_FILE)
         uri = item.get("uri")
