@@ -458,7 +458,7 @@ TEST_CASE("bad curves are an error that names curve and element") {
     CHECK(message(mesh) == "curves 'hair': length of radii: wanted 7 (one per position), got 1");
     mesh = good();
     mesh.curves.radii = std::vector<float>(7, -1.f);
-    CHECK(message(mesh).find("curves 'hair': radius of position 0: wanted a finite number") == 0);
+    CHECK(message(mesh).find("curves 'hair': radius of position 0: wanted a number from 0") == 0);
     mesh = good();
     mesh.curves.starts = {0, 4};
     CHECK(message(mesh) == "curves 'hair': start of segment 1: wanted 3, got 4");

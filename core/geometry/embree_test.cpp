@@ -248,3 +248,23 @@ TEST_CASE("cutout decides each hit, sees the world-space ray, and leaves others 
         CHECK(ray_as_given);
     }
 }
+
+TEST_CASE("rays that Embree cannot take meet nothing, in the world and through a transform") {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<Mesh> meshes{triangle_mesh({-1, -1, 0}, {1, -1, 0}, {0, 1, 0})};
+    for (const float scale : {1.f, 1e-19f}) {
+        const Affine3f shrunk{{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}, {0, 0, 0}};
+        const auto scene = Intersector::build(meshes, crowd(meshes[0], shrunk), {}, {});
+        Ray ray = make_ray({0, 0, 1}, {0, 0, -1});
+        CHECK(scene->intersect(ray).has_value() == (scale == 1));
+        CHECK(scene->occluded(ray) == (scale == 1));
+        for (const float odd : {nan, 2e18f, std::numeric_limits<float>::infinity()}) {
+            for (const Ray& wrong : {Ray{{odd, 0, 1}, ray.direction}, Ray{ray.origin, {0, odd, -1}}}) {
+                CHECK(!scene->intersect(wrong));
+                CHECK(scene->occluded(wrong));
+            }
+        }
+        ray.t_max = nan;
+        CHECK(!scene->intersect(ray));
+    }
+}
