@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import pickle
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -12,6 +13,7 @@ from daguerre import _core, lenses
 from daguerre.errors import CoreError, InputError, core_errors
 from daguerre.lenses import library
 from daguerre.lenses.errors import CODES, LensError, from_core, reported
+from daguerre.lenses.focus import closest_focus_m
 from daguerre.lenses.json_lens import lens_of
 from daguerre.lenses.projections import PROJECTIONS
 
@@ -131,3 +133,26 @@ def test_members_that_no_one_reads_are_told(tmp_path: Path) -> None:
     path.write_text(json.dumps(data))
     assert "surfaces[2].conicc: unknown member, ignored" in lenses.load(path).notes[1]
     assert "'conic'" in lenses.load(path).notes[1]
+
+
+def _library(name: str) -> dict[str, Any]:
+    folder = Path(lenses.__file__).parent / "library"
+    found: dict[str, Any] = json.loads((folder / f"{name}.json").read_text())
+    return found
+
+
+def test_a_thickness_that_configurations_replace_must_be_a_number_too() -> None:
+    data = _library("double-gauss-50mm-f2")
+    gap = len(data["surfaces"]) - 1
+    thickness, data["surfaces"][gap]["thickness"] = data["surfaces"][gap].get("thickness"), "flat"
+    data["configurations"] = [{"name": "infinity", "gaps": {str(gap): thickness or 30.0}}]
+    with pytest.raises(LensError, match=rf"surfaces\[{gap}\]\.thickness: wrong type"):
+        lens_of(data, "a.json")
+
+
+def test_the_nearest_focus_of_a_lens_that_diverges_is_an_error_of_its_file() -> None:
+    data = _library("rodenstock-geronar-210mm-f6.8")
+    del data["surfaces"][0]
+    lens = lens_of(data, "a.json")
+    with pytest.raises(LensError, match=r"a\.json: .*wanted a converging lens"):
+        closest_focus_m(lens)

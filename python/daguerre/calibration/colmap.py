@@ -20,7 +20,7 @@ from daguerre.camera.projection import Projection
 from daguerre.checks import short
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
-from daguerre.files.reading import not_utf8, opened, reading
+from daguerre.files.reading import exists, is_folder, not_utf8, opened, reading
 
 from . import colmap_bin
 from .calibration import FLIP, Calibration, projection
@@ -49,7 +49,7 @@ def is_colmap(source: object) -> bool:
     if not isinstance(source, str | os.PathLike):
         return False
     path = Path(source)
-    return path.is_dir() or path.name in (
+    return is_folder(path) or path.name in (
         *("cameras.txt", "images.txt", "cameras.bin", "images.bin"),
     )
 
@@ -67,7 +67,7 @@ def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[
     """
     path = Path(source)
     folder = path if os.path.isdir(path) else path.parent  # noqa: PTH112
-    suffix = next((s for s in (".txt", ".bin") if (folder / f"cameras{s}").exists()), None)
+    suffix = next((s for s in (".txt", ".bin") if exists(folder / f"cameras{s}")), None)
     if suffix is None:
         raise InputError(
             f"{folder / 'cameras.txt'}: no such file; wanted COLMAP's cameras.txt or cameras.bin"
@@ -82,7 +82,7 @@ def read_colmap(source: str | os.PathLike[str], *, unit_m: float = 1.0) -> dict[
     if not cameras:
         raise InputError(f"{listed}: no cameras")
     images = folder / f"images{suffix}"
-    if not images.exists():
+    if not exists(images):
         return {f"camera{name}": Calibration(made) for name, made in cameras.items()}
     found: dict[str, Calibration] = {}
     for image in _images_of_text(images) if text else colmap_bin.images(images):

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 from daguerre.errors import InputError
-from daguerre.files.reading import opened, reading
+from daguerre.files.reading import is_file, opened, reading
 
 #: Formats that are read, for errors.
 READ = (
@@ -55,7 +55,7 @@ def refuse(source: object) -> None:
     Raises:
         InputError: The message names program, way, and the formats that are read.
     """
-    if not isinstance(source, str | os.PathLike) or not Path(source).is_file():
+    if not isinstance(source, str | os.PathLike) or not is_file(Path(source)):
         return
     with opened(source) as file, reading(source):
         start = file.read(_START)

@@ -18,7 +18,7 @@ import numpy as np
 
 from daguerre.errors import InputError
 from daguerre.files.json_item import Item
-from daguerre.files.reading import document, opened
+from daguerre.files.reading import document, is_file, opened
 from daguerre.files.source import Source
 
 from .calibration import FLIP, Calibration, FloatArray, projection
@@ -34,7 +34,7 @@ def is_kitti(source: object) -> bool:
     if not isinstance(source, str | os.PathLike):
         return False
     path = Path(source)
-    if path.suffix.lower() != ".txt" or not path.is_file():
+    if path.suffix.lower() != ".txt" or not is_file(path):
         return False
     with opened(path) as file:
         return _PROJECTION.search(file.read(_START)) is not None

@@ -20,6 +20,7 @@ from daguerre.camera.projection import Projection
 from daguerre.checks import short
 from daguerre.doors import guarded
 from daguerre.files.json_item import Item
+from daguerre.files.reading import exists
 from daguerre.files.source import Source
 
 from .calibration import FLIP, Calibration, FloatArray, projection
@@ -102,7 +103,7 @@ def _with_pose(root: Item, source: Source, *, rectified: bool) -> Item:
     beside = None
     if isinstance(source, str | os.PathLike):
         beside = Path(source).with_name("extrinsics" + Path(source).suffix)
-    if beside is None or not beside.exists():
+    if beside is None or not exists(beside):
         where = "" if beside is None else f", here or in {beside}"
         root.fail(f"missing: {', '.join(wanted)}{where}")
     return load(beside)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from daguerre.errors import UsageError
+from daguerre.files.reading import exists
 from daguerre.plates.match.parameters import MATCH
 
 from . import console
@@ -65,7 +66,7 @@ def match_plate(
     target = output or photo.with_name(f"{photo.stem}.camera.json")
     if target.suffix.lower() != ".json":
         raise UsageError(f"-o {target}: wanted a name ending in .json, got {target.suffix!r}")
-    if (photo.exists() and output is None) or output is not None:
+    if (exists(photo) and output is None) or output is not None:
         check_writable(target)
     found = match(photo, flats=flat or (), **flags.given())
     found.save(target)

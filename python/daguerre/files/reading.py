@@ -49,6 +49,33 @@ def shown(path: str | os.PathLike[str]) -> str:
     return name if len(name) <= _LONGEST else f"{name[:_LONGEST]}..."
 
 
+def is_file(path: Path) -> bool:
+    """Whether there is such a file: false also for what is no name of a file, such as a long one.
+
+    ``Path.is_file`` raises ``OSError`` for a name of more than 255 bytes.
+    """
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def is_folder(path: Path) -> bool:
+    """Whether there is such a folder: false also for what is no name of a file."""
+    try:
+        return path.is_dir()
+    except (OSError, ValueError):
+        return False
+
+
+def exists(path: Path) -> bool:
+    """Whether there is something of this name: false also for what is no name of a file."""
+    try:
+        return path.exists()
+    except (OSError, ValueError):
+        return False
+
+
 def fault_of(path: Path) -> str:
     """Says why a path is not a file that can be read; empty: it is a regular file."""
     try:

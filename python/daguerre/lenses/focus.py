@@ -115,7 +115,8 @@ def closest_focus_m(lens: Lens, *, from_sensor: bool = False) -> float:
     """
     path = path_of(lens)
     if path is None:
-        return float(lens.prescription.closest_focus_m(from_sensor))
+        with reported(lens.source):
+            return float(lens.prescription.closest_focus_m(from_sensor))
     return _nearest(path.at(path.end), from_sensor=from_sensor)
 
 

@@ -81,7 +81,8 @@ def _radius(item: Item, key: str) -> float | None:
 
 
 def _thickness(item: Item, gap: float | None, last: bool) -> float | None:
-    thickness = gap if gap is not None else number(item, "thickness")
+    stated = number(item, "thickness")  # of other configurations, where this one has a gap
+    thickness = stated if gap is None else gap
     if not last and thickness is None:
         item.need("thickness").fail("wanted the distance to the next surface in mm, got null")
     if not last and thickness is not None and thickness < 0:

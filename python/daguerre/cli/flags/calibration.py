@@ -13,6 +13,7 @@ from daguerre.cached import cached_property
 from daguerre.camera.ideal import WITHOUT_IRIS
 from daguerre.camera.parameters import CAMERA
 from daguerre.cli import console
+from daguerre.files.reading import exists
 
 from .groups import Text, option
 
@@ -204,7 +205,7 @@ def _read(text: str, options: dict[str, Any]) -> dict[str, Any]:
         raise UsageError("--calibration: wanted a file, got ''")
 
     file, _, names = text.rpartition(":")
-    if not file or Path(text).exists() or not Path(file).exists():
+    if not file or exists(Path(text)) or not exists(Path(file)):
         file, names = text, ""
     known = read_all(file, **options)
     if names == "all" and "all" not in known:

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from daguerre.errors import asked_by
-from daguerre.files.reading import MISSING, fault_of, read_bytes
+from daguerre.files.reading import MISSING, fault_of, is_file, is_folder, read_bytes
 from daguerre.files.text_lines import MAX_BYTES
 from daguerre.files.uris import Folder
 
@@ -44,7 +44,7 @@ class Files:
         """
         for folder in self._folders:
             found = self._real(folder, name, entry)
-            if found.is_dir():
+            if is_folder(found):
                 self._check(found, name, entry)
                 self._folders.insert(0, found)
                 return
@@ -70,7 +70,7 @@ class Files:
         """
         for folder in self._folders:
             found = self._real(folder, name, entry)
-            if _is_file(found):
+            if is_file(found):
                 self._check(found, name, entry)
                 return found
         first = self.first(name, entry)
@@ -112,10 +112,3 @@ class Files:
                 f"leaves the scene's folder: wanted a file under {str(self._allowed[0])!r} "
                 f"(--allow-dir allows more folders), got {name[:200]!r}"
             )
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):  # a name too long for any file
-        return False

@@ -19,6 +19,7 @@ from daguerre.checks import freeze_in_place
 from daguerre.errors import InputError
 from daguerre.files import uses
 from daguerre.files.notes import Notes
+from daguerre.files.reading import is_file
 from daguerre.io.stated_colors import PLAIN, Colors
 from daguerre.scene.scene import Scene
 
@@ -188,7 +189,7 @@ class Images(Textures):
         packaged = _PACKAGED.match(path)
         package = packaged["package"] if packaged else path
         file = self.resolve(place, package)
-        if not _is_file(file):
+        if not is_file(file):
             return None
         where = f"{place}: {path}"
         if packaged is None:
@@ -205,7 +206,7 @@ class Images(Textures):
         packaged = _PACKAGED.match(path)
         if packaged:
             file = self.resolve(place, packaged["package"])
-            if not _is_file(file):
+            if not is_file(file):
                 return None
             with opened_package(file, place) as archive:
                 found = udim.tile_numbers(archive.namelist(), packaged["name"])
@@ -251,13 +252,6 @@ def _picture(
     freeze_in_place(pixels)
     uses.decoded(pixels.nbytes)
     return Picture(pixels, name, transform or IDENTITY, transform is not None, colors)
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):  # no name of a file
-        return False
 
 
 def _names(folder: Path) -> list[str]:

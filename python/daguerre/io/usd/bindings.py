@@ -75,7 +75,7 @@ class Bindings:
         for subset in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets():
             if str(subset.GetElementTypeAttr().Get()) != "face":
                 continue
-            chosen = np.asarray(subset.GetIndicesAttr().Get(self._clock.code) or [], np.int64)
+            chosen = self._clock.integers(subset.GetIndicesAttr())
             chosen = chosen[(chosen >= 0) & (chosen < faces)]
             chosen = chosen[left[chosen]]
             left[chosen] = False

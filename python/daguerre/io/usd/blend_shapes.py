@@ -50,8 +50,8 @@ def read_blend_shapes(
 
 def _read(shape: UsdSkel.BlendShape, channel: int, count: int, clock: Clock) -> BlendShape:
     where = f"{clock.file}: {shape.GetPath()}"
-    indices = shape.GetPointIndicesAttr().Get()
-    points = None if indices is None or not len(indices) else np.asarray(indices, np.int64)
+    indices = clock.integers(shape.GetPointIndicesAttr())
+    points = indices if len(indices) else None
     if points is not None and not 0 <= points.min() <= points.max() < count:
         raise InputError(
             f"{where}.pointIndices: wanted 0 .. {count - 1}, got {points.min()} .. {points.max()}"

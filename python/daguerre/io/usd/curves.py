@@ -116,7 +116,7 @@ def read_curves(
     where = f"{clock.file}: {prim.GetPath()}"
     points = read_points(schema, clock, notes)
     now: Array = value_at(points, clock.time)
-    counts = np.asarray(schema.GetCurveVertexCountsAttr().Get(clock.code) or [], np.int64)
+    counts = clock.integers(schema.GetCurveVertexCountsAttr())
     if not len(counts) or not len(now):
         return None
     if counts.min() < 0 or int(counts.sum()) != len(now):

@@ -51,7 +51,7 @@ def read_copies(prim: Usd.Prim, clock: Clock, notes: Notes) -> list[Copies]:
     if lacking:
         notes.add(f"a point instancer without {lacking} is left out")
         return []
-    kinds = np.asarray(instancer.GetProtoIndicesAttr().Get(clock.code) or [], np.int64)
+    kinds = clock.integers(instancer.GetProtoIndicesAttr())
     targets = instancer.GetPrototypesRel().GetForwardedTargets()
     if not len(kinds):
         return []

@@ -20,6 +20,7 @@ from daguerre.cached import cached_property
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.motion.values import at as value_at
+from daguerre.scene.limits import MAX_SIZE
 
 from .moving.blackbody import Color
 from .moving.emission import MOST, Emission, Shown, bounded
@@ -73,8 +74,15 @@ class Lamp:
         _note_the_rest(UsdLux.LightAPI(prim), notes)
 
     def size(self, name: str) -> float:
-        """A length of the light at the scene's time, at least 0, in its own units."""
-        return abs(self.still(f"inputs:{name}"))
+        """A length of the light at the scene's time, at least 0, in its own units.
+
+        Raises:
+            InputError: It is beyond the limits of a scene.
+        """
+        found = abs(self.still(f"inputs:{name}"))
+        if found >= MAX_SIZE:
+            raise self._wrong(f"inputs:{name}", f"a number below {MAX_SIZE:g}", found)
+        return found
 
     def still(self, name: str) -> float:
         """A number that does not change over time, or that of the scene's time, with a note."""

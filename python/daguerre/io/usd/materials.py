@@ -14,6 +14,7 @@ from pxr import Sdf, Usd, UsdShade
 from daguerre.errors import InputError
 from daguerre.files.json_item import short
 from daguerre.files.notes import Notes
+from daguerre.files.reading import is_file
 from daguerre.io.materialx.document import Document, read
 from daguerre.io.materialx.graph import Graph
 from daguerre.io.shading.arithmetic import Arithmetic
@@ -162,7 +163,7 @@ class Materials:
             return str(path), _EMPTY
         asset, name = found
         file = self._images.resolve(str(path), asset)
-        if not file.is_file():
+        if not is_file(file):
             self._notes.add("a MaterialX document that is missing is left out")
             return str(path), _EMPTY
         if file not in self._documents:

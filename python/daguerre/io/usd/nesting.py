@@ -44,7 +44,7 @@ class Totals:
         return self._found[path]
 
     def _count(self, instancer: UsdGeom.PointInstancer) -> int:
-        kinds = np.asarray(instancer.GetProtoIndicesAttr().Get(self._clock.code) or [], np.int64)
+        kinds = self._clock.integers(instancer.GetProtoIndicesAttr())
         stage, total = instancer.GetPrim().GetStage(), 0
         for i, path in enumerate(instancer.GetPrototypesRel().GetForwardedTargets()):
             copies, prototype = int(np.count_nonzero(kinds == i)), stage.GetPrimAtPath(path)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 from pxr import UsdGeom
@@ -40,8 +38,8 @@ def read_faces(mesh: UsdGeom.Mesh, count: int, clock: Clock, notes: Notes) -> Fa
     Raises:
         InputError: They do not fit together, or name points that do not exist.
     """
-    sizes = _integers(mesh.GetFaceVertexCountsAttr().Get(clock.code))
-    vertices = _integers(mesh.GetFaceVertexIndicesAttr().Get(clock.code))
+    sizes = clock.integers(mesh.GetFaceVertexCountsAttr())
+    vertices = clock.integers(mesh.GetFaceVertexIndicesAttr())
     where = f"{clock.file}: {mesh.GetPath()}"
     if sizes.size and sizes.min() < 0:
         raise InputError(f"{where}: faceVertexCounts: wanted at least 0, got {sizes.min()}")
@@ -56,17 +54,13 @@ def read_faces(mesh: UsdGeom.Mesh, count: int, clock: Clock, notes: Notes) -> Fa
     kept = sizes >= 3
     if not kept.all():
         notes.add("a face of fewer than three corners is left out", int((~kept).sum()))
-    holes = _integers(mesh.GetHoleIndicesAttr().Get(clock.code))
+    holes = clock.integers(mesh.GetHoleIndicesAttr())
     hidden = np.zeros(len(sizes), bool)
     hidden[holes[(holes >= 0) & (holes < len(sizes))]] = True
     corners = np.flatnonzero(np.repeat(kept, sizes))
     ids = np.flatnonzero(kept)
     stated = len(sizes), len(vertices)
     return Faces(count, sizes[ids], vertices[corners], ids, corners, stated, hidden[ids])
-
-
-def _integers(value: Any) -> Indices:
-    return np.zeros(0, np.int64) if value is None else np.asarray(value, np.int64).reshape(-1)
 
 
 def scheme_of(mesh: UsdGeom.Mesh, clock: Clock) -> str:
@@ -99,9 +93,9 @@ def _rules(mesh: UsdGeom.Mesh, faces: Faces, clock: Clock) -> Rules:
     code = clock.code
     where = f"{clock.file}: {mesh.GetPath()}"
     creases, sharpness = edges_of_chains(
-        _integers(mesh.GetCreaseIndicesAttr().Get(code)),
-        _integers(mesh.GetCreaseLengthsAttr().Get(code)),
-        _numbers(mesh.GetCreaseSharpnessesAttr().Get(code)),
+        clock.integers(mesh.GetCreaseIndicesAttr()),
+        clock.integers(mesh.GetCreaseLengthsAttr()),
+        clock.numbers(mesh.GetCreaseSharpnessesAttr()),
         where,
     )
     boundary = str(mesh.GetInterpolateBoundaryAttr().Get(code))
@@ -109,13 +103,9 @@ def _rules(mesh: UsdGeom.Mesh, faces: Faces, clock: Clock) -> Rules:
     return Rules(
         creases=creases,
         crease_sharpness=sharpness,
-        corners=_integers(mesh.GetCornerIndicesAttr().Get(code)),
-        corner_sharpness=_numbers(mesh.GetCornerSharpnessesAttr().Get(code)),
+        corners=clock.integers(mesh.GetCornerIndicesAttr()),
+        corner_sharpness=clock.numbers(mesh.GetCornerSharpnessesAttr()),
         boundary=_BOUNDARIES.get(boundary, "edge and corner"),
         face_varying=_FACE_VARYING.get(linear, "corners plus1"),
         holes=np.flatnonzero(faces.holes),
     )
-
-
-def _numbers(value: Any) -> NDArray[np.float64]:
-    return np.zeros(0) if value is None else np.asarray(value, np.float64).reshape(-1)

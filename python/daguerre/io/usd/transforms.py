@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from pxr import Usd, UsdGeom
 
+from daguerre.checks import short
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.motion.values import at as value_at
@@ -77,7 +80,8 @@ def _operation(op: UsdGeom.XformOp, clock: Clock, notes: Notes) -> Operation | N
     attribute = op.GetAttr()
     where = f"{clock.file}: {attribute.GetPath()}"
     affine = _Affine(where)
-    value = clock.value(attribute, affine if kind == "transform" else plain)
+    numbers = _Numbers(where, _count(kind, axes))
+    value = clock.value(attribute, affine if kind == "transform" else numbers)
     if value is None:
         return None
     if kind == "orient" and is_dynamic(value):
@@ -89,10 +93,35 @@ def _operation(op: UsdGeom.XformOp, clock: Clock, notes: Notes) -> Operation | N
     return made
 
 
+def _count(kind: str, axes: str) -> int:
+    """Numbers of an operation, other than a matrix."""
+    return 4 if kind == "orient" else 1 if kind == "rotate" and len(axes) == 1 else len(axes)
+
+
+@dataclass(frozen=True)
+class _Numbers:
+    """Converts values of one operation, of which a stage may state another type."""
+
+    where: str
+    count: int
+
+    def __call__(self, value: Any) -> Any:
+        """The number, or the numbers.
+
+        Raises:
+            InputError: There are others, or one is not finite.
+        """
+        made = plain(value)
+        numbers = made if isinstance(made, tuple) else (made,)
+        if len(numbers) != self.count or not all(isinstance(one, int | float) for one in numbers):
+            wanted = f"{self.count} numbers" if self.count > 1 else "a number"
+            raise InputError(f"{self.where}: wanted {wanted}, got {short(str(value))}")
+        if not all(math.isfinite(one) for one in numbers):
+            raise InputError(f"{self.where}: wanted finite numbers, got NaN or infinity")
+        return made
+
+
 def _check(made: Operation, where: str, time: float) -> None:
-    stated = made.value.values if is_dynamic(made.value) else made.value
-    if not np.isfinite(np.asarray(stated, np.float64)).all():
-        raise InputError(f"{where}: wanted finite numbers, got NaN or infinity")
     try:
         matrix = made.at(time)
     except np.linalg.LinAlgError:
@@ -124,6 +153,8 @@ class _Affine:
             InputError: A number is not finite, or the last one is 0.
         """
         made: Matrix = plain(value)
+        if np.shape(made) != (4, 4) or made.dtype.kind != "f":
+            raise InputError(f"{self._where}: wanted a matrix 4 x 4, got {short(str(value))}")
         if not np.isfinite(made).all():
             raise InputError(f"{self._where}: wanted finite numbers, got NaN or infinity")
         if not made[3, 3]:

@@ -13,8 +13,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pxr import Gf, Sdf, Usd
 
+from daguerre.checks import short
 from daguerre.errors import InputError
 from daguerre.motion.values import MAX_TIME, Keys, keys
 
@@ -36,7 +38,7 @@ def plain(value: Any) -> Any:
     """Converts a value of USD: vectors to tuples, quaternions to (x, y, z, w), tokens to texts."""
     if isinstance(value, Gf.Quatf | Gf.Quatd | Gf.Quath):
         return (*(float(v) for v in value.GetImaginary()), float(value.GetReal()))
-    if isinstance(value, Gf.Matrix4d | Gf.Matrix4f):
+    if type(value).__name__.startswith("Matrix"):
         return np.array(value, np.float64).T
     if type(value).__module__ == "pxr.Gf" and hasattr(value, "__len__"):
         return tuple(float(v) for v in value)
@@ -71,6 +73,30 @@ class Clock:
     def now(self, attribute: Usd.Attribute) -> Any:
         """Value of an attribute at the scene's time, or None."""
         return attribute.Get(self.code) if attribute else None
+
+    def integers(self, attribute: Usd.Attribute) -> NDArray[np.int64]:
+        """Whole numbers of an attribute at the scene's time, shape (N,); none without a value.
+
+        Raises:
+            InputError: A stage states values of another type.
+        """
+        return self._array(attribute, "iu", "whole numbers").astype(np.int64)
+
+    def numbers(self, attribute: Usd.Attribute) -> NDArray[np.float64]:
+        """Numbers of an attribute at the scene's time, shape (N,); none without a value.
+
+        Raises:
+            InputError: A stage states values of another type.
+        """
+        return self._array(attribute, "iuf", "numbers").astype(np.float64)
+
+    def _array(self, attribute: Usd.Attribute, kinds: str, wanted: str) -> NDArray[Any]:
+        value = self.now(attribute)
+        found = np.asarray([] if value is None else value).reshape(-1)
+        if found.size and found.dtype.kind not in kinds:
+            where = f"{self.file}: {attribute.GetPath()}"
+            raise InputError(f"{where}: wanted {wanted}, got {short(str(value))}")
+        return found
 
     def codes(self, attribute: Usd.Attribute, *, single: bool = False) -> list[float]:
         """Time codes at which an attribute has samples; none if it does not change.
