@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator
 from pathlib import Path
 
-from .errors import UsageError
+from .errors import InputError, UsageError
 
 PROC, GROUPS = Path("/proc"), Path("/sys/fs/cgroup")
 #: Default limit: share of the total memory that a process uses.
@@ -79,6 +79,27 @@ def free_bytes(proc: Path = PROC, groups: Path = GROUPS) -> int | None:
     found = [_of_machine(proc), *(_of_group(folder) for folder in _groups(proc, groups))]
     told = [free for free in found if free is not None]
     return max(min(told), 0) if told else None
+
+
+def need_addresses(least: int) -> None:
+    """Checks that this process may map enough memory.
+
+    Args:
+        least: Bytes.
+
+    Raises:
+        InputError: The limit of the process (``ulimit -v``) is lower.
+    """
+    try:
+        import resource
+    except ImportError:  # Windows
+        return
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if limit != resource.RLIM_INFINITY and limit < least:
+        raise InputError(
+            f"too little address space: wanted at least {shown(least)}, got a limit of this "
+            f"process (ulimit -v) of {shown(limit)}"
+        )
 
 
 def shown(count: float) -> str:

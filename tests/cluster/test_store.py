@@ -75,3 +75,23 @@ def test_the_folder_of_strangers_is_refused(
     folder.chmod(0o777)
     with pytest.raises(OutputError, match="wanted a folder to which only this user can write"):
         Store()
+
+
+def test_a_named_folder_of_strangers_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    named = tmp_path / "named"
+    monkeypatch.setenv(FOLDER, str(named))
+    assert Store().folder == named
+    assert named.stat().st_mode & 0o777 == 0o700
+    (tmp_path / "link").symlink_to(named)
+    monkeypatch.setenv(FOLDER, str(tmp_path / "link"))
+    Store()
+    for mode in (0o770, 0o707):
+        named.chmod(mode)
+        with pytest.raises(OutputError, match="wanted a folder to which only this user can write"):
+            Store()
+    named.chmod(0o700)
+    monkeypatch.setattr("os.getuid", lambda: 12345)
+    with pytest.raises(OutputError, match="wanted a folder to which only this user can write"):
+        Store()

@@ -18,6 +18,7 @@ OTHERS = {
     "io/png.py",  # the temporary file that it writes
     "scene/packed/chunk.py",  # the .glb that was written just now
     "setup/aim_cache.py",  # the cache
+    "viewfinder/browser.py",  # the program of the browser
     "viewfinder/lens_list.py",  # drawings of the package
     "viewfinder/server.py",  # the page, and photographs that it has written
 }

@@ -398,3 +398,24 @@ def test_connections_of_the_last_moment_are_closed(monkeypatch: pytest.MonkeyPat
         gc.collect()
     assert len(lines) == 4
     assert [str(one.message) for one in found] == []
+
+
+def test_a_page_that_is_stuck_does_not_hold_the_end(caplog: pytest.LogCaptureFixture) -> None:
+    with socket.socket() as line:
+        with served() as server:
+            line.connect(("127.0.0.1", server.port))
+            line.sendall(
+                f"GET /live HTTP/1.1\r\nHost: {server.host}\r\nOrigin: http://{server.host}\r\n"
+                "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+                "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n".encode()
+            )
+            assert line.recv(12) == b"HTTP/1.1 101"
+            text = TOKEN.encode()  # masked by zeros
+            line.sendall(bytes([0x81, 0x80 | len(text), 0, 0, 0, 0]) + text)
+            begun = time.monotonic()
+            while not server.hub._guests and time.monotonic() - begun < 30:
+                time.sleep(0.05)
+            assert server.hub._guests
+            begun = time.monotonic()
+        assert time.monotonic() - begun < 8  # 10 s by websockets' default
+    assert not [one for one in caplog.records if one.levelname == "ERROR"]

@@ -16,9 +16,9 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from daguerre.errors import DaguerreError, InputError, OutputError, suggest
-from daguerre.memory import left_bytes, shown
+from daguerre.memory import left_bytes, need_addresses, shown
 
-from . import console, short_process
+from . import console, ended, short_process
 from .commands import COMMANDS, COMPLETE
 
 if TYPE_CHECKING:
@@ -27,6 +27,12 @@ if TYPE_CHECKING:
 
 INTERNAL = 70
 INTERRUPTED = 75
+#: Typer's own exit code of a command that Ctrl-C ended.
+_OF_TYPER = 130
+#: Addresses that a command needs, bytes: with fewer, threads of libraries (OpenUSD's, OpenBLAS's)
+#: end the process; and commands that start none.
+_ADDRESSES = 1_600_000 << 10
+_SMALL = ("version",)
 
 
 def __getattr__(name: str) -> Any:
@@ -48,6 +54,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is not None:
         return _run(arguments)
     short_process.tune()
+    ended.by_signals()
     short_process.code = _run(sys.argv[1:])
     return short_process.code
 
@@ -64,9 +71,13 @@ def _run(arguments: Sequence[str]) -> int:
     console.open_streams()
     try:
         name = next((word for word in console.argv if not word.startswith("-")), "")
+        if name in COMMANDS and name not in _SMALL:
+            need_addresses(_ADDRESSES)
         with in_use.command():
             code = _command(name)(args=console.argv, prog_name="daguerre", standalone_mode=False)
         sys.stdout.flush()
+        if code == _OF_TYPER:
+            return _fail(ended.told(), INTERRUPTED)
         return int(code or 0)
     except DaguerreError as error:
         return _fail(_with_flag(str(error)), error.exit_code)
@@ -75,14 +86,14 @@ def _run(arguments: Sequence[str]) -> int:
         console.nobody_reads(sys.stdout)
         return 0
     except KeyboardInterrupt:
-        return _fail("interrupted", INTERRUPTED)
+        return _fail(ended.told(), INTERRUPTED)
     except MemoryError:
         return _out_of_memory()
     except UnicodeEncodeError as error:  # readers of pictures take names as text alone
         return _fail(f"{error.object}: wanted a name in UTF-8", InputError.exit_code)
     except Exception as error:
         if type(error).__name__ == "Abort":  # Typer's own, for Ctrl-C
-            return _fail("interrupted", INTERRUPTED)
+            return _fail(ended.told(), INTERRUPTED)
         if hasattr(error, "format_message"):  # Typer's own: a wrong command line
             return _fail(_usage(error), 2)
         if isinstance(error, OSError) and console.is_stuck(error):
@@ -91,6 +102,8 @@ def _run(arguments: Sequence[str]) -> int:
             return _fail(f"standard output: cannot write: {reason}", OutputError.exit_code)
         if isinstance(error, OSError) and error.errno == errno.ENOMEM:
             return _out_of_memory()
+        if isinstance(error, ImportError) and "failed to map segment" in str(error):
+            return _out_of_memory()  # of a library, by the dynamic loader
         if str(error) == "can't start new thread":  # Python's RuntimeError has no code
             return _fail(
                 "cannot start another thread: memory, or the number of processes of this user "

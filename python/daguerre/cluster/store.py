@@ -31,7 +31,7 @@ class Store:
 
     def __init__(self, folder: Path | None = None, limit: int = LIMIT) -> None:
         named = os.environ.get(FOLDER)
-        self.folder = folder or (Path(named) if named else _own_folder())
+        self.folder = folder or (_private(Path(named)) if named else _own_folder())
         self.limit = limit
 
     def lacks(self, names: Iterable[str]) -> list[str]:
@@ -96,13 +96,25 @@ def _own_folder() -> Path:
     """
     if not hasattr(os, "getuid"):  # Windows: temporary files are the user's own
         return Path(tempfile.gettempdir()) / "daguerre-cluster"
-    user = os.getuid()
-    folder = Path(tempfile.gettempdir()) / f"daguerre-cluster-{user}"
+    return _private(Path(tempfile.gettempdir()) / f"daguerre-cluster-{os.getuid()}", link=False)
+
+
+def _private(folder: Path, *, link: bool = True) -> Path:
+    """Makes a folder unless it is there, and checks that nobody else can write to it.
+
+    Args:
+        folder: The folder.
+        link: Whether it may be a link to one.
+
+    Raises:
+        OutputError: It is of another user, or others can write to it.
+    """
     try:
-        folder.mkdir(mode=0o700, exist_ok=True)
-        facts = folder.lstat()
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        facts = folder.stat() if link else folder.lstat()
     except OSError as error:
         raise OutputError(f"{folder}: cannot write: {error.strerror or error}") from error
+    user = os.getuid() if hasattr(os, "getuid") else facts.st_uid
     if facts.st_uid != user or facts.st_mode & 0o022:
         raise OutputError(
             f"{folder}: wanted a folder to which only this user can write; set {FOLDER} to "

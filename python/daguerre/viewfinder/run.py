@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import webbrowser
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from daguerre.checks import is_loopback
 from daguerre.errors import UsageError
 
+from .browser import opened
 from .dials import Dials
 from .door import Door, check_origin, new_token
 from .hub import Hub
@@ -83,10 +83,9 @@ def run(
     host = f"[{where.host}]" if ":" in where.host else where.host
     url = f"http://{host}:{port}/#{token}"
     say(url)
-    if where.browser:
-        webbrowser.open(url)
     door = Door.at(where.host, port, token, where.proxies)
-    with contextlib.suppress(KeyboardInterrupt):
+    page = opened(url, say) if where.browser else contextlib.nullcontext()
+    with contextlib.suppress(KeyboardInterrupt), page:
         asyncio.run(
             serve(sock, door, lambda loop: Hub(stage, dials, words, loop, tev=tev, said=said))
         )

@@ -36,6 +36,8 @@ KINDS = {
 SOCKET = "/live"
 #: Seconds within which a page sends its token.
 PATIENCE_S = 5.0
+#: Seconds that a page has to answer when the server ends; one that is stuck never does.
+GOODBYE_S = 1.0
 #: Pages at once.
 MOST_GUESTS = 16
 #: Connections at once, with those that have not sent a token yet.
@@ -102,11 +104,14 @@ class Server:
 
     async def _serve(self, connection: ServerConnection) -> None:
         self.guests += 1
+        from websockets.exceptions import ConnectionClosed
+
         guest = self.hub.join(_Line(connection))
         try:
             await self.hub.welcome(guest)
-            async for message in connection:
-                await self.hub.hear(guest, message)
+            with contextlib.suppress(ConnectionClosed):  # without a word: a page that is stuck
+                async for message in connection:
+                    await self.hub.hear(guest, message)
         finally:
             self.guests -= 1
             await self.hub.leave(guest)
@@ -206,6 +211,7 @@ async def serve(
             max_size=MAX_BYTES,
             max_queue=8,
             open_timeout=PATIENCE_S,
+            close_timeout=GOODBYE_S,
             server_header=None,
             **more,
         ):
