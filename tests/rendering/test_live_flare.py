@@ -37,12 +37,13 @@ def session(
     *suns: tuple[dg.SphereLight, Picture],
     threads: int = 0,
     scene: dg.Scene | None = None,
+    f_stop: float = 5.6,
 ) -> Session:
     """A session of suns, in an empty scene or in this one."""
     scene = scene or dg.Scene()
     for light, pose in suns:
         scene.add_light(light, pose)
-    camera = dg.Camera(lens=lens, f_stop=5.6, focus_distance=math.inf, blades=7)
+    camera = dg.Camera(lens=lens, f_stop=f_stop, focus_distance=math.inf, blades=7)
     return Session(
         scene, camera, resolution=SIZE, flare=3e5, light_paths="off", seed=1, threads=threads
     )
@@ -147,6 +148,27 @@ def test_a_lens_that_stays_has_the_same_ghosts_by_fewer_rays(
     assert off(kept, found) < 0.06
     assert kept.sum((0, 1)) == pytest.approx(found.sum((0, 1)), rel=0.03)
     assert drawer.rays < 0.75 * found_rays
+
+
+@pytest.mark.parametrize(
+    ("lens", "f_stop", "aside"),
+    [
+        ("leica-summilux-r-50mm-f1.4", 1.4, (-15, 4)),
+        ("angenieux-s1-50mm-f1.1", 1.1, (9, 5)),
+        ("nikon-nikkor-50mm-f1.2", 1.2, (9, 5)),
+    ],
+)
+def test_a_wide_stop_has_the_glass_of_its_grazing_rays(
+    lens: str, f_stop: float, aside: tuple[float, float]
+) -> None:
+    """Between angles and rays at which glass is known, where it changes most."""
+    made, drawer = session(lens, sun(*aside, (1.6e4,) * 3), f_stop=f_stop), _core.LiveFlare()
+    found = live(made, drawer)
+    live(made, drawer)
+    kept, reference = live(made, drawer), exact(made)
+    assert off(found, reference) < 0.085
+    assert off(kept, reference) < 0.085
+    assert kept.sum((0, 1)) == pytest.approx(found.sum((0, 1)), rel=0.08)
 
 
 @pytest.mark.parametrize("threads", [1, 3])

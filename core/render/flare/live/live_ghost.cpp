@@ -14,6 +14,7 @@ namespace {
 constexpr int kLooks = 8;               // of a square
 constexpr float kUnseen = 0.3f;         // looks that count as having seen light, of a square where none did
 constexpr float kLostUnseen = 0.25f;    // the same where rays are lost
+constexpr float kLostMore = 2;          // times as many arrivals there: looks are less sure
 constexpr double kWorthMore = 1500, kWorthMost = 6000;   // arrivals of a ghost that more nodes for its colours pay for
 constexpr double kWorthFine = 12;       // arrivals of a square that a finer grid pays for
 constexpr float kBend = 0.7f;           // px, from straight between nodes, that is worth one
@@ -24,8 +25,11 @@ constexpr int kWaves = LiveSource::kNodes;
 /// Fields of all nodes, one field after the other.
 std::vector<float> planes_of(const std::vector<MapLanding>& nodes, int crossings) {
     const int count = int(nodes.size());
-    std::vector<float> planes(std::size_t(3 + 2 * crossings) * count);
-    for (int n = 0; n < count; ++n) put_fields(planes.data() + n, count, nodes[n], crossings);
+    std::vector<float> planes(std::size_t(MeshPatch::fields(crossings)) * count);
+    for (int n = 0; n < count; ++n) {
+        put_fields(planes.data() + n, count, nodes[n], crossings);
+        planes[std::size_t(MeshPatch::pass_field(crossings)) * count + n] = nodes[n].pass;
+    }
     return planes;
 }
 
@@ -49,38 +53,43 @@ void LiveGhost::look_around() {
         const SpreadNumbers u{std::uint32_t(i + 1)};
         batch.set(i, {u[0], u[1]}, {0, 0}, GhostGrid::middle_nm(), 1);
     }
+    const GhostPlace::Spectrum glass = this->glass();
+    const float light = source_.light_of(glass);
+    if (!(light > 0)) return;
+    const GlassChange change = source_.change(glass);
     float most = 0;
     for (int i = 0; i < int(grid_.lit.size()); ++i) {
         if (!grid_.lit[i]) continue;
         squares_.push_back({i % GhostGrid::kSquares, i / GhostGrid::kSquares});
-        look(squares_.back(), batch);
+        look(squares_.back(), batch, change);
+        squares_.back().light *= light, squares_.back().root *= light;
         most = std::max(most, squares_.back().light);
     }
-    const float glass = most > 0 ? this->glass() : 0;
-    for (Square& s : squares_) s.light *= glass;
-    if (!(glass > 0)) squares_.clear();
+    if (!(most > 0)) squares_.clear();
 }
 
-/// Luminance that it leaves, about, of the source: at nodes that let light through.
-float LiveGhost::glass() {
+/// Mean of its spectra, about: at nodes that let light through.
+GhostPlace::Spectrum LiveGhost::glass() {
     std::vector<int> open;
     for (int n = 0; n < kNodes; ++n)
         if (grid_.nodes[n].sound && rays_.stopped(grid_.nodes[n]) < 0) open.push_back(n);
     if (open.empty())
         for (int n = 0; n < kNodes; ++n)
             if (grid_.nodes[n].sound && grid_.nodes[n].beyond < kAlmost) open.push_back(n);
-    if (open.empty()) return 0;
+    if (open.empty()) return {};
     std::vector<int> some;
     for (int i = 0; i < kGlassNodes; ++i) some.push_back(open[(2 * std::size_t(i) + 1) * open.size() / (2 * kGlassNodes)]);
-    float sum = 0;
+    GhostPlace::Spectrum mean{};
     for (const GhostPlace::Spectrum& s : spectra(some))
-        for (int k = 0; k < kWaves; ++k) sum += s[k] * source_.seen[k] / kGlassNodes;
-    return std::max(sum, 0.f);
+        for (int k = 0; k < kWaves; ++k) mean[k] += s[k] / kGlassNodes;
+    return mean;
 }
 
-/// By the grid alone, as if the source were a point of one colour.
-void LiveGhost::look(Square& s, MapBatch& b) {
-    patch(s).land(rays_.ghosts().tables().iris, b, kLooks);
+/// By the grid alone, as if the source were a point of one colour, with the mean of its spectra.
+void LiveGhost::look(Square& s, MapBatch& b, const GlassChange& glass) {
+    MeshPatch p = patch(s);
+    p.glass = glass;
+    p.land(rays_.ghosts().tables().iris, b, kLooks);
     int seen = 0;
     Vec2f px{0, 0};
     const float reach = CoarseLight::reach(LightLayer::kLevels - 1);
@@ -89,11 +98,12 @@ void LiveGhost::look(Square& s, MapBatch& b) {
         const bool near = b.x[i] > -reach && b.y[i] > -reach && b.x[i] < float(sensor_.width) + reach &&
                           b.y[i] < float(sensor_.height) + reach;
         if (!near || !(b.left[i] > 0)) continue;
-        ++seen, s.light += b.left[i] / kLooks;
+        ++seen, s.light += b.left[i] / kLooks, s.root += b.left[i] * b.left[i] / kLooks;
     }
     s.px = px, s.edge = seen < kLooks;
     for (int k = 0; k < 4; ++k) s.lost |= !node(s.x + (k & 1), s.y + (k >> 1)).sound;
     if (seen == 0) s.light = 0;
+    s.root = std::sqrt(s.root);
 }
 
 void LiveGhost::add_to(FlareTiles& tiles) const {
@@ -108,8 +118,9 @@ double LiveGhost::weigh(const FlareTiles& tiles) {
     for (const Square& s : squares_) most = std::max(most, s.light);
     double sum = 0;
     for (Square& s : squares_) {
-        const float light = std::max(s.light, most * (s.lost ? kLostUnseen : s.light > 0 ? 0 : kUnseen) / kLooks);
-        s.worth = area * light * tiles.importance(s.px), sum += s.worth;
+        const float unseen = s.lost ? kLostUnseen : s.light > 0 ? 0 : kUnseen;
+        const float light = std::max(s.root, most * unseen / kLooks);
+        s.worth = (s.lost ? kLostMore : 1) * area * light * tiles.importance(s.px), sum += s.worth;
     }
     return sum;
 }

@@ -46,7 +46,7 @@ class LiveGhost {
     static constexpr int kSub = 4, kSubSide = kSub + 1, kSubNodes = kSubSide * kSubSide;   // squares of a finer grid
     struct Square {
         int x, y;
-        float light = 0;       // mean of what looks saw
+        float light = 0, root = 0;         // of what looks saw: mean, and root of the mean square
         bool edge = false, lost = false;   // some rays are stopped; some have no landing
         Vec2f px{};            // where it lands, about
         double worth = 0;      // arrivals
@@ -64,13 +64,13 @@ class LiveGhost {
         traced_ += rays.size();
         return rays_.trace(rays);
     }
-    void look(Square& square, MapBatch& batch);
+    void look(Square& square, MapBatch& batch, const GlassChange& glass);
     using GroupColors = std::array<Rgb, LiveSource::kGroups>;
     GroupColors colors_of(const Few& few, float times) const;
     bool apart(const Square& square, const MeshPatch& patch) const;
     void draw(LightLayer& layer, const SheetLevel& levels, const Square& square, std::uint32_t from, int count, float times);
     void look_around();
-    float glass();
+    GhostPlace::Spectrum glass();
     std::optional<int> sound_near(int few) const;
     bool matters(int few) const;
     void divide(double own_arrivals);

@@ -9,6 +9,7 @@ namespace dg {
 namespace {
 
 constexpr int kWaves = LiveSource::kNodes;
+constexpr float kAlike = 0.1f;     // of the transmittance: what is known may be off by so much
 constexpr float kOutside = 0.2f;   // beyond an edge: what is farther has spectra of its own
 
 }  // namespace
@@ -42,21 +43,24 @@ LiveGhost::FewNodes LiveGhost::few_nodes() const {
     return nodes;
 }
 
-/// At nodes of the grid: what is known of them, or by rays.
+/// At nodes of the grid: what is known of them; by rays where nothing is, or not what the grid's ray says.
 std::vector<GhostPlace::Spectrum> LiveGhost::spectra(const std::vector<int>& nodes) {
     std::vector<GhostPlace::Spectrum> found(nodes.size());
     std::vector<MapRay> rays;
+    std::vector<int> of;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const Vec2f at = place_of(nodes[i]);
-        if (known_)
+        if (known_) {
             found[i] = known_->spectrum(at);
-        else
-            for (int k = 0; k < kWaves; ++k) rays.push_back({at, {0, 0}, LiveSource::node_nm(k)});
+            const float pass = grid_.nodes[std::size_t(nodes[i])].pass;
+            if (std::abs(source_.change(found[i]).pass - pass) < kAlike * pass) continue;
+        }
+        for (int k = 0; k < kWaves; ++k) rays.push_back({at, {0, 0}, LiveSource::node_nm(k)}), of.push_back(int(i));
     }
     const std::vector<MapLanding> landings = trace(rays);
     for (std::size_t i = 0; i < landings.size(); ++i) {
-        const MapLanding& own = grid_.nodes[std::size_t(nodes[i / kWaves])];
-        found[i / kWaves][i % kWaves] = landings[i].sound ? landings[i].pass : own.pass;
+        const MapLanding& own = grid_.nodes[std::size_t(nodes[std::size_t(of[i])])];
+        found[std::size_t(of[i])][i % kWaves] = landings[i].sound ? landings[i].pass : own.pass;
     }
     return found;
 }

@@ -47,7 +47,7 @@ void LiveGhost::draw(LightLayer& layer, const SheetLevel& levels, const Square& 
     const Few few = few_at({float(s.x) + 0.5f, float(s.y) + 0.5f});
     const GroupColors colors = colors_of(few, times);
     MeshPatch p = patch(s);
-    p.sets = few.sets;
+    p.sets = few.sets, p.glass = source_.change(few.spectrum);
     const float least = least_level(s);
     const auto set = [&](const auto& place) {
         for (int i = 0; i < count; ++i) {

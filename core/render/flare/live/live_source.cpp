@@ -3,11 +3,13 @@
 #include <algorithm>
 
 #include "render/flare/maps/color_table.h"
+#include "render/flare/maps/ghost_map_nodes.h"
 
 namespace dg {
 namespace {
 
 constexpr int kNodes = LiveSource::kNodes, kSteps = LiveSource::kSteps;
+constexpr float kAllAlike = 2;    // times the middle's transmittance, that of all light: it changes with the middle's
 constexpr float kBeyond = 0.1f;   // steps from the last nodes: the cubic is good for no more
 
 float sampled_nm(float u) { return Wavelengths::sample(u).nm[0]; }
@@ -58,6 +60,24 @@ LiveSource::LiveSource(SmallSource own, float free_share)
             seen[w.first + i] += luminance(rgb) * w.of[i] / luminance(mean);
         }
     }
+}
+
+float LiveSource::light_of(const std::array<float, kNodes>& spectrum) const {
+    float light = 0;
+    for (int k = 0; k < kNodes; ++k) light += seen[k] * spectrum[k];
+    return light;
+}
+
+/// Where little of the light is at the middle wavelength, as between the two ends of a spectrum that a coating leaves, it
+/// changes less.
+GlassChange LiveSource::change(const std::array<float, kNodes>& spectrum) const {
+    static const NodeWeights middle(lambda_node(1));
+    const float light = light_of(spectrum);
+    float pass = 0;
+    for (int i = 0; i < 4; ++i) pass += middle.of[i] * spectrum[middle.first + i];
+    if (!(pass > 0 && light > 0)) return {};
+    const float share = std::min(kAllAlike * pass / light, 1.f);
+    return {pass, share * share / pass};
 }
 
 float LiveSource::nm(float u) {

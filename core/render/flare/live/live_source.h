@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "render/flare/live/mesh_patch.h"
 #include "render/flare/maps/small_source.h"
 
 namespace dg {
@@ -22,6 +23,10 @@ struct LiveSource {
     double light;                    // of that share
 
     LiveSource(SmallSource own, float free_share);
+    /// Luminance that a transmittance leaves of its light.
+    float light_of(const std::array<float, kNodes>& spectrum) const;
+    /// How light of this transmittance changes with the one at the middle wavelength, see lambda_node(1).
+    GlassChange change(const std::array<float, kNodes>& spectrum) const;
     /// u in [0, 1), evenly as wavelengths are seen: its group is int(u * kGroups).
     static float nm(float u);
     static float node_nm(int k) { return kFirstNm + kStepNm * float(k); }

@@ -8,9 +8,18 @@
 
 namespace dg {
 
+/// How light of a spectrum changes with the transmittance at the middle wavelength: by the factor
+/// 1 + (transmittance - pass) per_pass.
+struct GlassChange {
+    float pass = 0, per_pass = 0;
+};
+
 struct MeshPatch {
-    /// Fields: px x, px y, beyond, and points of the iris.
+    /// Fields that wavelengths and source change: px x, px y, beyond, and points of the iris. The transmittance of the
+    /// glass at the middle wavelength is behind them.
     static constexpr int kMostFields = 3 + 2 * kMostCrossings;
+    static constexpr int pass_field(int crossings) { return 3 + 2 * crossings; }
+    static constexpr int fields(int crossings) { return pass_field(crossings) + 1; }
     /// Change from the middle wavelength to the nodes on either side (ghost_map_nodes.h), and to the source's rim along
     /// either axis.
     enum Set { kShort, kLong, kAcross, kDown, kSets };
@@ -21,12 +30,13 @@ struct MeshPatch {
     int squares = 1;                // across
     int crossings = 1;
     Sets sets{};
+    GlassChange glass{};
 
     /// Where rays land that enter at a batch's places, [0, 1] across the patch: fills x, y, beyond, the iris and left.
     void land(const IrisTables& iris, MapBatch& batch, int count) const;
 };
 
-/// Sets the fields of a landing, each `plane` behind the one before.
+/// Sets the fields of a landing but the last, each `plane` behind the one before.
 inline void put_fields(float* at, int plane, const MapLanding& l, int crossings) {
     at[0] = l.px.x, at[plane] = l.px.y, at[2 * plane] = l.beyond;
     for (int k = 0; k < crossings; ++k)

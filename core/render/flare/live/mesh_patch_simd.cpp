@@ -58,7 +58,8 @@ void Land(const MeshPatch& p, const IrisTables& iris, MapBatch& b, int count) {
         M open = hn::Lt(beyond, hn::Zero(d));
         hn::Store(beyond, d, b.beyond + i);
         const V wider = hn::Div(constant(1), hn::Load(d, b.opening + i));
-        V left = constant(1);   // by the iris
+        const V glass = hn::Sub(bilinear(p, MeshPatch::pass_field(p.crossings), s), constant(p.glass.pass));
+        V left = hn::Max(hn::MulAdd(glass, constant(p.glass.per_pass), constant(1)), hn::Zero(d));
         for (int k = 0; k < p.crossings; ++k) {
             const V x = field(3 + 2 * k), y = field(4 + 2 * k);
             hn::Store(x, d, b.iris_x[k] + i), hn::Store(y, d, b.iris_y[k] + i);

@@ -10,13 +10,13 @@ constexpr int kReach = 1;       // nodes from those with a landing
 constexpr float kDark = 1e3f;   // beyond edges, of nodes farther away
 
 MapLanding& operator+=(MapLanding& a, const MapLanding& b) {
-    a.px = a.px + b.px;
+    a.px = a.px + b.px, a.pass += b.pass;
     for (std::size_t k = 0; k < a.iris.size(); ++k) a.iris[k] = a.iris[k] + b.iris[k];
     return a;
 }
 
 MapLanding times(MapLanding l, float w) {
-    l.px = w * l.px;
+    l.px = w * l.px, l.pass *= w;
     for (Vec2f& i : l.iris) i = w * i;
     return l;
 }
@@ -49,7 +49,7 @@ void fill_landings(std::vector<MapLanding>& nodes, int side) {
                     }
                 if (!(weight > 0)) continue;
                 sum = times(sum, 1 / weight);
-                own.px = sum.px, own.iris = sum.iris;
+                own.px = sum.px, own.iris = sum.iris, own.pass = std::max(sum.pass, 0.f);
                 known[y * side + x] = true;
             }
     }
