@@ -297,3 +297,13 @@ def test_a_layer_that_changed_is_read_again_while_a_scene_lives(
     assert alive
     assert first.meshes[0].positions.max() == 1
     assert second.meshes[0].positions.max() == 7
+
+
+def test_a_folder_outside_is_not_listed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    listed: list[Path] = []
+    real = Path.iterdir
+    monkeypatch.setattr(Path, "iterdir", lambda folder: (listed.append(folder), real(folder))[1])
+    stage = _layer(tmp_path / "in" / "s.usda", _clips(_TEMPLATE.format("../p.#.usda")))
+    with pytest.raises(dg.InputError, match="leaves the stage's folder"):
+        dg.load(stage, in_process=True)
+    assert tmp_path not in listed

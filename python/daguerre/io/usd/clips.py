@@ -91,17 +91,18 @@ def templates(sets: dict[str, Any]) -> Iterator[str]:
             yield one["templateAssetPath"]
 
 
-def clips_of_template(layer: Sdf.Layer, template: str, search: Path) -> list[str]:
+def clips_of_template(layer: Sdf.Layer, template: str, search: Path) -> Iterator[str]:
     """Absolute paths of files that a template of clips may mean, whatever its times.
+
+    The template itself comes first, to be checked before its folder is listed.
 
     Args:
         layer: Layer that names the template.
         template: The template, with ``#`` for digits in the name of the file.
         search: Folder that is searched as well, that of the stage.
     """
-    found = []
     for pattern in dict.fromkeys((anchored(layer, template), str(search / template))):
-        found.append(pattern)
+        yield pattern
         if Ar.IsPackageRelativePath(pattern):
             continue
         folder, _, name = pattern.rpartition("/")
@@ -110,5 +111,4 @@ def clips_of_template(layer: Sdf.Layer, template: str, search: Path) -> list[str
             inside = [one.name for one in Path(folder or "/").iterdir()]
         except (OSError, ValueError):  # no folder; no name of a folder
             continue
-        found += (f"{folder}/{one}" for one in inside if form.fullmatch(one))
-    return found
+        yield from (f"{folder}/{one}" for one in inside if form.fullmatch(one))

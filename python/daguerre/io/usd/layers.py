@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from itertools import chain
 from pathlib import Path
 
 from pxr import Ar, Sdf
@@ -163,10 +164,9 @@ class Layers:
         for path, sets in names.clips:
             self._clips.add(sets)
             place = f"layer {layer.GetDisplayName()}: {path}"
-            files = [self._absolute(layer, name, variables) for name in named_clips(sets)]
-            for template in templates(sets):
-                files += clips_of_template(layer, template, self._folder)
-            for file in files:
+            named = (self._absolute(layer, name, variables) for name in named_clips(sets))
+            meant = (clips_of_template(layer, one, self._folder) for one in templates(sets))
+            for file in chain(named, *meant):
                 if file:
                     self._check_clip(file, place, variables)
 
