@@ -17,7 +17,7 @@ import daguerre as dg
 from daguerre.rendering.denoise import denoise
 
 #: Samples per pixel, and deepest path; raise the number when pictures should be made anew.
-SPP, DEPTH, EDITION = 16, 4, 1
+SPP, DEPTH, EDITION = 16, 4, 2
 QUALITY = 85
 
 
