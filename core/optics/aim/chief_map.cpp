@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "optics/first_order/paraxial.h"
 #include "optics/lens/lens_error.h"
 
 namespace dg {
@@ -71,16 +72,18 @@ ChiefMap::ChiefMap(const Tracer& tracer, const FilmPlane& plane, const FilmRecta
         return dot(node(a), node(a)) < dot(node(b), node(b)) - 1e-9;
     });
     const Vec3d middle = plane.at(film.center);
-    const double gap = middle.z - tracer.vertices().back();
+    const auto toward = [&](double z) { return Vec2d{middle.x, middle.y} * (1 / (middle.z - z)); };
     std::vector<int> done;
     for (const int i : order) {
-        Vec2d start = Vec2d{middle.x, middle.y} * (1 / gap);
+        Vec2d start = toward(tracer.vertices().back());
         int nearest = -1;
         for (const int k : done)
             if (nearest < 0 || length(node(k) - node(i)) < length(node(nearest) - node(i)))
                 nearest = k;
         if (nearest >= 0) start = nodes_[nearest].at(node(i) - node(nearest), {});
         nodes_[i] = solve(node(i), start);
+        if (nearest < 0 && !nodes_[i].ok)  // a glass before the film is no place to aim at
+            nodes_[i] = solve(node(i), toward(first_order(tracer.prescription()).exit_pupil_z));
         if (nodes_[i].ok) {
             done.push_back(i);
         } else if (nearest >= 0) {   // in the dark: as its neighbour sees it

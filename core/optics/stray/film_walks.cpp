@@ -4,30 +4,62 @@
 #include <cmath>
 
 #include "math/hash.h"
+#include "optics/first_order/paraxial.h"
 
 namespace dg {
+namespace {
 
-/// Toward a disc at the last vertex that all rays to the last surface pass: as much wider as its rim is deep.
-std::vector<FilmWalk> film_walks(const ScatterLens& lens, const FilmSpot& spot) {
+/// A disc on the plane of the last vertex.
+struct Disc {
+    Vec2d middle;
+    double radius;
+
+    double density(Vec2d p) const { return length(p - middle) < radius ? 1 / (kPiD * radius * radius) : 0; }
+};
+
+/// All rays from a spot to the last surface pass it: as much wider than the rim as that is deep.
+Disc whole_surface(const ScatterLens& lens, const FilmSpot& spot, double last) {
     const ScatterLens::Rim rim = lens.rims().back();
+    const double reach = (length(spot.point) + spot.radius + rim.radius) / (lens.ghosts().film().center.z - last);
+    return {{}, rim.radius + std::abs(rim.z - last) * reach};
+}
+
+/// The exit pupil, with a margin, as a film point sees it through the plane.
+Disc pupil(const FirstOrder& order, const Vec3d& from, double last) {
+    constexpr double kMargin = 1.25;
+    if (!std::isfinite(order.exit_pupil_z))
+        return {{from.x, from.y}, kMargin * std::abs(from.z - last) / (2 * order.f_number)};
+    const double share = (last - from.z) / (order.exit_pupil_z - from.z);
+    return {Vec2d{from.x, from.y} * (1 - share), kMargin * 0.5 * std::abs(share * order.exit_pupil_diameter)};
+}
+
+}  // namespace
+
+/// Half of the walks start toward the exit pupil, half toward the whole last surface, which may be a glass right before
+/// the film: its share of the light comes from all over the hemisphere, the picture's through the pupil alone. Weights
+/// are those of the balance heuristic (Veach and Guibas 1995).
+std::vector<FilmWalk> film_walks(const ScatterLens& lens, const FilmSpot& spot) {
     const FilmPlane& film = lens.ghosts().film();
-    const double last = lens.ghosts().tracer().vertices()[lens.rims().size() - 1];
-    const double reach = (length(spot.point) + spot.radius + rim.radius) / (film.center.z - last);
-    const double radius = rim.radius + std::abs(rim.z - last) * reach;
+    const Tracer& tracer = lens.ghosts().tracer();
+    const double last = tracer.vertices()[lens.rims().size() - 1];
+    const FirstOrder order = first_order(tracer.prescription());
+    const Disc surface = whole_surface(lens, spot, last);
     const LensIndices n = lens.at(spot.wavelength_nm);
     const ScatterDraw draw{.toward_film = false, .all = true};
     std::vector<FilmWalk> out;
     for (int i = 0; i < spot.walks; ++i) {
         const auto u = [&, k = std::uint64_t(i) * 4](int d) { return hash_uniform(hash64(spot.seed, 1), k + d); };
-        const Vec2d p = spot.point + concentric_disc({u(0), u(1)}) * spot.radius,
-                    q = concentric_disc({u(2), u(3)}) * radius;
-        const Vec3d from = film.at(p), way = Vec3d{q.x, q.y, last} - from;
+        const Vec3d from = film.at(spot.point + concentric_disc({u(0), u(1)}) * spot.radius);
+        const Disc open = pupil(order, from, last), &aim = i % 2 ? surface : open;
+        const Vec2d q = aim.middle + concentric_disc({u(2), u(3)}) * aim.radius;
+        const Vec3d way = Vec3d{q.x, q.y, last} - from;
         const double cosine = -way.z / length(way);
         LensRay left;
         const auto light = lens.walk({from, normalize(way)}, n, 1, hash64(spot.seed, 2, std::uint64_t(i)), draw,
                                      nullptr, &left);
         if (!light) continue;
-        const double etendue = std::pow(cosine, 4) / (way.z * way.z) * kPiD * radius * radius;
+        const double density = 0.5 * (surface.density(q) + open.density(q));
+        const double etendue = std::pow(cosine, 4) / (way.z * way.z * density);
         out.push_back({left.direction, etendue * light->weight / spot.walks, light->events});
     }
     return out;
