@@ -7,27 +7,44 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import importlib
 import json
 import os
 import resource
 import select
+import shutil
 import socket
 import struct
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 
-def _end_with_parent(life: int) -> None:
-    """Ends this process when the other end of a pipe closes, whatever a library does then.
+class Parent:
+    """The parent process, as long as it holds the other end of a pipe.
 
-    The kernel sends SIGIO, for which nothing is set up. Source: fcntl(2), O_ASYNC.
+    Args:
+        life: The reading end.
     """
-    fcntl.fcntl(life, fcntl.F_SETOWN, os.getpid())
-    fcntl.fcntl(life, fcntl.F_SETFL, fcntl.fcntl(life, fcntl.F_GETFL) | os.O_ASYNC)
-    poll = select.poll()
-    poll.register(life, 0)
-    if poll.poll(0):  # it had closed before
-        os._exit(1)
+
+    def __init__(self, life: int) -> None:
+        self._life = life
+        fcntl.fcntl(life, fcntl.F_SETOWN, os.getpid())
+
+    @contextlib.contextmanager
+    def needed(self) -> Iterator[None]:
+        """Ends this process with the parent, whatever a library does then.
+
+        The kernel sends SIGIO, for which nothing is set up. Source: fcntl(2), O_ASYNC.
+        """
+        flags = fcntl.fcntl(self._life, fcntl.F_GETFL)
+        fcntl.fcntl(self._life, fcntl.F_SETFL, flags | os.O_ASYNC)
+        poll = select.poll()
+        poll.register(self._life, 0)
+        if poll.poll(0):  # it had closed before
+            os._exit(1)
+        yield
+        fcntl.fcntl(self._life, fcntl.F_SETFL, flags)
 
 
 def _exactly(end: socket.socket, size: int) -> bytes:
@@ -42,8 +59,18 @@ def _exactly(end: socket.socket, size: int) -> bytes:
 
 def main() -> None:
     """Sets this process up, and serves."""
-    end = socket.socket(fileno=int(sys.argv[1]))
-    _end_with_parent(int(sys.argv[2]))
+    end, parent = socket.socket(fileno=int(sys.argv[1])), Parent(int(sys.argv[2]))
+    with parent.needed():
+        _set_up(end)
+    from daguerre.apart.serving import serve
+
+    serve(end, parent.needed)
+    shutil.rmtree(os.environ["TMPDIR"], ignore_errors=True)  # the parent may be gone
+    os._exit(0)  # libraries' own ends may be slow
+
+
+def _set_up(end: socket.socket) -> None:
+    """Limits this process, and takes the parent's paths of modules."""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     with contextlib.suppress(OSError):  # the kernel ends this process first if memory ends
         Path("/proc/self/oom_score_adj").write_text("1000")
@@ -51,9 +78,7 @@ def main() -> None:
     (size,) = struct.unpack("<Q", _exactly(end, 8))
     paths = json.loads(_exactly(end, size))
     sys.path[:] = [*paths, *(path for path in sys.path if path not in paths)]
-    from daguerre.apart.serving import serve
-
-    serve(end)
+    importlib.import_module("daguerre.apart.serving")
 
 
 if __name__ == "__main__":

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import importlib
 import itertools
 import socket
 import traceback
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from typing import Any
 
 from daguerre.errors import (
@@ -24,19 +27,25 @@ from .link import ANSWER, ERROR, FAULT, READY, TASK, TOLD, Link
 ERRORS = {kind.__name__: kind for kind in (InputError, UsageError, MismatchError, OutputError)}
 
 
-def serve(end: socket.socket) -> None:
-    """Runs tasks until the other end closes."""
+def serve(end: socket.socket, needed: Callable[[], AbstractContextManager[None]]) -> None:
+    """Runs tasks until the other end closes.
+
+    Args:
+        end: Connection to the parent.
+        needed: Within it, this process ends with the parent at once.
+    """
     end.setblocking(True)
     link = Link(end)
     link.send(READY, [])
-    while True:
-        try:
+    with contextlib.suppress(EOFError, ConnectionError):
+        while True:
             kind, blocks = link.receive(lambda: float("inf"))
-        except EOFError:
-            return
-        if kind == TASK:
-            link.send(*_answer(link, blocks))
-            gc.collect()  # so that a library lets go of the files that it holds
+            if kind == TASK:
+                with needed():
+                    answer = _answer(link, blocks)
+                link.send(*answer)
+                del blocks, answer
+                gc.collect()  # so that a library lets go of the files that it holds
 
 
 def _answer(link: Link, blocks: list[Any]) -> tuple[bytes, list[Any]]:
