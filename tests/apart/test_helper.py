@@ -172,6 +172,7 @@ def test_it_does_not_end_within_a_task(helper: Helper, monkeypatch: pytest.Monke
 
 
 def test_ctrl_c_ends_it(helper: Helper) -> None:
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
     number = ask(helper, "process")[0]
     main = threading.main_thread().ident
     assert main is not None

@@ -149,7 +149,10 @@ ZMX: dict[str, tuple[Callable[[str], str], str]] = {
         swap("FLOA", "OBNA 0.1"),
         r"aperture: wanted a finite object distance.*\[lens-f-stop\]",
     ),
-    "wider than the lens": (swap("FLOA", "ENPD 90"), r"\[lens-(no-light|edge)\]"),
+    "wider than the lens": (
+        lambda t: swap("FLOA", "ENPD 90")(re.sub(r"  DIAM .*\n", "", t)),  # none that stops light
+        r"\[lens-(no-light|edge)\]",
+    ),
     "diameter": (swap("DIAM 9.5", "DIAM big"), "DIAM: value: wanted a number" + _F),
     "obstruction": (add("  OBSC 0 50 0", "CURV -0.054"), r"\[lens-(no-light|surface|format)\]"),
     "aperture of light": (

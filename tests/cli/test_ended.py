@@ -27,6 +27,12 @@ sys.exit(main())
 """
 
 
+def _hear() -> None:
+    """Hears signals that the tests' own parent may ignore."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
 @pytest.mark.parametrize("command", ["info", "render"])
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGINT"])
 def test_a_signal_before_the_first_sample_ends_with_a_word(
@@ -39,7 +45,7 @@ def test_a_signal_before_the_first_sample_ends_with_a_word(
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        preexec_fn=_hear,
     )
     try:
         assert process.stdout is not None

@@ -270,7 +270,7 @@ def change(path: str, value: Any) -> Callable[[dict[str, Any]], None]:
         (change("surfaces.0.radius", "big"), r"surfaces\[0\]\.radius.*number"),
         (change("surfaces.0.thickness", -3), r"surfaces\[0\]\.thickness"),
         (change("surfaces.0.thickness", None), r"surfaces\[0\]\.thickness"),
-        (change("surfaces.0.semi_diameter", 101), r"surfaces\[0\]\.semi_diameter"),
+        (change("surfaces.0.semi_diameter", 120), r"surfaces\[0\]\.semi_diameter"),
         (change("surfaces.0.semi_diameter", -1), r"surfaces\[0\]\.semi_diameter"),
         (change("surfaces.0.glass", {"vd": 50}), r"surfaces\[0\]\.glass\.nd"),
         (change("surfaces.0.glass.nd", 0.5), r"surfaces\[0\]\.glass\.nd"),

@@ -146,14 +146,17 @@ def _beam(lens: Lens, *, within: bool) -> NDArray[np.float64]:
 
     Args:
         lens: The lens.
-        within: Whether to bound it by the clear diameters, which may pass less than the stop.
+        within: Whether to bound it by the diameters that the file states, which may pass less than
+            the stop.
     """
     order = lens.first_order()
     radius = 0.5 * order.entrance_pupil.diameter
     out = np.zeros(len(lens.surfaces))
     if not math.isfinite(radius) or not math.isfinite(order.entrance_pupil.z):
         return out
-    sizes = [math.inf if s.semi_diameter is None else s.semi_diameter for s in lens.surfaces]
+    sizes = [
+        math.inf if s.semi_diameter is None or s.derived else s.semi_diameter for s in lens.surfaces
+    ]
     for share in _PASSING if within else _TRACED:
         origin, direction = ray_to_pupil(lens, order.entrance_pupil.z, 0.0, share * radius)
         path = lens.prescription.path(origin[None], direction[None], DESIGN_WAVELENGTH_NM, False)
