@@ -286,6 +286,7 @@ def _rich(path: Path) -> Path:
     return stages.save(stage)
 
 
+@pytest.mark.behind_wall
 @pytest.mark.parametrize("suffix", ["usda", "usdc", "usdz"])
 def test_damage_at_any_place_is_an_error_or_a_scene(
     tmp_path: Path, suffix: str, capfd: pytest.CaptureFixture[str]
