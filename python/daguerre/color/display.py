@@ -31,7 +31,7 @@ def _shoulder(linear: NDArray[np.float32], knee: float = 0.8) -> NDArray[np.floa
     return np.asarray(rolled * (linear / above * (1 - white) + white * (peak > 0)), np.float32)
 
 
-def _into_gamut(linear: NDArray[np.float32]) -> NDArray[np.float32]:
+def into_gamut(linear: NDArray[np.float32]) -> NDArray[np.float32]:
     """Mixes negative colours with the grey of their luminance until they are in the gamut."""
     red, green, blue = _channels(linear)
     low = np.minimum(np.minimum(red, green), blue)

@@ -60,6 +60,11 @@ class Encoding:
     neutral: XY | None = None
 
     @property
+    def scene_white(self) -> XY:
+        """Chromaticity that is white in the scene."""
+        return self.neutral or self.white
+
+    @property
     def is_plain(self) -> bool:
         """Whether the numbers are linear Rec.709, at most encoded by sRGB's curve."""
         return self.gamma == 1.0 and self.is_rec709
@@ -187,7 +192,7 @@ def title_of(encoding: Encoding) -> str:
     """Describes an encoding in notes: by known names, else by chromaticities."""
     close = (name for known, name in _TITLES.items() if _near(encoding.primaries, known, ROUNDING))
     corners = " ".join(f"{x:.4g},{y:.4g}" for x, y in encoding.primaries)
-    white = encoding.neutral or encoding.white
+    white = encoding.scene_white
     near = (name for xy, name in _WHITES.items() if _near((white,), (xy,), _E_ROUNDING))
     title = f"{next(close, f'primaries {corners}')}"
     title += f", white {next(near, f'{white[0]:.4g},{white[1]:.4g}')}"
@@ -199,9 +204,8 @@ def title_of(encoding: Encoding) -> str:
 @cache
 def rec709_from(encoding: Encoding) -> tuple[tuple[float, float, float], ...]:
     """Matrix from linear light in a space to linear Rec.709, by rows."""
-    white = encoding.neutral or encoding.white
     from_rgb = xyz_of_primaries(encoding.primaries, encoding.white)
-    xyz = adaptation(white, D65_STATED) @ from_rgb
+    xyz = adaptation(encoding.scene_white, D65_STATED) @ from_rgb
     matrix = np.linalg.solve(xyz_of_primaries(P709, D65_STATED), xyz)
     return tuple((float(r), float(g), float(b)) for r, g, b in matrix)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from io import BufferedReader
 from pathlib import Path
@@ -54,24 +54,22 @@ def is_file(path: Path) -> bool:
 
     ``Path.is_file`` raises ``OSError`` for a name of more than 255 bytes.
     """
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False
+    return _holds(path.is_file)
 
 
 def is_folder(path: Path) -> bool:
     """Whether there is such a folder: false also for what is no name of a file."""
-    try:
-        return path.is_dir()
-    except (OSError, ValueError):
-        return False
+    return _holds(path.is_dir)
 
 
 def exists(path: Path) -> bool:
     """Whether there is something of this name: false also for what is no name of a file."""
+    return _holds(path.exists)
+
+
+def _holds(question: Callable[[], bool]) -> bool:
     try:
-        return path.exists()
+        return question()
     except (OSError, ValueError):
         return False
 

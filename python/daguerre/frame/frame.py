@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import short
-from daguerre.color.display import _into_gamut, _shoulder, _srgb
+from daguerre.color.display import _shoulder, _srgb, into_gamut
 from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.files import formats
@@ -214,7 +214,7 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
             linear = np.nan_to_num(self.rgb[rows], nan=0.0, posinf=3e38)
             if gain != 1:
                 linear = np.minimum(linear * np.float32(gain), np.float32(3e38))
-            linear = _into_gamut(linear)
+            linear = into_gamut(linear)
             yield rows, _srgb(_shoulder(linear) if tone == "soft" else linear)
 
     def save(

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color import srgb
-from daguerre.color.display import _into_gamut
+from daguerre.color.display import into_gamut
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.files.reading import size_of
@@ -97,7 +97,7 @@ def _in_gamut(light: NDArray[np.float32], notes: Notes | None, name: str) -> NDA
         lowest = part.min(axis=2)
         if (lowest < 0).any():
             count += int((lowest < -_ROUNDING * part.max(axis=2)).sum())
-            part = _into_gamut(part)
+            part = into_gamut(part)
         np.minimum(part, np.float32(MAX_LIGHT), out=light[row : row + _STRIPE])
     if count and notes is not None:
         told = f"{count} pixels outside of the gamut of Rec.709 are mixed with grey"

@@ -112,8 +112,7 @@ PLAIN = Colors()
 
 
 def _keeps_white(encoding: Encoding) -> bool:
-    white = encoding.neutral or encoding.white
-    return bool(np.allclose(white, LINEAR.white, rtol=0, atol=2e-4))
+    return bool(np.allclose(encoding.scene_white, LINEAR.white, rtol=0, atol=2e-4))
 
 
 def of_exr(facts: Mapping[str, Any], names: tuple[str, ...] = ()) -> Colors:
@@ -184,11 +183,7 @@ def _of_corners(value: Any) -> Encoding:
 def _alike(one: Encoding, other: Encoding) -> bool:
     """Whether two statements have the same primaries, to the digits of files; XYZ has one white."""
     same = np.allclose(one.primaries, other.primaries, rtol=0, atol=1e-3)
-    return bool(same and np.allclose(_white(one), _white(other), rtol=0, atol=1e-3))
-
-
-def _white(encoding: Encoding) -> tuple[float, float]:
-    return encoding.neutral or encoding.white
+    return bool(same and np.allclose(one.scene_white, other.scene_white, rtol=0, atol=1e-3))
 
 
 def of_primaries(values: tuple[float, ...], by: str, *, is_xyz: bool = False) -> Colors:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import re
 
+from daguerre.units import SENSORS
+
 from .lens import FirstOrder, Lens
 from .projections import projected
 
@@ -13,16 +15,16 @@ FULL_FRAME = 0.5 * math.hypot(36, 24)
 #: Pictures on film and common sensors by the name of their format, mm. Sheet film is named in
 #: inches and roll film in cm, both by the film and not by its picture.
 FORMATS = {
-    **dict.fromkeys(("135", "ff", "full-frame", "35mm-full-frame"), (36.0, 24.0)),
+    **dict.fromkeys(("135", "ff", "full-frame", "35mm-full-frame"), SENSORS["ff"]),
     "4x5": (121.0, 97.0),
     "5x7": (170.0, 121.0),
     "8x10": (246.0, 195.0),
     "6x9": (84.0, 56.0),
     "6x7": (69.5, 56.0),
     "6x6": (56.0, 56.0),
-    **dict.fromkeys(("645", "6x4.5"), (56.0, 41.5)),
-    "aps-c": (23.6, 15.7),
-    **dict.fromkeys(("four-thirds", "micro-four-thirds", "mft"), (17.3, 13.0)),
+    **dict.fromkeys(("645", "6x4.5"), SENSORS["645"]),
+    "aps-c": SENSORS["apsc"],
+    **dict.fromkeys(("four-thirds", "micro-four-thirds", "mft"), SENSORS["mft"]),
     **dict.fromkeys(("super-35", "s35"), (24.9, 18.7)),
 }
 _NUMBER, _LARGEST_MM = r"(\d+(?:\.\d+)?)", 1000.0

@@ -42,7 +42,7 @@ class Assets:
             raise InputError(
                 f"{self._file}: {place}: refused: wanted a file, got {short(name, 200)}"
             )
-        package = name.partition("[")[0] if Ar.IsPackageRelativePath(name) else name
+        package = package_of(name)
         if "\0" in package:
             raise InputError(f"{self._file}: {place}: refused: wanted a file, got {short(name)}")
         real = Path(os.path.realpath(package))
@@ -85,3 +85,8 @@ class Assets:
         if Ar.IsPackageRelativePath(str(found)):
             return found
         return found if is_file(found) else None
+
+
+def package_of(name: str) -> str:
+    """File of an asset; of one inside of a package, the package."""
+    return name.partition("[")[0] if Ar.IsPackageRelativePath(name) else name

@@ -16,10 +16,9 @@ from daguerre.scene.packed.parts import parts_of
 
 from .reader import read
 from .stage import time_of_code
+from .wall import FILE, PIXELS
 
 Tell = Callable[[str], None]
-#: Begin of a told text: a file that is read, and the bytes of a decoded picture.
-FILE, PIXELS = "file ", "pixels "
 
 
 def scene(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:

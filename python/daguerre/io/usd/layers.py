@@ -17,7 +17,7 @@ from pxr import Ar, Sdf
 from daguerre.errors import InputError
 
 from .anchored import anchored
-from .assets import Assets
+from .assets import Assets, package_of
 from .clips import Clips, clips_of_template, named_clips, templates
 from .expressions import Variables
 from .layer_files import check_file
@@ -147,13 +147,13 @@ class Layers:
         if before:
             before.Reload()  # another stage keeps it, and its file may have changed
         if layer is not None and layer.identifier not in self._names:
-            odd = self._checked[_package_of(real)]
+            odd = self._checked[package_of(real)]
             self._names[layer.identifier] = names_of(layer, odd)
         return layer
 
     def _check_file(self, real: str) -> bool:
         """Checks the file of a layer, or the package that it is in; returns whether it exists."""
-        file = _package_of(real)
+        file = package_of(real)
         if file not in self._checked:
             if not os.path.lexists(file):
                 return False
@@ -178,7 +178,7 @@ class Layers:
         alive = Sdf.Layer.Find(name)
         if alive:
             alive.Reload()
-        if self._checked[_package_of(real)] and name not in self._kept:
+        if self._checked[package_of(real)] and name not in self._kept:
             self._kept[name] = layer = self._opened(name, real)
             if layer is not None:
                 self._check_assets(layer, self._names[layer.identifier].assets, variables)
@@ -191,8 +191,3 @@ class Layers:
             absolute = self._absolute(layer, name, variables)
             if absolute and Ar.IsPackageRelativePath(absolute):
                 self._check_file(self._assets.check(str(path), absolute))
-
-
-def _package_of(real: str) -> str:
-    """File of a layer, that of the package if it is in one."""
-    return real.partition("[")[0] if Ar.IsPackageRelativePath(real) else real

@@ -12,20 +12,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from daguerre import memory
 from daguerre.apart.helper import Answer, Helper, NoHelperError
 from daguerre.apart.limits import Limits
-from daguerre.errors import DaguerreError, InputError, MismatchError
+from daguerre.errors import InputError
 from daguerre.files.in_use import note_read
-from daguerre.files.packing import damage
-from daguerre.scene.packed.rebuild import rebuilt
+from daguerre.scene.packed.rebuild import rebuilding, rebuilt
 from daguerre.scene.packed.values import make_verbatim
 from daguerre.scene.scene import Scene
 
 _TASKS = "daguerre.io.usd.inside"
-_FILE, _PIXELS = "file ", "pixels "
+#: Begin of a text that the helper tells: a file that it reads, and the bytes of a decoded picture.
+FILE, PIXELS = "file ", "pixels "
 #: Limits for a stage of at most ``_SMALL`` bytes.
 _SECONDS, _MEMORY, _SMALL = 10.0, 1.5e9, 1e6
 #: More of both for each byte of files beyond that, and for each byte of decoded pictures.
@@ -117,12 +115,12 @@ class _Uses:
 
     def heard(self, text: str) -> Limits:
         """Limits with another file or picture."""
-        if text.startswith(_PIXELS):
-            count = text.removeprefix(_PIXELS)
+        if text.startswith(PIXELS):
+            count = text.removeprefix(PIXELS)
             more = int(count) if count.isdecimal() and len(count) < 20 else 0
             self._pixels = min(self._pixels + more, _MOST_PIXELS)
-        elif text.startswith(_FILE):
-            self._open(text.removeprefix(_FILE))
+        elif text.startswith(FILE):
+            self._open(text.removeprefix(FILE))
         return self.limits
 
     def _open(self, name: str) -> None:
@@ -172,10 +170,5 @@ def _folder() -> str:
 
 def _scene(answer: Answer) -> Scene:
     """Rebuilds a scene from the helper's answer."""
-    try:
-        with np.errstate(all="ignore"), damage():
-            return rebuilt(answer.value(make_verbatim), answer.size, verbatim=True)
-    except MismatchError:
-        raise
-    except DaguerreError as error:
-        raise InputError(f"{answer.where}: cannot read: {error}") from None
+    with rebuilding(f"{answer.where}: cannot read"):
+        return rebuilt(answer.value(make_verbatim), answer.size, verbatim=True)

@@ -10,16 +10,14 @@ import math
 import struct
 from pathlib import Path
 
-import numpy as np
-
-from daguerre.errors import DaguerreError, InputError, MismatchError
+from daguerre.errors import InputError
 from daguerre.files.atomic import write_bytes
-from daguerre.files.packing import damage, pack, unpack
+from daguerre.files.packing import pack, unpack
 from daguerre.scene.scene import Scene
 
 from . import CHUNK
 from .parts import parts_of
-from .rebuild import rebuilt
+from .rebuild import rebuilding, rebuilt
 from .values import make
 
 _HEADER, _MOST = 12, (1 << 32) - 1
@@ -59,13 +57,8 @@ def scene_of(chunk: memoryview, path: Path) -> Scene:
         InputError: It is damaged; the message names the place.
     """
     data = bytes(chunk)
-    try:
-        with np.errstate(all="ignore"), damage():
-            scene = rebuilt(unpack(data, _elsewhere, make), len(data))
-    except MismatchError:
-        raise
-    except DaguerreError as error:
-        raise InputError(f"{path}: chunk DGSC: {error}") from None
+    with rebuilding(f"{path}: chunk DGSC"):
+        scene = rebuilt(unpack(data, _elsewhere, make), len(data))
     scene.path = path
     return scene
 

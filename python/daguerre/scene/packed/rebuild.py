@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -12,7 +13,8 @@ from numpy.typing import NDArray
 
 from daguerre.camera.camera import Camera
 from daguerre.checks import integers, matrix, number, short
-from daguerre.errors import InputError
+from daguerre.errors import DaguerreError, InputError, MismatchError
+from daguerre.files.packing import damage
 from daguerre.motion.values import Composite, Dynamic, Keys, is_dynamic
 from daguerre.scene.catcher import check_effects
 from daguerre.scene.curves import layout_of, moving_curves
@@ -343,6 +345,21 @@ def _point(value: Any, where: str) -> NDArray[Any]:
     if not np.isfinite(value).all():
         raise InputError(f"{where}: position: wanted finite numbers, got {short(value)}")
     return value
+
+
+@contextmanager
+def rebuilding(where: str) -> Iterator[None]:
+    """Turns whatever wrong parts lead to into ``InputError``, with the place in front.
+
+    Errors of another version (``MismatchError``) pass.
+    """
+    try:
+        with np.errstate(all="ignore"), damage():
+            yield
+    except MismatchError:
+        raise
+    except DaguerreError as error:
+        raise InputError(f"{where}: {error}") from None
 
 
 def rebuilt(parts: Mapping[str, Any], size: int, *, verbatim: bool = False) -> Scene:
