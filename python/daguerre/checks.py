@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import operator
+import weakref
+from collections.abc import Callable
 from itertools import islice
 from typing import Any
 
@@ -123,13 +125,30 @@ def line(values: ArrayLike, where: str) -> NDArray[np.float64]:
     return numbers
 
 
+class SealedBytes:
+    """Mapped bytes that nobody can change; ``numpy.asarray`` makes an array of them.
+
+    Args:
+        address: Their place.
+        size: Their number.
+        unmap: Called once no array needs them.
+    """
+
+    def __init__(self, address: int, size: int, unmap: Callable[[], object]) -> None:
+        self.__array_interface__ = {
+            **{"version": 3, "typestr": "|u1", "shape": (size,)},
+            "data": (address, True),  # read-only
+        }
+        weakref.finalize(self, unmap).atexit = False  # arrays may still be in use then
+
+
 def as_readonly(values: NDArray[Any], dtype: DTypeLike | None = None) -> NDArray[Any]:
     """Returns the array if it cannot change, else a read-only copy, as the core reads in place."""
     base: Any = values
     while isinstance(base, np.ndarray) and not base.flags.writeable:
         base = base.base
     in_order = values.flags.c_contiguous and values.flags.aligned
-    if isinstance(base, bytes):  # as of an array that was pickled; nobody can change those either
+    if isinstance(base, bytes | SealedBytes):  # bytes: as of an array that was pickled
         base = None
     if base is None and in_order and values.dtype == (values.dtype if dtype is None else dtype):
         return values

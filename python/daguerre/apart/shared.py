@@ -1,0 +1,81 @@
+"""Blocks that cross between processes as sealed files in memory instead of through a socket.
+
+A sealed file can neither change nor shrink, so its sender can do nothing to the process that maps
+it.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import fcntl
+import mmap
+import os
+from functools import cache, partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daguerre.checks import SealedBytes
+
+#: Whether this system has such files; Linux has.
+HAS_FILES = hasattr(os, "memfd_create")
+_SEALS = fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW | fcntl.F_SEAL_WRITE if HAS_FILES else 0
+
+
+def copied(block: memoryview) -> int | None:
+    """Copies a block into a sealed file.
+
+    Returns:
+        The open file; None: it cannot be made here.
+    """
+    if not HAS_FILES:
+        return None
+    try:
+        file = os.memfd_create("daguerre", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
+    except OSError:
+        return None
+    try:
+        while block:
+            block = block[os.write(file, block) :]
+        fcntl.fcntl(file, fcntl.F_ADD_SEALS, _SEALS)
+    except OSError:
+        os.close(file)
+        return None
+    return file
+
+
+def mapped(files: list[int], size: int) -> NDArray[np.uint8]:
+    """Maps the bytes of a block, read-only. The file can be closed then.
+
+    Args:
+        files: Open files that came with the block; one is wanted.
+        size: Number of bytes; at least 1.
+
+    Raises:
+        OSError: It cannot be mapped, or is a file of another kind.
+        ValueError: There is not one sealed file of this size.
+    """
+    if len(files) != 1 or not HAS_FILES:
+        raise ValueError(f"wanted 1 file, got {len(files)}")
+    seals = fcntl.fcntl(files[0], fcntl.F_GET_SEALS)
+    found = os.fstat(files[0]).st_size
+    if seals & _SEALS != _SEALS or found != size:
+        raise ValueError(f"wanted a sealed file of {size} bytes, got {found} bytes")
+    system = _system()
+    address = system.mmap(None, size, mmap.PROT_READ, mmap.MAP_PRIVATE, files[0], 0)
+    if address == ctypes.c_void_p(-1).value:
+        code = ctypes.get_errno()
+        raise OSError(code, os.strerror(code))
+    return np.asarray(SealedBytes(address, size, partial(system.munmap, address, size)))
+
+
+@cache
+def _system() -> Any:
+    """The C library: ``mmap.mmap`` would keep the file open for as long as its bytes."""
+    system = ctypes.CDLL(None, use_errno=True)
+    system.mmap.restype = ctypes.c_void_p
+    numbers = (ctypes.c_int, ctypes.c_int, ctypes.c_int, ctypes.c_long)
+    system.mmap.argtypes = (ctypes.c_void_p, ctypes.c_size_t, *numbers)
+    system.munmap.argtypes = (ctypes.c_void_p, ctypes.c_size_t)
+    return system
