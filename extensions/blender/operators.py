@@ -10,7 +10,6 @@ from bpy.props import EnumProperty, StringProperty
 from daguerre.errors import InputError
 from daguerre.files.atomic import write_bytes
 from daguerre.scene.packed.chunk import embed
-from daguerre.scene.packed.parts import packable
 
 from . import choices, taking, translation
 from .command import command
@@ -117,9 +116,8 @@ class DAGUERRE_OT_copy_command(_OnScene, bpy.types.Operator):
 
 def _command(path: Path, scene: Any, shot: translation.Shot) -> str:
     """Command line that draws a shot from the file that the export writes."""
-    name, held = scene.camera.name_full, packable(shot.camera)
-    denoises = scene.daguerre.denoise
-    return command(path, name, shot.camera, shot.settings, held, denoises=denoises)
+    name, denoises = scene.camera.name_full, scene.daguerre.denoise
+    return command(path, name, shot.camera, shot.settings, shot.camera, denoises=denoises)
 
 
 def _scene_file() -> Path:

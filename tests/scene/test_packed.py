@@ -21,8 +21,9 @@ from daguerre.motion.values import Composite
 from daguerre.scene import shapes
 from daguerre.scene.packed import CHUNK
 from daguerre.scene.packed.chunk import embed
-from daguerre.scene.packed.parts import packable, parts_of
+from daguerre.scene.packed.parts import parts_of
 from daguerre.scene.packed.rebuild import rebuilt
+from daguerre.sensors.writer import write as write_sensor
 from tests.faults.scene import write_scene
 from tests.fuzz import readers
 from tests.support.packed_scenes import everything
@@ -279,13 +280,102 @@ def test_a_plate_is_the_same_afterwards(glb: Path) -> None:
     assert same(dg.load(glb).plate, made.plate)
 
 
-def test_lens_and_sensor_files_are_left_out_of_cameras() -> None:
-    lens = dg.lenses.load("double-gauss-50mm-f2")
-    sensor = dg.sensors.load("nikon-d5100")
-    found = packable(dg.Camera(lens=lens, sensor=sensor, f_stop=4.0))
-    assert (found.lens, found.sensor, found.f_stop) == (None, None, 4.0)
-    named = dg.Camera(lens="double-gauss-50mm-f2", sensor="nikon-d5100")
-    assert packable(named) == named
+PBRT = "# A singlet\n35 8 1.6 20\n-60 5 1 20\n0 30 0 12\n"
+
+
+def optical_files(folder: Path) -> tuple[Path, Path]:
+    """A lens of another program and a sensor, as files that no library has."""
+    lens, sensor = folder / "singlet.dat", folder / "mine.json"
+    lens.write_text(PBRT)
+    write_sensor(sensor, dg.sensors.load("nikon-d5100").with_(read_noise=7.5, prnu=0.02))
+    return lens, sensor
+
+
+def test_lens_and_sensor_files_travel_in_the_scene(glb: Path, tmp_path: Path) -> None:
+    """Their pictures have the same bits after the files are gone, also for a plate's camera."""
+    lens, sensor = optical_files(tmp_path)
+    made = everything()
+    camera = replace(made.camera(), lens=str(lens), sensor=sensor, f_stop=8.0)
+    made.add_camera("mine", camera)
+    made.set_plate(np.full((2, 3, 3), 0.1), dg.Camera(lens=lens))
+    before = dg.render(made, made.camera("mine"), **TINY)
+    embed(glb, made)
+    known, chip = dg.lenses.load(lens), dg.sensors.load(sensor)
+    lens.unlink()
+    sensor.unlink()
+    found = dg.load(glb)
+    assert found.plate is not None
+    assert found.plate.camera is not None
+    for one in (found.camera("mine").lens, found.plate.camera.lens):
+        assert same(one, replace(known, source="singlet.dat"))
+    assert same(found.camera("mine").sensor, chip)
+    after = dg.render(found, found.camera("mine"), **TINY)
+    np.testing.assert_array_equal(before.rgb, after.rgb)
+    assert before.rgb.std() > 0
+    assert same(before.channels, after.channels)
+    assert str(tmp_path).encode() not in glb.read_bytes()
+
+
+def test_read_lenses_and_sensors_travel_in_the_scene(glb: Path) -> None:
+    zoom = next(name for name in dg.lenses.names() if len(dg.lenses.load(name).configurations) > 2)
+    lens = dg.lenses.load(zoom, dg.lenses.load(zoom).configurations[-1].name)
+    sensor = dg.sensors.load("nikon-d5100").with_(serial=7)
+    made = everything()
+    made.add_camera("read", dg.Camera(lens=lens, sensor=sensor))
+    made.add_camera("named", dg.Camera(lens=zoom, sensor="nikon-d5100"))
+    embed(glb, made)
+    found = dg.load(glb)
+    assert same(found.camera("read").lens, lens)
+    assert same(found.camera("read").sensor, sensor)
+    assert same(found.camera("named"), made.camera("named"))
+
+
+def test_a_lens_that_was_changed_is_refused(glb: Path) -> None:
+    made = everything()
+    lens = dg.lenses.load("double-gauss-50mm-f2").decentered((0, 1), (0.1, 0.0))
+    made.add_camera("bent", dg.Camera(lens=lens))
+    with pytest.raises(UsageError, match="camera 'bent': lens: wanted a lens as its file"):
+        embed(glb, made)
+
+
+def in_text(old: str, new: str) -> Callable[[Any, Any], None]:
+    """Changes the text of a lens or a sensor."""
+
+    def change(head: Any, body: Any) -> None:
+        pairs = [pair for part in body["parts"] for pair in part.get("dict", ())]
+        texts = [pair for pair in pairs if pair[0] == "text" and old in pair[1]]
+        assert texts
+        for pair in texts:
+            pair[1] = pair[1].replace(old, new)
+
+    return change
+
+
+HOSTILE_OPTICS = {
+    "no JSON": in_text("{", "["),
+    "a huge radius": in_text('"radius": 35', '"radius": 1e300'),
+    "crossing surfaces": in_text('"thickness": 8', '"thickness": 0'),
+    "a schema": in_text("daguerre-lens", "other-lens"),
+    "a sensor's size": in_text('"full_well_e": ', '"full_well_e": -'),
+    "a sensor's member": in_text('"prnu"', '"file"'),
+    "a serial": set_to("serial", -1),
+    "a serial that is a text": set_to("serial", "x"),
+    "a name": set_to("configuration", "x"),
+    "notes": set_to("notes", "x"),
+    "a lens that is a file": set_to("text", "/etc/passwd"),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE_OPTICS)
+def test_a_strangers_lens_and_sensor_are_checked(glb: Path, tmp_path: Path, name: str) -> None:
+    lens, sensor = optical_files(tmp_path)
+    made = everything()
+    made.add_camera("mine", dg.Camera(lens=str(lens), sensor=str(sensor)))
+    embed(glb, made)
+    repacked(glb, HOSTILE_OPTICS[name])
+    with pytest.raises(InputError, match="chunk DGSC: ") as caught:
+        dg.load(glb)
+    assert "\n" not in str(caught.value)
 
 
 def test_a_million_triangles_take_about_a_second(glb: Path) -> None:

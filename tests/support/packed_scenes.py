@@ -46,6 +46,9 @@ def everything() -> dg.Scene:
             rolling_shutter=dg.RollingShutter("left", readout_time=0.01),
         ),
     )
+    read = dg.sensors.load("nikon-d5100").with_(serial=3)
+    lens = dg.lenses.load("double-gauss-50mm-f2")
+    made.add_camera("Read", dg.Camera(lens=lens, sensor=read))
     made.note("something is left out (2 uses)")
     return made
 

@@ -32,7 +32,25 @@ def read_json_file(
         InputError: The file cannot be used; the message names file and JSON path.
     """
     path = Path(path)
-    root = parse(read_bytes(path, MAX_BYTES), str(path))
+    return checked_json(read_bytes(path, MAX_BYTES), str(path), schema, members, make)
+
+
+def checked_json(
+    data: bytes, where: str, schema: str, members: Collection[str], make: Callable[[Item], Made]
+) -> Made:
+    """Makes an object from the bytes of a library file; see :func:`read_json_file`.
+
+    Args:
+        data: The bytes.
+        where: The file, for messages.
+        schema: Schema that they must name.
+        members: Members that their JSON object may have.
+        make: Function that makes the result from the JSON object.
+
+    Raises:
+        InputError: They cannot be used.
+    """
+    root = parse(data, where)
     named = root.need("schema")
     if named.value != schema:
         named.fail(f"wanted {schema!r}, got {short(named.value)}")
@@ -43,4 +61,4 @@ def read_json_file(
         return make(root)
     except DaguerreError as error:
         text = str(error)
-        raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
+        raise InputError(text if text.startswith(where) else f"{where}: {text}") from None

@@ -46,6 +46,23 @@ def read(path: str | Path, configuration: str | None = None) -> Lens:
         return checked(replace(lens, source=source, notes=tuple(notes)))
 
 
+def read_text(text: str, source: str, configuration: str | None = None) -> Lens:
+    """Reads the text of a lens file of the schema ``daguerre-lens/0.1``.
+
+    Args:
+        text: JSON.
+        source: Name of the file, for messages.
+        configuration: Zoom or focus position by name; default: the first.
+
+    Raises:
+        InputError: It cannot be used; the message has the JSON path.
+    """
+    with reported(source, "lens-format"):
+        root = parse(text.encode("utf-8", "surrogatepass"), source)
+        lens = lens_from(root, Path(source), configuration)
+        return checked(replace(lens, notes=(*lens.notes, *unknown_members(root))))
+
+
 def _root(data: bytes, path: Path) -> tuple[Item, list[str]]:
     """Parses a file; returns its value, and notes on what an import ignores."""
     if formats.is_foreign(path):

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from daguerre.doors import guarded
-from daguerre.files.json_file import read_json_file
+from daguerre.files.json_file import checked_json, read_json_file
 from daguerre.files.json_item import MAX_NAME, Item
 
 from .curve import Curve
@@ -33,6 +33,20 @@ def read(path: str | Path) -> Sensor:
         InputError: The file cannot be used; the message has the file and JSON path.
     """
     return read_json_file(path, "sensor", SCHEMA, MEMBERS, _sensor)
+
+
+def read_text(text: str, source: str) -> Sensor:
+    """Reads the text of a sensor file.
+
+    Args:
+        text: JSON.
+        source: Name of the file, for messages.
+
+    Raises:
+        InputError: It cannot be used; the message has the JSON path.
+    """
+    data = text.encode("utf-8", "surrogatepass")
+    return checked_json(data, source, SCHEMA, MEMBERS, _sensor)
 
 
 def _sensor(root: Item) -> Sensor:

@@ -184,7 +184,7 @@ class _Answers(Helper):
 def _parts(stage: Path) -> dict[str, Any]:
     from daguerre.scene.packed.parts import parts_of
 
-    return parts_of(wall.read(stage, in_process=True), files=True)
+    return parts_of(wall.read(stage, in_process=True))
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ Tell = Callable[[str], None]
 def scene(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     """Reads a stage and takes its scene apart."""
     with _beginning(request, tell):
-        return parts_of(read(request["path"], kind=Gathered, **request["options"]), files=True)
+        return parts_of(read(request["path"], kind=Gathered, **request["options"]))
 
 
 def seconds(request: Mapping[str, Any], tell: Tell) -> float:

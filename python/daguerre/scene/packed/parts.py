@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
 
 from daguerre.camera.camera import Camera
+from daguerre.checks import short
 from daguerre.errors import UsageError
 from daguerre.files.packing import name_of
 from daguerre.motion.values import Composite, Keys, Spin
@@ -19,6 +19,7 @@ from daguerre.scene.scene import Scene
 
 from .gathered import Gathered
 from .moving import NAMES
+from .optics import parted
 
 #: Arrays of a mesh, and those of one moment of a mesh whose points move.
 ARRAYS = ("positions", "indices", "normals", "uv", "uv1", "tangents", "colors")
@@ -27,18 +28,18 @@ OF_MOMENT = ("positions", "normals", "tangents")
 OF_CURVES = ("radii", "starts", "ends", "cubic", "closed")
 
 
-def parts_of(scene: Scene, *, files: bool = False) -> dict[str, Any]:
+def parts_of(scene: Scene) -> dict[str, Any]:
     """Parts of a scene, from which ``rebuild.py`` makes one that has the bits of its pictures.
 
     Args:
         scene: The scene.
-        files: Whether cameras keep lenses and sensors that are files; a scene file may name none.
 
     Raises:
-        UsageError: Something moves in a way that cannot be packed.
+        InputError: A camera's lens or sensor is a file that cannot be read.
+        UsageError: Something moves in a way that cannot be packed, or the lens of a camera is
+            another one than its file describes.
     """
     motion = scene.motion
-    kept = (lambda camera: camera) if files else packable
     return {
         "time": scene.time,
         "textures": [_fields(texture) for texture in scene.textures],
@@ -46,14 +47,14 @@ def parts_of(scene: Scene, *, files: bool = False) -> dict[str, Any]:
         "meshes": [_mesh(mesh, motion.meshes.get(i)) for i, mesh in enumerate(scene.meshes)],
         "instances": _instances(scene),
         "lights": _with_motion(scene.lights, motion.lights, "lights"),
-        "cameras": [[name, kept(camera)] for name, camera in scene.cameras.items()],
+        "cameras": [[name, *_camera(one, name)] for name, one in scene.cameras.items()],
         "default camera": scene.default_camera,
         "camera aliases": [list(pair) for pair in scene.camera_aliases.items()],
         "film sizes": [[name, list(size)] for name, size in scene.film_sizes.items()],
         "environment": scene.environment,
         "environment motion": _known(motion.environment, "environment"),
         "fog": scene.fog,
-        "plate": scene.plate and _plate(scene.plate, kept),
+        "plate": scene.plate and _plate(scene.plate),
         "nodes": _nodes(scene),
         "duration": scene.duration,
         "variants": list(scene.variants),
@@ -61,26 +62,12 @@ def parts_of(scene: Scene, *, files: bool = False) -> dict[str, Any]:
     }
 
 
-def packable(camera: Camera) -> Camera:
-    """A camera without what a scene file may not name: a lens or a sensor that is a file."""
-    from daguerre.camera.ideal import IDEAL
-    from daguerre.lenses import library
-    from daguerre.sensors import names
-
-    found = camera
-    if not _is_one_of(camera.lens, (*IDEAL, *library.names())):
-        found = replace(found, lens=None)
-    if not _is_one_of(camera.sensor, names()):
-        found = replace(found, sensor=None)
-    return found
+def _camera(camera: Camera, name: str) -> tuple[Any, ...]:
+    return parted(camera, f"camera {short(name)}")
 
 
-def _is_one_of(value: Any, names: Any) -> bool:
-    return value is None or (isinstance(value, str) and value in names)
-
-
-def _plate(plate: Plate, kept: Callable[[Camera], Camera]) -> list[Any]:
-    return [plate.pixels, plate.camera and kept(plate.camera)]
+def _plate(plate: Plate) -> list[Any]:
+    return [plate.pixels, *(parted(plate.camera, "plate") if plate.camera else (None,) * 3)]
 
 
 def _fields(value: Any) -> dict[str, Any]:

@@ -25,6 +25,7 @@ from daguerre.scene.parts import Curves, Environment, vertices_of
 from daguerre.scene.point_cache import PointCache
 from daguerre.scene.scene import Scene
 
+from .optics import joined
 from .parts import ARRAYS, OF_MOMENT
 from .values import printable
 
@@ -64,8 +65,9 @@ class Rebuild:
         if (fog := self._parts.get("fog")) is not None:
             self.scene.set_fog(fog)
         if (plate := self._parts.get("plate")) is not None:
-            pixels, camera = plate
-            self.scene.set_plate(self._array(pixels, "plate: pixels"), camera)
+            pixels, *camera = plate
+            found = _camera(camera, "plate")
+            self.scene.set_plate(self._array(pixels, "plate: pixels"), found)
         self._nodes()
         self._rest()
         return self.scene
@@ -260,11 +262,12 @@ class Rebuild:
         sizes = {
             self._text(name, "film sizes"): size for name, size in self._parts.get("film sizes", ())
         }
-        for name, camera in self._parts["cameras"]:
+        for name, *given in self._parts["cameras"]:
+            where = f"camera {short(self._text(name, 'cameras'))}"
+            camera = _camera(given, where)
             if isinstance(camera, Camera):
-                matrix(camera.transform, f"camera {short(name)}")
-            size = sizes.get(self._text(name, "cameras"))
-            scene.add_camera(name, camera, film_size=size)
+                matrix(camera.transform, where)
+            scene.add_camera(name, camera, film_size=sizes.get(name))
         if chosen is not None:
             if chosen not in scene.cameras:
                 raise InputError(f"default camera: wanted a camera, got {short(chosen)}")
@@ -315,6 +318,16 @@ class Rebuild:
         for name in self._parts["variants"]:
             self.scene.add_variant(self._text(name, "variants"))
         self.scene.note(*(self._text(one, "warnings") for one in self._parts["warnings"]))
+
+
+def _camera(given: Any, where: str) -> Any:
+    """A camera, with the lens and the sensor whose contents the file has."""
+    camera, lens, sensor = given
+    if lens is sensor is None:
+        return camera
+    if not isinstance(camera, Camera):
+        raise InputError(f"{where}: wanted a camera, got {short(camera)}")
+    return joined(camera, lens, sensor, where)
 
 
 def _composite(motion: Any, where: str) -> Composite:
