@@ -8,6 +8,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
@@ -30,6 +31,12 @@ def process(request: Any, tell: Tell) -> tuple[int, int, int]:
 def folder(request: Any, tell: Tell) -> str:
     """Name of a temporary file, which stays."""
     return tempfile.mkstemp()[1]
+
+
+def passing(request: Any, tell: Tell) -> int:
+    """Uses a temporary file, which goes; returns the mode of its folder."""
+    with tempfile.NamedTemporaryFile() as file:
+        return Path(file.name).parent.stat().st_mode & 0o777
 
 
 def ones(request: int, tell: Tell) -> Any:

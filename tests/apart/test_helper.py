@@ -142,6 +142,7 @@ def test_an_answer_larger_than_the_memory_is_refused(helper: Helper) -> None:
 
 
 def test_temporary_files_go_with_the_helper(helper: Helper) -> None:
+    assert ask(helper, "passing") == 0o700
     file = Path(ask(helper, "folder"))
     assert file.parent.parent == Path(tempfile.gettempdir())
     with pytest.raises(InputError):
@@ -229,9 +230,13 @@ def test_it_ends_with_its_parent(end: str, tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_it_ends_with_its_parent_while_a_library_holds_it() -> None:
-    code = PROGRAM + 'helper.ask("tests.apart.tasks:hold", 60, limits, where="f", heard=heard)'
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+def test_it_ends_with_its_parent_while_a_library_holds_it(tmp_path: Path) -> None:
+    """The task before has used temporary files; no folder stays."""
+    code = PROGRAM + """
+helper.ask("tests.apart.tasks:passing", None, limits, where="f")
+helper.ask("tests.apart.tasks:hold", 60, limits, where="f", heard=heard)
+"""
+    environment = {**os.environ, "TMPDIR": str(tmp_path), "PYTHONPATH": os.pathsep.join(sys.path)}
     with subprocess.Popen(
         [sys.executable, "-c", code], cwd=ROOT, env=environment, stdout=subprocess.PIPE
     ) as program:
@@ -240,6 +245,7 @@ def test_it_ends_with_its_parent_while_a_library_holds_it() -> None:
         assert program.stdout.readline() == b"holds\n"
         program.kill()
     assert gone(number)
+    assert not list(tmp_path.iterdir())
 
 
 def test_without_a_python_there_is_none(

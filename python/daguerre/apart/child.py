@@ -16,6 +16,7 @@ import shutil
 import socket
 import struct
 import sys
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -44,6 +45,8 @@ class Parent:
         if poll.poll(0):  # it had closed before
             os._exit(1)
         yield
+        with contextlib.suppress(OSError):  # none was made, or files stay until the end
+            Path(os.environ["TMPDIR"]).rmdir()
         fcntl.fcntl(self._life, fcntl.F_SETFL, flags)
 
 
@@ -55,6 +58,16 @@ def _exactly(end: socket.socket, size: int) -> bytes:
             os._exit(1)
         found += piece
     return found
+
+
+def _folder() -> str:
+    """The folder of temporary files, which exists from its first use to the end of a task.
+
+    So a signal, which gives no time to remove it, mostly finds none.
+    """
+    name = os.environ["TMPDIR"]
+    Path(name).mkdir(mode=0o700, exist_ok=True)
+    return name
 
 
 def main() -> None:
@@ -70,7 +83,7 @@ def main() -> None:
 
 
 def _set_up(end: socket.socket) -> None:
-    """Limits this process, and takes the parent's paths of modules."""
+    """Limits this process, and takes the parent's paths of modules and its folder's name."""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     with contextlib.suppress(OSError):  # the kernel ends this process first if memory ends
         Path("/proc/self/oom_score_adj").write_text("1000")
@@ -78,6 +91,7 @@ def _set_up(end: socket.socket) -> None:
     (size,) = struct.unpack("<Q", _exactly(end, 8))
     paths = json.loads(_exactly(end, size))
     sys.path[:] = [*paths, *(path for path in sys.path if path not in paths)]
+    tempfile.gettempdir = _folder
     importlib.import_module("daguerre.apart.serving")
 
 

@@ -1,8 +1,9 @@
 """Starts, watches and ends a helper process.
 
 Its limits are watched here, where a fault of the helper cannot touch them. The helper has its own
-session, so Ctrl-C reaches this process alone; its own folder of temporary files, which is removed
-with it; and the reading end of a pipe that tells it, by a signal, when this process is gone.
+session, so Ctrl-C reaches this process alone; the name of a folder of its own for temporary files,
+which it makes when it needs one, and which is removed with it; and the reading end of a pipe that
+tells it, by a signal, when this process is gone.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import secrets
 import select
 import shutil
 import signal
@@ -53,7 +55,7 @@ class Process:
     def __init__(self) -> None:
         if not sys.executable or getattr(sys, "frozen", False):
             raise OSError("no Python to start")
-        self._folder = tempfile.mkdtemp(prefix="daguerre-")
+        self._folder = str(Path(tempfile.gettempdir(), f"daguerre-{secrets.token_hex(8)}"))
         ours, theirs = socket.socketpair()
         life, self._life = os.pipe()
         self._words = bytearray()
@@ -63,7 +65,6 @@ class Process:
         except (OSError, ValueError):
             ours.close()
             os.close(self._life)
-            shutil.rmtree(self._folder, ignore_errors=True)
             raise
         finally:
             theirs.close()

@@ -209,6 +209,7 @@ def test_a_helper_that_was_taken_over_is_not_trusted(
         with pytest.raises(InputError, match=words) as error:
             wall.read(stage)
         assert str(error.value).startswith(f"{stage}: cannot read: ")
+        assert str(error.value).count("cannot read") == 1
     finally:
         lying.end()
 

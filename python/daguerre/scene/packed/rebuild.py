@@ -362,7 +362,7 @@ def _point(value: Any, where: str) -> NDArray[Any]:
 
 @contextmanager
 def rebuilding(where: str) -> Iterator[None]:
-    """Turns whatever wrong parts lead to into ``InputError``, with the place in front.
+    """Turns whatever wrong parts lead to into ``InputError``, with the place in front, once.
 
     Errors of another version (``MismatchError``) pass.
     """
@@ -372,7 +372,8 @@ def rebuilding(where: str) -> Iterator[None]:
     except MismatchError:
         raise
     except DaguerreError as error:
-        raise InputError(f"{where}: {error}") from None
+        text = str(error)
+        raise InputError(text if text.startswith(where) else f"{where}: {text}") from None
 
 
 def rebuilt(parts: Mapping[str, Any], size: int, *, verbatim: bool = False) -> Scene:
