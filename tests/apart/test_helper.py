@@ -232,10 +232,13 @@ def test_it_ends_with_its_parent(end: str, tmp_path: Path) -> None:
 
 def test_it_ends_with_its_parent_while_a_library_holds_it(tmp_path: Path) -> None:
     """The task before has used temporary files; no folder stays."""
-    code = PROGRAM + """
+    code = (
+        PROGRAM
+        + """
 helper.ask("tests.apart.tasks:passing", None, limits, where="f")
 helper.ask("tests.apart.tasks:hold", 60, limits, where="f", heard=heard)
 """
+    )
     environment = {**os.environ, "TMPDIR": str(tmp_path), "PYTHONPATH": os.pathsep.join(sys.path)}
     with subprocess.Popen(
         [sys.executable, "-c", code], cwd=ROOT, env=environment, stdout=subprocess.PIPE

@@ -14,6 +14,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.errors import InputError
+from daguerre.io import decoder_program
 from daguerre.io.exr import apart, parts
 from daguerre.io.exr.layout import COMPRESSIONS
 from daguerre.io.exr.reader import ExrReader
@@ -105,7 +106,7 @@ def other_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str) ->
     """A file for the decoder, and another program in the decoder's place."""
     write(tmp_path / "a.exr", "PIZ", "float16")
     (tmp_path / "program.py").write_text(text)
-    monkeypatch.setattr(apart.transcode, "__file__", str(tmp_path / "program.py"))
+    monkeypatch.setattr(decoder_program, "__file__", str(tmp_path / "program.py"))
     return tmp_path / "a.exr"
 
 
@@ -133,7 +134,7 @@ def test_a_decoder_that_lies_is_refused(tmp_path: Path, monkeypatch: pytest.Monk
     OpenEXR.File({"compression": OpenEXR.NO_COMPRESSION}, {"R": np.ones((4, 4), "f4")}).write(
         str(other)
     )
-    lie = f"import shutil, sys\nshutil.copy({str(other)!r}, sys.argv[2])"
+    lie = f"import shutil, sys\nshutil.copy({str(other)!r}, sys.argv[3])"
     path = other_program(tmp_path, monkeypatch, lie)
     with (
         ExrReader(path) as reader,

@@ -11,7 +11,7 @@ import OpenImageIO as oiio
 import pytest
 
 from daguerre.errors import InputError
-from daguerre.io import decoder
+from daguerre.io import decoder, decoder_program
 from daguerre.io.images import read_file
 from daguerre.io.iris import read_grey
 from daguerre.io.light import read_environment
@@ -254,7 +254,7 @@ def test_a_crash_a_loop_and_a_bomb_apart_are_errors(
 ) -> None:
     path = write(tmp_path / "a.sgi", GREYS)
     program = tmp_path / "program.py"
-    monkeypatch.setattr(apart.program, "__file__", str(program))
+    monkeypatch.setattr(decoder_program, "__file__", str(program))
     program.write_text("import os; os.kill(os.getpid(), 11)")
     with pytest.raises(InputError, match=r"a\.sgi: .*damaged SGI: the decoder ended by SIGSEGV"):
         read_file(path)
@@ -263,7 +263,7 @@ def test_a_crash_a_loop_and_a_bomb_apart_are_errors(
     with pytest.raises(InputError, match="SGI took longer than 1 s"):
         read_file(path)
     monkeypatch.setattr(apart, "PATIENCE", 20)
-    program.write_text("import sys; open(sys.argv[2], 'wb').write(b'II*\\0' + bytes(999))")
+    program.write_text("import sys; open(sys.argv[3], 'wb').write(b'II*\\0' + bytes(999))")
     with pytest.raises(InputError, match=r"image size|plain TIFF|cut off"):
         read_file(path)
     huge = path.read_bytes()[:6] + b"\xff\xff\xff\xff" + path.read_bytes()[10:]

@@ -1,7 +1,7 @@
 """Unpacks pictures of other compressions in a separate process.
 
 Libraries that decode PIZ, PXR24, B44, DWA, HTJ2K and RLE have crashed on damaged files. Here only
-another process crashes: :mod:`daguerre.io.exr.transcode` writes plain pixels into a temporary file,
+another process crashes: :mod:`daguerre.io.decoder` has it write plain pixels into a temporary file,
 which is then read with the same checks as any other file.
 """
 
@@ -13,7 +13,6 @@ from tempfile import TemporaryDirectory
 from daguerre.errors import InputError
 from daguerre.io import decoder
 
-from . import transcode
 from .layout import COMPRESSIONS, Layout
 
 #: Time limit: seconds for any picture, and bytes per second in addition.
@@ -33,11 +32,6 @@ def plain_copy(layout: Layout, folder: TemporaryDirectory[str]) -> Path:
             f"ZIPS, ZIP), got {kind}"
         )
     target = Path(folder.name) / "plain.exr"
-    decoder.run(
-        (transcode.__file__, str(layout.path.absolute()), str(target), decoder.package(),
-         str(layout.size)),
-        str(layout.path),
-        f"{kind} pixels",
-        PATIENCE + layout.size / PACE,
-    )  # fmt: skip
+    wanted = decoder.Wanted("openexr", target, layout.size, PATIENCE + layout.size / PACE)
+    decoder.run(layout.path, wanted, str(layout.path), f"{kind} pixels")
     return target

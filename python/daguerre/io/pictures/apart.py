@@ -1,6 +1,6 @@
 """Decodes pictures in a process apart: OpenImageIO's readers of rare formats overran buffers.
 
-Only that process crashes; :mod:`daguerre.io.pictures.program` writes plain pixels into a temporary
+Only that process crashes; :mod:`daguerre.io.decoder` has it write plain pixels into a temporary
 file, which our own reader reads.
 """
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from daguerre.io import decoder
 
-from . import program, tiff
+from . import tiff
 from .kinds import Kind
 from .size import check_size
 from .source import Source
@@ -44,13 +44,9 @@ def read(
     """
     with TemporaryDirectory(prefix="daguerre-") as folder, source.file(kind.suffixes) as name:
         target = Path(folder, "plain.tif")
-        told = decoder.run(
-            (program.__file__, str(Path(name).absolute()), str(target), decoder.package(),
-             str(limit), str(int(straight))),
-            where,
-            kind.title,
-            PATIENCE + source.size / PACE,
-        )  # fmt: skip
+        seconds = PATIENCE + source.size / PACE
+        wanted = decoder.Wanted("tiff", target, limit, seconds, straight)
+        told = decoder.run(name, wanted, where, kind.title)
         plain = Source(target)
         pixels = tiff.plain_pixels(plain, where, limit)
     height, width, channels = pixels.shape
