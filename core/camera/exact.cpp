@@ -182,8 +182,9 @@ ExactLens::ExactLens(const Prescription& lens, const ExactLensSettings& settings
       unit_(state_->found.h0) {}
 
 ExactLens ExactLens::without_fit() const {
+    if (!fitted_) return *this;
     ExactLens lens = *this;
-    lens.fitted_ = false;
+    lens.fitted_ = false, lens.chief_ = {};
     return lens;
 }
 
@@ -196,7 +197,7 @@ ExactLens ExactLens::in_the_body_of(const ExactLens& middle) const {
     lens.advance_ = middle.advance_ + middle.state_->film_depth() - state_->film_depth();
     const Vec2d film = middle.state_->ahead - state_->ahead;
     lens.film_shift_ = middle.film_shift_ + Vec2f{float(film.x), float(film.y)};
-    lens.unit_ = middle.unit_;
+    lens.unit_ = middle.unit_, lens.chief_ = {};
     return lens;
 }
 
@@ -218,7 +219,7 @@ float ExactLens::leaf_transmission(float opening, float x_mm, float y_mm) const 
 ExactLens ExactLens::with_dirt(LensDirt dirt) const {
     check_mask(dirt.front, "front mask"), check_mask(dirt.iris, "iris mask");
     ExactLens lens = *this;
-    lens.dirt_ = std::make_shared<const LensDirt>(std::move(dirt));
+    lens.dirt_ = std::make_shared<const LensDirt>(std::move(dirt)), lens.chief_ = {};
     return lens;
 }
 

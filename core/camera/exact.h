@@ -10,6 +10,7 @@
 #include "camera/axial.h"
 #include "camera/camera_sample.h"
 #include "camera/lens_mask.h"
+#include "math/made_once.h"
 #include "optics/aim/pupil.h"
 #include "optics/expansion/lens_fit.h"
 #include "optics/first_order/paraxial.h"
@@ -17,6 +18,8 @@
 #include "optics/stray/scatter_lens.h"
 
 namespace dg {
+
+class ChiefRays;
 
 /// The glass as polynomials (optics/expansion/lens_fit.h) instead of surface by surface.
 struct FittedGlass {
@@ -132,6 +135,8 @@ class ExactLens {
     const Aim& aim() const;
     const Tracer& tracer() const;
     const LensTables& tables() const;
+    /// Chief rays (camera/inverse/chief.h) that all copies of the lens share.
+    const MadeOnce<ChiefRays>& chief_rays() const { return chief_; }
 
   private:
     struct State;
@@ -147,6 +152,7 @@ class ExactLens {
              std::size_t begin, int count) const;
     std::shared_ptr<const State> state_;
     std::shared_ptr<const LensDirt> dirt_;   // null: clean
+    MadeOnce<ChiefRays> chief_;
     bool fitted_;
     double unit_;            // the exposure of weight 1
     double advance_ = 0;     // camera frame, mm: z of the middle of the entrance pupil

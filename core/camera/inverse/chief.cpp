@@ -96,12 +96,14 @@ ChiefRays::ChiefRays(const LensKind& kind)
     : ChiefRays(std::visit([](const auto& lens) { return of(lens); }, kind)) {}
 
 ChiefRays ChiefRays::of(const ExactLens& lens) {
-    ChiefRays rays;
-    if (lens.is_axial())
-        rays.tabulate(lens);
-    else
-        rays.grid_.emplace(lens);
-    return rays;
+    return lens.chief_rays().get([&] {
+        ChiefRays rays;
+        if (lens.is_axial())
+            rays.tabulate(lens);
+        else
+            rays.grid_.emplace(lens);
+        return rays;
+    });
 }
 
 void ChiefRays::tabulate(const ExactLens& lens) {

@@ -104,4 +104,21 @@ TEST_CASE("a chief ray goes through the point in focus, where the lens's rays me
     }
 }
 
+TEST_CASE("copies of a lens share its chief rays, other lenses have their own") {
+    const ExactLens lens = focused(test::tessar(), 4, 2);
+    const auto kept = [](const ExactLens& of) { return &of.chief_rays().get([] { return ChiefRays(Pinhole{}); }); };
+    const ChiefRays first(lens);
+    const LensKind copy = lens;
+    CHECK(kept(std::get<ExactLens>(copy)) == kept(lens));
+    CHECK(ChiefRays(copy).at({10, -7}).direction == first.at({10, -7}).direction);
+    const ExactLens body = focused(test::tessar(), 4, 0.6).in_the_body_of(lens);
+    const ExactLens fresh = focused(test::tessar(), 4, 0.6);
+    CHECK(length(ChiefRays(body).at({10, -7}).origin - ChiefRays(fresh).at({10, -7}).origin) > 1e-4);
+    LensDirt half;   // a front that is dark on one side moves the mean of the rays
+    half.front = {2, 1, {0, 1}};
+    const ExactLens dirty = lens.with_dirt(half);
+    CHECK(kept(dirty) != kept(lens));
+    CHECK(kept(lens.without_fit()) == kept(lens));
+}
+
 }  // namespace dg
