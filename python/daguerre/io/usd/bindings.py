@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +12,7 @@ from pxr import Sdf, Usd, UsdGeom, UsdShade
 
 from daguerre.files.notes import Notes
 
+from .bound_collections import BoundCollections
 from .materials import Materials
 from .meshes import Choice, uv_names
 from .primvars import read_primvar
@@ -44,27 +46,42 @@ class Bindings:
         materials: Reader of materials.
         clock: Time codes of the stage.
         notes: Receives notes on materials that are missing.
+        collections: Check of collections that are bound; None: there are none.
     """
 
-    def __init__(self, materials: Materials, clock: Clock, notes: Notes) -> None:
-        self._materials = materials
+    def __init__(
+        self,
+        materials: Materials,
+        clock: Clock,
+        notes: Notes,
+        collections: BoundCollections | None = None,
+    ) -> None:
+        self._materials, self._collections = materials, collections
         self._clock = clock
         self._notes = notes
         self._seen: set[Sdf.Path] = set()
+        #: Paths of materials that USD finds, by prim.
+        self._of_usd: dict[Sdf.Path, Sdf.Path | None] = {}
 
     @property
     def clock(self) -> Clock:
         """Time codes of the stage."""
         return self._clock
 
-    def prefetch(self, prim: Usd.Prim) -> None:
-        """Begins to decode the pictures of a prim and of its subsets."""
-        subsets = UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets()
-        for bound in (prim, *(subset.GetPrim() for subset in subsets)):
-            material, _ = UsdShade.MaterialBindingAPI(bound).ComputeBoundMaterial(
-                UsdShade.Tokens.full
-            )
-            path = material.GetPath() if material else self._materials.bound_path(bound)
+    def prefetch(self, prims: Iterable[Usd.Prim]) -> None:
+        """Finds the materials of prims and of their subsets, and begins to decode pictures."""
+        found = [
+            one for prim in prims for one in (prim, *_subsets(UsdShade.MaterialBindingAPI(prim)))
+        ]
+        if not found:
+            return
+        if self._collections is not None:
+            self._collections.check(found)
+        api, purpose = UsdShade.MaterialBindingAPI, UsdShade.Tokens.full
+        materials, _ = api.ComputeBoundMaterials(found, purpose)  # looks at each collection once
+        for prim, material in zip(found, materials, strict=True):
+            self._of_usd[prim.GetPath()] = path = material.GetPath() if material else None
+            path = self._materials.bound_path(prim) if path is None else path
             if path is not None and path not in self._seen:
                 self._seen.add(path)
                 self._materials.prefetch(prim.GetStage(), path)
@@ -125,9 +142,11 @@ class Bindings:
 
     def _bound(self, prim: Usd.Prim) -> Sdf.Path | None:
         """Path of the material of a prim; it may be in a ``.mtlx`` file that USD does not read."""
-        material, _ = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial(UsdShade.Tokens.full)
-        if material:
-            return material.GetPath()
+        if prim.GetPath() not in self._of_usd:
+            self.prefetch([prim])
+        path = self._of_usd[prim.GetPath()]
+        if path is not None:
+            return path
         path = self._materials.bound_path(prim)
         if path is not None and not self._materials.has(prim.GetStage(), path):
             self._notes.add("a bound material is missing: the prim has its displayColor")
@@ -155,3 +174,8 @@ class Bindings:
             alpha = [] if varies else float(opacity.flat[0, 0])  # a list: that of the vertices
         index = self._materials.displayed(None if colored else shown, alpha)
         return Part(Choice(subset, uv_names((), prim), colored), faces, index)
+
+
+def _subsets(api: UsdShade.MaterialBindingAPI) -> list[Usd.Prim]:
+    """Prims of the subsets of a prim that have materials."""
+    return [subset.GetPrim() for subset in api.GetMaterialBindSubsets()]

@@ -10,6 +10,8 @@ from pxr import Ar, Sdf, Vt
 
 from daguerre.errors import InputError
 
+from .bound_collections import BINDING
+
 #: Most prims inside of one another.
 DEEPEST = 2000
 #: Most arcs of a layer: references, payloads, inherited and specialized classes.
@@ -41,12 +43,14 @@ class LayerNames:
         arcs: Arcs of a prim or variant.
         clips: Prim, and its sets of value clips.
         assets: Attribute, and each asset that is an expression or inside of a package.
+        binds_collections: Whether a material is bound to a collection.
     """
 
     below: dict[Sdf.Path, dict[Sdf.Path, None]] = field(default_factory=dict)
     arcs: dict[Sdf.Path, list[Arc]] = field(default_factory=dict)
     clips: list[tuple[Sdf.Path, dict[str, Any]]] = field(default_factory=list)
     assets: list[tuple[Sdf.Path, str]] = field(default_factory=list)
+    binds_collections: bool = False
 
     def files(self) -> set[str]:
         """Files of all arcs, as authored."""
@@ -83,8 +87,11 @@ def names_of(layer: Sdf.Layer, odd_assets: bool) -> LayerNames:
                 raise _missing(layer)
             if arcs > _MAX_ARCS:
                 raise InputError(f"{layer.realPath}: too many references: the limit is {_MAX_ARCS}")
-        elif odd_assets and path.IsPropertyPath():
-            found.assets += ((path, name) for name in _odd_assets(layer, path))
+        elif path.IsPropertyPath():
+            if path.name.startswith(BINDING):
+                found.binds_collections = True
+            if odd_assets:
+                found.assets += ((path, name) for name in _odd_assets(layer, path))
     return found
 
 

@@ -77,6 +77,11 @@ class Layers:
                 self._follow(self._waiting.pop())
         self._clips.check()
 
+    @property
+    def bind_collections(self) -> bool:
+        """Whether any layer binds a material to a collection."""
+        return any(names.binds_collections for names in self._names.values())
+
     def _stack(self, layer: Sdf.Layer, outer: Variables) -> Stack:
         """Stack of a layer that one with some variables refers to."""
         variables = outer.below(layer)

@@ -23,6 +23,7 @@ from daguerre.io.shading.images import Images
 from daguerre.scene.scene import Scene
 
 from .bindings import Bindings
+from .bound_collections import BoundCollections
 from .cameras import read_camera
 from .curves import read_curves
 from .instancers import read_copies
@@ -107,7 +108,8 @@ class _Reader:
         self._totals = Totals(opened.clock)
         self._images = images = Images(scene, opened.assets.file_of, notes)
         materials = Materials(scene, images, opened.clock, notes, opened.metres)
-        self._bindings = Bindings(materials, opened.clock, notes)
+        collections = BoundCollections(opened.file) if opened.binds_collections else None
+        self._bindings = Bindings(materials, opened.clock, notes, collections)
         self._lighting = Lighting(scene, opened, self._placing, images, notes)
         self._shapes: dict[str, int | None] = {}
         scene.set_clock(duration(opened))
@@ -147,9 +149,11 @@ class _Reader:
     def _nodes(self, visits: list[Visit], worlds: Worlds) -> list[int]:
         """Adds all nodes; returns the first instance of each. Pictures are decoded meanwhile."""
         with typed(self._opened.file, "materials"):
-            for visit in visits:
-                if visit.prim.IsA(UsdGeom.Gprim) and visit.drawn and visit.shown is not False:
-                    self._bindings.prefetch(visit.prim)
+            self._bindings.prefetch(
+                visit.prim
+                for visit in visits
+                if visit.prim.IsA(UsdGeom.Gprim) and visit.drawn and visit.shown is not False
+            )
         firsts = []
         for visit in visits:
             firsts.append(len(self.scene.instances))

@@ -45,6 +45,7 @@ class Opened:
         root: Scene (m, +y up) from stage, shape (4, 4).
         assets: Files that the stage may read.
         fps: Frames per second, if stated.
+        binds_collections: Whether materials may be bound to collections.
     """
 
     file: str
@@ -54,6 +55,7 @@ class Opened:
     root: NDArray[np.float64]
     assets: Assets
     fps: float | None
+    binds_collections: bool = False
 
 
 @contextmanager
@@ -143,7 +145,7 @@ def open_stage(
     clock = _clock(stage, file, time)
     stated = stage.HasAuthoredMetadata("framesPerSecond")
     fps = _rate(file, "framesPerSecond", stage.GetFramesPerSecond()) if stated else None
-    return Opened(file, stage, clock, metres, root, assets, fps)
+    return Opened(file, stage, clock, metres, root, assets, fps, layers.bind_collections)
 
 
 def _select(stage: Usd.Stage, file: str, variants: list[str]) -> None:
