@@ -6,7 +6,8 @@ of one prim in several layers, and of each set of variants the largest. Referenc
 where USD ends them.
 
 Classes that are inherited or specialized bring what their name stands for at each prim that refers
-to them from outside, too; USD calls these arcs implied.
+to them from outside, too; USD calls these arcs implied. USD does not cut all loops of such arcs: a
+stage whose references lead below themselves through one is refused.
 
 Source: OpenUSD, "LIVERPS Strength Ordering"; ``pxr/usd/pcp/primIndex.cpp`` (loops, implied arcs).
 """
@@ -25,6 +26,7 @@ from daguerre.errors import InputError
 from .layer_names import DEEPEST, Arc
 from .layers import Stack
 from .prims import MAX_PRIMS
+from .values import path_text
 
 #: Bytes that a prim takes at least, in USD and as a node of the scene.
 _PRIM_BYTES = 1000
@@ -122,8 +124,9 @@ class _Composed:
         self._tried: set[tuple[Stack, Sdf.Path]] = set()
         self._again = 0
         self._known: dict[tuple[bool, Stack, Sdf.Path], _Sum] = {}
-        #: References that are followed: stack and prim of each, and the prim that it leads to.
-        self._chain: list[tuple[Stack, Sdf.Path, Sdf.Path]] = []
+        #: References that are followed: stack and prim of each, the prim that it leads to, and
+        #: whether it is an implied arc.
+        self._chain: list[tuple[Stack, Sdf.Path, Sdf.Path, bool]] = []
         self._implied: set[tuple[Stack, Sdf.Path]] = set()
 
     def specs(self, stack: Stack, path: Sdf.Path) -> _Count:
@@ -180,7 +183,7 @@ class _Composed:
             found.classes[mapped] = min(found.classes[mapped] + uses, _MANY)
             if (inner or there is not stack) and (stack, mapped) not in self._implied:
                 self._implied.add((stack, mapped))
-                self._chain.append((stack, own, mapped))
+                self._chain.append((stack, own, mapped, True))
                 found.add((yield self.composed(stack, mapped)), uses, below=part.depth)
                 self._chain.pop()
                 self._implied.discard((stack, mapped))
@@ -194,19 +197,30 @@ class _Composed:
             return _Sum(loop=cut)
         if len(self._chain) >= _MOST_ARCS:
             raise _too_deep(self._file)
-        self._chain.append((stack, path, target))
+        self._chain.append((stack, path, target, False))
         found = yield self.composed(there, inside)
         self._chain.pop()
         return found
 
     def _loop(self, there: Stack, stack: Stack, path: Sdf.Path, target: Sdf.Path) -> int | None:
-        """Place in the chain that an arc leads back to, as prims, or ones above or below."""
+        """Place in the chain that an arc leads back to, as prims, or ones above or below.
+
+        Raises:
+            InputError: It leads below itself through an implied arc, where USD cuts no loop, and
+                may nest prims without end.
+        """
         at, where = path, stack
         for i in range(len(self._chain), -1, -1):
             if where is there and (at.HasPrefix(target) or target.HasPrefix(at)):
+                below = at != target and target.HasPrefix(at)
+                if below and any(implied for *_, implied in self._chain[i:]):
+                    raise InputError(
+                        f"{self._file}: {path_text(at)}: a reference leads below itself, through "
+                        f"an inherited class, to {path_text(target)}"
+                    )
                 return i
             if i:
-                where, source, through = self._chain[i - 1]
+                where, source, through, _ = self._chain[i - 1]
                 at = source if through.HasPrefix(at) else at.ReplacePrefix(through, source)
         return None
 
