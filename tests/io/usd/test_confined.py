@@ -299,10 +299,28 @@ def test_a_layer_that_changed_is_read_again_while_a_scene_lives(
     assert second.meshes[0].positions.max() == 7
 
 
-def test_a_folder_outside_is_not_listed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def _listed(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
+    """Folders that are listed from now on."""
     listed: list[Path] = []
     real = Path.iterdir
     monkeypatch.setattr(Path, "iterdir", lambda folder: (listed.append(folder), real(folder))[1])
+    return listed
+
+
+@pytest.mark.parametrize(
+    "template", ["", ".", "./", ":SDF_FORMAT_ARGS:a=1", "p.usda", "./p.#.usda"]
+)
+def test_a_template_of_no_clips_lists_no_folder_outside(
+    tmp_path: Path, template: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    listed = _listed(monkeypatch)
+    dg.load(_layer(tmp_path / "in" / "s.usda", _clips(_TEMPLATE.format(template))), in_process=True)
+    assert {folder.resolve() for folder in listed} <= {tmp_path / "in"}
+    assert ("#" in template) == bool(listed)
+
+
+def test_a_folder_outside_is_not_listed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    listed = _listed(monkeypatch)
     stage = _layer(tmp_path / "in" / "s.usda", _clips(_TEMPLATE.format("../p.#.usda")))
     with pytest.raises(dg.InputError, match="leaves the stage's folder"):
         dg.load(stage, in_process=True)

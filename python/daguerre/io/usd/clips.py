@@ -102,10 +102,12 @@ def clips_of_template(layer: Sdf.Layer, template: str, search: Path) -> Iterator
         search: Folder that is searched as well, that of the stage.
     """
     for pattern in dict.fromkeys((anchored(layer, template), str(search / template))):
+        folder, _, name = pattern.rpartition("/")
+        if not _HASHES.search(name):  # no template: it may be empty, or the folder itself
+            continue
         yield pattern
         if Ar.IsPackageRelativePath(pattern):
             continue
-        folder, _, name = pattern.rpartition("/")
         form = re.compile(_HASHES.sub(r"-?\\d+", re.escape(name)))
         try:
             inside = [one.name for one in Path(folder or "/").iterdir()]
