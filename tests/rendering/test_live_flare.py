@@ -171,6 +171,22 @@ def test_a_wide_stop_has_the_glass_of_its_grazing_rays(
     assert kept.sum((0, 1)) == pytest.approx(found.sum((0, 1)), rel=0.08)
 
 
+@pytest.mark.parametrize(
+    ("lens", "f_stop", "most"),
+    [("canon-50mm-f0.95", 0.95, 0.08), ("asahi-super-takumar-50mm-f1.4", 1.4, 0.055)],
+)
+def test_light_that_falls_off_steeply_has_rays_of_its_own(
+    lens: str, f_stop: float, most: float
+) -> None:
+    """Straight lines between rays would give too much of it."""
+    made, drawer = session(lens, sun(9, 5, (1.6e4,) * 3), f_stop=f_stop), _core.LiveFlare()
+    for _ in range(2):
+        live(made, drawer)
+    kept, reference = live(made, drawer), exact(made)
+    assert off(kept, reference) < most
+    assert kept.sum() == pytest.approx(reference.sum(), rel=0.02)
+
+
 @pytest.mark.parametrize("threads", [1, 3])
 def test_ghosts_do_not_depend_on_pictures_before(threads: int) -> None:
     """Whatever was drawn by this lens or by another one, on any number of threads."""

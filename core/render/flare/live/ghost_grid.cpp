@@ -25,8 +25,16 @@ struct Range {
     float size() const { return high - low; }
 };
 
-/// Rays at its corners are all stopped, and by more than that changes from one to the next; or all beside the frame.
-bool is_dark(const MapRays& rays, const Sensor& sensor, float reach, const MapLanding* at, int side) {
+FlareRectangle widened(const FlareRectangle& r) {
+    const Vec2f by = r.size * kMargin;
+    const Vec2f low{std::max(r.low.x - by.x, -1.f), std::max(r.low.y - by.y, -1.f)};
+    const Vec2f high{std::min(r.low.x + r.size.x + by.x, 1.f), std::min(r.low.y + r.size.y + by.y, 1.f)};
+    return {low, high - low};
+}
+
+}  // namespace
+
+bool GhostGrid::is_dark(const MapRays& rays, const Sensor& sensor, float reach, const MapLanding* at, int side) {
     Range stop, x, y;
     bool all_sound = true;
     for (const MapLanding* l : {at, at + 1, at + side, at + side + 1}) {
@@ -38,15 +46,6 @@ bool is_dark(const MapRays& rays, const Sensor& sensor, float reach, const MapLa
     return all_sound && (x.low - more > float(sensor.width) || x.high + more < 0 ||
                          y.low - more > float(sensor.height) || y.high + more < 0);
 }
-
-FlareRectangle widened(const FlareRectangle& r) {
-    const Vec2f by = r.size * kMargin;
-    const Vec2f low{std::max(r.low.x - by.x, -1.f), std::max(r.low.y - by.y, -1.f)};
-    const Vec2f high{std::min(r.low.x + r.size.x + by.x, 1.f), std::min(r.low.y + r.size.y + by.y, 1.f)};
-    return {low, high - low};
-}
-
-}  // namespace
 
 bool GhostGrid::passes(const Looks& by, const MapLanding& l) {
     const bool here = l.px.x > -by.reach && l.px.y > -by.reach && l.px.x < float(by.sensor.width) + by.reach &&

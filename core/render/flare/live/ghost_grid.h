@@ -24,6 +24,10 @@ struct GhostGrid {
     /// The place of a node, in squares, or of one between nodes.
     Vec2f at(Vec2f node) const { return region.at(node * (1 / float(squares))); }
 
+    /// Rays at the corners of a square of nodes, `side` across, are all stopped, and by more than that changes from one to
+    /// the next; or all land beside the frame.
+    static bool is_dark(const MapRays& rays, const Sensor& sensor, float reach, const MapLanding* at, int side);
+
     static float middle_nm();
 
   private:

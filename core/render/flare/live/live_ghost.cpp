@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "math/thread_scratch.h"
 #include "render/flare/live/node_fill.h"
@@ -17,6 +18,10 @@ constexpr float kLostUnseen = 0.25f;    // the same where rays are lost
 constexpr float kLostMore = 2;          // times as many arrivals there: looks are less sure
 constexpr double kWorthMore = 1500, kWorthMost = 6000;   // arrivals of a ghost that more nodes for its colours pay for
 constexpr double kWorthFine = 12;       // arrivals of a square that a finer grid pays for
+constexpr double kWorthWays = 50;       // the same where rays are lost: those of the finer grid spare others
+constexpr double kWorthRays = 40;       // arrivals of a square with steep glass that are worth rays of their own
+constexpr double kRaysMore = 1.4;       // times as many arrivals there: each has one wavelength
+constexpr float kSteep = 0.3f;          // of the mean transmittance, from the least to the most
 constexpr float kBend = 0.7f;           // px, from straight between nodes, that is worth one
 constexpr int kGlassNodes = 4;          // at which transmittances are asked for
 constexpr float kAlmost = 0.1f;         // beyond an edge: what is beside it may be lit
@@ -151,7 +156,10 @@ void LiveGhost::refine(double arrivals) {
     find_blur();
     for (Square& s : squares_) {
         s.worth *= arrivals;
-        if (!s.lost && s.worth > kWorthFine && (s.edge || bends(s))) refine(s);
+        s.steep = s.worth > kWorthRays && is_steep(s);
+        if (s.steep) s.worth *= kRaysMore;
+        const bool finer = s.lost ? s.worth > kWorthWays : s.worth > kWorthFine && (s.edge || bends(s));
+        if (finer && (s.lost || !s.steep)) refine(s);
     }
 }
 
@@ -170,20 +178,44 @@ bool LiveGhost::bends(const Square& s) const {
     return most > kBend;
 }
 
+/// Its light falls off like an exponential, by another one at each wavelength: no straight line between nodes has it.
+bool LiveGhost::is_steep(const Square& s) const {
+    float least = std::numeric_limits<float>::infinity(), most = 0, sum = 0;
+    int count = 0;
+    for (int k = 0; k < 4; ++k) {
+        const MapLanding& l = node(s.x + (k & 1), s.y + (k >> 1));
+        if (l.sound) least = std::min(least, l.pass), most = std::max(most, l.pass), sum += l.pass, ++count;
+    }
+    return count > 0 && (most - least) * float(count) > kSteep * sum;
+}
+
 void LiveGhost::refine(Square& s) {
     std::vector<MapRay> rays;
     for (int n = 0; n < kSubNodes; ++n)
         rays.push_back({grid_.at({float(s.x) + float(n % kSubSide) / kSub, float(s.y) + float(n / kSubSide) / kSub}),
                         {0, 0}, GhostGrid::middle_nm()});
     std::vector<MapLanding> nodes = trace(rays);
+    if (s.lost) s.ways = int(ways_.size()), ways_.push_back(ways_of(nodes));
     if (std::ranges::none_of(nodes, [](const MapLanding& l) { return l.sound; })) {
-        s.worth = 0;
+        if (!s.lost) s.worth = 0;
         return;
     }
     fill_landings(nodes, kSubSide);
     s.fine = int(fine_.size());
     const std::vector<float> planes = planes_of(nodes, rays_.crossings());
     fine_.insert(fine_.end(), planes.begin(), planes.end());
+}
+
+/// Squares of a finer grid: arrivals in one are rays of their own where rays at its corners are lost.
+LiveGhost::Ways LiveGhost::ways_of(const std::vector<MapLanding>& nodes) const {
+    const float reach = CoarseLight::reach(LightLayer::kLevels - 1);
+    Ways ways;
+    for (int i = 0; i < kSub * kSub; ++i) {
+        const MapLanding* const at = &nodes[std::size_t(i / kSub * kSubSide + i % kSub)];
+        const bool sound = at[0].sound && at[1].sound && at[kSubSide].sound && at[kSubSide + 1].sound;
+        ways[i] = GhostGrid::is_dark(rays_, sensor_, reach, at, kSubSide) ? Way::dark : sound ? Way::mesh : Way::ray;
+    }
+    return ways;
 }
 
 MeshPatch LiveGhost::patch(const Square& s) const {

@@ -44,13 +44,17 @@ class LiveGhost {
   private:
     static constexpr int kSide = GhostGrid::kSide, kNodes = kSide * kSide;
     static constexpr int kSub = 4, kSubSide = kSub + 1, kSubNodes = kSubSide * kSubSide;   // squares of a finer grid
+    enum class Way : std::uint8_t { mesh, ray, dark };   // of arrivals
+    using Ways = std::array<Way, kSub * kSub>;
     struct Square {
         int x, y;
         float light = 0, root = 0;         // of what looks saw: mean, and root of the mean square
         bool edge = false, lost = false;   // some rays are stopped; some have no landing
+        bool steep = false;                // transmittance changes much
         Vec2f px{};            // where it lands, about
         double worth = 0;      // arrivals
         int fine = -1;         // first value of its own nodes
+        int ways = -1;         // of ways_: those of the squares of its finer grid; none: all are alike
         CellBlur blur{};
     };
     struct Few {               // at one of few nodes of the grid
@@ -68,7 +72,14 @@ class LiveGhost {
     using GroupColors = std::array<Rgb, LiveSource::kGroups>;
     GroupColors colors_of(const Few& few, float times) const;
     bool apart(const Square& square, const MeshPatch& patch) const;
-    void draw(LightLayer& layer, const SheetLevel& levels, const Square& square, std::uint32_t from, int count, float times);
+    struct Arrivals;
+    void draw_mesh(LightLayer& layer, const SheetLevel& levels, const Square& square, const Arrivals& some, float times) const;
+    void draw_rays(LightLayer& layer, const SheetLevel& levels, const Square& square, const Arrivals& some, float times);
+    template <typename Place>
+    void set(MapBatch& batch, const Arrivals& some, const Place& place) const;
+    template <typename Color>
+    void add(LightLayer& layer, const SheetLevel& levels, const Square& square, const MapBatch& batch, const Arrivals& some,
+             const Color& color) const;
     void look_around();
     GhostPlace::Spectrum glass();
     std::optional<int> sound_near(int few) const;
@@ -86,7 +97,10 @@ class LiveGhost {
     void find_blur();
     const CellBlur& blur_near(const Square& square) const;
     bool bends(const Square& square) const;
+    bool is_steep(const Square& square) const;
     void refine(Square& square);
+    Ways ways_of(const std::vector<MapLanding>& nodes) const;
+    Way way(const Square& square, Vec2f at) const;
     MeshPatch patch(const Square& square) const;
     void land_by_rays(const Square& square, MapBatch& batch, int count);
     float least_level(const Square& square) const;
@@ -101,6 +115,7 @@ class LiveGhost {
     GhostGrid grid_;
     std::vector<float> planes_;        // of the grid's nodes, field by field
     std::vector<float> fine_;          // of the nodes of finer grids
+    std::vector<Ways> ways_;           // of finer grids where rays are lost
     std::vector<Square> squares_;
     int step_ = 0, few_side_ = 0;      // squares from one of few nodes to the next; nodes across
     std::vector<Few> few_;

@@ -24,60 +24,93 @@ Vec2f lambda_weights(float u) {
 
 }  // namespace
 
+/// Arrivals of a square, by their numbers.
+struct LiveGhost::Arrivals {
+    int count = 0;
+    std::array<std::uint32_t, MapBatch::kSize> number;
+    void add(std::uint32_t n) { number[std::size_t(count++)] = n; }
+};
+
 void LiveGhost::draw(LightLayer& layer, float unit) {
     const float area = grid_.region.area() / (GhostGrid::kSquares * GhostGrid::kSquares);
     const SheetLevel levels(rays_.crossings(), rays_.ghosts(), sensor_, source_.small.filled, smooth_);
     double sum = 0;
     for (const Square& s : squares_) {
         const auto first = std::uint32_t(sum), last = std::uint32_t(sum += s.worth);
+        const float times = unit * area / float(s.worth);
         for (std::uint32_t from = first; from < last; from += MapBatch::kSize) {
-            const auto count = int(std::min<std::uint32_t>(last - from, MapBatch::kSize));
-            draw(layer, levels, s, first_ + from, count, unit * area / float(s.worth));
+            Arrivals mesh, rays;
+            for (std::uint32_t n = from; n < std::min(last, from + MapBatch::kSize); ++n) {
+                const SpreadNumbers u{first_ + n};
+                const Way way = this->way(s, {u[0], u[1]});
+                if (way != Way::dark) (way == Way::mesh ? mesh : rays).add(u.i);
+            }
+            if (mesh.count > 0) draw_mesh(layer, levels, s, mesh, times);
+            if (rays.count > 0) draw_rays(layer, levels, s, rays, times);
         }
         arrived_ += last - first;
     }
 }
 
-/// Arrivals of a square. Where colours land or are stopped apart, each arrival is a few groups of wavelengths, each in its
-/// place; where it takes a ray, one wavelength.
-void LiveGhost::draw(LightLayer& layer, const SheetLevel& levels, const Square& s, std::uint32_t from, int count,
-                     float times) {
-    MapBatch& b = thread_scratch<MapBatch>([] {});
+/// How an arrival at a place of a square, [0, 1)^2, finds where it lands.
+LiveGhost::Way LiveGhost::way(const Square& s, Vec2f at) const {
+    const Way all = s.lost || s.steep ? Way::ray : Way::mesh;
+    if (s.ways < 0) return all;
+    const Way own = ways_[std::size_t(s.ways)][std::size_t(int(at.y * kSub) * kSub + int(at.x * kSub))];
+    return own == Way::mesh && s.steep ? Way::ray : own;
+}
+
+/// `place`: of the wavelength, for a number in [0, 1).
+template <typename Place>
+void LiveGhost::set(MapBatch& b, const Arrivals& some, const Place& place) const {
     const auto points = std::uint32_t(source_.small.points.size());
+    for (int i = 0; i < some.count; ++i) {
+        const SpreadNumbers u{some.number[std::size_t(i)]};
+        const SmallSource::Point& point = source_.small.points[u.i % points];
+        b.set(i, {u[0], u[1]}, point.shift, LiveSource::nm(place(u[2])), point.moment.iris_opening);
+    }
+}
+
+template <typename Color>
+void LiveGhost::add(LightLayer& layer, const SheetLevel& levels, const Square& s, const MapBatch& b, const Arrivals& some,
+                    const Color& color) const {
+    const auto points = std::uint32_t(source_.small.points.size());
+    const float least = least_level(s);
+    for (int i = 0; i < some.count; ++i) {
+        if (!(b.left[i] > 0)) continue;
+        const SpreadNumbers u{some.number[std::size_t(i)]};
+        const int level = std::min(int(std::max(levels.of(s.blur, b, i), least) + u[3]), LightLayer::kLevels - 1);
+        layer.add(level, {b.x[i], b.y[i]}, color(u[2]) * (b.left[i] * source_.brightness[u.i % points]));
+    }
+}
+
+/// Where colours land or are stopped apart, each arrival is a few groups of wavelengths, each in its place.
+void LiveGhost::draw_mesh(LightLayer& layer, const SheetLevel& levels, const Square& s, const Arrivals& some,
+                          float times) const {
+    MapBatch& b = thread_scratch<MapBatch>([] {});
     const Few few = few_at({float(s.x) + 0.5f, float(s.y) + 0.5f});
     const GroupColors colors = colors_of(few, times);
     MeshPatch p = patch(s);
     p.sets = few.sets, p.glass = source_.change(few.spectrum);
-    const float least = least_level(s);
-    const auto set = [&](const auto& place) {
-        for (int i = 0; i < count; ++i) {
-            const SpreadNumbers u{from + std::uint32_t(i)};
-            const SmallSource::Point& point = source_.small.points[u.i % points];
-            b.set(i, {u[0], u[1]}, point.shift, LiveSource::nm(place(u[2])), point.moment.iris_opening);
-        }
-    };
-    const auto add = [&](const auto& color) {
-        for (int i = 0; i < count; ++i) {
-            if (!(b.left[i] > 0)) continue;
-            const SpreadNumbers u{from + std::uint32_t(i)};
-            const int level = std::min(int(std::max(levels.of(s.blur, b, i), least) + u[3]), LightLayer::kLevels - 1);
-            layer.add(level, {b.x[i], b.y[i]}, color(u[2]) * (b.left[i] * source_.brightness[u.i % points]));
-        }
-    };
     const IrisTables& iris = rays_.ghosts().tables().iris;
-    if (s.lost) {
-        set([](float u) { return u; }), land_by_rays(s, b, count);
-        add([&](float u) { return source_.at[std::size_t(u * LiveSource::kSteps)] * (times * source_.free); });
-    } else if (apart(s, p)) {
+    if (apart(s, p)) {
         for (int g = 0; g < kGroups; ++g) {
-            set([g](float u) { return (float(g) + u) / kGroups; }), p.land(iris, b, count);
-            add([&](float) { return colors[g]; });
+            set(b, some, [g](float u) { return (float(g) + u) / kGroups; }), p.land(iris, b, some.count);
+            add(layer, levels, s, b, some, [&](float) { return colors[g]; });
         }
     } else {
         const Rgb all = colors[0] + colors[1] + colors[2];
-        set([](float) { return 0.5f; }), p.land(iris, b, count);
-        add([&](float) { return all; });
+        set(b, some, [](float) { return 0.5f; }), p.land(iris, b, some.count);
+        add(layer, levels, s, b, some, [&](float) { return all; });
     }
+}
+
+/// Each is a ray of one wavelength.
+void LiveGhost::draw_rays(LightLayer& layer, const SheetLevel& levels, const Square& s, const Arrivals& some, float times) {
+    MapBatch& b = thread_scratch<MapBatch>([] {});
+    set(b, some, [](float u) { return u; }), land_by_rays(s, b, some.count);
+    add(layer, levels, s, b, some,
+        [&](float u) { return source_.at[std::size_t(u * LiveSource::kSteps)] * (times * source_.free); });
 }
 
 LiveGhost::GroupColors LiveGhost::colors_of(const Few& few, float times) const {

@@ -31,15 +31,15 @@ MapRays::MapRays(const Camera& camera, const Sensor& sensor, const GhostLens& gh
                  const std::vector<GhostStep>& steps, const MapSource& source)
     : lens_(std::get<ExactLens>(camera.lens)), camera_(camera), sensor_(sensor), ghosts_(ghosts), steps_(steps),
       source_(source), crossings_(dg::crossings(ghosts, steps)),
-      per_iris2_(float(1 / std::pow(ghosts.iris_radius() * ghosts.iris().outer_radius(), 2))), front_(lens_.front_ball()) {}
+      per_iris2_(float(1 / std::pow(ghosts.iris_radius() * ghosts.iris().outer_radius(), 2))), front_(lens_.front_ball()),
+      turn_x_(front_.radius * std::cos(source.turn)), turn_y_(front_.radius * std::sin(source.turn)) {}
 
 /// The square that stands across the way from the middle of the front to a point of the source.
 MapRays::Front MapRays::front(Vec2f shift) const {
     const Vec3d p = source_.point(shift), e = source_.at_infinity ? p : normalize(p - front_.center);
     const Across across(e);
     if (source_.turn == 0) return {p, e, front_.radius * across.x, front_.radius * across.y};
-    const double c = front_.radius * std::cos(source_.turn), s = front_.radius * std::sin(source_.turn);
-    return {p, e, c * across.x + s * across.y, c * across.y - s * across.x};
+    return {p, e, turn_x_ * across.x + turn_y_ * across.y, turn_x_ * across.y - turn_y_ * across.x};
 }
 
 MapRays::Line MapRays::line(const Front& front, Vec2f at) const {

@@ -76,6 +76,7 @@ class MapRays {
     int crossings_;
     float per_iris2_;   // 1 / mm2
     ExactLens::Ball front_;
+    double turn_x_, turn_y_;   // m: the radius of the front, along and across the turn
 };
 
 }  // namespace dg
