@@ -114,6 +114,7 @@ def test_t_stops_that_cannot_be_are_refused() -> None:
     with pytest.raises(dg.UsageError, match="t_stop: a pinhole has none"):
         dg.Camera().with_(lens="pinhole", t_stop=4.0)
     assert dg.Camera(f_stop=4.0).with_(t_stop=4.0).f_stop is None
+    assert dg.Camera(lens=LENS, t_stop=4.0).with_(lens_model="pinhole").t_stop is None
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import struct
 import threading
 from pathlib import Path
@@ -190,6 +191,23 @@ def test_a_tiff_with_an_odd_tag_is_decoded_apart(tmp_path: Path, tag: int, value
             struct.pack_into("<HII", data, entry + 2, 4, 1, value)
     path.write_bytes(data)
     assert not tiff.check(Source(path), "a", 1 << 30)
+
+
+@pytest.mark.parametrize("tag", [256, 257, 258, 259, 262, 273, 277, 278, 279, 339])
+def test_a_tiff_with_a_tag_of_no_values_is_one_error_or_is_decoded(
+    tmp_path: Path, tag: int
+) -> None:
+    path = write(tmp_path / "a.tif", GREYS, compression="none")
+    data = bytearray(path.read_bytes())
+    (at,) = struct.unpack_from("<I", data, 4)
+    tags = {
+        struct.unpack_from("<H", data, entry)[0]: entry
+        for entry in range(at + 2, at + 2 + 12 * data[at], 12)
+    }
+    struct.pack_into("<I", data, tags[tag] + 4, 0)
+    path.write_bytes(data)
+    with contextlib.suppress(InputError):
+        read_file(path)
 
 
 def test_tiled_tiffs_are_plain_if_all_tiles_are_there(tmp_path: Path) -> None:

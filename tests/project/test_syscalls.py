@@ -102,6 +102,8 @@ def refused(lines: list[str], declared: list[Path]) -> list[str]:
         elif int(call["result"]) >= 0:
             said = re.search(r'"((?:[^"\\]|\\.)*)"', arguments)
             text = said[1].encode().decode("unicode_escape") if said else "?"
+            if text.startswith("/proc/self/fd/"):
+                continue  # a file that it holds open, such as a pipe to itself
             path = os.path.realpath(ROOT / text)
             if path != str(ROOT) and not any(
                 path == a or path.startswith(a + "/") for a in allowed

@@ -151,6 +151,17 @@ def test_a_new_lens_takes_its_zoom_back() -> None:
     assert dials.turned({"lens": "thin"}).texts == {"lens": "thin", "iso": "200"}
 
 
+@pytest.mark.parametrize("name", ["lens", "lens_model"])
+@pytest.mark.parametrize(
+    ("turned", "text"),
+    [("f_stop", "4"), ("t_stop", "4"), ("aperture_diameter", "4")],
+)
+def test_a_pinhole_takes_back_the_stop(name: str, turned: str, text: str) -> None:
+    dials = Dials().turned({turned: text}).turned({name: "pinhole"})
+    assert dict(dials.texts) == {name: "pinhole"}
+    dials.camera(dg.Camera())
+
+
 def test_the_camera_is_that_of_the_texts() -> None:
     dials = Dials()
     for name in ("f_stop", "focus_distance", "sensor", "place.position", "place.look_at", "iso"):

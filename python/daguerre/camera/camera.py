@@ -383,7 +383,7 @@ class Camera(Value):
 
         Values that the change makes obsolete are dropped: the focal length of an ideal lens if a
         prescription replaces it, the f-stop if an aperture diameter does, one way to focus if
-        another does.
+        another does, the T-stop of a lens that becomes a pinhole.
 
         Raises:
             UsageError: Unknown name (the message suggests the nearest), or values that exclude
@@ -402,7 +402,7 @@ class Camera(Value):
                 raise UsageError(
                     f"camera: {odd[0]}: a {hole} has none; choose another lens, or leave it out"
                 )
-        replaced: dict[str, Any] = {}
+        replaced: dict[str, Any] = {"t_stop": None} if hole else {}
         if changes.get("lens") is not None:  # of the lens that goes
             replaced |= {name: _default(name) for name in ("zoom", "decenter", "ripple")}
         if changes.get("lens_model") not in (None, "polynomial"):

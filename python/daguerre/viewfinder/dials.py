@@ -13,8 +13,9 @@ from typing import Any
 from daguerre import lenses
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure_mode import chosen_by
-from daguerre.camera.ideal import IDEAL
-from daguerre.camera.parameters import CAMERA_FLAGS, SHUTTER
+from daguerre.camera.ideal import IDEAL, WITHOUT_IRIS
+from daguerre.camera.parameters import CAMERA, CAMERA_FLAGS, SHUTTER
+from daguerre.camera.parameters.needs import OPENING
 from daguerre.camera.placement import Placement
 from daguerre.checks import short
 from daguerre.development.parameters import DEVELOP
@@ -72,7 +73,7 @@ class Dials:
         """Returns the dials after a turn; None puts one back to the scene's value.
 
         A dial that excludes another one takes it back; an exposure mode, what it chooses; a lens
-        without surfaces, the light that surfaces add.
+        without an iris, the stop; one without surfaces, the light that surfaces add.
 
         Raises:
             UsageError: No such dial, or a text that its flag would not accept.
@@ -159,6 +160,8 @@ def _taken_back(row: Parameter, text: str | None) -> list[str]:
     taken = next((names for names in DIALS.rivals() if row.name in names), (row.name,))
     if row.name == "lens":
         taken = (*taken, *_OF_LENS)
+    if text in WITHOUT_IRIS and row.name in ("lens", "lens_model"):
+        taken = (*taken, *(one.name for one in CAMERA if OPENING in one.needs))
     if text in IDEAL and row.name in ("lens", "lens_model"):
         taken = (*taken, *SWITCHES.keys() - possible(text))
     if row.name == "exposure" and text is not None:

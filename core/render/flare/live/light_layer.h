@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "math/vec.h"
+#include "spectrum/spectrum.h"
 
 namespace dg {
 

@@ -114,7 +114,7 @@ def plain_pixels(source: Source, where: str, limit: int) -> NDArray[np.generic]:
 
 
 def read_tags(source: Source, where: str) -> Tags:
-    """Reads the whole numbers of the first directory.
+    """Reads the whole numbers of the first directory; each tag has at least one.
 
     Raises:
         InputError: The directory is not within the file.
@@ -135,7 +135,9 @@ def read_tags(source: Source, where: str) -> Tags:
     tags: Tags = {}
     for tag, type_, number, value in entries:
         letter = _TYPES.get(type_)
-        if letter is None or tag not in _WANTED or tag in tags or number > _MOST_VALUES:
+        if letter is None or tag not in _WANTED or tag in tags:
+            continue
+        if not 1 <= number <= _MOST_VALUES:
             continue
         form = f"{order}{number}{letter}"
         wanted = struct.calcsize(form)
