@@ -51,7 +51,7 @@ def test_blocks_of_all_sizes_cross(
 ) -> None:
     monkeypatch.setattr(shared, "HAS_FILES", files and shared.HAS_FILES)
     random = np.random.default_rng(1)
-    sizes = (0, 1, 1000, SIZE, (1 << 20) - 1, 1 << 20, SIZE + 1)
+    sizes = (0, 1, 1000, SIZE, (1 << 20) - 1, 1 << 20, SIZE + 1, *(1 << 18,) * 9, 5, 0)
     given = [random.integers(0, 256, size, np.uint8) for size in sizes]
     for one, found in zip(given, crossed(ends, [*given]), strict=True):
         assert isinstance(found, np.ndarray)
@@ -71,6 +71,20 @@ def test_mapped_blocks_are_not_copied_and_keep_no_file_open(
     assert as_readonly(numbers) is numbers
     with pytest.raises(ValueError, match="WRITEABLE"):
         found.flags.writeable = True
+
+
+@LINUX
+def test_many_small_blocks_share_few_mappings_and_stay_aligned(
+    ends: tuple[socket.socket, socket.socket],
+) -> None:
+    given = [np.arange(number, number + 10_001, dtype=np.float64) for number in range(200)]
+    found = crossed(ends, [*given])
+    for one, block in zip(given, found, strict=True):
+        numbers = np.frombuffer(block, np.float64)  # type: ignore[call-overload]
+        assert np.array_equal(numbers, one)
+        assert as_readonly(numbers) is numbers
+    maps = Path("/proc/self/maps").read_text().count("memfd:daguerre")
+    assert 1 <= maps <= 16
 
 
 @LINUX
@@ -94,7 +108,7 @@ def test_memory_of_a_block_lasts_as_long_as_its_arrays(
 
 
 def sealed(size: int) -> int:
-    found = shared.copied(memoryview(bytes(size)))
+    found = shared.copied([memoryview(bytes(size))])
     assert found is not None
     return found
 
@@ -114,8 +128,8 @@ def plain() -> int:
 
 LIES = {
     "no file": list,
-    "a smaller file": lambda: [sealed(SIZE - 1)],
-    "a larger file": lambda: [sealed(SIZE + 1)],
+    "a smaller file": lambda: [sealed(SIZE - 16)],
+    "a larger file": lambda: [sealed(SIZE + 16)],
     "a file that can shrink": lambda: [unsealed(fcntl.F_SEAL_WRITE | fcntl.F_SEAL_GROW)],
     "a file that can change": lambda: [unsealed(fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW)],
     "a file on a disk": lambda: [plain()],

@@ -1,15 +1,17 @@
 """Messages between a process and its helper: a kind, and some blocks of bytes.
 
-A message is a head (kind, number of blocks), the sizes of the blocks, and the blocks. A mark comes
-before each large block: its bytes follow, or the mark carries a file of them (``shared.py``).
+A message is a head (kind, number of blocks), the sizes of the blocks, and the blocks in parts: runs
+of blocks with at least 1 MiB, and the rest. A mark comes before each large part: its bytes follow,
+or the mark carries a file of them (``shared.py``).
 """
 
 from __future__ import annotations
 
+import itertools
 import os
 import socket
 import struct
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,7 +23,7 @@ _HEAD, _SIZE = struct.Struct("<cI"), struct.Struct("<Q")
 #: Kinds of messages: a task; and from the helper, that it is ready, a text while it works, an
 #: answer, an error, and a fault, the error of a bug.
 TASK, READY, TOLD, ANSWER, ERROR, FAULT = b"t", b"r", b"n", b"a", b"e", b"f"
-#: Least size of a large block, bytes, and the two marks before one.
+#: Least size of a large part, bytes, and the two marks before one.
 _LARGE = 1 << 20
 _BYTES, _FILE = b"b", b"f"
 #: Most blocks of a message.
@@ -30,6 +32,18 @@ _MOST_BLOCKS = 1 << 24
 
 class DamagedError(Exception):
     """A message that is damaged or too large."""
+
+
+def _parts(sizes: Sequence[int]) -> Iterator[tuple[int, int]]:
+    """Numbers of the first block of each part, and of the first one after it."""
+    begin, total = 0, 0
+    for number, size in enumerate(sizes):
+        total += size
+        if total >= _LARGE:
+            yield begin, number + 1
+            begin, total = number + 1, 0
+    if begin < len(sizes):
+        yield begin, len(sizes)
 
 
 class Link:
@@ -52,24 +66,24 @@ class Link:
             OSError: The other end is gone.
         """
         views = [memoryview(block if len(block) else b"").cast("B") for block in blocks]
-        sizes = b"".join(_SIZE.pack(len(view)) for view in views)
-        self._send(_HEAD.pack(kind, len(views)) + sizes)
-        for view in views:
-            if len(view) >= _LARGE:
-                self._send_large(view)
-            else:
-                self._send(view)
+        sizes = [len(view) for view in views]
+        self._send(_HEAD.pack(kind, len(views)) + struct.pack(f"<{len(sizes)}Q", *sizes))
+        for begin, end in _parts(sizes):
+            self._send_part(views[begin:end])
 
-    def _send_large(self, view: memoryview) -> None:
-        file = copied(view)
-        if file is None:
-            self._send(_BYTES)
-            self._send(view)
+    def _send_part(self, views: Sequence[memoryview]) -> None:
+        large = sum(map(len, views)) >= _LARGE
+        file = copied(views) if large else None
+        if file is not None:
+            try:
+                self._send(_FILE, file)
+            finally:
+                os.close(file)
             return
-        try:
-            self._send(_FILE, file)
-        finally:
-            os.close(file)
+        if large:
+            self._send(_BYTES)
+        for view in views:
+            self._send(view)
 
     def _send(self, part: bytes | memoryview, file: int | None = None) -> None:
         """Sends all bytes of a part, the first with a file."""
@@ -100,9 +114,8 @@ class Link:
         sizes = np.frombuffer(self._exactly(count * _SIZE.size), "<u8").tolist()
         if sum(sizes) > most():
             raise DamagedError(f"a message of {sum(sizes)} bytes")
-        return kind, [
-            self._large(size) if size >= _LARGE else self._exactly(size) for size in sizes
-        ]
+        parts = (self._part(sizes[begin:end]) for begin, end in _parts(sizes))
+        return kind, list(itertools.chain.from_iterable(parts))
 
     def _exactly(self, size: int) -> NDArray[np.uint8]:
         made = np.empty(size, np.uint8)
@@ -119,13 +132,14 @@ class Link:
         made.flags.writeable = False
         return made
 
-    def _large(self, size: int) -> NDArray[np.uint8]:
-        """A large block."""
-        mark, files = self._mark()
+    def _part(self, sizes: Sequence[int]) -> list[NDArray[np.uint8]]:
+        """Blocks of a part."""
+        mark, files = self._mark() if sum(sizes) >= _LARGE else (_BYTES, [])
         try:
             if not mark:
                 raise EOFError
-            return self._exactly(size) if mark == _BYTES else mapped(files, size)
+            if mark == _FILE:
+                return mapped(files, sizes)
         except (OSError, ValueError) as error:
             if isinstance(error, ConnectionError):
                 raise
@@ -133,6 +147,7 @@ class Link:
         finally:
             for file in files:
                 os.close(file)
+        return [self._exactly(size) for size in sizes]
 
     def _mark(self) -> tuple[bytes, list[int]]:
         while True:

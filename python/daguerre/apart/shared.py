@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import ctypes
 import fcntl
+import itertools
 import mmap
 import os
+from collections.abc import Sequence
 from functools import cache, partial
 from typing import Any
 
@@ -20,11 +22,13 @@ from daguerre.checks import SealedBytes
 
 #: Whether this system has such files; Linux has.
 HAS_FILES = hasattr(os, "memfd_create")
+#: Blocks begin at multiples of this, bytes, so that their numbers are aligned.
+_ALIGNED = 16
 _SEALS = fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW | fcntl.F_SEAL_WRITE if HAS_FILES else 0
 
 
-def copied(block: memoryview) -> int | None:
-    """Copies a block into a sealed file.
+def copied(blocks: Sequence[memoryview]) -> int | None:
+    """Copies blocks into a sealed file, each at a multiple of ``_ALIGNED`` bytes.
 
     Returns:
         The open file; None: it cannot be made here.
@@ -36,8 +40,11 @@ def copied(block: memoryview) -> int | None:
     except OSError:
         return None
     try:
-        while block:
-            block = block[os.write(file, block) :]
+        for block in blocks:
+            left = block
+            while left:
+                left = left[os.write(file, left) :]
+            os.write(file, bytes(_padded(len(block)) - len(block)))
         fcntl.fcntl(file, fcntl.F_ADD_SEALS, _SEALS)
     except OSError:
         os.close(file)
@@ -45,12 +52,12 @@ def copied(block: memoryview) -> int | None:
     return file
 
 
-def mapped(files: list[int], size: int) -> NDArray[np.uint8]:
-    """Maps the bytes of a block, read-only. The file can be closed then.
+def mapped(files: list[int], sizes: Sequence[int]) -> list[NDArray[np.uint8]]:
+    """Maps the bytes of blocks, read-only. The file can be closed then.
 
     Args:
-        files: Open files that came with the block; one is wanted.
-        size: Number of bytes; at least 1.
+        files: Open files that came with the blocks; one is wanted.
+        sizes: Numbers of bytes; not all are 0.
 
     Raises:
         OSError: It cannot be mapped, or is a file of another kind.
@@ -58,6 +65,8 @@ def mapped(files: list[int], size: int) -> NDArray[np.uint8]:
     """
     if len(files) != 1 or not HAS_FILES:
         raise ValueError(f"wanted 1 file, got {len(files)}")
+    begins = list(itertools.accumulate(map(_padded, sizes), initial=0))
+    size = begins.pop()
     seals = fcntl.fcntl(files[0], fcntl.F_GET_SEALS)
     found = os.fstat(files[0]).st_size
     if seals & _SEALS != _SEALS or found != size:
@@ -67,7 +76,13 @@ def mapped(files: list[int], size: int) -> NDArray[np.uint8]:
     if address == ctypes.c_void_p(-1).value:
         code = ctypes.get_errno()
         raise OSError(code, os.strerror(code))
-    return np.asarray(SealedBytes(address, size, partial(system.munmap, address, size)))
+    held = np.asarray(SealedBytes(address, size, partial(system.munmap, address, size)))
+    return [held[begin : begin + size] for begin, size in zip(begins, sizes, strict=True)]
+
+
+def _padded(size: int) -> int:
+    """Size with the bytes that fill it up."""
+    return size + -size % _ALIGNED
 
 
 @cache
