@@ -45,7 +45,7 @@ class Parent:
         if poll.poll(0):  # it had closed before
             os._exit(1)
         yield
-        with contextlib.suppress(OSError):  # none was made, or files stay until the end
+        with contextlib.suppress(OSError):  # none was made, or it has files
             Path(os.environ["TMPDIR"]).rmdir()
         fcntl.fcntl(self._life, fcntl.F_SETFL, flags)
 
@@ -61,9 +61,9 @@ def _exactly(end: socket.socket, size: int) -> bytes:
 
 
 def _folder() -> str:
-    """The folder of temporary files, which exists from its first use to the end of a task.
+    """The folder of temporary files, made on first use and removed after the task.
 
-    So a signal, which gives no time to remove it, mostly finds none.
+    A helper that is killed leaves no folder, unless its task was using one.
     """
     name = os.environ["TMPDIR"]
     Path(name).mkdir(mode=0o700, exist_ok=True)

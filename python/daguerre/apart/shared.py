@@ -19,16 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.checks import SealedBytes
+from daguerre.files.packing import padded
 
 #: Whether this system has such files; Linux has.
 HAS_FILES = hasattr(os, "memfd_create")
-#: Blocks begin at multiples of this, bytes, so that their numbers are aligned.
-_ALIGNED = 16
 _SEALS = fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW | fcntl.F_SEAL_WRITE if HAS_FILES else 0
 
 
 def copied(blocks: Sequence[memoryview]) -> int | None:
-    """Copies blocks into a sealed file, each at a multiple of ``_ALIGNED`` bytes.
+    """Copies blocks into a sealed file, aligned as in a packed value.
 
     Returns:
         The open file; None: it cannot be made here.
@@ -44,7 +43,7 @@ def copied(blocks: Sequence[memoryview]) -> int | None:
             left = block
             while left:
                 left = left[os.write(file, left) :]
-            os.write(file, bytes(_padded(len(block)) - len(block)))
+            os.write(file, bytes(padded(len(block)) - len(block)))
         fcntl.fcntl(file, fcntl.F_ADD_SEALS, _SEALS)
     except OSError:
         os.close(file)
@@ -65,7 +64,7 @@ def mapped(files: list[int], sizes: Sequence[int]) -> list[NDArray[np.uint8]]:
     """
     if len(files) != 1 or not HAS_FILES:
         raise ValueError(f"wanted 1 file, got {len(files)}")
-    begins = list(itertools.accumulate(map(_padded, sizes), initial=0))
+    begins = list(itertools.accumulate(map(padded, sizes), initial=0))
     size = begins.pop()
     seals = fcntl.fcntl(files[0], fcntl.F_GET_SEALS)
     found = os.fstat(files[0]).st_size
@@ -78,11 +77,6 @@ def mapped(files: list[int], sizes: Sequence[int]) -> list[NDArray[np.uint8]]:
         raise OSError(code, os.strerror(code))
     held = np.asarray(SealedBytes(address, size, partial(system.munmap, address, size)))
     return [held[begin : begin + size] for begin, size in zip(begins, sizes, strict=True)]
-
-
-def _padded(size: int) -> int:
-    """Size with the bytes that fill it up."""
-    return size + -size % _ALIGNED
 
 
 @cache

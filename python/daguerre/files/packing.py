@@ -161,14 +161,14 @@ def _arrays(facts: Any, data: bytes, large: Callable[[str], bytes]) -> list[NDAr
             if count
             else np.zeros(shape, kind)
         )
-        begin += _padded(count * kind.itemsize) if name is None else 0
+        begin += padded(count * kind.itemsize) if name is None else 0
     if begin != len(data):
         raise ValueError("bytes are left over")
     return found
 
 
-def _padded(size: int) -> int:
-    """Size with the bytes that fill it up."""
+def padded(size: int) -> int:
+    """Size of an array with the bytes that fill it up, so that the next one is aligned."""
     return size + -size % _ALIGNED
 
 

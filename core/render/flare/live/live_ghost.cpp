@@ -178,7 +178,7 @@ bool LiveGhost::bends(const Square& s) const {
     return most > kBend;
 }
 
-/// Its light falls off like an exponential, by another one at each wavelength: no straight line between nodes has it.
+/// Transmittance changes too much across the square to be straight between its nodes.
 bool LiveGhost::is_steep(const Square& s) const {
     float least = std::numeric_limits<float>::infinity(), most = 0, sum = 0;
     int count = 0;
