@@ -64,7 +64,7 @@ def export_camera(
     flags = Cameras(camera_flags.camera, calibration_flags, changes, camera_flags.placement)
     views = flags.views(None)
     calibration_flags.check(changes)
-    scene = file_flags.read(scene_path)
+    scene = file_flags.read(scene_path, moments=(0.0, 0.0))
     if camera_flags.camera is None and len(views) == 1:
         views = [replace(views[0], name=name, camera=name) for name in scene.cameras]
     cameras = {view.name: view.view(flags).camera(scene) for view in views}

@@ -58,7 +58,7 @@ def info(
     flags = Cameras(camera_flags.camera, calibration_flags, changes, camera_flags.placement)
     views = flags.views(None)
     calibration_flags.check(changes)
-    scene = scene_flags.load(scene_path)
+    scene = scene_flags.load(scene_path, moments=(0.0, 0.0))
     if camera_flags.camera is None and len(views) == 1:
         views = [replace(views[0], name=name, camera=name) for name in scene.cameras]
     cameras: dict[str, Camera] = {view.name: view.view(flags).camera(scene) for view in views}

@@ -66,7 +66,7 @@ _FORMATS = [
     Format("glTF 2.0", "scene", (".glb", ".gltf"), f"{_GLTF}:read",
            takes=("variant", "allow_dirs", "scene_index", "animated")),
     Format("OpenUSD", "scene", (".usd", ".usda", ".usdc", ".usdz"), "daguerre.io.usd.wall:read",
-           takes=("variant", "allow_dirs", "purpose", "camera_units", "in_process"),
+           takes=("variant", "allow_dirs", "purpose", "camera_units", "moments", "in_process"),
            needs=("pxr", ""),
            time_of="daguerre.io.usd.wall:time_of_code"),
     Format("pbrt", "scene", (".pbrt",), "daguerre.io.pbrt.reader:read",

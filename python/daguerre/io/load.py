@@ -38,10 +38,12 @@ def load(
         **options: Options of the format; None and empty ones count as absent. USD has ``purpose``,
             names of purposes to draw besides ``default`` (default: ``("render",)``), and
             ``camera_units``, the unit of focal lengths and apertures in mm (default: a tenth of a
-            scene unit), and ``in_process``: read the stage in this process, which a damaged one can
-            end. glTF has ``animated``: other moments than ``time`` will be drawn, too. pbrt and
-            Mitsuba have ``unit_m``, the length of a unit in m (default: 1), and Mitsuba
-            ``define``, values of the file's parameters by name or as ``name=value``.
+            scene unit), ``moments``, begin and end of the time that will be drawn, s, motion
+            vectors included (default: any may be; samples of points, joints and copies that it does
+            not need are not read), and ``in_process``: read the stage in this process, which a
+            damaged one can end. glTF has ``animated``: other moments than ``time`` will be drawn,
+            too. pbrt and Mitsuba have ``unit_m``, the length of a unit in m (default: 1), and
+            Mitsuba ``define``, values of the file's parameters by name or as ``name=value``.
 
     Raises:
         InputError: The file cannot be used; the message names the file and the place in it. Or

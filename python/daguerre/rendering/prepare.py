@@ -13,7 +13,7 @@ from daguerre.camera.overscan import Overscan, check_overscan
 from daguerre.camera.settled import settled
 from daguerre.checks import short
 from daguerre.errors import MismatchError, UsageError
-from daguerre.scene.scene import Scene
+from daguerre.scene.scene import Scene, check_moments
 from daguerre.setup.built_scene import BuiltScene
 from daguerre.setup.camera import set_up, with_brightness_of
 from daguerre.setup.resolved import ResolvedCamera
@@ -127,6 +127,7 @@ def prepare(
     camera = settled(camera, scene.time)
     size = settings.film.resolution
     interval = shutter.interval(camera, scene.time, size)
+    check_moments(scene, *interval)
     if built is None or not built.shows(scene, interval):
         built = BuiltScene(scene, interval, built)
     setup = set_up(scene, camera, size, built.core)

@@ -94,6 +94,8 @@ class Scene(Value):
     fog: Medium | None = None
     #: width and height of the picture, px, that the file asks of a camera
     film_sizes: dict[str, tuple[int, int]] = field(default_factory=dict)
+    #: begin and end of the time for which a file's motion was read, s; None: all of it was
+    moments: tuple[float, float] | None = None
 
     __hash__ = None  # type: ignore[assignment]  # it changes
 
@@ -130,7 +132,9 @@ class Scene(Value):
 
     def at(self, time: float) -> Scene:
         """Returns the scene at another time, s; both scenes share the parts that do not change."""
-        return scene_at(self, check_number(time, "scene: time"))
+        time = check_number(time, "scene: time")
+        check_moments(self, time, time)
+        return scene_at(self, time)
 
     def note(self, *sentences: str) -> None:
         """Adds a warning of a reader: an unsupported feature, or a decision; one sentence."""
@@ -694,6 +698,20 @@ def _panorama(image: ArrayLike) -> NDArray[np.float32]:
     if bad:
         raise InputError(f"environment: pixels must be finite and at least 0, but {bad} are not")
     return pixels
+
+
+def check_moments(scene: Scene, begin: float, end: float) -> None:
+    """Checks that the motion of a scene was read for an interval, s.
+
+    Raises:
+        UsageError: It was not: ``load(moments=...)`` left it out.
+    """
+    first, last = scene.moments or (begin, end)
+    if begin < first or end > last:
+        got = f"{begin:g}" if begin == end else f"{begin:g} .. {end:g}"
+        raise UsageError(
+            f"scene: time: wanted {first:g} .. {last:g} s, the moments that were loaded, got {got}"
+        )
 
 
 def scene_at(scene: Scene, time: float) -> Scene:

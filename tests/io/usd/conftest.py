@@ -12,12 +12,17 @@ pytest.importorskip("pxr")
 from daguerre.errors import DaguerreError
 from daguerre.io.usd import wall
 
-from .walls import differences
+from .walls import differences, differences_within
+
+#: Intervals that each stage is read for alone, s from the scene's time.
+_INTERVALS = ((0.0, 0.0), (-0.02, 0.3))
 
 
 @pytest.fixture(autouse=True)
 def both_sides(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every stage that ``dg.load`` reads is the same to the bit on both sides of the wall.
+
+    So it is within an interval for which alone it is read.
 
     Tests that change the reader, or measure time, have the mark ``in_process``; those of damaged
     bytes, of which USD may read what was never written, ``behind_wall``.
@@ -34,7 +39,15 @@ def both_sides(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) 
             assert (type(found), _words(found)) == (type(plain), _words(plain))
             raise found
         assert here or differences(plain, found) == []
+        if not here and "moments" not in options:
+            _compare_within(path, options, plain)
         return found
+
+    def _compare_within(path: Any, options: dict[str, Any], plain: Any) -> None:
+        for begin, end in _INTERVALS:
+            moments = plain.time + begin, plain.time + end
+            part = behind(path, **options | {"in_process": True, "moments": moments})
+            assert differences_within(plain, part, *moments) == []
 
     monkeypatch.setattr(wall, "read", read)
 

@@ -27,6 +27,26 @@ def differences(one: dg.Scene, other: dg.Scene) -> list[str]:
     return found
 
 
+def differences_within(whole: dg.Scene, part: dg.Scene, begin: float, end: float) -> list[str]:
+    """Names of attributes that differ between a scene and one read for an interval, s."""
+    names = {*vars(whole)} - {"motion", "moments"}
+    found = sorted(n for n in names if not exact(getattr(whole, n), getattr(part, n)))
+    if part.moments not in (None, (begin, end)):
+        found.append("moments")
+    moving, other = dict(whole.motion.parts()), dict(part.motion.parts())
+    if list(moving) != list(other):
+        found.append("what moves")
+    shares = (0.0, 0.37, 0.5, 1.0)
+    times = [(1 - share) * begin + share * end for share in shares]
+    for name, one in list(moving.items())[:_MANY]:
+        breaks = [list(value.breaks(begin, end)) for value in (one, other.get(name, one))]
+        with np.errstate(all="ignore"):
+            alike = all(exact(one.at(t), other[name].at(t)) for t in (*times, *breaks[0]))
+        if not alike or breaks[0] != breaks[1]:
+            found.append(name)
+    return found
+
+
 def exact(one: Any, other: Any) -> bool:
     """Whether two values are equal, and their arrays equal to the bit."""
     if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):

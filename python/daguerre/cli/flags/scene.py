@@ -106,16 +106,24 @@ class SceneFlags(SceneFileFlags):
         ),
     ] = None
 
-    def load(self, path: Path, taken: Any = None, *, animated: bool = False) -> Any:
+    def load(
+        self,
+        path: Path,
+        taken: Any = None,
+        *,
+        animated: bool = False,
+        moments: tuple[float, float] | None = None,
+    ) -> Any:
         """Reads the scene and adds environment, catchers and plate.
 
         Args:
             path: Scene file.
             taken: Camera of ``--like-plate``, which took the plate; None: there is none.
             animated: Whether other moments of its animation will be drawn, too.
+            moments: Begin and end of the time that will be drawn, s after frame 0; None: any.
         """
         lux, environment = self._lux(), self._environment()
-        scene = self.read(path, animated=animated)
+        scene = self.read(path, animated=animated, moments=moments)
         if environment:
             scene.set_environment(**environment)
         elif self.env_scale is not None or self.env_rotation is not None:

@@ -125,14 +125,25 @@ class SceneFileFlags:
         options = {"in_process": True} if self.usd_in_process else {}
         return float(formats.time_of_code(path, self.time_code, **options))
 
-    def read(self, path: Path, *, animated: bool = False) -> Any:
-        """Reads the scene; ``animated``: other moments of its animation will be drawn, too."""
+    def read(
+        self, path: Path, *, animated: bool = False, moments: tuple[float, float] | None = None
+    ) -> Any:
+        """Reads the scene.
+
+        Args:
+            path: Scene file.
+            animated: Whether other moments of its animation will be drawn, too.
+            moments: Begin and end of the time that will be drawn, s after frame 0; None: any may
+                be. A file that knows no such limits is read whole.
+        """
         import daguerre
 
-        options = self._options
+        options, start = self._options, self.start(path)
         if animated and formats.takes("scene", path, "animated"):
             options["animated"] = True
-        return daguerre.load(path, time=self.start(path), **options)
+        if moments is not None and formats.takes("scene", path, "moments"):
+            options["moments"] = tuple(start + time for time in moments)
+        return daguerre.load(path, time=start, **options)
 
     @property
     def _allowed(self) -> tuple[Path, ...]:

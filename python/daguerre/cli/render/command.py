@@ -18,7 +18,7 @@ from daguerre.cli.flags.settings import SettingsFlags
 from daguerre.cli.flags.shutter import ShutterFlags
 
 from .coco import coco_of
-from .plan import plan_of, tell_mode
+from .plan import expected_moments, missing_moments, plan_of, tell_mode
 from .plate import over_plate, read_plate
 from .run import describe, interrupted_early, run
 from .views import Cameras
@@ -65,12 +65,15 @@ def render(
     try:
         taken = None if plate is None else plate.camera
         moves = any(picture.frame for picture in plan.pictures)
-        scene = scene_flags.load(scene_path, taken, animated=moves)
+        span = expected_moments((picture.frame for picture in plan.pictures), changes)
+        scene = scene_flags.load(scene_path, taken, animated=moves, moments=span)
+        for warning in scene.warnings:
+            console.warn(f"{scene_path}: {warning}")
+        plan = plan_of(job_flags, settings_flags, map_flags, cameras, scene)
+        if (more := missing_moments(plan.pictures, scene)) is not None:
+            scene = scene_flags.load(scene_path, taken, animated=moves, moments=more)
     except KeyboardInterrupt:
         return interrupted_early()
-    for warning in scene.warnings:
-        console.warn(f"{scene_path}: {warning}")
-    plan = plan_of(job_flags, settings_flags, map_flags, cameras, scene)
     cameras.check_frames(plan.pictures, job_flags.stereo, scene)
     tell_mode(plan, cameras, job_flags, scene)
     if scene_flags.plate_moves:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from typing import Any
 
 from daguerre import units as q
+from daguerre.camera import shutter
+from daguerre.camera.camera import Camera
 from daguerre.cli import console
 from daguerre.cli.flags.job import JobFlags
 from daguerre.cli.flags.map import MapFlags
@@ -22,6 +25,11 @@ from . import checks, crops
 from .frames import check_names, frame_numbers
 from .photograph import mode_notes, photograph_of
 from .views import Cameras, View, check_places
+
+#: Frames before and after the exposures that motion vectors need, and a little more.
+_NEXT = 1.5
+#: Frames before and after that are read before the exposures are known.
+_AROUND = 3.0
 
 
 @dataclass(frozen=True)
@@ -115,6 +123,44 @@ def _output_of(output: Output, view: View, settings: RenderSettings) -> Output:
     if DISPARITY in output.aovs and not view.shift:
         raise UsageError("--aov disparity needs --stereo")
     return replace(output, baseline=2 * abs(view.shift))
+
+
+def expected_moments(frames: Iterable[int | None], changes: dict[str, Any]) -> tuple[float, float]:
+    """Begin and end of the time that pictures most likely show, s after frame 0.
+
+    Args:
+        frames: Numbers of their frames; None: not a sequence.
+        changes: Parameters of all cameras that the command line changes.
+    """
+    fps = float(changes.get("fps") or Camera().fps)
+    numbers = [frame or 0 for frame in frames]
+    return (min(0, *numbers) - _AROUND) / fps, (max(0, *numbers) + _AROUND) / fps
+
+
+def missing_moments(pictures: Iterable[Picture], scene: Scene) -> tuple[float, float] | None:
+    """Begin and end of the time that a scene must be read for, s after frame 0.
+
+    Args:
+        pictures: The pictures to draw, whose cameras the scene has.
+        scene: The scene at the time of frame 0.
+
+    Returns:
+        The time; None: the scene has it all.
+
+    Raises:
+        UsageError: A shutter is wrong.
+    """
+    if scene.moments is None:
+        return None
+    first, last = (time - scene.time for time in scene.moments)
+    begin = end = 0.0
+    for picture in pictures:
+        camera = picture.view.camera(scene)
+        when = scene.time + (picture.frame or 0) / camera.fps
+        opens, closes = shutter.interval(camera, when, picture.settings.film.resolution)
+        begin = min(begin, opens - scene.time - _NEXT / camera.fps)
+        end = max(end, closes - scene.time + _NEXT / camera.fps)
+    return None if first <= begin <= end <= last else (min(begin, first), max(end, last))
 
 
 def tell_mode(plan: Plan, cameras: Cameras, flags: JobFlags, scene: Scene) -> None:

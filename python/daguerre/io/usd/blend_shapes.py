@@ -27,7 +27,9 @@ def read_blend_shapes(
     """
     channels = [str(name) for name in animation.GetBlendShapeOrder()]
     source = UsdSkel.Animation(animation.GetPrim())
-    weights = clock.value(source.GetBlendShapeWeightsAttr(), lambda v: np.asarray(v, np.float64))
+    weights = clock.value(
+        source.GetBlendShapeWeightsAttr(), lambda v: np.asarray(v, np.float64), large=True
+    )
     stated = weights.values[0] if is_dynamic(weights) else weights
     if weights is None or len(stated) != len(channels):
         notes.add("weights of blend shapes that differ in number from their names are left out")

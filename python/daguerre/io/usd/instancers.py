@@ -106,18 +106,21 @@ class _Reader:
         spins = bool(turning) and turning == self._samples(self._attribute("angularVelocities"))
         codes = sorted({*starts, *turning, *self._samples(self._attribute("scales"))})
         codes = codes or [float(self._clock.code.GetValue())]
-        self._check(codes)
-        rows = [self._rows(places, _base(starts, c) if flies else c, 3) for c in codes]
-        if any(row is None or len(row) != self._count for row in rows):
+        kept = self._clock.around(codes)
+        self._check(codes[kept])
+        counts = [self._found(places, _base(starts, c) if flies else c) for c in codes]
+        if any(count != self._count for count in counts):
             now = float(self._clock.code.GetValue())
             codes = [_base(starts, now) if starts else now]
             if not flies:
                 codes = [now]
-            if not flies and len(rows) > 1:
+            if not flies and len(counts) > 1:
                 self._notes.add(
                     "copies whose number changes over time are shown at rest, as at "
                     "the scene's time"
                 )
+        else:
+            codes = codes[kept]
         return self._made(codes, starts if flies else [], turning if spins else [])
 
     def _made(self, codes: list[float], starts: list[float], turning: list[float]) -> Crowd:
@@ -171,6 +174,11 @@ class _Reader:
                 f"{self._clock.file}: {self._prim.GetPath()}: wanted at most {_MAX_COPIES} copies "
                 f"in all time samples, got {len(codes) * self._count}"
             )
+
+    def _found(self, attribute: Usd.Attribute, code: float) -> int:
+        """Number of elements at a time code."""
+        value = attribute.Get(Usd.TimeCode(code)) if attribute else None
+        return 0 if value is None else len(value)
 
     def _rows(self, attribute: Usd.Attribute, code: float, columns: int) -> Array | None:
         value = attribute.Get(Usd.TimeCode(code)) if attribute else None

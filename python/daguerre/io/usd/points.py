@@ -5,6 +5,7 @@ Source: OpenUSD, UsdGeomPointBased, "Applying Timesampled Velocities to Geometry
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -45,13 +46,18 @@ def read_points(schema: Any, clock: Clock, notes: Notes) -> Array | Dynamic:
     codes = clock.codes(attribute)
     if len(codes) < 2:
         return now
-    samples = _samples(attribute, codes, clock)
-    if any(len(sample) != len(now) for sample in samples):
+    if any(count != len(now) for count in _counts(attribute, codes)):
         notes.add("points whose number changes over time are shown at rest, as at the scene's time")
         return now
-    if all(np.array_equal(sample, now) for sample in samples):
+    kept = clock.around(codes)
+    samples = _samples(attribute, codes[kept], clock)
+    others = (
+        _checked(attribute, attribute.Get(Usd.TimeCode(code)), clock)
+        for code in (*codes[: kept.start], *codes[kept.stop :])
+    )
+    if all(np.array_equal(sample, now) for sample in itertools.chain(samples, others)):
         return now
-    pairs = zip(map(clock.seconds, codes), samples, strict=True)
+    pairs = zip(map(clock.seconds, codes[kept]), samples, strict=True)
     return keys(pairs, "step" if clock.holds else "linear")
 
 
@@ -61,25 +67,33 @@ def _ballistic(schema: Any, clock: Clock) -> Ballistic | None:
     codes = clock.codes(points, single=True)
     if not codes or codes != clock.codes(velocities, single=True):
         return None
-    places, speeds = _samples(points, codes, clock), _samples(velocities, codes, clock)
-    if not _fit(places, speeds):
+    counts = _counts(points, codes)
+    if counts != _counts(velocities, codes):
         return None
     slower = schema.GetAccelerationsAttr()
-    changes = _samples(slower, codes, clock) if clock.codes(slower, single=True) == codes else None
-    times = np.array([clock.seconds(code) for code in codes])
-    if len({len(sample) for sample in places}) > 1:  # points come and go: those of one sample fly
+    slows = clock.codes(slower, single=True) == codes
+    times, kept = np.array([clock.seconds(code) for code in codes]), clock.around(codes)
+    if len({*counts}) > 1:  # points come and go: those of one sample fly
         i = max(int(np.searchsorted(times, clock.time, side="right")) - 1, 0)
-        one = slice(i, i + 1)
-        times, places, speeds = times[one], places[one], speeds[one]
-        changes = None if changes is None else changes[one]
-    if changes is not None and not _fit(places, changes):
-        changes = None
-    slowing = None if changes is None else tuple(changes)
-    return Ballistic(times, tuple(places), tuple(speeds), slowing)
+        codes, counts, times = codes[i : i + 1], counts[i : i + 1], times[i : i + 1]
+        kept = slice(0, 1)
+    attributes = [points, velocities]
+    if slows and _counts(slower, codes) == counts:
+        attributes.append(slower)
+    made = [tuple(_samples(one, codes[kept], clock)) for one in attributes]
+    return Ballistic(times[kept], made[0], made[1], made[2] if len(made) > 2 else None)
 
 
-def _fit(a: list[Array], b: list[Array]) -> bool:
-    return all(len(x) == len(y) for x, y in zip(a, b, strict=True))
+def _counts(attribute: Usd.Attribute, codes: list[float]) -> list[int]:
+    """Number of points of each sample; USD does not copy the points of large ones."""
+    return [_count(attribute.Get(Usd.TimeCode(code))) for code in codes]
+
+
+def _count(value: Any) -> int:
+    """Number of points: an attribute of another type holds none, but a number, or numbers."""
+    if not hasattr(value, "__len__") or not len(value) or isinstance(value[0], int | float):
+        return 0
+    return len(value)
 
 
 def _samples(attribute: Usd.Attribute, codes: list[float], clock: Clock) -> list[Array]:
@@ -94,8 +108,7 @@ def _samples(attribute: Usd.Attribute, codes: list[float], clock: Clock) -> list
 
 
 def _checked(attribute: Usd.Attribute, value: Any, clock: Clock) -> Array:
-    # An attribute of another type holds no points: a number, or numbers.
-    if not hasattr(value, "__len__") or not len(value) or isinstance(value[0], int | float):
+    if not _count(value):
         return np.zeros((0, 3), np.float32)
     rows = as_rows(value, 3)
     if rows is None:

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from pxr import Usd, UsdGeom, UsdSkel
 
+from daguerre.checks import numbers, short
 from daguerre.errors import UsageError, suggest
 from daguerre.files.notes import Notes
 from daguerre.io.shading.images import Images
@@ -43,6 +44,7 @@ from .stage import Opened, duration, open_stage, typed, usd_errors
 from .stage_facts import StageFacts
 from .topology import scheme_of
 from .transforms import position, rigid
+from .values import Moments
 
 #: Limit of entries in all lists of ``Scene.nodes``, which grow with the depth of the tree.
 _MAX_NODE_ENTRIES = 8_000_000
@@ -56,6 +58,7 @@ def read(
     allow_dirs: Iterable[str | os.PathLike[str]] = (),
     purpose: Sequence[str] = ("render",),
     camera_units: float | None = None,
+    moments: tuple[float, float] | None = None,
     kind: type[Scene] = Scene,
 ) -> Scene:
     """Reads a stage: .usd, .usda, .usdc or .usdz.
@@ -68,6 +71,7 @@ def read(
         purpose: Purposes of prims to draw, besides ``default``.
         camera_units: Length of a unit of focal lengths and apertures, mm; default: a tenth of a
             scene unit.
+        moments: Begin and end of the time that will be drawn, s; default: any may be.
         kind: Class of the scene.
 
     Returns:
@@ -83,16 +87,28 @@ def read(
             raise UsageError(
                 f"purpose: wanted {', '.join(PURPOSES)}, got {name!r}{suggest(name, PURPOSES)}"
             )
+    drawn = None if moments is None else _moments(moments, time)
     file, notes = Path(path), Notes()
     chosen = (variant,) if isinstance(variant, str) else tuple(variant)
     # Huge finite numbers may overflow in between; results are checked.
     with np.errstate(all="ignore"), usd_errors(str(file)):
-        opened = open_stage(file, float(time), chosen, allow_dirs, notes)
+        opened = open_stage(file, float(time), chosen, allow_dirs, notes, drawn)
         scene = _Reader(opened, kind(path=file, time=float(time)), notes).read(
             purpose, camera_units
         )
+    if drawn is not None and drawn.left_out:
+        scene.moments = drawn.begin, drawn.end
     scene.note(*notes.sentences())
     return scene
+
+
+def _moments(given: tuple[float, float], time: float) -> Moments:
+    begin, end = numbers(given, "moments", 2, "two times, s")
+    if not begin <= time <= end:
+        raise UsageError(
+            f"moments: wanted an interval with the time {time:g} s, got {short(given)}"
+        )
+    return Moments(begin, end)
 
 
 #: World from local of skeletons, by path.

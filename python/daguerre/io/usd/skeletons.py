@@ -151,7 +151,7 @@ class Skeletons:
             return found[chosen]
 
         def part(attribute: Usd.Attribute, columns: int) -> Any:
-            value = self.clock.value(attribute, lambda v: rows(v, attribute, columns))
+            value = self.clock.value(attribute, lambda v: rows(v, attribute, columns), large=True)
             return rows(None, attribute, columns) if value is None else value
 
         turns = part(source.GetRotationsAttr(), 4)

@@ -7,8 +7,10 @@ sampled. Where a sample is blocked, USD has no value; here the one before goes o
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Callable
+from bisect import bisect_right
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -45,6 +47,30 @@ def plain(value: Any) -> Any:
     return value
 
 
+@dataclass
+class Moments:
+    """The times that will be drawn: arrays over time need no samples but those around them.
+
+    Attributes:
+        begin: Begin, s.
+        end: End, s.
+        left_out: Whether some samples were.
+    """
+
+    begin: float
+    end: float
+    left_out: bool = False
+
+    def part(self, times: list[float]) -> slice:
+        """Those of some rising times, s, that hold the moments between them; two if there are."""
+        first = max(bisect_right(times, self.begin) - 1, 0)
+        last = min(bisect_right(times, self.end) + 1, len(times))
+        if last - first < 2:
+            first, last = max(first - 1, 0), min(last + 1, len(times))
+        self.left_out |= last - first < len(times)
+        return slice(first, last)
+
+
 @dataclass(frozen=True)
 class Clock:
     """The time codes of a stage.
@@ -54,12 +80,14 @@ class Clock:
         rate: Time codes per second.
         time: Scene time, s.
         holds: Whether the stage holds values between samples.
+        moments: Times that will be drawn; None: any may be.
     """
 
     file: str
     rate: float
     time: float
     holds: bool = False
+    moments: Moments | None = None
 
     @property
     def code(self) -> Usd.TimeCode:
@@ -119,36 +147,72 @@ class Clock:
             raise InputError(f"{where}: wanted finite times, got {bad[0]:g}")
         return found
 
-    def value(self, attribute: Usd.Attribute, convert: Convert = plain) -> Any:
+    def around(self, codes: list[float]) -> slice:
+        """Those of the time codes of an array over time that the moments need."""
+        if self.moments is None:
+            return slice(0, len(codes))
+        return self.moments.part([self.seconds(code) for code in codes])
+
+    def value(
+        self, attribute: Usd.Attribute, convert: Convert = plain, *, large: bool = False
+    ) -> Any:
         """Value of an attribute: a constant, :class:`Keys` in seconds, or None if it has none.
 
         Args:
             attribute: The attribute.
             convert: Converts a value; the result is a number, a tuple, an array, a flag or a name.
+            large: Whether it is an array with many numbers, which keeps only the samples that the
+                moments need. All of them tell whether it changes.
         """
         if not attribute:
             return None
         codes = self.codes(attribute)
-        pairs = _filled([(code, attribute.Get(code)) for code in codes])
+        kept = _with_values(attribute, codes, self.around(codes)) if large else slice(0, len(codes))
+        pairs = _filled([(code, attribute.Get(code)) for code in codes[kept]])
         if len(pairs) < 2:
             value = attribute.Get(self.code)
             return None if value is None else convert(value)
         held = self.holds or not _interpolates(attribute)
         try:
-            return self._keys([(code, convert(value)) for code, value in pairs], held)
+            made = [(code, convert(value)) for code, value in pairs]
+            rest = (convert(value) for value in _rest(attribute, codes, kept) if value is not None)
+            return self._keys(made, held, rest)
         except InputError as error:
             text, where = str(error), f"{self.file}: {attribute.GetPath()}"
             raise InputError(text if text.startswith(self.file) else f"{where}: {text}") from None
 
-    def _keys(self, pairs: list[tuple[float, Any]], held: bool) -> Keys | Any:
+    def _keys(self, pairs: list[tuple[float, Any]], held: bool, rest: Iterator[Any]) -> Keys | Any:
         first = pairs[0][1]
-        if all(np.array_equal(first, value) for _, value in pairs[1:]):
+        others = itertools.chain((value for _, value in pairs[1:]), rest)
+        if all(np.array_equal(first, value) for value in others):
             return first
         named = isinstance(first, str | bool)
         timed = [(self.seconds(code), value) for code, value in pairs]
         if np.shape(first) == (4, 4):
             return keys(_in_steps(timed) if held else timed, "linear")
         return keys(timed, None if named else "step" if held else "linear")
+
+
+def _with_values(attribute: Usd.Attribute, codes: list[float], kept: slice) -> slice:
+    """Widens a part of the samples until its ends are not blocked, nor all but one."""
+
+    def has(i: int) -> bool:
+        return attribute.Get(codes[i]) is not None
+
+    first, last = kept.start, kept.stop
+    while first > 0 and not has(first):
+        first -= 1
+    while last < len(codes) and not (
+        has(last - 1) and (has(first) or sum(map(has, range(first, last))) > 1)
+    ):
+        last += 1
+    return slice(first, last)
+
+
+def _rest(attribute: Usd.Attribute, codes: list[float], kept: slice) -> Iterator[Any]:
+    """Values of the samples outside of a part, one by one."""
+    for code in (*codes[: kept.start], *codes[kept.stop :]):
+        yield attribute.Get(code)
 
 
 def _filled(pairs: list[tuple[float, Any]]) -> list[tuple[float, Any]]:

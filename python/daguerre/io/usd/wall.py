@@ -44,6 +44,7 @@ def read(
     allow_dirs: Iterable[str | os.PathLike[str]] = (),
     purpose: Sequence[str] = ("render",),
     camera_units: float | None = None,
+    moments: tuple[float, float] | None = None,
     in_process: bool = False,
 ) -> Scene:
     """Reads a stage: .usd, .usda, .usdc or .usdz.
@@ -56,6 +57,7 @@ def read(
         purpose: Purposes of prims to draw, besides ``default``.
         camera_units: Length of a unit of focal lengths and apertures, mm; default: a tenth of a
             scene unit.
+        moments: Begin and end of the time that will be drawn, s; default: any may be.
         in_process: Whether USD may run in this process, which a damaged file can then end.
 
     Returns:
@@ -71,6 +73,7 @@ def read(
         "allow_dirs": tuple(map(os.fspath, folders)),
         "purpose": tuple(purpose),
         "camera_units": camera_units,
+        "moments": moments,
     }
     if in_process:
         from . import reader

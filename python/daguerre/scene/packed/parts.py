@@ -57,6 +57,7 @@ def parts_of(scene: Scene) -> dict[str, Any]:
         "plate": scene.plate and _plate(scene.plate),
         "nodes": _nodes(scene),
         "duration": scene.duration,
+        "moments": scene.moments,
         "variants": list(scene.variants),
         "warnings": list(scene.warnings),
     }

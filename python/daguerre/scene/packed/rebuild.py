@@ -315,6 +315,9 @@ class Rebuild:
         if duration is not None:
             duration = number(duration, "duration", 0, error=InputError)
         self.scene.set_clock(duration)
+        if (moments := self._parts.get("moments")) is not None:
+            begin, end = (number(one, "moments", error=InputError) for one in moments)
+            self.scene.moments = begin, end
         for name in self._parts["variants"]:
             self.scene.add_variant(self._text(name, "variants"))
         self.scene.note(*(self._text(one, "warnings") for one in self._parts["warnings"]))
