@@ -163,7 +163,9 @@ void bind_render(nb::module_& m) {
         .def_prop_ro("ghosts", [](const LiveFlare& live) { return live.facts().ghosts; }, "Ghosts of the last picture.")
         .def_prop_ro("rays", [](const LiveFlare& live) { return live.facts().rays; }, "Exact rays of the last picture.")
         .def_prop_ro("arrivals", [](const LiveFlare& live) { return live.facts().arrivals; },
-                     "Places at which light of the last picture landed.");
+                     "Places at which light of the last picture landed.")
+        .def_prop_ro("ray_arrivals", [](const LiveFlare& live) { return live.facts().ray_arrivals; },
+                     "Arrivals of the last picture that were exact rays of their own.");
 
     m.def("pilot",
           [](const Scene& scene, const Camera& camera, const RenderSettings& settings) {

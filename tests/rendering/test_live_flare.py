@@ -142,12 +142,33 @@ def test_a_lens_that_stays_has_the_same_ghosts_by_fewer_rays(
 ) -> None:
     """From where they came in before, as if they were found anew."""
     made, drawer = session(lens, lamp), _core.LiveFlare()
-    found, found_rays = live(made, drawer), drawer.rays
+    found, found_rays = live(made, drawer), drawer.rays - drawer.ray_arrivals
     live(made, drawer)
     kept = live(made, drawer)
     assert off(kept, found) < 0.06
     assert kept.sum((0, 1)) == pytest.approx(found.sum((0, 1)), rel=0.03)
-    assert drawer.rays < 0.75 * found_rays
+    assert drawer.rays - drawer.ray_arrivals < 0.75 * found_rays
+
+
+def test_a_ghost_of_two_parts_is_found_between_angles_that_kept_one_each() -> None:
+    """It brings 1.5 % of all light: without it bright blocks are 7 % off."""
+    made, drawer = session("sigma-17-40mm-f1.8", sun(-22, 4, (1.6e4,) * 3)), _core.LiveFlare()
+    for _ in range(2):
+        live(made, drawer)
+    assert off(live(made, drawer), exact(made)) < 0.06
+
+
+@pytest.mark.parametrize(
+    ("lens", "f_stop"),
+    [("nikon-nikkor-50mm-f1.2", 1.2), ("sigma-17-40mm-f1.8", 5.6), ("canon-50mm-f0.95", 0.95)],
+)
+def test_ghosts_of_coatings_have_their_violet_and_red(lens: str, f_stop: float) -> None:
+    """Coatings reflect most at both ends of the spectrum, steeply."""
+    made, drawer = session(lens, sun(9, 5, (1.6e4,) * 3), f_stop=f_stop), _core.LiveFlare()
+    for _ in range(2):
+        live(made, drawer)
+    kept, reference = live(made, drawer).mean((0, 1)), exact(made).mean((0, 1))
+    assert kept[[0, 2]] == pytest.approx(reference[[0, 2]], rel=0.1)
 
 
 @pytest.mark.parametrize(

@@ -12,11 +12,12 @@ constexpr int kZooms = 5;          // times that the region is closed in on, at 
 constexpr int kCoarse = 8;         // squares across meanwhile
 constexpr int kSearches = 4;       // for light that no look found
 constexpr float kAbout = 2;        // squares
-constexpr int kHardly = 8;         // nodes at which light was seen
+constexpr int kHardly = 8;         // nodes at which light was seen: fewer ask for a closer look
 constexpr int kPlenty = 120;       // nodes that let light pass: no light hides between them
 constexpr float kCloseIn = 0.5f;   // share of the region that holds the light: less is worth another look
 constexpr float kWellSeen = 0.8f;  // the same where there is plenty
-constexpr double kDim = 0.005;     // share of all light: not worth a closer look
+constexpr double kDim = 0.005;     // share of all light: not worth closing in on
+constexpr double kFaint = 0.001;   // share of all light: not worth a search
 constexpr float kMargin = 2.f / GhostGrid::kSquares;   // of a region that is known about, on each side
 
 struct Range {
@@ -81,7 +82,7 @@ int GhostGrid::mark(const Looks& by) {
         if (passes(by, nodes[n])) see(n % side, n / side);
         note({float(n % side), float(n / side)}, nodes[n]);
     }
-    if (seen < kHardly) {
+    if (seen < by.hardly) {
         std::vector<MapRay> looks;
         std::vector<int> of;
         for (int i = 0; i < squares * squares; ++i)
@@ -175,18 +176,20 @@ int GhostGrid::find(const Looks& by) {
         nodes.clear();
         return 0;
     }
-    for (int zoom = 1; zoom < kZooms && seen >= kHardly && is_smooth() && close_in(kCloseIn); ++zoom) seen = look(by, kCoarse);
+    for (int zoom = 1; zoom < kZooms && seen >= by.hardly && is_smooth() && close_in(kCloseIn); ++zoom) seen = look(by, kCoarse);
     return squares == kSquares ? seen : look(by, kSquares);
 }
 
 GhostGrid::GhostGrid(const MapRays& map_rays, const Sensor& sensor, float reach,
                      const KnownGhost* known) {
-    const Looks by{map_rays, sensor, reach};
+    const bool faint = known && known->share < kFaint;
+    const Looks by{map_rays, sensor, reach, faint ? 1 : kHardly};
     int seen = 0;
     if (known) {
         region = widened(known->region), seen = look(by, kSquares);
         const bool dark = std::ranges::find(lit, true) == lit.end();
-        if (!dark && (seen < kHardly || is_cut(by))) seen = find(by);
+        const bool elsewhere = dark ? known->jumps() : seen < kHardly || is_cut(by);
+        if (elsewhere && !faint) seen = find(by);
     } else {
         seen = find(by);
     }

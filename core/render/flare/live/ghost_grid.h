@@ -35,6 +35,7 @@ struct GhostGrid {
         const MapRays& rays;
         const Sensor& sensor;
         float reach;
+        int hardly;   // nodes at which light was seen: fewer ask for a closer look
     };
     static bool passes(const Looks& by, const MapLanding& landing);
     int mark(const Looks& by);

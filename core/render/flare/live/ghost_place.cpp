@@ -13,6 +13,11 @@ FlareRectangle between(const FlareRectangle& a, const FlareRectangle& b, float w
     return {(1 - w) * a.low + w * b.low, (1 - w) * a.size + w * b.size};
 }
 
+bool meet(const FlareRectangle& a, const FlareRectangle& b) {
+    return a.low.x < b.low.x + b.size.x && b.low.x < a.low.x + a.size.x && a.low.y < b.low.y + b.size.y &&
+           b.low.y < a.low.y + a.size.y;
+}
+
 }  // namespace
 
 GhostPlace::Spectrum GhostPlace::spectrum(Vec2f u) const {
@@ -29,6 +34,10 @@ KnownGhost::KnownGhost(std::shared_ptr<const GhostPlace> a, std::shared_ptr<cons
     : places{std::move(a), std::move(b)}, weight(!places[0] ? 1 : !places[1] ? 0 : weight_of_b),
       region(between((places[0] ? places[0] : places[1])->region, (places[1] ? places[1] : places[0])->region, weight)),
       share(std::max(places[0] ? places[0]->share : 0, places[1] ? places[1]->share : 0)) {}
+
+bool KnownGhost::jumps() const {
+    return places[0] && places[1] && !meet(places[0]->region, places[1]->region);
+}
 
 GhostPlace::Spectrum KnownGhost::spectrum(Vec2f at) const {
     GhostPlace::Spectrum sum{};

@@ -32,6 +32,8 @@ struct KnownGhost {
 
     /// Between two directions, one of which at least has a place.
     KnownGhost(std::shared_ptr<const GhostPlace> a, std::shared_ptr<const GhostPlace> b, float weight_of_b);
+    /// The regions of the two directions do not meet: the ghost has several parts, and each direction found another one.
+    bool jumps() const;
     /// At a place of the front's square.
     GhostPlace::Spectrum spectrum(Vec2f at) const;
 };

@@ -13,11 +13,18 @@ namespace dg {
 namespace {
 
 constexpr double kShare = 0.15;       // of all light, that a source must bring
-constexpr double kArrivals = 4e5;
+constexpr double kMostArrivals = 5.6e5, kFewestArrivals = 3e5;
+constexpr double kWork = 7e5;         // arrivals that a picture without ghosts had time for
+constexpr double kGhostWork = 2000;   // arrivals that take as long as the set-up of one ghost
 constexpr double kDim = 0.0015;        // share of all that the ghosts that are left out are worth, at most
 constexpr int kShadows = 512, kSequence = -7;
 constexpr int kLayers = 4;            // which tasks draw on, and which are added in order: no bit depends on threads
 constexpr float kMm2 = 1e6f;          // in 1 m2
+
+/// Number of arrivals that fit into the time of a picture beside the set-up of its ghosts.
+double arrivals_beside(std::size_t ghosts) {
+    return std::clamp(kWork - kGhostWork * double(ghosts), kFewestArrivals, kMostArrivals);
+}
 
 /// Share of some rays to the source that are free.
 float free_share(const FlareAim& aim, const SmallSource& source) {
@@ -97,13 +104,17 @@ std::vector<float> LiveFlare::draw(const Scene& scene, const Camera& camera, Ren
                           std::back_inserter(all));
     }
     const double worth = choose(all, sensor, kDim);
+    const double arrivals = arrivals_beside(all.size()) / worth;   // of each unit of worth
     parallel_tasks(settings.threads, std::int64_t(all.size()),
-                   [&](std::int64_t i) { all[std::size_t(i)].ghost->refine(kArrivals / worth); });
+                   [&](std::int64_t i) { all[std::size_t(i)].ghost->refine(arrivals); });
     const double per_px = double(kMm2) / std::get<ExactLens>(camera.lens).h0() / sensor.mm2_per_px();
     std::vector<float> rgb = draw_all(all, sensor, float(per_px) * settings.shutter.weight(), settings.threads);
     facts_.rays = keeps ? places_.rays() : 0;
     facts_.sources = int(sources.size()), facts_.ghosts = int(all.size());
-    for (const DrawnGhost& own : all) facts_.rays += own.ghost->rays(), facts_.arrivals += own.ghost->arrivals();
+    for (const DrawnGhost& own : all) {
+        facts_.rays += own.ghost->rays(), facts_.arrivals += own.ghost->arrivals();
+        facts_.ray_arrivals += own.ghost->ray_arrivals();
+    }
     return rgb;
 }
 

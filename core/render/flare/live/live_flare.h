@@ -22,6 +22,7 @@ class LiveFlare {
         int sources = 0;         // that shine on the lens; 0: all is black
         int ghosts = 0;          // that were drawn
         std::size_t rays = 0, arrivals = 0;
+        std::size_t ray_arrivals = 0;   // arrivals that were rays of their own
     };
     /// Figures of the last picture.
     const Facts& facts() const { return facts_; }

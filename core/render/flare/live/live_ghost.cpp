@@ -15,13 +15,12 @@ namespace {
 constexpr int kLooks = 8;               // of a square
 constexpr float kUnseen = 0.3f;         // looks that count as having seen light, of a square where none did
 constexpr float kLostUnseen = 0.25f;    // the same where rays are lost
-constexpr float kLostMore = 2;          // times as many arrivals there: looks are less sure
+constexpr float kLostMore = 1.2f;       // times as many arrivals there: looks are less sure
 constexpr double kWorthMore = 1500, kWorthMost = 6000;   // arrivals of a ghost that more nodes for its colours pay for
-constexpr double kWorthFine = 12;       // arrivals of a square that a finer grid pays for
+constexpr double kWorthFine = 18;       // arrivals of a square that a finer grid pays for
 constexpr double kWorthWays = 50;       // the same where rays are lost: those of the finer grid spare others
 constexpr double kWorthRays = 40;       // arrivals of a square with steep glass that are worth rays of their own
-constexpr double kRaysMore = 1.4;       // times as many arrivals there: each has one wavelength
-constexpr float kSteep = 0.3f;          // of the mean transmittance, from the least to the most
+constexpr float kSteep = 0.2f;          // of the mean transmittance, from the least to the most
 constexpr float kBend = 0.7f;           // px, from straight between nodes, that is worth one
 constexpr int kGlassNodes = 4;          // at which transmittances are asked for
 constexpr float kAlmost = 0.1f;         // beyond an edge: what is beside it may be lit
@@ -157,7 +156,6 @@ void LiveGhost::refine(double arrivals) {
     for (Square& s : squares_) {
         s.worth *= arrivals;
         s.steep = s.worth > kWorthRays && is_steep(s);
-        if (s.steep) s.worth *= kRaysMore;
         const bool finer = s.lost ? s.worth > kWorthWays : s.worth > kWorthFine && (s.edge || bends(s));
         if (finer && (s.lost || !s.steep)) refine(s);
     }

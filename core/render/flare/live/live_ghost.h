@@ -40,6 +40,8 @@ class LiveGhost {
 
     std::size_t rays() const { return traced_; }
     std::size_t arrivals() const { return arrived_; }
+    /// Arrivals that were rays of their own.
+    std::size_t ray_arrivals() const { return by_rays_; }
 
   private:
     static constexpr int kSide = GhostGrid::kSide, kNodes = kSide * kSide;
@@ -120,7 +122,7 @@ class LiveGhost {
     int step_ = 0, few_side_ = 0;      // squares from one of few nodes to the next; nodes across
     std::vector<Few> few_;
     SheetSmooth smooth_{};
-    std::size_t traced_ = 0, arrived_ = 0;
+    std::size_t traced_ = 0, arrived_ = 0, by_rays_ = 0;
 };
 
 }  // namespace dg

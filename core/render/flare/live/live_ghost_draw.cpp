@@ -5,6 +5,7 @@
 #include "math/thread_scratch.h"
 #include "render/flare/live/live_ghost.h"
 #include "render/flare/live/spread_numbers.h"
+#include "render/flare/live/wavelength_pick.h"
 #include "render/flare/maps/ghost_map_nodes.h"
 
 namespace dg {
@@ -108,9 +109,12 @@ void LiveGhost::draw_mesh(LightLayer& layer, const SheetLevel& levels, const Squ
 /// Each is a ray of one wavelength.
 void LiveGhost::draw_rays(LightLayer& layer, const SheetLevel& levels, const Square& s, const Arrivals& some, float times) {
     MapBatch& b = thread_scratch<MapBatch>([] {});
-    set(b, some, [](float u) { return u; }), land_by_rays(s, b, some.count);
-    add(layer, levels, s, b, some,
-        [&](float u) { return source_.at[std::size_t(u * LiveSource::kSteps)] * (times * source_.free); });
+    const WavelengthPick pick(few_at({float(s.x) + 0.5f, float(s.y) + 0.5f}).spectrum);
+    set(b, some, [&](float u) { return pick(u).place; }), land_by_rays(s, b, some.count);
+    add(layer, levels, s, b, some, [&](float u) {
+        const auto picked = pick(u);
+        return source_.at[std::size_t(picked.place * LiveSource::kSteps)] * (picked.weight * times * source_.free);
+    });
 }
 
 LiveGhost::GroupColors LiveGhost::colors_of(const Few& few, float times) const {
@@ -143,6 +147,7 @@ void LiveGhost::land_by_rays(const Square& s, MapBatch& b, int count) {
     for (int i = 0; i < count; ++i)
         rays.push_back({grid_.at({float(s.x) + b.u[i], float(s.y) + b.v[i]}), {b.shift_x[i], b.shift_y[i]}, b.nm[i]});
     const std::vector<MapLanding> landings = trace(rays);
+    by_rays_ += rays.size();
     for (int i = 0; i < count; ++i) {
         const MapLanding& l = landings[std::size_t(i)];
         const float passed = rays_.passed(l, b.opening[i]);

@@ -20,7 +20,7 @@ struct NodeWeights {
     int first;
     std::array<float, 4> of;
     explicit NodeWeights(float nm) {
-        const float place = std::clamp((nm - LiveSource::kFirstNm) / LiveSource::kStepNm, -kBeyond, kNodes - 1 + kBeyond);
+        const float place = std::clamp(LiveSource::node_of(nm), -kBeyond, kNodes - 1 + kBeyond);
         first = std::clamp(int(place) - 1, 0, kNodes - 4);
         for (int i = 0; i < 4; ++i) {
             of[i] = 1;

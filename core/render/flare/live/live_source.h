@@ -10,8 +10,7 @@
 namespace dg {
 
 struct LiveSource {
-    static constexpr int kNodes = 12, kSteps = 240;   // of the wavelength
-    static constexpr float kFirstNm = 405, kStepNm = 295.f / (kNodes - 1);
+    static constexpr int kNodes = 16, kSteps = 960;   // of the wavelength
     static constexpr int kGroups = 3;                 // of wavelengths, which land apart from each other
     SmallSource small;
     /// An arrival of all wavelengths has these, by groups, for each unit of transmittance at a node.
@@ -29,7 +28,13 @@ struct LiveSource {
     GlassChange change(const std::array<float, kNodes>& spectrum) const;
     /// u in [0, 1), evenly as wavelengths are seen: its group is int(u * kGroups).
     static float nm(float u);
-    static float node_nm(int k) { return kFirstNm + kStepNm * float(k); }
+    /// Wavelengths of the nodes, even in the wavenumber, as the reflectance of coatings changes: from 388 to 700 nm.
+    static float node_nm(int k) { return 1e3f / (kFirst - kStep * float(k)); }
+    /// Place of a wavelength among the nodes, from 0 on.
+    static float node_of(float nm) { return (kFirst - 1e3f / nm) / kStep; }
+
+  private:
+    static constexpr float kFirst = 1e3f / 388, kStep = (kFirst - 1e3f / 700) / (kNodes - 1);   // waves per um
 };
 
 }  // namespace dg
