@@ -113,6 +113,13 @@ def test_any_other_message_is_one_error(text: Any) -> None:
         m.parse(text)
 
 
+def test_a_message_beyond_the_limit_is_not_parsed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(m.json, "loads", lambda *given, **options: pytest.fail("it is"))
+    text = '{"got": ' + "[" * m.MAX_BYTES
+    with pytest.raises(dg.UsageError, match=f"message: wanted at most {m.MAX_BYTES} characters"):
+        m.parse(text)
+
+
 def test_long_messages_are_shortened_in_errors() -> None:
     with pytest.raises(dg.UsageError) as caught:
         m.parse(json.dumps({"x" * 50000: 1}))

@@ -143,6 +143,8 @@ def parse(text: str | bytes) -> Message:
     """
     if isinstance(text, bytes):
         raise UsageError("message: wanted text, got bytes")
+    if len(text) > MAX_BYTES:
+        raise UsageError(f"message: wanted at most {MAX_BYTES} characters, got {len(text)}")
     try:
         data = json.loads(text, parse_constant=_no_constant, object_pairs_hook=_once)
     except (ValueError, RecursionError) as error:

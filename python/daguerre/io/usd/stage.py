@@ -11,7 +11,7 @@ import os
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +28,7 @@ from .assets import Assets
 from .composed import check_count
 from .layer_files import check_file
 from .layers import Layers
-from .values import Clock, Moments
+from .values import Clock
 
 _Z_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], np.float64)
 
@@ -115,7 +115,6 @@ def open_stage(
     variants: Iterable[str],
     allow_dirs: Iterable[str | os.PathLike[str]],
     notes: Notes,
-    moments: Moments | None = None,
 ) -> Opened:
     """Opens a stage.
 
@@ -125,7 +124,6 @@ def open_stage(
         variants: Selections of variants, each as ``/prim:set=name``.
         allow_dirs: Folders, besides the stage's own, from which it may read.
         notes: Receives notes on layers that are missing.
-        moments: Times that will be drawn; None: any may be.
 
     Raises:
         InputError: A layer is damaged, or outside of the folders; or unit or time code is invalid.
@@ -144,7 +142,7 @@ def open_stage(
     _note_missing(stage, notes)
     metres, z_up = _units(stage, file, notes)
     root = (_Z_UP if z_up else np.eye(4)) * np.array([metres, metres, metres, 1.0])[:, None]
-    clock = replace(_clock(stage, file, time), moments=moments)
+    clock = _clock(stage, file, time)
     stated = stage.HasAuthoredMetadata("framesPerSecond")
     fps = _rate(file, "framesPerSecond", stage.GetFramesPerSecond()) if stated else None
     return Opened(file, stage, clock, metres, root, assets, fps, layers.bind_collections)
