@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
+from daguerre.apart.serving import Owned
 from daguerre.errors import UsageError
 
 Tell = Callable[[str], None]
@@ -110,3 +111,28 @@ def report(request: list[str], tell: Tell) -> int:
     for text in request:
         tell(text)
     return threading.active_count()
+
+
+#: What ``owned`` let go of, in order.
+let_go: list[str] = []
+
+
+class _Memory:
+    """Memory that tells when it is let go of."""
+
+    def __init__(self, name: str, size: int = 0) -> None:
+        self._name, self._bytes = name, bytearray(size)
+
+    def array(self) -> Any:
+        """An array that keeps this memory."""
+        held = (ctypes.c_char * len(self._bytes)).from_buffer(self._bytes)
+        held.memory = self  # type: ignore[attr-defined]
+        return np.frombuffer(held, np.uint8)
+
+    def __del__(self) -> None:
+        let_go.append(self._name)
+
+
+def owned(request: Any, tell: Tell) -> Owned:
+    """Large arrays in memory of an owner."""
+    return Owned([_Memory("array", 1 << 20).array() for _ in range(3)], _Memory("owner"))

@@ -11,6 +11,7 @@ import socket
 import traceback
 from collections.abc import Callable
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from typing import Any
 
 from daguerre.errors import (
@@ -28,6 +29,19 @@ from .link import ANSWER, ERROR, FAULT, READY, TASK, TOLD, Link
 ERRORS = {kind.__name__: kind for kind in (InputError, UsageError, MismatchError, OutputError)}
 
 
+@dataclass(frozen=True)
+class Owned:
+    """Result of a task whose arrays lie in memory of an object, which is kept until it is sent.
+
+    Attributes:
+        value: Plain values and arrays.
+        owner: The object.
+    """
+
+    value: Any
+    owner: Any
+
+
 def serve(end: socket.socket, needed: Callable[[], AbstractContextManager[None]]) -> None:
     """Runs tasks until the other end closes.
 
@@ -43,9 +57,10 @@ def serve(end: socket.socket, needed: Callable[[], AbstractContextManager[None]]
             kind, blocks = link.receive(lambda: float("inf"))
             if kind == TASK:
                 with needed():
-                    answer = _answer(link, blocks)
-                link.send(*answer)
-                del blocks, answer
+                    kind, answer, owner = _answer(link, blocks)
+                link.send(kind, answer)
+                del blocks, answer  # before their owner, which would copy what is still in use
+                del owner
                 gc.collect()  # so that a library lets go of the files that it holds
                 _trim()
 
@@ -56,23 +71,26 @@ def _trim() -> None:
         ctypes.CDLL(None).malloc_trim(0)
 
 
-def _answer(link: Link, blocks: list[Any]) -> tuple[bytes, list[Any]]:
-    """Runs a task and returns the message that answers it."""
+def _answer(link: Link, blocks: list[Any]) -> tuple[bytes, list[Any], Any]:
+    """Runs a task and returns the message that answers it, and the owner of its arrays."""
     try:
         name, request = unpack(bytes(blocks[0]), lambda number: blocks[int(number)])
-        return ANSWER, packed(_function(name)(request, lambda text: _tell(link, text)))
+        found = _function(name)(request, lambda text: _tell(link, text))
+        value, owner = (found.value, found.owner) if isinstance(found, Owned) else (found, None)
+        return ANSWER, packed(value), owner
     except DaguerreError as error:
         kind = next(
             base for base in type(error).__mro__ if base in (*ERRORS.values(), DaguerreError)
         )
         name = kind.__name__ if kind.__name__ in ERRORS else InputError.__name__
-        return ERROR, [_bytes(name), _bytes(str(error))]
+        return ERROR, [_bytes(name), _bytes(str(error))], None
     except Exception as error:
         words = " ".join(str(error).split())
-        return FAULT, [
+        told = [
             *(_bytes(type(error).__name__), _bytes(words)),
             _bytes("".join(traceback.format_exception(error))),
         ]
+        return FAULT, told, None
 
 
 def packed(value: Any) -> list[Any]:

@@ -15,9 +15,11 @@ import daguerre as dg
 from daguerre.cli import main
 from daguerre.errors import UsageError
 from daguerre.io.usd import wall
+from daguerre.io.usd.reader import read
 from daguerre.io.usd.values import Clock, Moments
 from daguerre.motion.values import at as value_at
 from daguerre.motion.values import is_dynamic
+from daguerre.scene.packed.gathered import Gathered
 from daguerre.setup.content_hash import content_hash
 from tests.support import stages
 
@@ -299,3 +301,16 @@ def test_a_moment_of_a_long_animation_is_small(
     wall.read(path, time=2.0)
     assert sizes[1] > 1e7
     assert sizes[0] < 0.1 * sizes[1]
+
+
+def test_points_for_the_wall_stay_in_the_memory_of_the_stage(tmp_path: Path) -> None:
+    path, found = _busy(tmp_path), Gathered()
+    read(path, into=found)
+    whole = read(path)
+    i = next(i for i, mesh in enumerate(whole.meshes) if mesh.name == "/linear")
+    owns = [
+        scene.motion.meshes[i].positions.points.values[0].flags.owndata  # type: ignore[attr-defined]
+        for scene in (found, whole)
+    ]
+    assert owns == [False, True]
+    assert found.owner.GetPrimAtPath("/linear")

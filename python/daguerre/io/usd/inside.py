@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from daguerre import memory
+from daguerre.apart.serving import Owned
 from daguerre.files import uses
 from daguerre.scene.packed.gathered import Gathered
 from daguerre.scene.packed.parts import parts_of
@@ -21,10 +22,12 @@ from .wall import FILE, PIXELS
 Tell = Callable[[str], None]
 
 
-def scene(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """Reads a stage and takes its scene apart."""
+def scene(request: Mapping[str, Any], tell: Tell) -> Owned:
+    """Reads a stage and takes its scene apart; points over time stay in its files' memory."""
     with _beginning(request, tell):
-        return parts_of(read(request["path"], kind=Gathered, **request["options"]))
+        found = Gathered()
+        read(request["path"], into=found, **request["options"])
+        return Owned(parts_of(found), found.owner)
 
 
 def seconds(request: Mapping[str, Any], tell: Tell) -> float:

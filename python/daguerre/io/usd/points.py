@@ -13,7 +13,7 @@ from pxr import Usd
 
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
-from daguerre.motion.values import Dynamic, keys
+from daguerre.motion.values import Dynamic, Keys, keys
 
 from .moving.points import Ballistic
 from .moving.surfaces import Array
@@ -57,8 +57,10 @@ def read_points(schema: Any, clock: Clock, notes: Notes) -> Array | Dynamic:
     )
     if all(np.array_equal(sample, now) for sample in itertools.chain(samples, others)):
         return now
-    pairs = zip(map(clock.seconds, codes[kept]), samples, strict=True)
-    return keys(pairs, "step" if clock.holds else "linear")
+    times, how = [clock.seconds(code) for code in codes[kept]], "step" if clock.holds else "linear"
+    if clock.borrows:
+        return Keys(np.array(times), tuple(samples), how)
+    return keys(zip(times, samples, strict=True), how)
 
 
 def _ballistic(schema: Any, clock: Clock) -> Ballistic | None:

@@ -11,6 +11,7 @@ import os
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from daguerre.checks import numbers, short
 from daguerre.errors import UsageError, suggest
 from daguerre.files.notes import Notes
 from daguerre.io.shading.images import Images
+from daguerre.scene.packed.gathered import Gathered
 from daguerre.scene.scene import Scene
 
 from .bindings import Bindings
@@ -59,7 +61,7 @@ def read(
     purpose: Sequence[str] = ("render",),
     camera_units: float | None = None,
     moments: tuple[float, float] | None = None,
-    kind: type[Scene] = Scene,
+    into: Gathered | None = None,
 ) -> Scene:
     """Reads a stage: .usd, .usda, .usdc or .usdz.
 
@@ -72,7 +74,8 @@ def read(
         camera_units: Length of a unit of focal lengths and apertures, mm; default: a tenth of a
             scene unit.
         moments: Begin and end of the time that will be drawn, s; default: any may be.
-        kind: Class of the scene.
+        into: Empty scene to read into, which is packed at once: large arrays stay in the memory of
+            the stage, its ``owner``. Default: a new scene.
 
     Returns:
         The scene; ``warnings`` has notes on unsupported content.
@@ -92,10 +95,14 @@ def read(
     chosen = (variant,) if isinstance(variant, str) else tuple(variant)
     # Huge finite numbers may overflow in between; results are checked.
     with np.errstate(all="ignore"), usd_errors(str(file)):
-        opened = open_stage(file, float(time), chosen, allow_dirs, notes, drawn)
-        scene = _Reader(opened, kind(path=file, time=float(time)), notes).read(
-            purpose, camera_units
-        )
+        opened = open_stage(file, float(time), chosen, allow_dirs, notes)
+        clock = replace(opened.clock, moments=drawn, borrows=into is not None)
+        opened = replace(opened, clock=clock)
+        made = Scene() if into is None else into
+        made.path, made.time = file, float(time)
+        scene = _Reader(opened, made, notes).read(purpose, camera_units)
+    if into is not None:
+        into.owner = opened.stage
     if drawn is not None and drawn.left_out:
         scene.moments = drawn.begin, drawn.end
     scene.note(*notes.sentences())

@@ -81,6 +81,8 @@ class Clock:
         time: Scene time, s.
         holds: Whether the stage holds values between samples.
         moments: Times that will be drawn; None: any may be.
+        borrows: Whether large arrays may stay in USD's memory, which may be that of a file: in a
+            helper process, which sends them at once to one that checks them.
     """
 
     file: str
@@ -88,6 +90,7 @@ class Clock:
     time: float
     holds: bool = False
     moments: Moments | None = None
+    borrows: bool = False
 
     @property
     def code(self) -> Usd.TimeCode:

@@ -75,10 +75,11 @@ class Instances(list[Instance]):
 
 
 class Gathered(Scene):
-    """A scene with ``Instances``."""
+    """A scene with ``Instances``, whose arrays may lie in memory of an ``owner``."""
 
     def __init__(self, **given: Any) -> None:
         super().__init__(**given)
+        self.owner: Any = None
         self.instances: Instances = Instances()
 
     def _place(self, mesh: int, material: int, worlds: NDArray[np.float64], name: str) -> None:
