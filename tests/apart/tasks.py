@@ -113,7 +113,7 @@ def report(request: list[str], tell: Tell) -> int:
     return threading.active_count()
 
 
-#: What ``owned`` let go of, in order.
+#: Names of what ``owned`` let go of, in order.
 let_go: list[str] = []
 
 

@@ -108,6 +108,34 @@ def test_stages_of_too_many_prims_are_refused_at_once(tmp_path: Path, name: str)
     assert time.process_time() - begin < 10
 
 
+def _diamonds(levels: int) -> str:
+    """Classes that each refer to five of the next level, and a prim that refers to the first."""
+    body = _prim("top", f"references = [{', '.join(f'</d1_{i}>' for i in range(5))}]")
+    for level in range(1, levels + 1):
+        below = ", ".join(f"</d{level + 1}_{i}>" for i in range(5))
+        head = "" if level == levels else f"references = [{below}]"
+        body += "".join(_prim(f"d{level}_{i}", head, "", "class") for i in range(5))
+    return body
+
+
+@pytest.mark.parametrize("levels", [7, 9, 100])
+def test_diamonds_of_references_are_refused_at_once(tmp_path: Path, levels: int) -> None:
+    stage = _stage(tmp_path / "s.usda", _diamonds(levels))
+    begin = time.process_time()
+    told = r"/\w+: too many references to references: wanted at most 65535, got 97656$"
+    with pytest.raises(dg.InputError, match=told):
+        dg.load(stage, in_process=True)
+    assert time.process_time() - begin < 2
+
+
+def test_the_specs_of_a_prim_are_those_that_usd_finds(tmp_path: Path) -> None:
+    path = _stage(tmp_path / "s.usda", _diamonds(4))
+    layers = Layers(path, Assets(path, ()))
+    count = composed._run(composed._Composed("s").specs(layers.root, Sdf.Path("/top")))
+    stage = Usd.Stage.Open(str(path))
+    assert count.own == len(stage.GetPrimAtPath("/top").GetPrimStack()) == 781
+
+
 def test_a_long_chain_of_references_is_refused(tmp_path: Path) -> None:
     body = _prim("p0") + "".join(_prim(f"p{i + 1}", f"references = </p{i}>") for i in range(1000))
     with pytest.raises(dg.InputError, match="references are nested too deeply: the limit is 128"):

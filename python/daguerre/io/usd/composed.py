@@ -33,6 +33,9 @@ _PRIM_BYTES = 1000
 #: Most references inside of one another, and prims that loops make this count look at again.
 _MOST_ARCS, _MOST_AGAIN = 128, 30_000
 _MANY = 10**15
+#: Most specs of one prim, in all that it refers to. USD leaves out the rest, after seconds for each
+#: prim. Source: ``pxr/usd/pcp/primIndex_Graph.h``, whose nodes have numbers of 16 bits.
+_MOST_SPECS = 65_535
 
 
 @dataclass
@@ -41,6 +44,7 @@ class _Sum:
 
     Attributes:
         prims: Number of specs.
+        own: Number of specs of the prim itself, without the prims below it.
         depth: Most prims inside of one another.
         arcs: Most references inside of one another.
         classes: How often each class is used, by its path in the stack.
@@ -48,13 +52,14 @@ class _Sum:
     """
 
     prims: int = 0
+    own: int = 0
     depth: int = 0
     arcs: int = 0
     classes: Counter[Sdf.Path] = field(default_factory=Counter)
     loop: int = 1 << 30
 
     def add(self, other: _Sum, times: int = 1, below: int = 0, arcs: int = 0) -> None:
-        """Adds what another prim brings, without its classes."""
+        """Adds what another prim brings, without its classes and its own specs."""
         self.arcs = max(self.arcs, other.arcs + arcs)
         self.prims = min(self.prims + times * other.prims, _MANY)
         self.depth = max(self.depth, other.depth + below)
@@ -63,6 +68,7 @@ class _Sum:
     def largest(self, other: _Sum) -> None:
         """Takes the larger of each number."""
         self.prims = max(self.prims, other.prims)
+        self.own = max(self.own, other.own)
         self.arcs = max(self.arcs, other.arcs)
         self.depth = max(self.depth, other.depth)
         self.loop = min(self.loop, other.loop)
@@ -138,7 +144,7 @@ class _Composed:
         self._tried.add((stack, path))
         if self._again > _MOST_AGAIN:
             raise InputError(f"{self._file}: references form too many loops")
-        found = _Sum(prims=0 if path.IsPrimVariantSelectionPath() else 1, depth=1)
+        found = _Sum(prims=0 if path.IsPrimVariantSelectionPath() else 1, own=1, depth=1)
         variants: dict[str, list[Sdf.Path]] = {}
         children = (child for names, _ in stack.layers for child in names.below.get(path, ()))
         for child in dict.fromkeys(children):
@@ -153,10 +159,16 @@ class _Composed:
             for choice in choices:
                 most.largest((yield self.specs(stack, choice)))
             found.add(most)
+            found.own += most.own
             found.classes += most.classes
         for names, below in stack.layers:
             for arc in names.arcs.get(path, ()):
                 yield from self._arc(found, stack, path, arc, below)
+        if found.own > _MOST_SPECS:
+            raise InputError(
+                f"{self._file}: {path_text(path)}: too many references to references: wanted at "
+                f"most {_MOST_SPECS}, got {found.own:.6g}"
+            )
         if found.loop >= len(self._chain):
             found.loop = 1 << 30
             self._known[key] = found
@@ -175,6 +187,7 @@ class _Composed:
             return
         part = yield self._through(there, stack, own, target, target)
         found.add(part, arcs=1)
+        found.own = min(found.own + part.own, _MANY)
         if arc.of_class:
             found.classes[target] += 1
         for name, uses in part.classes.items():
@@ -233,6 +246,7 @@ class _Composed:
         if _has(stack, path):
             part = yield self.specs(stack, path)
             found.add(part)
+            found.own += part.own
             found.classes += part.classes
         above = path.GetParentPath()
         while above != Sdf.Path.absoluteRootPath:
@@ -253,6 +267,7 @@ class _Composed:
             if _has(stack, inside):
                 part = yield self.specs(stack, inside)
                 found.add(part)
+                found.own += part.own
                 found.classes += part.classes
         for names, below in stack.layers:
             for arc in names.arcs.get(place, ()):
@@ -262,6 +277,7 @@ class _Composed:
                     inner = path.ReplacePrefix(above, target)
                     part = yield self._through(there, stack, above, target, inner)
                     found.add(part, arcs=1)
+                    found.own = min(found.own + part.own, _MANY)
 
 
 def _target(there: Stack, arc: Arc, own: Sdf.Path) -> Sdf.Path | None:
