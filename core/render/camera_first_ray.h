@@ -8,7 +8,7 @@
 
 #include "render/light_weight.h"
 #include "render/ray_on_film.h"
-#include "transport/first_ray.h"
+#include "transport/sharing/first_ray.h"
 
 namespace dg {
 

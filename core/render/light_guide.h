@@ -7,7 +7,7 @@
 #include "light/emission.h"
 #include "light/emission_ray.h"
 #include "scene/scene.h"
-#include "transport/light_plan.h"
+#include "transport/sharing/light_plan.h"
 
 namespace dg {
 

@@ -1,4 +1,4 @@
-// light_weight.h -- how the camera's paths and light paths share what both find (transport/light_sharing.h), with
+// light_weight.h -- how the camera's paths and light paths share what both find (transport/sharing/light_sharing.h), with
 // the lens that both go through.
 #pragma once
 #include <memory>
@@ -8,7 +8,7 @@
 #include "render/dispersion.h"
 #include "render/light_guide.h"
 #include "scene/scene.h"
-#include "transport/light_sharing.h"
+#include "transport/sharing/light_sharing.h"
 
 namespace dg {
 

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "math/vec.h"
-#include "transport/light_plan.h"
+#include "transport/sharing/light_plan.h"
 
 namespace dg {
 

@@ -13,8 +13,8 @@
 #include "film/filter.h"
 #include "render/render_counters.h"
 #include "scene/scene.h"
-#include "transport/light_plan.h"
 #include "transport/path.h"
+#include "transport/sharing/light_plan.h"
 
 namespace dg {
 

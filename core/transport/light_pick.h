@@ -12,16 +12,9 @@
 #include <optional>
 #include <span>
 
-#include "material/bsdf_sample.h"
-#include "scene/scene.h"
+#include "transport/walk/direct_light.h"
 
 namespace dg {
-
-/// Power heuristic with exponent 2. Source: Veach 1997, Robust Monte Carlo Methods, section 9.2.4.
-inline float power_heuristic(float pdf, float other) {
-    const float ratio = other / pdf;   // a ratio, as the square of a large pdf overflows
-    return 1.f / (1.f + ratio * ratio);
-}
 
 /// How many light samples a vertex picks one of: one where there is little to choose from, and fewer where the lens does
 /// not look, straight or by mirrors. CPU time x error of bench/first_picture.py is the same from four to eight.
@@ -38,17 +31,12 @@ class LightPick {
         Vec2f place;    // where on them
         float pick;     // which of them
     };
-    struct Found {
-        LightSample light;
-        Evaluation seen;
-        float weight;   // of f L V
-    };
     /// One of `tries` samples. `shared`: whether BSDF sampling finds the same light. `evaluate` gives the BSDF toward a
     /// light, `throughput` how its wavelengths count.
     template <typename Evaluate>
-    static std::optional<Found> pick(const Scene& scene, const SurfaceHit& hit, const Wavelengths& wavelengths,
-                                     int tries, bool shared, const Random& u, Spectrum throughput,
-                                     const Evaluate& evaluate);
+    static std::optional<DirectLight> pick(const Scene& scene, const SurfaceHit& hit, const Wavelengths& wavelengths,
+                                           int tries, bool shared, const Random& u, Spectrum throughput,
+                                           const Evaluate& evaluate);
 
   private:
     static constexpr std::size_t kMost = LightSet::kMostSamples;
@@ -58,9 +46,9 @@ class LightPick {
 };
 
 template <typename Evaluate>
-std::optional<LightPick::Found> LightPick::pick(const Scene& scene, const SurfaceHit& hit,
-                                                const Wavelengths& wavelengths, int tries, bool shared,
-                                                const Random& u, Spectrum throughput, const Evaluate& evaluate) {
+std::optional<DirectLight> LightPick::pick(const Scene& scene, const SurfaceHit& hit,
+                                           const Wavelengths& wavelengths, int tries, bool shared, const Random& u,
+                                           Spectrum throughput, const Evaluate& evaluate) {
     LightPick all;
     scene.lights().sample_several(u.select, u.place, hit.position, hit.time, wavelengths,
                                   std::span(all.lights_).first(std::size_t(tries)));
@@ -81,7 +69,7 @@ std::optional<LightPick::Found> LightPick::pick(const Scene& scene, const Surfac
     for (int i = 0; i < tries && (chosen < 0 || left >= 0); ++i)
         if (all.worth_[i] > 0) chosen = i, left -= all.worth_[i];
     const float share = sum / (float(tries) * all.worth_[chosen]);
-    Found found{all.lights_[chosen], all.seen_[chosen], all.weight_[chosen] * share};
+    DirectLight found{all.lights_[chosen], all.seen_[chosen], all.weight_[chosen] * share};
     if (found.light.uneven) scene.resolve(found.light, hit.time, wavelengths);
     return found;
 }

@@ -154,7 +154,7 @@ TEST_CASE("what is left as noise is shadows, not the choice") {
         for (const int tries : {1, 4}) {
             const auto found = LightPick::pick(*scene, hit, wavelengths, tries, false, u, 1.f, toward);
             const double brought =
-                found ? (found->seen.f_cos * found->light.radiance * found->weight).average() : 0;
+                found ? (found->f.f_cos * found->light.radiance * found->weight).average() : 0;
             (tries == 1 ? one : picked).push_back(brought);
         }
     }

@@ -11,10 +11,10 @@
 
 #include "math/sampler.h"
 #include "scene/scene.h"
-#include "transport/light_sharing.h"
 #include "transport/path.h"
-#include "transport/path_vertex.h"
-#include "transport/volume_walk.h"
+#include "transport/sharing/light_sharing.h"
+#include "transport/sharing/path_vertex.h"
+#include "transport/sharing/volume_walk.h"
 
 namespace dg {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "render/truth/truth_view.h"
-#include "transport/plate_light.h"
+#include "transport/catcher/plate_light.h"
 
 namespace dg {
 

@@ -1,4 +1,4 @@
-#include "transport/path_vertex.h"
+#include "transport/sharing/path_vertex.h"
 
 namespace dg {
 namespace {

@@ -1,4 +1,4 @@
-#include "transport/first_ray.h"
+#include "transport/sharing/first_ray.h"
 
 #include <cmath>
 

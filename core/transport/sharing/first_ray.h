@@ -6,7 +6,7 @@
 
 #include "geometry/hit.h"
 #include "light/light.h"
-#include "transport/light_sharing.h"
+#include "transport/sharing/light_sharing.h"
 
 namespace dg {
 

@@ -1,4 +1,4 @@
-#include "transport/path_mis.h"
+#include "transport/sharing/path_mis.h"
 
 namespace dg {
 namespace {

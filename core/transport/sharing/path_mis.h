@@ -14,9 +14,9 @@
 // wavelengths part, at normals that a delta lobe sees bent, and in volumes within volumes.
 #pragma once
 #include "scene/scene.h"
-#include "transport/first_ray.h"
-#include "transport/path_vertex.h"
-#include "transport/volume_walk.h"
+#include "transport/sharing/first_ray.h"
+#include "transport/sharing/path_vertex.h"
+#include "transport/sharing/volume_walk.h"
 
 namespace dg {
 

@@ -9,7 +9,7 @@
 #pragma once
 #include "light/emission.h"
 #include "light/emission_ray.h"
-#include "transport/light_plan.h"
+#include "transport/sharing/light_plan.h"
 
 namespace dg {
 

@@ -1,5 +1,5 @@
 // One vertex followed either way: both must find the same light.
-#include "transport/path_vertex.h"
+#include "transport/sharing/path_vertex.h"
 
 #include <doctest/doctest.h>
 

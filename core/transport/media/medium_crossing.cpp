@@ -1,0 +1,142 @@
+#include "transport/media/medium_crossing.h"
+
+#include <algorithm>
+
+#include "math/below_one.h"
+#include "medium/tracking.h"
+#include "transport/media/phase_bsdf.h"
+#include "transport/walk/guides.h"
+
+namespace dg {
+namespace {
+
+/// Light samples for each scattering of a path that carries all of its light: where the lens looks, and elsewhere. More
+/// of them, or the best of several for each, were measured to cost more time than noise (bench/fog.py).
+constexpr float kSamplesInView = 8, kSamplesPerCollision = 0.5f;
+/// Light that a scattered path brings, over a path that passes with as much throughput: lamps that its way scatters
+/// once are sampled already.
+constexpr float kScatteredWorth = 0.3f;
+/// Least illuminance that roulette assumes, over the brightest: the estimate knows lamps, but neither even skies nor
+/// media that shine.
+constexpr float kLeastLit = 0.1f;
+
+}  // namespace
+
+MediumCrossing::MediumCrossing(PathState& path)
+    : path_(path),
+      walk_(path.walk),
+      medium_(*path.walk.media.interior.medium),
+      here_(medium_.at(path.wavelengths)) {}
+
+MediumEvent MediumCrossing::cross(float t, bool last) {
+    const float before = walk_.open ? walk_.share() : 0;
+    MediumEvent event;
+    if (medium_.density) cross_grid(t, last, event);
+    else cross_even(t, last, event);
+    if (before > 0) {
+        const float after = event.kind == MediumEvent::Kind::passed ? walk_.share() : 0;
+        path_.sight.covers.add_veil(before - after);
+    }
+    return event;
+}
+
+void MediumCrossing::cross_even(float t, bool last, MediumEvent& event) {
+    const Segment way(here_, t - walk_.ray.t_min, walk_.media.lanes, path_.wavelengths.secondary_ended);
+    if (!here_.emission.is_black()) event.emitted = walk_.throughput * way.emitted();
+    if (last || here_.scattering.is_black() || !(way.collides() > 0)) {
+        walk_.throughput *= way.left(way.length());
+        if (!walk_.throughput.is_black()) event.kind = MediumEvent::Kind::passed;
+        return;
+    }
+    const float drawn = scattering_drawn(way);
+    sample_lamp(way, drawn, event);
+    const float u = path_.sampler.next_1d(), scatters = drawn * way.collides();
+    const bool met = u < scatters;
+    const float free_path = met ? way.free_collision(std::min(u / scatters, kBelowOne)) : 0;
+    if (!take(met ? way.scattered(free_path, drawn) : way.passed(drawn))) return;
+    if (met) scatter(free_path, event);
+    else event.kind = MediumEvent::Kind::passed;
+}
+
+/// Share of the collisions at which the path is scattered; at the others it passes, and weighs less. Few where the lens
+/// looks and most light passes, all where none does. Elsewhere all of them: weights would multiply along long paths.
+float MediumCrossing::scattering_drawn(const Segment& way) const {
+    if (!walk_.in_view || path_.scene.lights().empty()) return 1;
+    const float worth = kScatteredWorth * here_.scattering.average() / here_.extinction.average();
+    const float met = way.collides();
+    return std::min(1.f, worth / (worth * met + 1 - met));
+}
+
+/// One light sample at one place on the way; none at random where little can be scattered.
+void MediumCrossing::sample_lamp(const Segment& way, float drawn, MediumEvent& event) {
+    const float carried = std::min(1.f, walk_.share());
+    const float samples = (walk_.in_view ? kSamplesInView : kSamplesPerCollision) * carried;
+    const float chance = std::min(1.f, samples * way.collides());
+    event.odds = chance / (drawn * way.collides());
+    const float u_chance = path_.sampler.next_1d();
+    LampSampler::Random u;
+    u.select = path_.sampler.next_1d(), u.where = path_.sampler.next_1d();
+    u.place = path_.sampler.next_2d();
+    if (u_chance >= chance) return;
+    event.lamp = LampSampler(path_, medium_.phase, way).sample(event.odds, u);
+    if (!(event.lamp.direct.weight > 0)) return;
+    event.lamp.direct.weight /= chance;
+    event.lamp_throughput = walk_.throughput * event.lamp.scattered;
+}
+
+void MediumCrossing::scatter(float free_path, MediumEvent& event) {
+    event.t = walk_.ray.t_min + free_path;
+    const SurfaceHit at = in_medium(walk_.ray, event.t);
+    const float u_lobe = path_.sampler.next_1d();
+    const auto sample = PhaseBsdf{medium_.phase}.sample(at.wo, u_lobe, path_.sampler.next_2d());
+    event.wi = sample->wi;
+    event.phase_pdf = sample->pdf;
+    note_medium(path_);
+    if (survives_dark(walk_.ray.origin, at.position)) event.kind = MediumEvent::Kind::scattered;
+}
+
+/// Russian roulette of a path that is scattered `at` a point: by its throughput, and by the illuminance there over the
+/// illuminance of the brightest point on its ways. Endless fog would otherwise keep each path to its last vertex.
+bool MediumCrossing::survives_dark(Vec3f from, Vec3f at) {
+    const LightSet& lights = path_.scene.lights();
+    const float now = lights.illuminance(at);
+    float& brightest = walk_.media.brightest;
+    brightest = std::max({brightest, lights.illuminance(from), now});
+    const float lit = brightest > 0 ? std::max(kLeastLit, now / brightest) : 1;
+    const float survival = walk_.strength() * lit;
+    if (!(survival < 1)) return true;
+    if (path_.sampler.next_1d() >= survival) return false;
+    walk_.throughput *= 1 / survival;
+    return true;
+}
+
+void MediumCrossing::cross_grid(float t, bool last, MediumEvent& event) {
+    const GridRay ray = path_.scene.grid_ray(walk_.media.interior, walk_.ray);
+    const RayRandom random(walk_.ray.origin, walk_.ray.direction, path_.sampler.next_1d());
+    const double begin = double(walk_.ray.t_min), end = double(t);
+    if (here_.scattering.is_black() && here_.emission.is_black()) {
+        walk_.throughput *= ratio_tracking(ray, here_.extinction, begin, end, random);
+        if (!walk_.throughput.is_black()) event.kind = MediumEvent::Kind::passed;
+        return;
+    }
+    const Tracked way =
+        delta_tracking(ray, here_, walk_.media.lanes, path_.wavelengths.secondary_ended, begin, end, random);
+    if (!here_.emission.is_black()) event.emitted = walk_.throughput * way.emitted;
+    if (!take({way.weight, way.lanes})) return;
+    if (!way.scattered) {
+        event.kind = MediumEvent::Kind::passed;
+    } else if (!last) {
+        note_medium(path_);
+        event.kind = MediumEvent::Kind::collided;
+        event.t = float(way.t);
+    }
+}
+
+/// False: the path carries nothing any more.
+bool MediumCrossing::take(const Segment::Onward& onward) {
+    walk_.throughput *= onward.weight;
+    walk_.media.lanes = onward.lanes;
+    return !walk_.throughput.is_black();
+}
+
+}  // namespace dg

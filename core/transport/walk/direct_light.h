@@ -1,0 +1,20 @@
+// direct_light.h -- one light sample at a vertex, and its weight against BSDF sampling.
+#pragma once
+#include "material/bsdf_sample.h"
+#include "scene/scene.h"
+
+namespace dg {
+
+/// Power heuristic with exponent 2. Source: Veach 1997, Robust Monte Carlo Methods, section 9.2.4.
+inline float power_heuristic(float pdf, float other) {
+    const float ratio = other / pdf;   // a ratio, as the square of a large pdf overflows
+    return 1.f / (1.f + ratio * ratio);
+}
+
+struct DirectLight {
+    LightSample light;
+    Evaluation f;      // the BSDF or phase function toward it
+    float weight;      // of f times the light, unless something is in its way
+};
+
+}  // namespace dg

@@ -1,0 +1,24 @@
+#include "transport/walk/guides.h"
+
+namespace dg {
+
+void note_surface(PathState& path, const Material& material, const SurfaceHit& hit, bool smooth) {
+    FirstHit& first = *path.first_hit;
+    if (first.found && smooth) return;
+    const Rgb color = albedo(material, path.scene.textures(), hit);
+    if (!first.found) first = {true, hit.position, hit.ns, color, hit.instance, {}, {}};
+    if (smooth) return;
+    const float share = path.walk.throughput.average();
+    first.seen_albedo = first.seen_albedo + color * share;
+    first.seen_normal = first.seen_normal + hit.ns * share;
+    path.walk.guided = true;
+}
+
+void note_medium(PathState& path) {
+    if (!path.first_hit || path.walk.guided) return;
+    const float share = path.walk.throughput.average();
+    path.first_hit->seen_albedo = path.first_hit->seen_albedo + Rgb{share, share, share};
+    path.walk.guided = true;
+}
+
+}  // namespace dg
