@@ -1,5 +1,4 @@
-// bsdf.h -- scattering at a point. Directions are unit, in the WORLD frame, both pointing
-// away from the surface. A BSDF is a small value that lives for one bounce.
+// bsdf.h -- scattering at a point of a surface. bsdf_kind.h says what an alternative provides, and how to add one.
 #pragma once
 #include <variant>
 
@@ -9,6 +8,7 @@
 #include "material/bsdf_diffuse.h"
 #include "material/bsdf_glass.h"
 #include "material/bsdf_gltf.h"
+#include "material/bsdf_kind.h"
 #include "material/bsdf_layered.h"
 #include "material/bsdf_metal.h"
 #include "material/bsdf_sample.h"
@@ -16,24 +16,20 @@
 
 namespace dg {
 
-/// Each alternative has: Evaluation evaluate_with_pdf(wo, wi) const (f * |cos wi| and the
-/// density of sample(), both without delta lobes) and its halves Spectrum evaluate(wo,
-/// wi) const and float pdf(wo, wi) const; optional<BsdfSample> sample(wo, u_lobe, u)
-/// const; bool is_specular() const (nothing but deltas); Interior interior() const; bool
-/// bounds_volume() const (behind it lies another medium); Spectrum straight(wo) const
-/// (share of light that a smooth clear surface lets through unbent; where it bounds a
-/// volume, as if light went on without being bent: both faces of a plane slab have the
-/// Fresnel reflectance of the angle outside); float reversed(wo, wi) const (what a delta
-/// lobe from wi to wo has, 1 / eta^2 aside, over the same from wo to wi); float diffuse_share(wo,
-/// wi) const (of f that is not delta, 0 to 1).
+/// A small value, made at a hit for the wavelengths of a path.
 using Bsdf =
     std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, GltfBsdf, LayeredBsdf, TranslucentBsdf,
                  MetalBsdf, GlassBsdf, CoatedBsdf>;
 
-/// A BSDF as it looks from wo, for whoever asks for several wi: some know things of wo that take a while to find.
-/// To be given to evaluate_with_pdf() and sample() in place of wo.
-template <typename BsdfKind>
-auto seen_from(const BsdfKind& bsdf, Vec3f wo) {
+template <typename Kinds>
+inline constexpr bool kBsdfKinds = false;
+template <BsdfKind... Kinds>
+inline constexpr bool kBsdfKinds<std::variant<Kinds...>> = true;
+static_assert(kBsdfKinds<Bsdf>);
+
+/// Stands for wo in evaluate_with_pdf() and sample() where several wi follow: some BSDFs find values of wo that take time.
+template <Scatters B>
+auto seen_from(const B& bsdf, Vec3f wo) {
     if constexpr (requires { bsdf.seen_from(wo); })
         return bsdf.seen_from(wo);
     else

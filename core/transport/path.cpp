@@ -24,8 +24,8 @@ constexpr int kBranchDraws = 1 << 15;   // dimensions of the sampler from way to
 
 /// Both ways on from a smooth clear interface, weighted by the share of light that takes each. Nothing where there are
 /// not exactly two: light is reflected totally, the glass is black, or a coat reflects, too.
-template <typename BsdfKind>
-std::optional<std::array<BsdfSample, 2>> both_ways(const BsdfKind& bsdf, Vec3f wo) {
+template <Scatters B>
+std::optional<std::array<BsdfSample, 2>> both_ways(const B& bsdf, Vec3f wo) {
     auto one = bsdf.sample(wo, 0, {}), other = bsdf.sample(wo, kBelowOne, {});
     if (!one || !other || one->transmitted == other->transmitted) return std::nullopt;
     if (std::abs(one->pdf + other->pdf - 1) > 1e-5f) return std::nullopt;
@@ -192,14 +192,14 @@ class Path : public PathState {
     }
 
     /// Direct light, and a direction to go on in.
-    template <typename BsdfKind>
-    bool leave(const BsdfKind& bsdf, const SurfaceHit& hit, int vertex, SharedVertex* shared) {
+    template <Scatters B>
+    bool leave(const B& bsdf, const SurfaceHit& hit, int vertex, SharedVertex* shared) {
         const bool last = vertex == settings.max_depth;
         const int tries = light_tries(scene.lights(), walk.in_view);
         const VertexRandom u = draw_vertex(bsdf, tries, sampler);
         const auto seen = seen_from(bsdf, hit.wo);
         if (!last && !bsdf.is_specular()) sample_light(bsdf, seen, tries, hit, u, shared);
-        if constexpr (!BsdfKind::kOneLobe)
+        if constexpr (!B::kOneLobe)
             if (!last && walk.in_view && walk.splits < settings.splits && split(bsdf, hit, vertex)) return true;
         const auto sample = bsdf.sample(seen, u.lobe, u.direction);
         if (!sample || sample->weight.is_black()) return false;
@@ -211,8 +211,8 @@ class Path : public PathState {
     /// Follows one way to its end and goes on by the other, if there are two. To draw one of them is the noise of
     /// glass: a bright reflection that few paths take, among many that pass. Measured: two splits lower rays x error by
     /// 11 %, more of them buy nothing.
-    template <typename BsdfKind>
-    bool split(const BsdfKind& bsdf, const SurfaceHit& hit, int vertex) {
+    template <Scatters B>
+    bool split(const B& bsdf, const SurfaceHit& hit, int vertex) {
         if (!bsdf.is_specular() || !bsdf.bounds_volume()) return false;
         const auto ways = both_ways(bsdf, hit.wo);
         if (!ways) return false;
@@ -226,8 +226,8 @@ class Path : public PathState {
     }
 
     /// On from a vertex, with the ray of what comes next.
-    template <typename BsdfKind>
-    void go(const BsdfKind& bsdf, const SurfaceHit& hit, const BsdfSample& sample, SharedVertex* shared) {
+    template <Scatters B>
+    void go(const B& bsdf, const SurfaceHit& hit, const BsdfSample& sample, SharedVertex* shared) {
         const RayCone cone = next_cone(scene, walk.ray.cone, hit, sample);
         worlds_.leave(*this, bsdf, hit, sample);
         const bool through = sample.transmitted && sample.specular && (settings.see_through || !bsdf.bounds_volume());
@@ -241,8 +241,8 @@ class Path : public PathState {
     }
 
     /// A clear sheet leaves the last vertex as it is: light sampling there sees through the sheet, too.
-    template <typename BsdfKind>
-    void advance(const BsdfKind& bsdf, const SurfaceHit& hit, const BsdfSample& sample,
+    template <Scatters B>
+    void advance(const B& bsdf, const SurfaceHit& hit, const BsdfSample& sample,
                  SharedVertex* shared) {
         walk.throughput *= sample.weight;
         if (sample.transmitted) {
@@ -267,8 +267,8 @@ class Path : public PathState {
     }
 
     /// Next-event estimation.
-    template <typename BsdfKind, typename Seen>
-    void sample_light(const BsdfKind& bsdf, const Seen& seen, int tries, const SurfaceHit& hit,
+    template <Scatters B, typename Seen>
+    void sample_light(const B& bsdf, const Seen& seen, int tries, const SurfaceHit& hit,
                       const VertexRandom& u, SharedVertex* shared) {
         using Strategy = PathSettings::Strategy;
         const bool mis = settings.strategy != Strategy::light, by_bsdf = settings.strategy == Strategy::bsdf;
@@ -289,8 +289,8 @@ class Path : public PathState {
     }
 
     /// Adds a light sample, where nothing is in its way.
-    template <typename BsdfKind>
-    void gather_direct(const BsdfKind& bsdf, const SurfaceHit& hit, const DirectLight& direct,
+    template <Scatters B>
+    void gather_direct(const B& bsdf, const SurfaceHit& hit, const DirectLight& direct,
                        Spectrum throughput, SharedVertex* shared) {
         const LightSample& light = direct.light;
         const Interior interior = interior_after(scene, walk.media.interior, hit, bsdf, light.wi);

@@ -13,8 +13,8 @@ struct VertexRandom {
 
 /// Every vertex takes the same four dimensions, so that stratification stays; those that this BSDF has
 /// no use for are left out.
-template <typename BsdfKind>
-VertexRandom draw_vertex(const BsdfKind& bsdf, int tries, PathSampler& sampler) {
+template <Scatters B>
+VertexRandom draw_vertex(const B& bsdf, int tries, PathSampler& sampler) {
     VertexRandom u;
     const bool specular = bsdf.is_specular();
     if (tries > 0 && !specular) {
@@ -23,7 +23,7 @@ VertexRandom draw_vertex(const BsdfKind& bsdf, int tries, PathSampler& sampler) 
     } else {
         sampler.skip(2);
     }
-    if (BsdfKind::kOneLobe && tries < 2)
+    if (B::kOneLobe && tries < 2)
         sampler.skip(1);
     else
         u.lobe = sampler.next_1d();

@@ -1,4 +1,4 @@
-"""Measures a build with examples/camera_kind.diff and aov.diff applied; prints JSON."""
+"""Measures a build with the diffs of examples/ applied; prints JSON."""
 
 from __future__ import annotations
 
@@ -83,6 +83,36 @@ def slope() -> list[float]:
     return [float(found.min()), float(found.max())]
 
 
+def albedos() -> list[float]:
+    """Light of a rough matte plane under an even sky, seen from 0 and from 60 degrees."""
+    found = []
+    for degrees in (0, 60):
+        scene, pose = dg.Scene(), np.eye(4)
+        points = np.array([[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]], np.float32)
+        matte = dg.Material(dg.Diffuse((0.5, 0.5, 0.5), roughness=0.8))
+        scene.add_instance(scene.add_mesh(points, np.array([[0, 1, 2], [0, 2, 3]])), matte)
+        scene.set_environment(color=(1, 1, 1))
+        c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+        pose[:3, :3] = [[c, 0, s], [0, 1, 0], [-s, 0, c]]
+        pose[:3, 3] = 2 * pose[:3, 2]
+        camera = dg.Camera(pose, lens="pinhole", focal_length=5000)
+        found.append(float(dg.render(scene, camera, resolution=(8, 8), spp=1024).rgb.mean()))
+    return found
+
+
+def rough_diffuse_refusal() -> str:
+    """Error of a roughness beside a transmittance."""
+    scene = dg.Scene()
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
+    thin = dg.Material(dg.Diffuse(transmittance=(0.1, 0.1, 0.1), roughness=1))
+    scene.add_instance(scene.add_mesh(points, np.array([[0, 1, 2]])), thin)
+    try:
+        dg.render(scene, dg.Camera(), resolution=SIZE, spp=1)
+    except dg.DaguerreError as error:
+        return str(error)
+    return ""
+
+
 def refusal() -> str:
     try:
         dg.render(lamps(), singlet(tilt=(3, 0)), resolution=SIZE, spp=1)
@@ -100,6 +130,8 @@ if __name__ == "__main__":
                 "still": techniques(singlet()),
                 "focusing": techniques(singlet(focus_distance=pull, shutter_time=0.5)),
                 "slope": slope(),
+                "albedos": albedos(),
+                "rough_diffuse_refusal": rough_diffuse_refusal(),
                 "refusal": refusal(),
             }
         )

@@ -1,4 +1,4 @@
-"""The diffs of examples/ that add a kind of camera and a channel: short, up to date, and right."""
+"""The diffs of examples/ that add a kind of camera, a BSDF and a channel: short, and right."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ import sysconfig
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-MOST = {"camera_kind": 4, "aov": 2}  # files
+MOST = {"camera_kind": 4, "bsdf": 9, "aov": 2}  # files
 
 pytestmark = pytest.mark.skipif(shutil.which("git") is None, reason="git applies the diffs")
 
@@ -55,7 +56,7 @@ def test_contributing_tells_its_size(name: str) -> None:
 
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """Figures of a build with both diffs."""
+    """Figures of a build with all diffs."""
     pytest.importorskip("nanobind", reason="the core is built here")
     if shutil.which("cmake") is None or shutil.which("ninja") is None:
         pytest.skip("the core is built here: wanted cmake and ninja")
@@ -123,3 +124,30 @@ def test_a_roof_has_its_slope(measured: Any) -> None:
 @pytest.mark.xdist_group("patched core")
 def test_what_a_kind_does_not_take_is_refused(measured: Any) -> None:
     assert measured["refusal"] == "camera: tilt: wanted none of a singlet, got (3, 0)"
+
+
+def rough_albedo(degrees: float, reflectance: float, roughness: float) -> float:
+    """Oren and Nayar's albedo: the integral of f |cos| over the hemisphere, by Fujii's formula."""
+    n = 400
+    u, phi = np.meshgrid((np.arange(n) + 0.5) / n, (np.arange(n) + 0.5) / n * 2 * np.pi)
+    cos_i = np.sqrt(u)  # evenly in cos^2, as |cos| weights them
+    wi = np.stack([np.sqrt(1 - u) * np.cos(phi), np.sqrt(1 - u) * np.sin(phi), cos_i])
+    cos_o, sin_o = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    s = wi[0] * sin_o + cos_i * cos_o - cos_i * cos_o
+    t = np.where(s > 0, np.maximum(cos_i, cos_o), 1)
+    scale = 1 / (1 + (0.5 - 2 / (3 * np.pi)) * roughness)
+    return float((reflectance * scale * (1 + roughness * s / t)).mean())
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("patched core")
+def test_a_rough_matte_plane_has_the_albedo_of_its_formula(measured: Any) -> None:
+    wanted = [rough_albedo(degrees, 0.5, 0.8) for degrees in (0, 60)]
+    assert measured["albedos"] == pytest.approx(wanted, rel=0.005)
+    assert wanted[1] > 1.02 * wanted[0]  # a limb that does not darken
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("patched core")
+def test_a_surface_that_passes_light_has_no_roughness(measured: Any) -> None:
+    assert "roughness: wanted a number from 0 to 0, got 1" in measured["rough_diffuse_refusal"]

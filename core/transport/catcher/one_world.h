@@ -20,8 +20,8 @@ class OneWorld {
         (hero ? path.sight.light.hero : path.sight.light.shared) += light;
     }
     void gather_emission(PathState& path, Spectrum light) const { gather(path, light, path.walk.hero_only); }
-    template <typename BsdfKind, typename Visibility, typename Reflected>
-    void gather_direct(PathState& path, const BsdfKind&, Vec3f, const DirectLight& direct,
+    template <Scatters B, typename Visibility, typename Reflected>
+    void gather_direct(PathState& path, const B&, Vec3f, const DirectLight& direct,
                        const Visibility& visibility, const Reflected& reflected) const {
         const Spectrum visible = visibility(false);
         if (!visible.is_black()) gather(path, reflected(visible), direct.f.hero_only || path.walk.hero_only);
@@ -42,8 +42,8 @@ class OneWorld {
     }
     void show_plate(PathState&, const Material&, const SurfaceHit&) const {}
 
-    template <typename BsdfKind>
-    void leave(const PathState&, const BsdfKind&, const SurfaceHit&, const BsdfSample&) const {}
+    template <Scatters B>
+    void leave(const PathState&, const B&, const SurfaceHit&, const BsdfSample&) const {}
     void uncover(PathState& path, const SurfaceHit& hit) const { path.cover(hit.instance, -1); }
 };
 

@@ -58,8 +58,8 @@ class TwoWorlds {
     void gather_emission(PathState& path, Spectrum light) const;
     /// Adds a light sample. `visibility(of_set)`: of the light, in the set alone or in the full scene;
     /// `reflected(visible)`: what the path gets from the light then.
-    template <typename BsdfKind, typename Visibility, typename Reflected>
-    void gather_direct(PathState& path, const BsdfKind& bsdf, Vec3f wo, const DirectLight& direct,
+    template <Scatters B, typename Visibility, typename Reflected>
+    void gather_direct(PathState& path, const B& bsdf, Vec3f wo, const DirectLight& direct,
                        const Visibility& visibility, const Reflected& reflected);
 
     /// The path goes on from a hit. At an object the worlds part. False: the path ends.
@@ -76,8 +76,8 @@ class TwoWorlds {
     void show_plate(PathState& path, const Material& material, const SurfaceHit& hit);
 
     /// The path leaves a vertex or a window.
-    template <typename BsdfKind>
-    void leave(const PathState& path, const BsdfKind& bsdf, const SurfaceHit& hit, const BsdfSample& sample);
+    template <Scatters B>
+    void leave(const PathState& path, const B& bsdf, const SurfaceHit& hit, const BsdfSample& sample);
     /// It went on: the surface covers no more than the light that did not pass straight through.
     void uncover(PathState& path, const SurfaceHit& hit) const {
         if (!path.scene.catcher(hit.instance)) cover(path, hit.instance, -1);
@@ -90,8 +90,8 @@ class TwoWorlds {
     void cover(PathState& path, std::uint32_t object, float sign) const;
     void gather(PathState& path, Spectrum light, bool hero, float kept) const;
     bool plate_is_seen(const PathState& path) const;
-    template <typename BsdfKind>
-    float kept_by(const BsdfKind& bsdf, Vec3f wo, Vec3f wi) const;
+    template <Scatters B>
+    float kept_by(const B& bsdf, Vec3f wo, Vec3f wi) const;
 
     float seen_through_ = 0;   // share of the camera ray that passes objects by way of smooth glass; never restored:
                                // the full world adds to it before the set's world reads it
@@ -114,8 +114,8 @@ bool TwoWorlds::arrive(Path& path, Scene::Hit& found, int vertex, bool counts) {
     return path.step(vertex);
 }
 
-template <typename BsdfKind, typename Visibility, typename Reflected>
-void TwoWorlds::gather_direct(PathState& path, const BsdfKind& bsdf, Vec3f wo, const DirectLight& direct,
+template <Scatters B, typename Visibility, typename Reflected>
+void TwoWorlds::gather_direct(PathState& path, const B& bsdf, Vec3f wo, const DirectLight& direct,
                               const Visibility& visibility, const Reflected& reflected) {
     const bool of_object = state.world != World::full && path.scene.is_of_object(direct.light.light);
     if (of_object && state.world == World::set) return;
@@ -134,8 +134,8 @@ void TwoWorlds::gather_direct(PathState& path, const BsdfKind& bsdf, Vec3f wo, c
     add(visibility(true), World::set, kept);
 }
 
-template <typename BsdfKind>
-void TwoWorlds::leave(const PathState&, const BsdfKind& bsdf, const SurfaceHit& hit, const BsdfSample& sample) {
+template <Scatters B>
+void TwoWorlds::leave(const PathState&, const B& bsdf, const SurfaceHit& hit, const BsdfSample& sample) {
     state.through_glass = state.through_glass || bsdf.bounds_volume();
     if (sample.transmitted && sample.specular && !bsdf.bounds_volume()) return;   // a window
     if (state.first_catcher == FirstCatcher::left) state.first_catcher = FirstCatcher::behind;
@@ -145,8 +145,8 @@ void TwoWorlds::leave(const PathState&, const BsdfKind& bsdf, const SurfaceHit& 
 }
 
 /// Share of light from a direction that counts, if objects send it or block it.
-template <typename BsdfKind>
-float TwoWorlds::kept_by(const BsdfKind& bsdf, Vec3f wo, Vec3f wi) const {
+template <Scatters B>
+float TwoWorlds::kept_by(const B& bsdf, Vec3f wo, Vec3f wi) const {
     if (!at_first_catcher() || state.effects->all()) return state.kept;
     const float diffuse = bsdf.diffuse_share(wo, wi);
     return diffuse * float(state.effects->gi) + (1 - diffuse) * float(state.effects->reflection);

@@ -6,10 +6,10 @@
 namespace dg {
 
 /// `here` fills the space from which the path came, `wi` is where the ray goes.
-template <typename BsdfKind>
-Interior interior_after(const Scene& scene, const Interior& here, const SurfaceHit& hit, const BsdfKind& bsdf,
+template <Scatters B>
+Interior interior_after(const Scene& scene, const Interior& here, const SurfaceHit& hit, const B& bsdf,
                         Vec3f wi) {
-    if constexpr (requires { BsdfKind::kInMedium; }) return here;
+    if constexpr (requires { B::kInMedium; }) return here;
     const float side = dot(wi, hit.ng);
     const bool transmitted = (side > 0) != hit.front;
     if (!transmitted) return here;

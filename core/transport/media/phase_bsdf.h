@@ -3,7 +3,7 @@
 #pragma once
 #include <optional>
 
-#include "material/bsdf_sample.h"
+#include "material/bsdf_kind.h"
 #include "medium/phase.h"
 
 namespace dg {
@@ -26,5 +26,6 @@ struct PhaseBsdf {
     bool bounds_volume() const { return false; }
     float diffuse_share(Vec3f, Vec3f) const { return 1; }
 };
+static_assert(PhaseKind<PhaseBsdf>);
 
 }  // namespace dg
