@@ -132,7 +132,8 @@ def work(name: str, seed: int, begin: int, seconds: float, most: int, folder: Pa
         rng = Random(f"{name} {seed} {number}")
         file, data = rng.choice(goods)
         path = folder / f"case-{file}"
-        path.write_bytes(changed(rng, file, data) if number >= len(goods) else goods[number][1])
+        tried = changed(rng, file, data) if number >= len(goods) else goods[number][1]
+        path.write_bytes(tried)
         before, started = _peak_mb(reset=True), time.process_time()
         faulthandler.dump_traceback_later(HANGS_S, exit=True)
         accepted = True
@@ -148,7 +149,7 @@ def work(name: str, seed: int, begin: int, seconds: float, most: int, folder: Pa
         path.unlink(missing_ok=True)
         print(json.dumps({"accepted": accepted, "s": took, "mb": memory}), flush=True)
         if took > LIMIT_S or memory > LIMIT_MB:
-            path.write_bytes(changed(Random(f"{name} {seed} {number}"), file, data))
+            path.write_bytes(tried)
             raise RuntimeError(f"it took {took:.1f} s and {memory:.0f} MB")
 
 

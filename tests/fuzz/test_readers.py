@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from . import readers
+from . import readers, uses
 
 
 @pytest.mark.parametrize("name", readers.READERS)
@@ -77,3 +77,15 @@ def test_the_command_says_what_it_tried(tmp_path: Path) -> None:
     )
     assert run.stdout.startswith("fuzz: calibration: ")
     assert "0 faults" in run.stdout
+
+
+def test_a_slow_file_is_kept_as_it_was_tried(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tried: list[bytes] = []
+    monkeypatch.setattr(uses, "recipe", lambda path: tried.append(path.read_bytes()))
+    monkeypatch.setattr(readers, "LIMIT_S", -1.0)
+    with pytest.raises(RuntimeError, match="it took"):
+        readers.work("json", 1, 1_000_000, 60, 1, tmp_path)
+    (kept,) = tmp_path.glob("case-*")
+    assert [kept.read_bytes()] == tried
