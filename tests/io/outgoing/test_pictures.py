@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
+import OpenEXR
 import pytest
 
 import daguerre as dg
 from daguerre.files.notes import Notes
+from daguerre.io.outgoing.folder import OutgoingFolder
+from daguerre.io.outgoing.picture_file import write_pixels
 from daguerre.io.outgoing.pictures import Baker, Picture
 from daguerre.scene.parts import Texture
 
@@ -95,3 +99,14 @@ def test_the_scale_of_a_normal_map_is_in_its_pixels() -> None:
     found = 2 * made.linear[0, 0].astype(float) - 1
     np.testing.assert_allclose(found, expected / np.linalg.norm(expected), atol=1e-6)
     assert baker(pixels).normals(None, 1.0) is None
+
+
+def test_a_written_picture_has_the_date_of_a_reproducible_build(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Equal scenes give equal files, whatever the time is."""
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    folder = OutgoingFolder(tmp_path / "room.pbrt")
+    name = write_pixels(folder, "sky", np.ones((2, 3, 3), np.float32))
+    with OpenEXR.File(str(tmp_path / name)) as file:
+        assert file.header()["capDate"] == "1970:01:02 00:00:00"

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import OutputError
+from daguerre.io import exif
 
 from .folder import OutgoingFolder
 
@@ -36,6 +37,7 @@ def _write(path: Path, pixels: NDArray[Any]) -> None:
     spec.channelnames = ("Y",) if channels == 1 else ("R", "G", "B")
     if not eight:
         spec.attribute("compression", "zip")
+        spec.attribute("DateTime", exif.date({}))
     output = oiio.ImageOutput.create(str(path))
     if output is None:
         raise _error(path, str(oiio.geterror()))
