@@ -12,38 +12,41 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-# Lowest first. Rooms are folders, or files at the root; on one floor they do not see each other.
-FLOORS = [
-    {"errors", "cached", "compiled", "forks", "on_use"},
-    {"checks"},
-    {"kinds"},
-    {"doors"},
-    {"units", "memory", "files"},
-    {"parameters", "apart"},
-    {"color", "motion", "convolution"},
-    {"lenses", "sensors"},
-    {"camera"},
-    {"scene", "frame"},
-    {"io"},
-    {"setup"},
-    {"analysis"},
-    {"plots"},
-    {"distortion"},
-    {"polynomial"},
-    {"export"},
-    {"calibration"},
-    {"post"},
-    {"exposure"},
-    {"development"},
-    {"stocks"},
-    {"rendering"},
-    {"maps", "labels", "charts"},
-    {"plates"},
-    {"viewfinder", "cluster", "blender"},
-    {"__init__"},
-    {"cli"},
-    {"__main__"},
-]
+# Eight layers (docs/design.md), lowest first, and the floors of each. Rooms are folders, or files
+# at the root. Rooms on one floor do not see each other.
+LAYERS = {
+    "ground": [
+        {"errors", "cached", "compiled", "forks", "on_use"},
+        {"checks"},
+        {"kinds"},
+        {"doors"},
+    ],
+    "tables": [{"units", "memory", "files"}, {"parameters", "apart"}],
+    "optics and color": [{"color", "motion", "convolution"}, {"lenses", "sensors"}],
+    "object model": [{"camera"}, {"scene", "frame"}],
+    "formats": [{"io"}],
+    "set-up and measures": [
+        {"setup"},
+        {"analysis"},
+        {"plots"},
+        {"distortion"},
+        {"polynomial"},
+        {"export"},
+        {"calibration"},
+    ],
+    "rendering and pictures": [
+        {"post"},
+        {"exposure"},
+        {"development"},
+        {"stocks"},
+        {"rendering"},
+        {"maps", "labels", "charts"},
+        {"plates"},
+    ],
+    "front ends": [{"viewfinder", "cluster", "blender"}, {"__init__"}, {"cli"}, {"__main__"}],
+}
+FLOORS = [rooms for floors in LAYERS.values() for rooms in floors]
+LAYER = {room: name for name, floors in LAYERS.items() for rooms in floors for room in rooms}
 #: Compiled module below all rooms.
 FREE = {"_core"}
 #: (file, method, module above, or a higher one of its room): a value that hands itself up.
@@ -203,7 +206,8 @@ def judge(file: str, room: str, found: Import) -> str | None:
             f"hands over to {found.module}, but not in a listed method of one import and one call"
         )
     side = "is a neighbor of" if FLOOR[other] == FLOOR[room] else "stands above"
-    return f"points up: {other} {side} {room}"
+    higher = "" if LAYER[other] == LAYER[room] else f", {LAYER[other]} above {LAYER[room]}"
+    return f"points up: {other} {side} {room}{higher}"
 
 
 def circles(package: Package) -> list[str]:

@@ -64,6 +64,22 @@ def test_design_has_a_row_for_every_room() -> None:
     assert heights == sorted(heights)
 
 
+def test_design_names_the_layers() -> None:
+    """Each stands above the rows of its rooms."""
+    layers = runpy.run_path(str(ROOT / "script" / "floors_python.py"))["LAYERS"]
+    table = (ROOT / "docs" / "design.md").read_text().split("## The rooms of Python")[1]
+    rows = re.findall(r"^\| (?:\*\*([\w -]+)\*\*|`(\w+)/?`) \|", table, re.MULTILINE)
+    found: dict[str, set[str]] = {}
+    for layer, room in rows:
+        if layer:
+            found[layer] = set()
+        else:
+            list(found.values())[-1].add(room)
+    wanted = {name: set().union(*floors) - {"__main__"} for name, floors in layers.items()}
+    assert list(found.items()) == list(wanted.items())
+    assert len(layers) == 8
+
+
 def test_order_without_fault_passes(tmp_path: Path) -> None:
     assert checked(tmp_path, {}) == (
         0,
@@ -94,7 +110,10 @@ ELSEWHERE = GOOD["lenses/lens.py"].replace("def at_zoom", "def zoomed")
             "bad.py:3: points up: io",
         ),
         ({"checks.py": "import daguerre"}, "checks.py:1: points up: __init__"),
-        ({"scene/bad.py": "from daguerre import Scene"}, "points up: __init__ stands above scene"),
+        (
+            {"scene/bad.py": "from daguerre import Scene"},
+            "points up: __init__ stands above scene, front ends above object model",
+        ),
         ({"maps/a.py": "from daguerre.charts import b"}, "charts is a neighbor of maps"),
         ({"cellar/a.py": "x = 1"}, "room cellar is not in the table of floors"),
         ({"cli/bad.py": "from daguerre.attic import x"}, "attic is not a room"),
