@@ -18,6 +18,7 @@ constexpr float kCloseIn = 0.5f;   // share of the region that holds the light: 
 constexpr float kWellSeen = 0.8f;  // the same where there is plenty
 constexpr double kDim = 0.005;     // share of all light: not worth closing in on
 constexpr double kFaint = 0.001;   // share of all light: not worth a search
+constexpr double kFewRays = 5e-4;  // share of all light: worth a ray at every other node
 constexpr float kMargin = 2.f / GhostGrid::kSquares;   // of a region that is known about, on each side
 
 struct Range {
@@ -25,6 +26,28 @@ struct Range {
     void add(float v) { low = std::min(low, v), high = std::max(high, v); }
     float size() const { return high - low; }
 };
+
+MapLanding mean(const MapLanding& a, const MapLanding& b) {
+    MapLanding m = a.sound ? b : a;   // one that is lost says where
+    m.sound = a.sound && b.sound;
+    m.px = 0.5f * (a.px + b.px), m.beyond = 0.5f * (a.beyond + b.beyond), m.pass = 0.5f * (a.pass + b.pass);
+    for (int k = 0; k < kMostCrossings; ++k) m.iris[k] = 0.5f * (a.iris[k] + b.iris[k]);
+    return m;
+}
+
+/// Nodes of a grid with twice as many squares across. Each new node is the mean of its neighbors.
+std::vector<MapLanding> doubled(const std::vector<MapLanding>& nodes, int side) {
+    const int fine = 2 * side - 1;
+    std::vector<MapLanding> all(std::size_t(fine) * fine);
+    const auto at = [&](int x, int y) -> MapLanding& { return all[std::size_t(y) * fine + x]; };
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) at(2 * x, 2 * y) = nodes[std::size_t(y) * side + x];
+    for (int y = 0; y < fine; y += 2)
+        for (int x = 1; x < fine; x += 2) at(x, y) = mean(at(x - 1, y), at(x + 1, y));
+    for (int y = 1; y < fine; y += 2)
+        for (int x = 0; x < fine; ++x) at(x, y) = mean(at(x, y - 1), at(x, y + 1));
+    return all;
+}
 
 FlareRectangle widened(const FlareRectangle& r) {
     const Vec2f by = r.size * kMargin;
@@ -107,11 +130,13 @@ float GhostGrid::middle_nm() { return lambda_node(1); }
 
 /// How much light was seen on a grid over the region.
 int GhostGrid::look(const Looks& by, int across) {
-    squares = across;
+    const bool few = across == kSquares && by.share < kFewRays;
+    squares = few ? across / 2 : across;
     std::vector<MapRay> looks;
     const int side = squares + 1;
     for (int i = 0; i < side * side; ++i) looks.push_back({at({float(i % side), float(i / side)}), {0, 0}, middle_nm()});
     nodes = by.rays.trace(looks), rays += looks.size();
+    if (few) nodes = doubled(nodes, side), squares = across;
     return mark(by);
 }
 
@@ -183,7 +208,7 @@ int GhostGrid::find(const Looks& by) {
 GhostGrid::GhostGrid(const MapRays& map_rays, const Sensor& sensor, float reach,
                      const KnownGhost* known) {
     const bool faint = known && known->share < kFaint;
-    const Looks by{map_rays, sensor, reach, faint ? 1 : kHardly};
+    const Looks by{map_rays, sensor, reach, faint ? 1 : kHardly, known ? known->share : 1};
     int seen = 0;
     if (known) {
         region = widened(known->region), seen = look(by, kSquares);

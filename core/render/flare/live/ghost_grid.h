@@ -35,7 +35,8 @@ struct GhostGrid {
         const MapRays& rays;
         const Sensor& sensor;
         float reach;
-        int hardly;   // nodes at which light was seen: fewer ask for a closer look
+        int hardly;     // nodes at which light was seen: fewer ask for a closer look
+        double share;   // of the light of all ghosts, about
     };
     static bool passes(const Looks& by, const MapLanding& landing);
     int mark(const Looks& by);
