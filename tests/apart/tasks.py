@@ -106,6 +106,12 @@ def shout(request: Any, tell: Tell) -> None:
         os.write(2, b"shout\n" * 100)
 
 
+def ask_and_take(request: int, tell: Tell) -> int:
+    """Tells that it needs memory, and takes it at once."""
+    tell("more")
+    return len(bytearray(request))
+
+
 def report(request: list[str], tell: Tell) -> int:
     """Tells some texts."""
     for text in request:

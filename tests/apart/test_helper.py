@@ -110,6 +110,16 @@ def test_errors_keep_class_and_text(helper: Helper) -> None:
     assert ask(helper, "process") == before
 
 
+def test_a_task_goes_on_once_its_limits_have_grown(helper: Helper) -> None:
+    """However late they are heard."""
+
+    def heard(text: str) -> Limits:
+        time.sleep(0.5)
+        return Limits(60.0, 2 << 30)
+
+    assert ask(helper, "ask_and_take", 1_000_000_000, limits=SMALL, heard=heard) == 1_000_000_000
+
+
 def test_limits_grow_with_what_a_task_tells(helper: Helper) -> None:
     told: list[str] = []
 

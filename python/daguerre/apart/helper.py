@@ -16,7 +16,7 @@ from daguerre.errors import InputError
 from daguerre.files.packing import Make, unpack
 
 from .limits import Limits, too_much
-from .link import ANSWER, ERROR, FAULT, READY, TASK, TOLD, DamagedError
+from .link import ANSWER, ERROR, FAULT, HEARD, READY, TASK, TOLD, DamagedError
 from .process import EndedError, Process
 from .serving import ERRORS, packed
 
@@ -146,6 +146,7 @@ class Helper:
                     process.judge()
                     if heard is not None:
                         process.limit(heard(_text(answer, 0)), anew=False)
+                    process.link.send(HEARD, [])
         except EndedError as error:
             raise InputError(f"{where}: cannot read: {error}") from None
         finally:

@@ -21,8 +21,9 @@ from .shared import copied, mapped
 
 _HEAD, _SIZE = struct.Struct("<cI"), struct.Struct("<Q")
 #: Kinds of messages: a task; and from the helper, that it is ready, a text while it works, an
-#: answer, an error, and a fault, the error of a bug.
+#: answer, an error, and a fault, the error of a bug. HEARD confirms a text.
 TASK, READY, TOLD, ANSWER, ERROR, FAULT = b"t", b"r", b"n", b"a", b"e", b"f"
+HEARD = b"h"
 #: Least size of a large part, bytes, and the two marks before one.
 _LARGE = 1 << 20
 _BYTES, _FILE = b"b", b"f"

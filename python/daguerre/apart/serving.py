@@ -8,6 +8,7 @@ import gc
 import importlib
 import itertools
 import socket
+import threading
 import traceback
 from collections.abc import Callable
 from contextlib import AbstractContextManager
@@ -23,10 +24,13 @@ from daguerre.errors import (
 )
 from daguerre.files.packing import pack, unpack
 
-from .link import ANSWER, ERROR, FAULT, READY, TASK, TOLD, Link
+from .link import ANSWER, ERROR, FAULT, HEARD, READY, TASK, TOLD, DamagedError, Link
 
 #: Classes of errors that cross, by name.
 ERRORS = {kind.__name__: kind for kind in (InputError, UsageError, MismatchError, OutputError)}
+
+
+_telling = threading.Lock()  # any thread of a task may tell
 
 
 @dataclass(frozen=True)
@@ -106,7 +110,12 @@ def _function(name: str) -> Any:
 
 
 def _tell(link: Link, text: str) -> None:
-    link.send(TOLD, [_bytes(text)])
+    """Tells a text, and waits until it is heard: the limits are then those that it asks for."""
+    with _telling:
+        link.send(TOLD, [_bytes(text)])
+        kind, _ = link.receive(lambda: float("inf"))
+        if kind != HEARD:
+            raise DamagedError("a text is not heard")
 
 
 def _bytes(text: str) -> bytes:

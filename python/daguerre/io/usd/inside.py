@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import threading
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -43,12 +42,10 @@ def _beginning(request: Mapping[str, Any], tell: Tell) -> Iterator[None]:
         os.chdir(request["folder"])
     left = request["memory"]
     memory.set_limit(None if left is None else left + memory.own_bytes())
-    lock = threading.Lock()
 
     def hear(use: str | int) -> None:
         text = f"{PIXELS}{use}" if isinstance(use, int) else f"{FILE}{Path(use).absolute()}"
-        with lock:
-            tell(text)
+        tell(text)
 
     with uses.heard_by(hear):
         yield

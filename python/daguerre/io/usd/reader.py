@@ -104,7 +104,7 @@ def read(
     if into is not None:
         into.owner = opened.stage
     if drawn is not None and drawn.left_out:
-        scene.moments = drawn.begin, drawn.end
+        made.moments = drawn.begin, drawn.end
     scene.note(*notes.sentences())
     return scene
 
