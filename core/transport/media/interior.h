@@ -1,6 +1,7 @@
 // interior.h -- what fills the space of a ray that leaves a vertex: the one place where a path enters or leaves volumes
 // and media. Rules of nested volumes belong here.
 #pragma once
+#include "material/bsdf_kind.h"
 #include "scene/scene.h"
 
 namespace dg {
@@ -9,7 +10,7 @@ namespace dg {
 template <Scatters B>
 Interior interior_after(const Scene& scene, const Interior& here, const SurfaceHit& hit, const B& bsdf,
                         Vec3f wi) {
-    if constexpr (requires { B::kInMedium; }) return here;
+    if constexpr (PhaseKind<B>) return here;
     const float side = dot(wi, hit.ng);
     const bool transmitted = (side > 0) != hit.front;
     if (!transmitted) return here;

@@ -107,6 +107,20 @@ double scattered_once(Vec3d lamp, double albedo, double extinction, const Phase&
 
 }  // namespace
 
+/// Looks along -z once by each way to draw distances.
+template <typename Check>
+void look_by_each_way(const Scene& scene, double expected, const Check& check) {
+    using Distances = PathSettings::Distances;
+    for (const auto distances : {Distances::both, Distances::equiangular, Distances::free}) {
+        PathSettings settings = deep(1);
+        settings.distances = distances;
+        const SampleMoments m = look(scene, test_ray({}, {0, 0, -1}), settings, 1 << 16);
+        CAPTURE(expected);
+        CAPTURE(m.mean);
+        check(distances, m);
+    }
+}
+
 TEST_CASE("a lamp in fog shines as the integral along the ray says, by every way to draw distances") {
     const std::vector<PhaseLobe> lobes{{0.5f, 3}, {-0.2f, 1}};
     for (const Vec3f lamp : {Vec3f{0.3f, 0.1f, -2}, Vec3f{-1, 0, 0.5f}, Vec3f{0, 2, -6}})
@@ -116,16 +130,10 @@ TEST_CASE("a lamp in fog shines as the integral along the ray says, by every way
             d.lights.push_back(PointLight{lamp, {1, 1, 1}});
             const auto scene = Scene::build(std::move(d));
             const double expected = scattered_once(to_double(lamp), 0.8, density, Phase(lobes), 200);
-            using Distances = PathSettings::Distances;
-            for (const auto distances : {Distances::both, Distances::equiangular, Distances::free}) {
-                PathSettings settings = deep(1);
-                settings.distances = distances;
-                const SampleMoments m = look(*scene, test_ray({}, {0, 0, -1}), settings, 1 << 16);
-                CAPTURE(expected);
-                CAPTURE(m.mean);
+            look_by_each_way(*scene, expected, [&](PathSettings::Distances distances, const SampleMoments& m) {
                 CHECK(agrees(m, expected));
-                if (distances == Distances::both) CHECK(finds(m, expected));
-            }
+                if (distances == PathSettings::Distances::both) CHECK(finds(m, expected));
+            });
         }
 }
 
@@ -166,15 +174,9 @@ TEST_CASE("a lamp of triangles in fog lights places that most of them are turned
         expected += 0.2 / (4 * kPiD) * std::exp(-0.25 * (t + r)) * kRadiance * seen / (r * r);
     }
     expected *= 100.0 / kSteps;
-    using Distances = PathSettings::Distances;
-    for (const auto distances : {Distances::both, Distances::equiangular, Distances::free}) {
-        PathSettings settings = deep(1);
-        settings.distances = distances;
-        const SampleMoments m = look(*scene, test_ray({}, {0, 0, -1}), settings, 1 << 16);
-        CAPTURE(expected);
-        CAPTURE(m.mean);
-        CHECK(finds(m, expected, distances == Distances::free ? 5 : 1));
-    }
+    look_by_each_way(*scene, expected, [&](PathSettings::Distances distances, const SampleMoments& m) {
+        CHECK(finds(m, expected, distances == PathSettings::Distances::free ? 5 : 1));
+    });
 }
 
 TEST_CASE("a slab of a medium leaves exp(-optical depth) of what lies behind, and of what lights a surface") {

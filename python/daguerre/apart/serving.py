@@ -28,8 +28,6 @@ from .link import ANSWER, ERROR, FAULT, HEARD, READY, TASK, TOLD, DamagedError, 
 
 #: Classes of errors that cross, by name.
 ERRORS = {kind.__name__: kind for kind in (InputError, UsageError, MismatchError, OutputError)}
-
-
 _telling = threading.Lock()  # any thread of a task may tell
 
 
