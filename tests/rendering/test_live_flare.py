@@ -145,7 +145,7 @@ def test_a_lens_that_stays_has_the_same_ghosts_by_fewer_rays(
     found, found_rays = live(made, drawer), drawer.rays - drawer.ray_arrivals
     live(made, drawer)
     kept = live(made, drawer)
-    assert off(kept, found) < 0.06
+    assert off(kept, found) < 0.07  # two pictures with noise of their own
     assert kept.sum((0, 1)) == pytest.approx(found.sum((0, 1)), rel=0.03)
     assert drawer.rays - drawer.ray_arrivals < 0.75 * found_rays
 

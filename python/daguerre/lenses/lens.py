@@ -247,7 +247,7 @@ class Lens(Value):
         ratio = abs(self.first_order().efl / self.first_order(section="x").efl)
         return 1.0 if math.isclose(ratio, 1, rel_tol=1e-6) else ratio
 
-    @property
+    @cached_property
     def zoom_range_mm(self) -> tuple[float, float] | None:
         """Shortest and longest focal length; None: not a zoom."""
         from .zoom import zoom_range

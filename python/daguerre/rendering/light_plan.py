@@ -113,11 +113,14 @@ def core_settings_of(one: Prepared) -> _core.RenderSettings:
         return _settings(one, one.setup, NONE)
 
 
-def new_film(one: Prepared, plan: LightPlan) -> _core.Film:
-    """Makes the film, with the layers that the picture needs."""
+def film_layout(one: Prepared, plan: LightPlan) -> _core.FilmLayout:
+    """Returns the layout of the film, with the layers that the picture needs.
+
+    Raises:
+        InputError: The film would be too large.
+    """
     x0, y0, x1, y1 = one.crop
     film, waves = one.settings.film, one.settings.diffraction
-    curves = None if one.sensor is None else responses(one.sensor)
     layout = _core.FilmLayout(
         width=x1 - x0,
         height=y1 - y0,
@@ -131,12 +134,17 @@ def new_film(one: Prepared, plan: LightPlan) -> _core.Film:
         objects=bool(film.cryptomatte),
         catchers=one.scene.has_catchers,
         bands=film.bands if waves is None else waves.bands,
-        channels=0 if curves is None else len(curves),
+        channels=0 if one.sensor is None else len(responses(one.sensor)),
     )
     check_film(layout, truth=one.settings.truth.moment is not None, scatter=plan.scatter > 0)
+    return layout
+
+
+def new_film(one: Prepared, layout: _core.FilmLayout) -> _core.Film:
+    """Makes a film."""
     made = _core.Film(layout)
-    if curves is not None:
-        made.set_responses(curves)
+    if one.sensor is not None:
+        made.set_responses(responses(one.sensor))
     return made
 
 

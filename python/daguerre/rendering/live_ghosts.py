@@ -44,7 +44,7 @@ def _frame(session: Session, whole: NDArray[np.float32]) -> Frame:
     one = session.prepared
     left, top, right, bottom = one.crop
     rgb = np.ascontiguousarray(whole[top:bottom, left:right])
-    light = Frame(rgb, flare=rgb, metadata=session.metadata)
+    light = Frame(rgb, flare=rgb)
     if one.sensor is not None:
         matrix = channels_from_xyz(one.sensor).T
         light.channels = np.asarray(xyz_of(rgb) @ matrix, np.float32)

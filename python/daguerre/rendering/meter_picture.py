@@ -15,7 +15,7 @@ from daguerre.scene.scene import Scene
 from daguerre.units import numbers
 
 from .film_frame import frame_of
-from .light_plan import new_film, plan_light
+from .light_plan import film_layout, new_film, plan_light
 from .picture_truth import ground_truth
 from .prepare import Prepared
 
@@ -78,7 +78,7 @@ def _seen_at(one: Prepared, name: str, instances: list[int]) -> tuple[float, flo
 def meter_picture(one: Prepared) -> Frame:
     """Draws the picture of a meter, without flare, scatter, crop or plate."""
     plan = plan_light(one, None)
-    film, samples = new_film(one, plan), (0, one.settings.sampling.most)
+    film, samples = new_film(one, film_layout(one, plan)), (0, one.settings.sampling.most)
     for part in plan.parts:
         part.draw(_core.render, one.core_scene, film, (0, 0), samples, None)
     facts = {"resolution": one.size, "crop": one.crop, **sensor_metadata(one.sensor)}

@@ -29,7 +29,7 @@ from .columns import Columns, add_columns
 from .film_frame import frame_of, set_film_state
 from .film_parts import area
 from .keywords import SettingsKeywords, settings_of
-from .light_plan import new_film, plan_light
+from .light_plan import film_layout, new_film, plan_light
 from .parameters import TABLE
 from .picture_truth import ground_truth, truth_planes
 from .prepare import prepare
@@ -100,7 +100,7 @@ class Session:
         self.counters = _core.RenderCounters()
         self.ranges: list[tuple[int, int]] = []
         self.round: Round | None = None  # of adaptive sampling, instead of more ranges
-        self._film = new_film(one, self.light_plan)
+        self._layout = film_layout(one, self.light_plan)
         self._plate: NDArray[np.float32] | None = None  # behind every frame, once there is one
         self._kernels: Kernels = {}  # of diffraction, kept from frame to frame
         self._torn = False  # a pass was stopped midway: the sums are of no use
@@ -114,6 +114,10 @@ class Session:
     def torn(self) -> bool:
         """Whether a pass was stopped midway, which makes the sums invalid."""
         return self._torn
+
+    @cached_property
+    def _film(self) -> _core.Film:
+        return new_film(self.prepared, self._layout)
 
     def _whole_film(self) -> _core.Film:
         if self._torn:

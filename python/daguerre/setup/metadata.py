@@ -5,6 +5,7 @@ They are only for files and hashes; nothing computes with them.
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 from typing import TYPE_CHECKING, Any
@@ -135,6 +136,7 @@ def _change_facts(setup: ResolvedCamera) -> dict[str, Any]:
     return {"motion": found} if found else {}
 
 
+@functools.lru_cache(16)
 def _hash_lens(lens: Lens) -> str:
     text = json.dumps(lens.data, sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()

@@ -68,7 +68,9 @@ class Layer:
         if size[0] <= frame.width:
             return None
         alpha = resized(frame.alpha[..., None], *size)[..., 0]
-        light = replace(self.light, alpha=alpha)
+        one = self.session.prepared
+        facts = {**frame.metadata, "resolution": one.size, "crop": one.crop}
+        light = replace(self.light, alpha=alpha, metadata=facts)
         values = _stacked(light) + resized(_stacked(frame), *size)
         return self.session.exposed(_split(light, values))
 

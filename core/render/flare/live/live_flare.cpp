@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 
 #include "math/error.h"
@@ -13,17 +14,17 @@ namespace dg {
 namespace {
 
 constexpr double kShare = 0.15;       // of all light, that a source must bring
-constexpr double kMostArrivals = 5.6e5, kFewestArrivals = 3e5;
-constexpr double kWork = 7e5;         // arrivals that a picture without ghosts had time for
-constexpr double kGhostWork = 2000;   // arrivals that take as long as the set-up of one ghost
+constexpr double kFewestArrivals = 3e5, kMostArrivals = 5.6e5;
+constexpr double kFewSteep = 0.2, kMostSteep = 0.6;   // shares of the worth in steep squares for which these suffice
 constexpr double kDim = 0.0015;        // share of all that the ghosts that are left out are worth, at most
 constexpr int kShadows = 512, kSequence = -7;
 constexpr int kLayers = 4;            // which tasks draw on, and which are added in order: no bit depends on threads
 constexpr float kMm2 = 1e6f;          // in 1 m2
 
-/// Number of arrivals that fit into the time of a picture beside the set-up of its ghosts.
-double arrivals_beside(std::size_t ghosts) {
-    return std::clamp(kWork - kGhostWork * double(ghosts), kFewestArrivals, kMostArrivals);
+/// Number of arrivals for a noise of a few percent. Arrivals in steep squares differ more in their light.
+double arrivals_for(double steep_share) {
+    const double t = (steep_share - kFewSteep) / (kMostSteep - kFewSteep);
+    return std::lerp(kFewestArrivals, kMostArrivals, std::clamp(t, 0., 1.));
 }
 
 /// Share of some rays to the source that are free.
@@ -104,7 +105,9 @@ std::vector<float> LiveFlare::draw(const Scene& scene, const Camera& camera, Ren
                           std::back_inserter(all));
     }
     const double worth = choose(all, sensor, kDim);
-    const double arrivals = arrivals_beside(all.size()) / worth;   // of each unit of worth
+    double steep = 0;
+    for (const DrawnGhost& own : all) steep += own.ghost->steep_worth();
+    const double arrivals = arrivals_for(steep / worth) / worth;   // of each unit of worth
     parallel_tasks(settings.threads, std::int64_t(all.size()),
                    [&](std::int64_t i) { all[std::size_t(i)].ghost->refine(arrivals); });
     const double per_px = double(kMm2) / std::get<ExactLens>(camera.lens).h0() / sensor.mm2_per_px();

@@ -129,6 +129,12 @@ double LiveGhost::weigh(const FlareTiles& tiles) {
     return sum;
 }
 
+double LiveGhost::steep_worth() const {
+    double sum = 0;
+    for (const Square& s : squares_) sum += is_steep(s) ? s.worth : 0;
+    return sum;
+}
+
 /// Takes as many of its nodes for its colours as so many arrivals pay for.
 void LiveGhost::divide(double own_arrivals) {
     step_ = own_arrivals > kWorthMost ? 1 : own_arrivals > kWorthMore ? 2 : 4, few_side_ = GhostGrid::kSquares / step_ + 1;

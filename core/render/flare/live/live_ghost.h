@@ -31,6 +31,8 @@ class LiveGhost {
     void add_to(FlareTiles& tiles) const;
     /// How many arrivals it is worth beside other ghosts.
     double weigh(const FlareTiles& tiles);
+    /// The part of it in squares with steep transmittance.
+    double steep_worth() const;
     /// Where it comes in and how its glass is, as finely as so many arrivals are worth of which it gets a share.
     GhostPlace place(double arrivals, double share);
     /// Finds all that drawing takes, for so many arrivals for each unit of weigh().
