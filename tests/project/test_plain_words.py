@@ -1,0 +1,107 @@
+"""Comments and docstrings are in plain words: rates of hard ones stay below the limits, room by room."""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "script"))
+
+from plain_words import PATTERNS, comments, files, rates
+
+#: Rooms with comments that are still to be rewritten.
+LEFT = {
+    "core/bind",
+    "core/camera",
+    "core/codec",
+    "core/develop",
+    "core/film",
+    "core/geometry",
+    "core/light",
+    "core/material",
+    "core/math",
+    "core/medium",
+    "core/motion",
+    "core/optics",
+    "core/post",
+    "core/render",
+    "core/scene",
+    "core/spectrum",
+    "core/transport",
+    "python/daguerre/analysis",
+    "python/daguerre/apart",
+    "python/daguerre/blender",
+    "python/daguerre/calibration",
+    "python/daguerre/camera",
+    "python/daguerre/charts",
+    "python/daguerre/cli",
+    "python/daguerre/cluster",
+    "python/daguerre/color",
+    "python/daguerre/convolution",
+    "python/daguerre/development",
+    "python/daguerre/distortion",
+    "python/daguerre/export",
+    "python/daguerre/exposure",
+    "python/daguerre/files",
+    "python/daguerre/frame",
+    "python/daguerre/io",
+    "python/daguerre/labels",
+    "python/daguerre/lenses",
+    "python/daguerre/maps",
+    "python/daguerre/plates",
+    "python/daguerre/plots",
+    "python/daguerre/polynomial",
+    "python/daguerre/post",
+    "python/daguerre/rendering",
+    "python/daguerre/scene",
+    "python/daguerre/sensors",
+    "python/daguerre/setup",
+    "python/daguerre/viewfinder",
+}
+ROOMS = sorted(
+    room.relative_to(ROOT).as_posix()
+    for folder in ("core", "python/daguerre")
+    for room in (ROOT / folder).iterdir()
+    if room.is_dir() and files(room)
+)
+
+
+def too_many(room: Path) -> dict[str, float]:
+    """Rates above the limits; a word may stand once in any room."""
+    words, found = rates(files(room))
+    most = {name: math.ceil(limit * words / 1000) for name, (_, limit) in PATTERNS.items()}
+    return {
+        name: round(rate, 2) for name, rate in found.items() if rate * words > 1000 * most[name]
+    }
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_room_is_in_plain_words(room: str) -> None:
+    found = too_many(ROOT / room)
+    assert bool(found) == (room in LEFT), found
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("// Finds what the ray hits.", "what"),
+        ("/* The radius is that of\n the film. */", "that of"),
+        ("/// A lamp whose bound is near.", "whose"),
+        ("// The one that is nearest.", "one"),
+    ],
+)
+def test_hard_word_is_counted(tmp_path: Path, text: str, name: str) -> None:
+    path = tmp_path / "a.h"
+    path.write_text(f"{text}\nint what = 1;\n")
+    assert [key for key, rate in rates([path])[1].items() if rate] == [name]
+
+
+def test_numerals_strings_and_code_are_not_counted(tmp_path: Path) -> None:
+    path = tmp_path / "a.py"
+    path.write_text('"""One of two; at least one. ``what``: `whose`."""\nTEXT = "what # whose"\n')
+    assert not any(rates([path])[1].values())
+    assert list(comments(path))
