@@ -2,8 +2,9 @@
 
     python script/plain_words.py [FOLDER ...]
 
-prints the rates of each room of the core and of Python, or of the folders. ``tests/project/test_plain_words.py``
-holds the limits. On 2026-11-30, before the comments were rewritten, and in two renderers that read well:
+prints the rates of each room of the core and of Python, or of the folders; the limits are held by
+``tests/project/test_plain_words.py``. On 2026-11-30, before the comments were rewritten, and in two
+renderers that read well:
 
 | | core | python | pbrt-v4 | Mitsuba 3, C++ |
 |---|---|---|---|---|
@@ -13,8 +14,9 @@ holds the limits. On 2026-11-30, before the comments were rewritten, and in two 
 | whose | 1.12 | 1.19 | 0.00 | 0.27 |
 | one, as a pronoun | 2.65 | 2.99 | 0.31 | 0.34 |
 
-Better: the noun ("the ray that hits the sphere", not "what hits it"), the repeated noun ("the radius of the film",
-not "that of the film"), "with" or a relative clause ("a lamp with a near bound", not "whose bound is near").
+Better: the noun ("the ray that hits the sphere", not "what hits it"), the repeated noun ("the
+radius of the film", not "that of the film"), "with" or a relative clause ("a lamp with a near
+bound", not "whose bound is near").
 """
 
 from __future__ import annotations
