@@ -1,8 +1,10 @@
-"""The catalogue page: every lens of the library, with the numbers of its index."""
+"""The page of the lens library: every lens of the library, with the numbers of its index."""
 
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 from types import ModuleType
 
@@ -13,7 +15,7 @@ from daguerre.lenses import library
 from daguerre.plots.lens_section import Drawing, Line, Polygon
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = (ROOT / "docs" / "lens-catalogue.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "lens-library.md").read_text(encoding="utf-8")
 
 
 def module(monkeypatch: pytest.MonkeyPatch, name: str) -> ModuleType:
@@ -32,6 +34,8 @@ def test_every_lens_has_its_section_and_its_numbers() -> None:
         text = sections[entry.name]
         assert f"**{entry.title}** ({entry.year})" in text
         assert entry.patent in text
+        assert entry.remark.lower() in text.lower()
+        assert entry.also in text
         focal, rest = text.split("Focal length ")[1].split(" mm, back focus ")
         back, rest = rest.split(" mm, f/")
         stop = rest.split(f". {entry.patent}")[0]
@@ -46,15 +50,19 @@ def test_every_lens_has_its_section_and_its_numbers() -> None:
 
 
 def test_pictures_and_links_of_the_page_exist() -> None:
-    shown = set(re.findall(r'src="([^"]*)"', PAGE))
+    shown = set(re.findall(r"!\[\w+\]\(([^)]*)\)", PAGE))
     for entry in library.entries():
         assert f"lenses/drawings/{entry.name}.svg" in shown
         assert f"../python/daguerre/lenses/library/photographs/{entry.name}.webp" in shown
     for name in shown:
         assert (ROOT / "docs" / name).stat().st_size < 40_000
-    targets = {part.split(")")[0] for part in PAGE.split("](#")[1:]}
-    headings = {line[4:].replace(".", "") for line in PAGE.splitlines() if line.startswith("### ")}
-    assert targets <= headings
+
+
+def test_the_page_is_up_to_date(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    make = str(ROOT / "script" / "docs" / "lenses" / "catalogue.py")
+    subprocess.run([sys.executable, make, "--page", str(page)], check=True)
+    assert page.read_text(encoding="utf-8") == PAGE, "run script/docs/make-lens-catalogue"
 
 
 def test_the_package_has_a_small_photograph_of_each_lens() -> None:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -171,11 +169,3 @@ def test_the_anamorphic_lens_squeezes_by_two() -> None:
 
 def test_the_folder_is_part_of_the_package() -> None:
     assert Path(lenses.__file__).parent / "library" == FOLDER
-
-
-def test_the_page_of_the_library_is_up_to_date(tmp_path: Path) -> None:
-    root = Path(__file__).parents[2]
-    page = tmp_path / "page.md"
-    command = [sys.executable, str(root / "script" / "docs" / "make-lens-table"), str(page)]
-    subprocess.run(command, check=True)
-    assert page.read_bytes() == (root / "docs" / "lens-library.md").read_bytes()

@@ -71,7 +71,7 @@ explains how. A sheet of several pictures has a command for each.
 ABOUT_GLASS = """## Real lenses
 
 These pictures are rendered through real lenses, from their prescriptions. The [lens
-catalogue](../lens-catalogue.md) has a photograph through each lens of the library.
+library](../lens-library.md) has a photograph through each of its lenses.
 """
 
 ABOUT_LIGHT = """## Light paths

@@ -1,6 +1,6 @@
 """Builds the lens catalogue: drawings, photographs, data sheets, and the page that shows them.
 
-    script/docs/make-lens-catalogue [--out DIR] [--only NAME ...] [--page] [--no-sheets]
+    script/docs/make-lens-catalogue [--out DIR] [--only NAME ...] [--page [FILE]] [--no-sheets]
 
 Pictures that are there and still true are left alone, so the command may be interrupted and typed
 again. Data sheets of all lenses go to DIR (out/lenses) as PDF.
@@ -26,7 +26,7 @@ from daguerre.lenses import library
 from daguerre.plots.lens_section import section
 
 ROOT = Path(__file__).resolve().parents[3]
-PAGE = ROOT / "docs" / "lens-catalogue.md"
+PAGE = ROOT / "docs" / "lens-library.md"
 PICTURES = ROOT / "docs" / "lenses"
 
 
@@ -57,7 +57,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "lenses")
     parser.add_argument("--only", nargs="+", choices=library.names(), metavar="NAME")
-    parser.add_argument("--page", action="store_true", help="the page alone")
+    parser.add_argument(
+        "--page", type=Path, nargs="?", const=PAGE, metavar="FILE", help="the page alone"
+    )
     parser.add_argument("--no-sheets", action="store_true", help="no data sheets")
     given = parser.parse_args()
     out = given.out.resolve()
@@ -69,8 +71,9 @@ def main() -> None:
         if not given.no_sheets:
             for entry in wanted:
                 sheets.make(entry, out, PICTURES / "sheets")
-    PAGE.write_text(page.text(library.entries()), encoding="utf-8")
-    print(PAGE)
+    file = given.page or PAGE
+    file.write_text(page.text(library.entries()), encoding="utf-8")
+    print(file)
 
 
 if __name__ == "__main__":

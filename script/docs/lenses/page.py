@@ -1,4 +1,4 @@
-"""The text of docs/lens-catalogue.md."""
+"""The text of docs/lens-library.md."""
 
 from __future__ import annotations
 
@@ -11,55 +11,20 @@ PICTURES = DOCS / "lenses"
 #: The program shows the same photographs, so its package has them.
 PHOTOGRAPHS_FROM_DOCS = "../python/daguerre/lenses/library/photographs"
 
-INTRODUCTION = """# Lens catalogue
-
-Choose one of the {count} lenses that ship with Daguerre: each has its drawing and a photograph of
-the same scene. Use a lens by its name:
-
-```
-daguerre lens double-gauss-50mm-f2
-daguerre render scene.glb --lens double-gauss-50mm-f2 -o out.exr
-```
-
-Each entry names the patent or book of its prescription. Numbers are computed from the lens's
-table at 587.56 nm, focused at infinity; the source's own values are in brackets. The back focus
-and f-number of a zoom are those of its shortest focal length. [Lens library](lens-library.md)
-has all lenses in one table; `daguerre lenses zeiss wide`
-[finds lenses](lens-library.md#find-a-lens) by such words.
-
-`script/docs/make-lens-catalogue` builds this page with its drawings and photographs, and the data
-sheets of all lenses.
-"""
-
-PHOTOGRAPHS = """## The photographs
-
-All photographs show the arcade of [scenes/lens_scenes.py](../scenes/lens_scenes.py) through the
-lens wide open, a zoom in the middle of its range, on the film that the lens was made for. The
-camera stands so that the plane of the head, the chart and the white frame is half a metre high in
-the picture. The subject therefore keeps its size, and the differences come from the lens: the
-discs of the lanterns (their size, their edge, their cut toward the corners), the straightness of
-frame and columns, the darkening of the corners, the fine lines of the chart. Very short lenses
-come no closer than 0.3 m, large films no closer than ten focal lengths. Anamorphic pictures are
-stretched back.
-"""
+HEAD = Path(__file__).with_name("head.md")
 
 
 def text(entries: tuple[Entry, ...]) -> str:
-    """The page: introduction, contents by family, a section for each lens."""
-    parts = [INTRODUCTION.format(count=len(entries)), PHOTOGRAPHS, _contents(entries)]
-    return "\n".join([*parts, *map(_section, entries)])
-
-
-def _contents(entries: tuple[Entry, ...]) -> str:
-    """Names by the first word of their kind of design."""
+    """The page: introduction, then families, with an entry for each lens."""
+    years = [entry.year for entry in entries if entry.year]
+    head = HEAD.read_text("utf-8")
+    parts = [head.format(count=len(entries), first=min(years), last=max(years))]
     families: dict[str, list[Entry]] = {}
     for entry in entries:
         families.setdefault(_family(entry), []).append(entry)
-    lines = []
     for family, members in sorted(families.items(), key=lambda item: item[0].lower()):
-        links = ", ".join(f"[{entry.title}](#{entry.name.replace('.', '')})" for entry in members)
-        lines.append(f"- **{family}**: {links}")
-    return "## Contents\n\n" + "\n".join(lines) + "\n"
+        parts += [f"## {family[0].upper()}{family[1:]}\n", *map(_section, members)]
+    return "\n".join(parts)
 
 
 def _family(entry: Entry) -> str:
@@ -72,18 +37,20 @@ def _family(entry: Entry) -> str:
 
 def _section(entry: Entry) -> str:
     year = f" ({entry.year})" if entry.year else ""
+    also = f" (also {entry.also})" if entry.also else ""
     film = f", film {entry.format.replace('x', ' x ')} mm" if entry.format else ""
+    remark = f" {entry.remark[0].upper()}{entry.remark[1:]}." if entry.remark else ""
     pictures = " ".join(
-        f'<img src="{folder}/{entry.name}.{suffix}" alt="{what} {entry.title}">'
+        f"![{what}]({folder}/{entry.name}.{suffix})"
         for folder, suffix, what in (
-            ("lenses/drawings", "svg", "Section of the"),
-            (PHOTOGRAPHS_FROM_DOCS, "webp", "Photograph by the"),
+            ("lenses/drawings", "svg", "Section"),
+            (PHOTOGRAPHS_FROM_DOCS, "webp", "Photograph"),
         )
         if (DOCS / folder / f"{entry.name}.{suffix}").exists()
     )
     return (
-        f"### {entry.name}\n\n**{entry.title}**{year}, {entry.type}{film}. {_numbers(entry)}. "
-        f"{entry.patent}.{_sheet(entry)}\n\n{pictures}\n"
+        f"### {entry.name}\n\n**{entry.title}**{year}{also}, {entry.type}{film}. "
+        f"{_numbers(entry)}. {entry.patent}.{remark}{_sheet(entry)}\n\n{pictures}\n"
     )
 
 
