@@ -16,6 +16,7 @@ from daguerre.io.images import decode
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
+RECORDS = sorted((ROOT / "bench" / "records").glob("*.md"))
 BUILT_IN = {"--help", "--help-all", "--version"}
 
 
@@ -83,7 +84,7 @@ def test_gltf_page_names_every_extension_that_is_read():
 
 
 def test_links_between_pages_lead_somewhere():
-    pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *DOCS.glob("**/*.md")]
+    pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *RECORDS, *DOCS.glob("**/*.md")]
     for page in pages:
         for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text()):
             if "://" not in target:
