@@ -65,3 +65,10 @@ def test_cmake_takes_its_numbers(tmp_path: Path, text: str, number: str) -> None
     )
     (tmp_path / "check.cmake").write_text(rules + said)
     subprocess.run(["cmake", "-P", "check.cmake"], cwd=tmp_path, check=True)
+
+
+def test_changelog_is_for_readers() -> None:
+    """A section has at most 60 lines; stages that were never released have none."""
+    sections = re.split(r"^## ", (ROOT / "CHANGELOG.md").read_text(), flags=re.MULTILINE)[1:]
+    assert [s.splitlines()[0] for s in sections[1:] if "not yet released" in s] == []
+    assert max(len(s.rstrip().splitlines()) for s in sections) <= 60
