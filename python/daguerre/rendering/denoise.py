@@ -1,6 +1,6 @@
 """Denoising by Intel Open Image Denoise (extra ``denoise``), guided by albedo and normal.
 
-``docs/denoise-method.md`` explains its inputs, its loss of detail and its error estimate.
+``README.md`` explains its inputs and its error estimate.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Writes what docs, README and package say about measured products.
+"""Writes what docs, records, README and package say about measured products.
 
     script/docs/make-measured [--data FOLDER] [--rows FILE]
 
@@ -30,6 +30,7 @@ from daguerre.errors import DaguerreError  # noqa: E402
 from daguerre.lenses.agreement import FILE  # noqa: E402
 
 DOCS = ROOT / "docs"
+RECORD = ROOT / "bench" / "records" / "measured.md"
 #: Text between a pair of comments is ours.
 BLOCK = r"(<!-- measured {name}: by script/docs/make-measured -->\n).*?(<!-- end of measured -->)"
 
@@ -80,7 +81,9 @@ def main() -> None:
     FILE.write_text(kept.text(rows), encoding="utf-8")
     for name, drawing in plots.drawings(rows).items():
         (DOCS / f"{name}.svg").write_bytes(drawing)
-    written(DOCS / "measured.md", tables.texts(rows))
+    texts = tables.texts(rows)
+    written(DOCS / "measured.md", {"summary": texts.pop("summary")})
+    written(RECORD, texts)
     written(ROOT / "README.md", {"sentence": tables.sentence(rows)})
 
 

@@ -1,4 +1,4 @@
-"""The tables of docs/measured.md, and the sentence of README.md."""
+"""The tables of docs/measured.md and its record, and the sentence of README.md."""
 
 from __future__ import annotations
 
