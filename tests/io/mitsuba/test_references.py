@@ -67,7 +67,7 @@ PASSES: dict[str, bool] = {
     "texture_interp/test_texture_interp": SHARP,
     "various_emitters/test_various_emitters": NOISY,
 }
-#: Scenes that do not pass, and why; docs/scenes.md has the same table.
+#: Scenes that do not pass, and why; bench/records/scenes.md has the same table.
 _MASKING = "facets of roughness 1 hide and shade each other by the same heights here"
 _PRINCIPLED = "principled materials"
 LACKING: dict[str, str] = {
