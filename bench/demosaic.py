@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from daguerre.color import spaces
 from daguerre.development.channels import Demosaic
 from daguerre.development.dng import LEAST_XTRANS
-from daguerre.io.tiff import CFA, TiffImage, write_tiff
+from daguerre.pictures.tiff import CFA, TiffImage, write_tiff
 from daguerre.sensors.mosaic import Mosaic as Pattern
 
 TOP = 16383.0

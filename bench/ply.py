@@ -29,8 +29,8 @@ import numpy as np  # noqa: E402
 
 import daguerre as dg  # noqa: E402
 from daguerre.files.notes import Notes  # noqa: E402
-from daguerre.io.meshes import obj, ply, serialized  # noqa: E402
-from daguerre.io.meshes.file_bytes import read_bytes  # noqa: E402
+from daguerre.importers.file_bytes import read_bytes  # noqa: E402
+from daguerre.importers.meshes import obj, ply, serialized  # noqa: E402
 
 _READERS: dict[str, Callable[[Path], Any]] = {
     ".ply": lambda path: ply.read(path, Notes()),

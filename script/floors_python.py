@@ -24,7 +24,7 @@ LAYERS = {
     "tables": [{"units", "memory", "files"}, {"parameters", "apart"}],
     "optics and color": [{"color", "motion", "convolution"}, {"lenses", "sensors"}],
     "object model": [{"camera"}, {"scene", "frame"}],
-    "formats": [{"io"}],
+    "formats": [{"pictures"}, {"shading"}, {"importers"}, {"exporters"}],
     "set-up and measures": [
         {"setup"},
         {"analysis"},

@@ -36,17 +36,17 @@ if TYPE_CHECKING:
     from .camera.projection import Projection
     from .camera.rolling_shutter import RollingShutter
     from .cluster.session import ClusterSession
+    from .exporters.export_camera import export_camera
     from .exposure import metering
     from .frame.frame import Frame
     from .frame.raw import Raw
-    from .io.export_camera import export_camera
-    from .io.exr.read import load_frame
-    from .io.load import load
+    from .importers.load import load
     from .labels.annotations import annotate
     from .labels.categories import Categories
     from .maps.ray_map import RayMap, raymap
     from .maps.st_maps import StMaps, stmaps
     from .motion.values import Keys, Spin, keys, spin
+    from .pictures.exr.read import load_frame
     from .plates.composite.composite import composite
     from .plates.match.match import match_plate
     from .plates.match.plate_camera import PlateCamera
@@ -196,10 +196,10 @@ _LAZY = {
     "calibrate": "analysis.calibrate",
     "calibrate_all": "analysis.calibrate",
     "Diffraction": "rendering.diffraction",
-    "load": "io.load",
-    "export_camera": "io.export_camera",
+    "load": "importers.load",
+    "export_camera": "exporters.export_camera",
     "export_scene": "rendering.export_scene",
-    "load_frame": "io.exr.read",
+    "load_frame": "pictures.exr.read",
     "Frame": "frame.frame",
     "Raw": "frame.raw",
     "RayMap": "maps.ray_map",

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from calibrated import computer, furniture, papers, room, things
 from calibrated.place import TOP, on_desk
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from kit.pose import Point, look
 from lens_scenes.view_camera import add_view_camera
 from night.stage import Stage

@@ -7,7 +7,7 @@ import numpy as np
 from calibrated import pictures
 from calibrated.place import BACK, DEEP, TOP, WIDE, put
 from calibrated.room import RIGHT
-from daguerre.io.gltf.writer import Shape
+from daguerre.exporters.gltf import Shape
 from kit import shapes, textures
 from kit.pose import turn_y
 from night.stage import Stage

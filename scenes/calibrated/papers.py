@@ -8,7 +8,7 @@ import numpy as np
 
 from calibrated import pictures
 from calibrated.place import about_x, about_y, on_desk, put
-from daguerre.io.gltf.writer import Shape
+from daguerre.exporters.gltf import Shape
 from kit import shapes, textures
 from kit.pose import turn_y
 from night.stage import Stage

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.io.gltf.writer import Shape
+from daguerre.exporters.gltf import Shape
 from kit import shapes
 from night.stage import Stage
 

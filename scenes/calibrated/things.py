@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibrated.place import about_x, about_y, about_z, on_desk, put, translucent
-from daguerre.io.gltf.writer import Shape
+from daguerre.exporters.gltf import Shape
 from kit import shapes
 from kit.moves import spinning
 from kit.pose import turn_y

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.io.gltf.writer import FLOAT, U8, Shape, Track
+from daguerre.exporters.gltf import FLOAT, U8, Shape, Track
 from extensions.studio import Studio
 from kit import shapes
 from kit.pose import turn_y

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from extensions.plants import any_turn, blade, leaf, leafy, scatter, stones
 from extensions.studio import Studio
 from kit import ktx2, shapes, textures

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from extensions.studio import Studio
 from kit import shapes, textures
 from kit.pose import Point, turn_y

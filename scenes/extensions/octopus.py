@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from daguerre.io.gltf.writer import FLOAT, Glb, Track
+from daguerre.exporters.gltf import FLOAT, Glb, Track
 from extensions.arms import add_arms
 from extensions.studio import Studio
 from kit import shapes, textures

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb, Shape
+from daguerre.exporters.gltf import Glb, Shape
 from extensions.studio import Studio
 from kit import packing, shapes
 from kit.pose import Point, turn_y

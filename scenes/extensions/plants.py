@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from daguerre.io.gltf.writer import ARRAY_BUFFER, FLOAT, Shape
+from daguerre.exporters.gltf import ARRAY_BUFFER, FLOAT, Shape
 from extensions.studio import Studio
 from kit import shapes
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from extensions.houses import add_houses, add_sky
 from extensions.letters import written
 from extensions.studio import Studio

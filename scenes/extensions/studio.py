@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb, Shape
+from daguerre.exporters.gltf import Glb, Shape
 from kit import shapes
 from kit.pose import Point, look
 

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb, Shape
+from daguerre.exporters.gltf import Glb, Shape
 from imperfections.glow import COOL, GOLD, WARM, WHITE, Glow
 from kit import shapes
 

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from imperfections.glow import Glow
 from kit import shapes, textures
 from kit.pose import Point, look

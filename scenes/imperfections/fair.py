@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from imperfections.glow import BLUE, COOL, GOLD, PINK, RED, TEAL, WARM, WHITE, Glow
 from kit import shapes, textures
 from kit.pose import Point

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from daguerre.io.gltf.writer import Shape
+from daguerre.exporters.gltf import Shape
 from extensions.studio import Studio
 from kit import shapes, textures
 from kit.pose import Point

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb, Shape
+from daguerre.exporters.gltf import Glb, Shape
 from imperfections.glow import COOL, WHITE, Glow
 from kit import shapes
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from imperfections.glow import COOL, GOLD, WARM, WHITE, Glow
 from kit import shapes, textures
 

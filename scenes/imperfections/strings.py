@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from extensions.letters import written
 from imperfections.glow import COOL, GOLD, PINK, TEAL, WARM, Glow
 from kit import shapes, textures

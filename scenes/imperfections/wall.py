@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from imperfections.glow import Glow
 from kit import shapes, textures
 

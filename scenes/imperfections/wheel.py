@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.io.gltf.writer import Glb, Shape
+from daguerre.exporters.gltf import Glb, Shape
 from imperfections.glow import BLUE, GOLD, RED, WARM, WHITE, Glow
 from kit import shapes
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from daguerre.io.gltf.writer import Track
+from daguerre.exporters.gltf import Track
 from kit.pose import Point, look
 
 WIDEST_DEG = 100.0  # between two keys; from 180 degrees on, the shorter way is another

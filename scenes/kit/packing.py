@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from daguerre.io.gltf.writer import FLOAT, I8, I16, U16, U32, Glb, Shape
+from daguerre.exporters.gltf import FLOAT, I8, I16, U16, U32, Glb, Shape
 
 DRACO = "KHR_draco_mesh_compression"
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from daguerre.io.gltf.writer import Shape
+from daguerre.exporters.gltf import Shape
 
 
 def _shape(p: ArrayLike, n: ArrayLike, uv: ArrayLike, i: ArrayLike) -> Shape:

@@ -8,7 +8,7 @@ are stylised: 1 cd/m2 shows as 1.
 
 from __future__ import annotations
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from kit.pose import Point, look
 from lens_scenes import hall, head, lanterns, table
 from night.stage import Stage

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from extensions.letters import dots_of
 from extensions.studio import Studio
 from kit import shapes, textures

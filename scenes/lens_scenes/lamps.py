@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from night.stage import Stage
 
 AWAY, STEP = 20.0, 1.6  # m

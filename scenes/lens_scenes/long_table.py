@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from kit import shapes, textures
 from kit.pose import look
 from lens_scenes.table import add_men

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from kit import shapes, textures
 from kit.pose import look, turn_y
 from lens_scenes.view_camera import add_view_camera

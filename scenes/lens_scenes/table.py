@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.io.gltf.writer import Shape
+from daguerre.exporters.gltf import Shape
 from kit import shapes, textures
 from lens_scenes.chart import chart
 from night.stage import Stage

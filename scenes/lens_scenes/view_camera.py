@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Shape
+from daguerre.exporters.gltf import Shape
 from kit import shapes, textures
 from kit.pose import turn_y
 from night.stage import Stage

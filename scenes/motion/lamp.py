@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb, Track
+from daguerre.exporters.gltf import Glb, Track
 from extensions.studio import Studio
 from kit import shapes, textures
 from kit.moves import swinging

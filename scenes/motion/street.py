@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from daguerre.io.gltf.writer import Glb, Track
+from daguerre.exporters.gltf import Glb, Track
 from extensions import street
 from kit.moves import going
 from kit.pose import look

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from daguerre.io.gltf.writer import Glb, Shape
+from daguerre.exporters.gltf import Glb, Shape
 from kit import shapes, textures
 from kit.pose import Point
 

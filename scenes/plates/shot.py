@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 from night.stage import Stage
 from plates.chessmen import add_chessmen
 from plates.film_set import add_camera, add_set

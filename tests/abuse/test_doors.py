@@ -86,7 +86,7 @@ def test_doors_do_not_show() -> None:
     assert "scene" in inspect.signature(dg.render).parameters
     assert "spp" in inspect.signature(dg.render).parameters
     assert str(inspect.signature(lenses.load)).startswith("(name_or_path: 'str | Path | Lens'")
-    assert (dg.load.__name__, dg.load.__module__) == ("load", "daguerre.io.load")
+    assert (dg.load.__name__, dg.load.__module__) == ("load", "daguerre.importers.load")
     assert "Args:" in (inspect.getdoc(dg.load) or "")
     assert inspect.getsource(lenses.load).startswith("@guarded")
     for value in (dg.load, dg.render, lenses.load, dg.Scene.add_mesh, lenses.Lens.focused):

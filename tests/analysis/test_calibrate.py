@@ -249,7 +249,7 @@ def test_every_format_says_where_the_lens_puts_things(kind: str, tmp_path: Path)
 
 def test_a_stage_says_where_the_lens_puts_things(tmp_path: Path) -> None:
     pytest.importorskip("pxr")
-    from tests.io.usd.stage import opened, read
+    from tests.importers.usd.stage import opened, read
 
     out = tmp_path / "lens.usda"
     command = ["calibrate", "nikon-28mm-f2.8", "--res", "640x480", "--focus", "3"]

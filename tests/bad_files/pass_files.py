@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import daguerre as dg
-from daguerre.io.gltf import reader as gltf
+from daguerre.importers.gltf import reader as gltf
 from daguerre.rendering import passes
 from daguerre.rendering.session import Session
 

@@ -13,8 +13,8 @@ from daguerre.blender.atlas import unwrapped
 from daguerre.blender.materials import Materials
 from daguerre.blender.raster import rasterized
 from daguerre.blender.translate import Rooms, scene_of
-from daguerre.io.shading.channels import Mapping, Plane, Texel
-from daguerre.io.shading.lookup import looked_up
+from daguerre.shading.channels import Mapping, Plane, Texel
+from daguerre.shading.lookup import looked_up
 
 from . import building
 from .node_scenes import CD_PER_W, Tree, cycles, emptied, picture, random_picture, stage

@@ -14,8 +14,8 @@ import pytest
 import daguerre as dg
 from daguerre.cli import main
 from daguerre.setup.contents import contents
-from tests.io.mitsuba import scene_files
-from tests.io.pbrt import text as pbrt
+from tests.importers.mitsuba import scene_files
+from tests.importers.pbrt import text as pbrt
 from tests.support import scenes
 
 

@@ -18,7 +18,7 @@ import daguerre as dg
 from daguerre.cli.preview.protocols import drawn, palette_index, png
 from daguerre.cli.preview.screen import Cells
 from daguerre.cli.preview.terminal import Way, guess, read_answer
-from daguerre.io.png_chunks import is_complete
+from daguerre.pictures.png_chunks import is_complete
 from daguerre.rendering.coarse import coarse
 from daguerre.rendering.job import Job
 from daguerre.rendering.output import Output

@@ -11,7 +11,7 @@ import daguerre as dg
 from daguerre.color import spaces
 from daguerre.development import Picture
 from daguerre.errors import OutputError
-from daguerre.io import exif, icc
+from daguerre.pictures import exif, icc
 
 exifread = pytest.importorskip("exifread")
 Image = pytest.importorskip("PIL.Image")
@@ -189,7 +189,7 @@ def test_a_full_disk_is_one_error(tmp_path, monkeypatch, suffix):
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr("pathlib.Path.write_bytes", full)
-    monkeypatch.setattr("daguerre.io.picture_files.write_tiff", full)
+    monkeypatch.setattr("daguerre.pictures.picture_files.write_tiff", full)
     path = tmp_path / f"picture{suffix}"
     with pytest.raises(OutputError, match="cannot write: No space left") as caught:
         picture().save(path)

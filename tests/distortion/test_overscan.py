@@ -13,7 +13,7 @@ import daguerre as dg
 from daguerre.camera.overscan import NONE, Overscan, check_overscan
 from daguerre.cli import main
 from daguerre.errors import UsageError
-from daguerre.io.exr.reader import ExrReader
+from daguerre.pictures.exr.reader import ExrReader
 from daguerre.rendering.merging import merge
 from daguerre.rendering.passes import pass_of
 from daguerre.rendering.session import Session

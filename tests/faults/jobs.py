@@ -188,7 +188,7 @@ def is_refusal(text: str) -> bool:
 
 def writing(folder: Path) -> None:
     """Forks while another thread writes an .exr."""
-    from daguerre.io.exr.threads import threads
+    from daguerre.pictures.exr.threads import threads
 
     frame = dg.Frame(np.ones((4, 4, 3), np.float32))
     frame.save(folder / "a.exr")

@@ -13,7 +13,7 @@ from random import Random
 import numpy as np
 
 from tests.fuzz import readers, stage_seeds
-from tests.io.usd.random_stages import write_stage
+from tests.importers.usd.random_stages import write_stage
 
 #: A file's name and bytes.
 Seed = tuple[str, bytes]

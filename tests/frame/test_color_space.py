@@ -14,7 +14,7 @@ import daguerre as dg
 from daguerre.color.spaces import LINEAR
 from daguerre.errors import UsageError
 from daguerre.frame.frame import Frame
-from daguerre.io.exr.crops import join_crops
+from daguerre.pictures.exr.crops import join_crops
 from tests.support.stated_light import AP0, AP1, REC709, TO_REC709, XYZ
 
 RNG = np.random.default_rng(3)

@@ -20,11 +20,11 @@ from daguerre.scene.packed.chunk import embed
 from tests.bad_files import bases
 from tests.bad_files.exr_files import LIE, READ
 from tests.faults.scene import write_scene
-from tests.io.gltf import test_gltf_compressed_images as ktx2
-from tests.io.gltf import test_gltf_draco as draco
-from tests.io.gltf import test_gltf_meshopt as meshopt
-from tests.io.mitsuba import scene_files
-from tests.io.pbrt import everything as pbrt_scene
+from tests.importers.gltf import test_gltf_compressed_images as ktx2
+from tests.importers.gltf import test_gltf_draco as draco
+from tests.importers.gltf import test_gltf_meshopt as meshopt
+from tests.importers.mitsuba import scene_files
+from tests.importers.pbrt import everything as pbrt_scene
 from tests.lenses.test_lens_fuzz import SEEDS as LENSES
 from tests.support import mesh_files, tracked
 from tests.support.nanovdb_files import Writer, segment

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from daguerre.io.tiff import LINEAR_RAW, TiffImage, write_tiff
+from daguerre.pictures.tiff import LINEAR_RAW, TiffImage, write_tiff
 from tests.support.exif_files import SHOT, block, photograph, xmp
 from tests.support.plate_frames import of_light
 
@@ -51,7 +51,7 @@ def rares(folder: Path) -> Iterator[Seed]:
     """Pictures of the kinds that are decoded apart."""
     import OpenImageIO as oiio
 
-    from tests.io.test_pictures import APART, dds, psd
+    from tests.pictures.test_pictures import APART, dds, psd
 
     pixels = (np.arange(40 * 60 * 3) % 251).astype(np.uint8).reshape(40, 60, 3)
     for ending in (*APART, "gif", "tga"):

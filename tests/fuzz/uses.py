@@ -15,13 +15,13 @@ from daguerre.development.camera_raw import read_shot
 from daguerre.errors import InputError
 from daguerre.files import formats
 from daguerre.files.notes import Notes
-from daguerre.io.iris import read_grey
-from daguerre.io.meshes import obj, ply, serialized
-from daguerre.io.shading.picture_bytes import decoded
-from daguerre.io.volumes import nanovdb, vol
+from daguerre.importers.meshes import obj, ply, serialized
+from daguerre.importers.volumes import nanovdb, vol
 from daguerre.labels.categories import Categories
+from daguerre.pictures.iris import read_grey
 from daguerre.plates import files as plates
 from daguerre.post import recipe as effects
+from daguerre.shading.picture_bytes import decoded
 from daguerre.stocks import load as load_stock
 
 from .messages import answered as answered

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import daguerre as dg
 from daguerre import _core, lenses
-from daguerre.io.exr.write import attributes
+from daguerre.pictures.exr.write import attributes
 from daguerre.setup.camera import set_up
 from daguerre.setup.camera_facts import camera_facts
 from tests.camera.test_lens_models import LENS

@@ -17,7 +17,7 @@ from daguerre.cli import main
 from daguerre.distortion.lens import LensDistortion
 from daguerre.distortion.rectified import RectifiedView
 from daguerre.errors import UsageError
-from daguerre.io.exr.reader import ExrReader
+from daguerre.pictures.exr.reader import ExrReader
 from tests.support import scenes
 from tests.support.make_gltf import triangle
 

@@ -10,7 +10,7 @@ import OpenEXR
 import pytest
 
 from daguerre.cli import main
-from daguerre.io.light import read_environment
+from daguerre.pictures.light import read_environment
 from tests.support.light_probes import ball_picture, exposure, grid, mirror, save, world
 
 SKY = np.array([0.3, 0.7, -0.4]) / np.linalg.norm([0.3, 0.7, -0.4])

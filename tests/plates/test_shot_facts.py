@@ -10,8 +10,8 @@ import pytest
 from PIL import Image
 
 from daguerre.files.notes import Notes
-from daguerre.io.exif_reader import exif_tags
-from daguerre.io.xmp import xmp_tags
+from daguerre.pictures.exif_reader import exif_tags
+from daguerre.pictures.xmp import xmp_tags
 from daguerre.plates.files import read
 from daguerre.plates.probe.shots import read_shot
 from tests.support.exif_files import (

@@ -10,8 +10,8 @@ import pytest
 
 import daguerre as dg
 from daguerre.cli import main
-from daguerre.io.exr.reader import ExrReader
 from daguerre.lenses.index import FOLDER
+from daguerre.pictures.exr.reader import ExrReader
 from daguerre.post.run import HISTORY
 
 FILM = {"focal_length": 50, "sensor": "36x24"}

@@ -19,7 +19,7 @@ from daguerre.analysis.ghosts import Ghosts
 from daguerre.analysis.glare import VeilingGlare
 from daguerre.files.value import BriefRecord
 
-#: Rooms with records that users get; those of readers (`io`, `blender`) stay inside.
+#: Rooms with records that users get; those of readers (`importers`, `blender`) stay inside.
 ROOMS = (
     "analysis", "calibration", "camera", "charts", "development", "distortion", "export",
     "exposure", "frame", "labels", "lenses", "maps", "plates.match", "polynomial", "sensors",
@@ -31,7 +31,8 @@ ARRAY = re.compile(r"NDArray|(Float|Bool|Int|Complex)Array|ndarray")
 def records() -> Iterator[type]:
     """Data classes of these rooms with fields that are arrays."""
     for found in pkgutil.walk_packages(daguerre.__path__, "daguerre."):
-        if found.name.removeprefix("daguerre.").startswith(ROOMS):
+        name = found.name.removeprefix("daguerre.")
+        if any(f"{name}.".startswith(f"{room}.") for room in ROOMS):
             for kind in vars(importlib.import_module(found.name)).values():
                 if inspect.isclass(kind) and kind.__module__ == found.name and _has_arrays(kind):
                     yield kind

@@ -12,7 +12,7 @@ import pytest
 import typer.main
 
 from daguerre import cli
-from daguerre.io.images import decode
+from daguerre.pictures.images import decode
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -74,7 +74,7 @@ def test_lens_in_the_format_page_is_a_lens(tmp_path):
 
 
 def test_gltf_page_names_every_extension_that_is_read():
-    from daguerre.io.gltf.extensions import KNOWN
+    from daguerre.importers.gltf.extensions import KNOWN
 
     text = (DOCS / "gltf.md").read_text()
     read = text.split("## Extensions that are read")[1].split("## ")[0]

@@ -28,8 +28,8 @@ class Lens:
 """,
     "lenses/zoom.py": "from daguerre.checks import Bad\nfrom .lens import Lens",
     "scene/scene.py": "import numpy\nfrom daguerre._core import Scene as Core",
-    "io/gltf/reader.py": "from daguerre.scene.scene import Scene",
-    "rendering/job.py": "from daguerre import errors\nfrom daguerre.io.gltf import reader",
+    "importers/gltf/reader.py": "from daguerre.scene.scene import Scene",
+    "rendering/job.py": "from daguerre import errors\nfrom daguerre.importers.gltf import reader",
     "cli/main.py": "from daguerre.rendering.job import Job\nfrom daguerre import Scene",
 }
 
@@ -88,9 +88,10 @@ def test_order_without_fault_passes(tmp_path: Path) -> None:
 
 
 LOOP = {
-    "io/gltf/nodes.py": "def f():\n    from . import meshes",
-    "io/gltf/meshes.py": "from daguerre.io.gltf.nodes import f",
+    "importers/gltf/nodes.py": "def f():\n    from . import meshes",
+    "importers/gltf/meshes.py": "from daguerre.importers.gltf.nodes import f",
 }
+TYPED = "import typing\nif typing.TYPE_CHECKING:\n    import daguerre.pictures.exr"
 DECIDES = GOOD["lenses/lens.py"].replace(
     "        return at", "        self.x = 1\n        return at"
 )
@@ -104,11 +105,11 @@ ELSEWHERE = GOOD["lenses/lens.py"].replace("def at_zoom", "def zoomed")
             {"scene/bad.py": "from daguerre.rendering.job import Job"},
             "bad.py:1: points up: rendering",
         ),
-        ({"scene/bad.py": "def f():\n    from ..io.gltf import reader"}, "bad.py:2: points up: io"),
         (
-            {"scene/bad.py": "import typing\nif typing.TYPE_CHECKING:\n    import daguerre.io.exr"},
-            "bad.py:3: points up: io",
+            {"scene/bad.py": "def f():\n    from ..importers.gltf import reader"},
+            "bad.py:2: points up: importers",
         ),
+        ({"scene/bad.py": TYPED}, "bad.py:3: points up: pictures"),
         ({"checks.py": "import daguerre"}, "checks.py:1: points up: __init__"),
         (
             {"scene/bad.py": "from daguerre import Scene"},
@@ -117,7 +118,7 @@ ELSEWHERE = GOOD["lenses/lens.py"].replace("def at_zoom", "def zoomed")
         ({"maps/a.py": "from daguerre.charts import b"}, "charts is a neighbor of maps"),
         ({"cellar/a.py": "x = 1"}, "room cellar is not in the table of floors"),
         ({"cli/bad.py": "from daguerre.attic import x"}, "attic is not a room"),
-        (LOOP, "circle of 2 files: io/gltf/meshes.py, io/gltf/nodes.py"),
+        (LOOP, "circle of 2 files: importers/gltf/meshes.py, importers/gltf/nodes.py"),
         ({"lenses/lens.py": DECIDES}, "circle of 2 files: lenses/lens.py, lenses/zoom.py"),
         ({"lenses/lens.py": ELSEWHERE}, "circle of 2 files: lenses/lens.py, lenses/zoom.py"),
         (

@@ -14,8 +14,8 @@ OTHERS = {
     "development/shown.py",  # a temporary picture
     "files/reading.py",  # the place
     "frame/picture.py",  # a temporary picture
-    "io/picture_files.py",  # a pipe of this process
-    "io/png.py",  # the temporary file that it writes
+    "pictures/picture_files.py",  # a pipe of this process
+    "pictures/png.py",  # the temporary file that it writes
     "scene/packed/chunk.py",  # the .glb that was written just now
     "setup/aim_cache.py",  # the cache
     "viewfinder/browser.py",  # the program of the browser

@@ -30,7 +30,7 @@ pytestmark = [
 ROOT = Path(__file__).resolve().parents[2]
 CALLS = "open,openat,openat2,creat,connect,sendto,bind,listen,execve,execveat"
 #: Programs that Daguerre starts: decoders of rare pictures and EXRs, and the helper process.
-OURS = ("io/decoder_program.py", "apart/child.py")
+OURS = ("pictures/decoder_program.py", "apart/child.py")
 CALL = re.compile(r"^\d+\s+(?P<name>\w+)\((?P<arguments>.*)\)\s+=\s+(?P<result>-?\d+)")
 #: Runs many command lines in one process, after everything that they import.
 PROGRAM = """

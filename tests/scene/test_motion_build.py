@@ -9,7 +9,7 @@ import pytest
 
 import daguerre as dg
 from daguerre.errors import InputError
-from daguerre.io.gltf import reader as gltf
+from daguerre.importers.gltf import reader as gltf
 from daguerre.setup.built_scene import BuiltScene
 from daguerre.setup.content_hash import content_hash
 from daguerre.setup.scene import build

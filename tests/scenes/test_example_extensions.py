@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.io.gltf.extensions import KNOWN
+from daguerre.importers.gltf.extensions import KNOWN
 from tests.support.example_scenes import make
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre.io.images import decode
+from daguerre.pictures.images import decode
 from tests.support.example_scenes import make
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -15,7 +15,7 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdShade
 
-from daguerre.io.gltf.writer import Glb
+from daguerre.exporters.gltf import Glb
 
 from .make_gltf import png
 

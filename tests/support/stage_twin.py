@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from pxr import Gf, Usd, UsdGeom, UsdLux
 
-from daguerre.io.gltf.writer import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, FLOAT, U32, Glb
+from daguerre.exporters.gltf import ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, FLOAT, U32, Glb
 
 from .gltf_surfaces import Surfaces
 from .stage_meshes import Part, drawn, parts_of

@@ -11,16 +11,16 @@ from typing import Any
 import numpy as np
 
 from daguerre.files.notes import Notes, Silence
-from daguerre.io.materialx.graph import Graph
-from daguerre.io.shading.arithmetic import Arithmetic
-from daguerre.io.shading.assemble import Assembler
-from daguerre.io.shading.bake import Baker
-from daguerre.io.shading.channels import Texel, UnsupportedError, Value, VertexColor, numbers_of
-from daguerre.io.shading.evaluate import Context, Evaluator
-from daguerre.io.shading.surface import Surface as Look
-from daguerre.io.shading.textures import Packer
 from daguerre.scene.materials import Diffuse, Gltf, Material
 from daguerre.scene.scene import Scene
+from daguerre.shading.arithmetic import Arithmetic
+from daguerre.shading.assemble import Assembler
+from daguerre.shading.bake import Baker
+from daguerre.shading.channels import Texel, UnsupportedError, Value, VertexColor, numbers_of
+from daguerre.shading.evaluate import Context, Evaluator
+from daguerre.shading.materialx.graph import Graph
+from daguerre.shading.surface import Surface as Look
+from daguerre.shading.textures import Packer
 
 from .meshes import Needs
 from .shading.canvas import TRIAL, Canvas, UvCanvas

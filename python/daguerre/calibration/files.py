@@ -11,9 +11,9 @@ from daguerre.camera.camera import Camera
 from daguerre.checks import short
 from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
+from daguerre.exporters.export_camera import export_camera
 from daguerre.files.numbered import has_place
 from daguerre.files.source import Source
-from daguerre.io.export_camera import export_camera
 
 from . import (
     basalt,

@@ -155,8 +155,8 @@ class Chart:
             OutputError: A file cannot be written.
         """
         from daguerre.checks import number
+        from daguerre.exporters.gltf import Glb, Shape
         from daguerre.files.atomic import write_bytes
-        from daguerre.io.gltf.writer import Glb, Shape
 
         if Path(path).suffix.lower() != ".glb":
             got = repr(Path(path).suffix) if Path(path).suffix else "none"

@@ -92,7 +92,7 @@ def _run(shots: list[Shot], how: dict[str, Any], shown: progress.Silent, *, resu
 
 
 def _make(shot: Shot, how: dict[str, Any], shown: progress.Silent) -> None:
-    from daguerre.io.exr.read import load_frame
+    from daguerre.pictures.exr.read import load_frame
     from daguerre.plates.composite import remarks
     from daguerre.plates.composite.composite import composite as put
     from daguerre.plates.composite.composite import save

@@ -92,7 +92,7 @@ def develop(
     wanted, used, saved = recipe.given(), taker.given(), file.given()
     _FILE["quality"].check(saved.get("quality"), "--quality")
     _check(source, output)
-    from daguerre.io.picture_files import check_space
+    from daguerre.pictures.picture_files import check_space
 
     for path in output if "colour_space" in wanted else ():
         if path.suffix.lower() != ".dng":
@@ -201,7 +201,7 @@ def _tell_speed(film: float, camera: float | None) -> None:
 
 
 def _frame(path: Path) -> Frame:
-    from daguerre.io.exr.read import load_frame
+    from daguerre.pictures.exr.read import load_frame
 
     return load_frame(path)
 

@@ -201,7 +201,7 @@ def _print_json(
 ) -> None:
     from json import dumps
 
-    from daguerre.io.exr.write import without_infinity
+    from daguerre.pictures.exr.write import without_infinity
 
     cameras = {
         name: {**asdict(one), "default": name == default, "warnings": warnings[name]}

@@ -45,7 +45,7 @@ def merge(
     """
     from daguerre.files import atomic, in_use
     from daguerre.frame.frame import TONES, check_format
-    from daguerre.io.exr.crops import are_crops
+    from daguerre.pictures.exr.crops import are_crops
     from daguerre.rendering import merged, merging
 
     console.quiet = quiet
@@ -89,7 +89,7 @@ def merge(
 
 def _join(crops: list[Path], output: list[Path], *, plain: bool) -> int:
     """Joins crops, which may be larger than memory, row by row."""
-    from daguerre.io.exr.crops import join_crops
+    from daguerre.pictures.exr.crops import join_crops
 
     if not plain or [path.suffix.lower() for path in output] != [".exr"]:
         raise UsageError(

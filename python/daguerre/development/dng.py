@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color import illuminants
-from daguerre.io import exif
-from daguerre.io.exif import Tags
-from daguerre.io.tiff import CFA, LINEAR_RAW, TiffImage, write_tiff
+from daguerre.pictures import exif
+from daguerre.pictures.exif import Tags
+from daguerre.pictures.tiff import CFA, LINEAR_RAW, TiffImage, write_tiff
 from daguerre.sensors.iso_speed import white_lx_s
 
 from .binning import is_mono

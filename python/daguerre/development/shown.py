@@ -40,7 +40,7 @@ def encoded(frame: Frame, tone: str) -> NDArray[np.float32]:
 
 def as_png(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
     """Writes a PNG with EXIF, without overscan."""
-    from daguerre.io.png import write_png
+    from daguerre.pictures.png import write_png
 
     frame = frame.without_overscan()
     if is_developed(frame.metadata):

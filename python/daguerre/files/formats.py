@@ -55,25 +55,26 @@ class Format:
     time_of: Function | None = None
 
 
-_GLTF, _FRAMES = "daguerre.io.gltf.reader", "daguerre.io.frame_files"
-_DENSITY = "daguerre.io.volumes.density"
+_GLTF, _USD = "daguerre.importers.gltf.reader", "daguerre.importers.usd.wall"
+_FRAMES = "daguerre.pictures.frame_files"
+_DENSITY = "daguerre.importers.volumes.density"
 _DISPLAYED = "daguerre.development.shown"
 _DEVELOPED = "daguerre.development.raw_files"
 _EXR, _PNG, _JPEG, _TIFF = (".exr",), (".png",), (".jpg", ".jpeg"), (".tif", ".tiff")
-_READ_EXR = "daguerre.io.exr.read:load_frame"
+_READ_EXR = "daguerre.pictures.exr.read:load_frame"
 _SHOWN, _CODED = ("tone",), ("quality", "bits")
 _FORMATS = [
     Format("glTF 2.0", "scene", (".glb", ".gltf"), f"{_GLTF}:read",
            takes=("variant", "allow_dirs", "scene_index", "animated")),
-    Format("OpenUSD", "scene", (".usd", ".usda", ".usdc", ".usdz"), "daguerre.io.usd.wall:read",
+    Format("OpenUSD", "scene", (".usd", ".usda", ".usdc", ".usdz"), f"{_USD}:read",
            takes=("variant", "allow_dirs", "purpose", "camera_units", "moments", "in_process"),
            needs=("pxr", ""),
-           time_of="daguerre.io.usd.wall:time_of_code"),
-    Format("pbrt", "scene", (".pbrt",), "daguerre.io.pbrt.reader:read",
+           time_of=f"{_USD}:time_of_code"),
+    Format("pbrt", "scene", (".pbrt",), "daguerre.importers.pbrt.reader:read",
            takes=("unit_m", "allow_dirs")),
-    Format("Mitsuba", "scene", (".xml",), "daguerre.io.mitsuba.reader:read",
+    Format("Mitsuba", "scene", (".xml",), "daguerre.importers.mitsuba.reader:read",
            takes=("define", "unit_m", "allow_dirs")),
-    Format("OpenEXR", "frame", _EXR, _READ_EXR, "daguerre.io.exr.write:as_exr", _SHOWN),
+    Format("OpenEXR", "frame", _EXR, _READ_EXR, "daguerre.pictures.exr.write:as_exr", _SHOWN),
     Format("PNG", "frame", _PNG, None, f"{_DISPLAYED}:as_png", _SHOWN),
     Format("JPEG", "frame", _JPEG, None, f"{_DISPLAYED}:as_picture", _SHOWN),
     Format("TIFF", "frame", _TIFF, None, f"{_DISPLAYED}:as_picture", _SHOWN),
@@ -85,13 +86,13 @@ _FORMATS = [
     Format("a developed picture", "raw", (*_JPEG, *_PNG, *_TIFF, *_EXR), None,
            f"{_DEVELOPED}:as_picture", None),
     Format("OpenUSD", "camera", (".usda", ".usdc", ".usd"), None,
-           "daguerre.io.usd.camera_writer:write_cameras", ("times",),
+           "daguerre.exporters.usd.cameras:write_cameras", ("times",),
            ("pxr", "")),
-    Format("pbrt-v4", "exchange", (".pbrt",), None, "daguerre.io.pbrt.writer:write"),
-    Format("Mitsuba 3", "exchange", (".xml",), None, "daguerre.io.mitsuba.writer:write"),
-    Format("an image", "environment", (ANY,), "daguerre.io.light:read_environment",
+    Format("pbrt-v4", "exchange", (".pbrt",), None, "daguerre.exporters.pbrt.writer:write"),
+    Format("Mitsuba 3", "exchange", (".xml",), None, "daguerre.exporters.mitsuba.writer:write"),
+    Format("an image", "environment", (ANY,), "daguerre.pictures.light:read_environment",
            takes=("notes",)),
-    Format("IES LM-63", "profile", (".ies",), "daguerre.io.ies:read"),
+    Format("IES LM-63", "profile", (".ies",), "daguerre.importers.ies:read"),
     Format("NanoVDB", "density", (".nvdb",), f"{_DENSITY}:of_nanovdb", takes=("grid",)),
     Format("Mitsuba's grid", "density", (".vol",), f"{_DENSITY}:of_vol"),
 ]  # fmt: skip

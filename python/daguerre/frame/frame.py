@@ -66,7 +66,7 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
             are ``distance.Z`` (m from the entrance pupil) and ``material_id``; with ``motion=True``
             ``motion.U``, ``motion.V``, ``motion_back.U`` and ``motion_back.V`` (px, +x right,
             +y down).
-        metadata: Facts of camera and render; see ``daguerre.io.exr.write``.
+        metadata: Facts of camera and render; see ``daguerre.pictures.exr.write``.
         channels: Channels of the camera's sensor, shape (H, W, C), if it has one: D65 of luminance
             1 is 1 in each; ``metadata["sensor_channels"]`` has their names.
         bands: Mean radiance in wavelength bands of equal width, 380 to 780 nm, shape (H, W, N), if

@@ -69,7 +69,7 @@ class RayMap(BriefRecord):
         Raises:
             OutputError: The file cannot be written.
         """
-        from daguerre.io.exr.write import attributes, write_planes
+        from daguerre.pictures.exr.write import attributes, write_planes
 
         planes = {
             f"{name}.{axis}": values[:, :, k].astype(np.float32)

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.errors import InputError
-from daguerre.io.images import read_file, upright
-from daguerre.io.shot_blocks import read_tags
+from daguerre.pictures.images import read_file, upright
+from daguerre.pictures.shot_blocks import read_tags
 
 from .photograph import Photograph
 from .shot_facts import exif_number, facts_and_notes, orientation

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from daguerre.errors import InputError
-from daguerre.io.exr.read import load_frame
+from daguerre.pictures.exr.read import load_frame
 
 from .display_file import alpha_notes
 from .photograph import Photograph

@@ -13,8 +13,8 @@ from daguerre.development import libraw
 from daguerre.development.camera_raw import tags_of, white_of_shot
 from daguerre.development.libraw import RawFile
 from daguerre.errors import InputError
-from daguerre.io.images import upright
-from daguerre.io.shot_blocks import read_tags
+from daguerre.pictures.images import upright
+from daguerre.pictures.shot_blocks import read_tags
 
 from .display_file import turn_notes, turned
 from .photograph import Photograph, RawNumbers

@@ -10,8 +10,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from daguerre.io.exif import FULL_FRAME_DIAGONAL_MM, rational
-from daguerre.io.shot_blocks import ShotTags
+from daguerre.pictures.exif import FULL_FRAME_DIAGONAL_MM, rational
+from daguerre.pictures.shot_blocks import ShotTags
 
 #: EXIF's names and ours.
 _NUMBERS = {

@@ -9,8 +9,8 @@ from typing import Self
 import numpy as np
 
 from daguerre.frame.frame import Frame
-from daguerre.io.exr.facts import read_facts
-from daguerre.io.png import PngWriter
+from daguerre.pictures.exr.facts import read_facts
+from daguerre.pictures.png import PngWriter
 
 from .picture import Canvas, Image
 

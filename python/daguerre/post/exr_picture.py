@@ -14,9 +14,9 @@ import numpy as np
 from daguerre.convolution.rows import Rows
 from daguerre.errors import InputError, UsageError
 from daguerre.files.json_item import clean
-from daguerre.io.exr.parts import Planes
-from daguerre.io.exr.reader import ExrReader
-from daguerre.io.stated_colors import of_exr
+from daguerre.pictures.exr.parts import Planes
+from daguerre.pictures.exr.reader import ExrReader
+from daguerre.pictures.stated_colors import of_exr
 
 from .picture import Band, Canvas, Image
 

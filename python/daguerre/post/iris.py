@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from daguerre._core import IrisShape
 from daguerre.errors import UsageError
-from daguerre.io.iris import read_grey
+from daguerre.pictures.iris import read_grey
 
 from .effect import Values
 from .parameter import Parameter

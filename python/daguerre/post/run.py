@@ -9,7 +9,7 @@ from pathlib import Path
 
 from daguerre.errors import UsageError
 from daguerre.files.atomic import atomic_path
-from daguerre.io.exr.rows import ExrWriter
+from daguerre.pictures.exr.rows import ExrWriter
 
 from . import channels
 from .display import Display

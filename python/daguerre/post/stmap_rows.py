@@ -9,8 +9,8 @@ import numpy as np
 
 from daguerre.convolution.rows import Rows
 from daguerre.files.atomic import atomic_path
-from daguerre.io.exr.header import new_header
-from daguerre.io.exr.rows import ExrWriter
+from daguerre.pictures.exr.header import new_header
+from daguerre.pictures.exr.rows import ExrWriter
 
 from .picture import Canvas, Image
 from .tiles import BLOCK

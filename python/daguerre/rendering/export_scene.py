@@ -6,10 +6,10 @@ from pathlib import Path
 
 from daguerre.camera.camera import Camera
 from daguerre.doors import guarded
+from daguerre.exporters.record import Outgoing
 from daguerre.files import formats, in_use
 from daguerre.files.atomic import check_writable
 from daguerre.files.notes import Notes
-from daguerre.io.outgoing.record import Outgoing
 from daguerre.scene.scene import Scene
 
 from .export_view import view_of

@@ -10,9 +10,9 @@ import numpy as np
 
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure_mode import AUTOMATIC
+from daguerre.exporters.record import LensFile, View
 from daguerre.exposure.lux_seconds import compensation, display_gain
 from daguerre.files.notes import Notes
-from daguerre.io.outgoing.record import LensFile, View
 from daguerre.lenses import LensSurface
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 from daguerre.setup.metadata import camera_metadata

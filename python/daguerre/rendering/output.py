@@ -223,7 +223,7 @@ class Output:
 
     def _tell_no_container(self, frame: Frame, tell: Reporter) -> None:
         """Notes channels that keep a file of ACES from being an image container."""
-        from daguerre.io.exr.color_space import ACES, beside_color
+        from daguerre.pictures.exr.color_space import ACES, beside_color
 
         if self.photograph.colorspace == ACES and (names := beside_color(frame)):
             tell.note(

@@ -1,7 +1,7 @@
 """Checks of the metadata of a pass file, before it is used.
 
 A file may come from another machine, or be damaged. Each value must have the type that
-:mod:`daguerre.io.exr.write` writes; otherwise the file is refused.
+:mod:`daguerre.pictures.exr.write` writes; otherwise the file is refused.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from daguerre.camera.overscan import NONE, check_overscan
 from daguerre.checks import MAX_RESOLUTION, MAX_SAMPLES
 from daguerre.errors import UsageError
 from daguerre.frame.cryptomatte import LAYERS, MAX_RANKS
-from daguerre.io.exr import write as exr
-from daguerre.io.exr.facts import are_texts, is_number
+from daguerre.pictures.exr import write as exr
+from daguerre.pictures.exr.facts import are_texts, is_number
 
 
 def _are_numbers(value: Any, count: int) -> bool:

@@ -41,10 +41,10 @@ from daguerre.errors import InputError, MismatchError
 from daguerre.files.json_item import short
 from daguerre.files.reading import size_of
 from daguerre.files.value import BriefRecord
-from daguerre.io.exr.layout import Layout, read_layouts
-from daguerre.io.exr.parts import PartReader
-from daguerre.io.exr.write import Channels, channels, jsonable, write_parts
-from daguerre.io.exr.write import header as picture_header
+from daguerre.pictures.exr.layout import Layout, read_layouts
+from daguerre.pictures.exr.parts import PartReader
+from daguerre.pictures.exr.write import Channels, channels, jsonable, write_parts
+from daguerre.pictures.exr.write import header as picture_header
 
 from .adaptive import Round
 from .film_frame import OBJECTS

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from daguerre.io.shading.math_nodes import hsv_from_rgb, rgb_from_hsv
+from daguerre.shading.math_nodes import hsv_from_rgb, rgb_from_hsv
 
 from .math_nodes import divided
 

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from daguerre.blender.raster import Raster
 from daguerre.checks import freeze_in_place
-from daguerre.io.shading.channels import Channel, Coordinate, Mapping, Plane, Texel, Value
-from daguerre.io.shading.lookup import looked_up
+from daguerre.shading.channels import Channel, Coordinate, Mapping, Plane, Texel, Value
+from daguerre.shading.lookup import looked_up
 
 from .surfaces import Surface
 

@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from daguerre.io.shading.arithmetic import Arithmetic
-from daguerre.io.shading.assemble import LAYERS
-from daguerre.io.shading.channels import Texel, Value, broadcast, numbers_of
-from daguerre.io.shading.layers import is_set
-from daguerre.io.shading.surface import Surface
+from daguerre.shading.arithmetic import Arithmetic
+from daguerre.shading.assemble import LAYERS
+from daguerre.shading.channels import Texel, Value, broadcast, numbers_of
+from daguerre.shading.layers import is_set
+from daguerre.shading.surface import Surface
 
 BLACK: Value = (0.0, 0.0, 0.0)
 WHITE: Value = (1.0, 1.0, 1.0)

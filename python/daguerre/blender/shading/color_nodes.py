@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from daguerre.io.shading.channels import UnsupportedError, Value, broadcast
-from daguerre.io.shading.evaluate import Arguments
-from daguerre.io.shading.math_nodes import hsv_from_rgb, rgb_from_hsv
+from daguerre.shading.channels import UnsupportedError, Value, broadcast
+from daguerre.shading.evaluate import Arguments
+from daguerre.shading.math_nodes import hsv_from_rgb, rgb_from_hsv
 
 from . import blends
 from .sockets import Sockets

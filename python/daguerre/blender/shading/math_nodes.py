@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from daguerre.io.shading.channels import UnsupportedError, Value
-from daguerre.io.shading.evaluate import Arguments
+from daguerre.shading.channels import UnsupportedError, Value
+from daguerre.shading.evaluate import Arguments
 
 from .sockets import Sockets
 

@@ -15,7 +15,7 @@ from typing import Any
 
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
-from daguerre.io.materialx.graph import Constant, Graph, Link, Node
+from daguerre.shading.materialx.graph import Constant, Graph, Link, Node
 
 from .pictures import alpha_of, space_of
 from .tables import table_of

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.io.shading.channels import Mapping as Lie
-from daguerre.io.shading.channels import Texel, Value
-from daguerre.io.shading.evaluate import Arguments
+from daguerre.shading.channels import Mapping as Lie
+from daguerre.shading.channels import Texel, Value
+from daguerre.shading.evaluate import Arguments
 
 from .sockets import Sockets
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from daguerre.io.shading.evaluate import Operation
+from daguerre.shading.evaluate import Operation
 
 from . import color_nodes, math_nodes, normal_nodes, pattern_nodes, simple_nodes, texture_nodes
 from .network import GREY, MEAN

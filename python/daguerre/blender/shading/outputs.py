@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from daguerre.io.shading.channels import Value
+from daguerre.shading.channels import Value
 
 
 class Outputs(Mapping[str, Value]):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.blender.raster import Raster, rasterized
-from daguerre.io.materialx.graph import Constant, Graph, Link, Node
+from daguerre.shading.materialx.graph import Constant, Graph, Link, Node
 
 from .canvas import TRIAL, Canvas, SurfaceCanvas, UvCanvas
 from .surfaces import ATLAS, Surface

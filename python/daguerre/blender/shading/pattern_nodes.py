@@ -20,9 +20,9 @@ from daguerre.blender.patterns.fractals import FRACTALS, Octaves
 from daguerre.blender.patterns.kept import PATTERNS
 from daguerre.blender.patterns.noise import noise as noise_of
 from daguerre.cached import cached_property
-from daguerre.io.materialx.graph import Constant
-from daguerre.io.shading.channels import Channel, Coordinate, Value, broadcast, fit
-from daguerre.io.shading.evaluate import Arguments
+from daguerre.shading.channels import Channel, Coordinate, Value, broadcast, fit
+from daguerre.shading.evaluate import Arguments
+from daguerre.shading.materialx.graph import Constant
 
 from .outputs import Outputs
 from .sockets import Sockets

@@ -19,11 +19,11 @@ from daguerre.blender.pictures import raw_pixels
 from daguerre.checks import freeze_in_place
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes, Silence
-from daguerre.io.shading import udim
-from daguerre.io.shading.images import Textures
-from daguerre.io.shading.picture import Picture
-from daguerre.io.shading.picture_bytes import bytes_of, decoded
 from daguerre.scene.scene import Scene
+from daguerre.shading import udim
+from daguerre.shading.images import Textures
+from daguerre.shading.picture import Picture
+from daguerre.shading.picture_bytes import bytes_of, decoded
 
 #: Limit of all pictures of a scene, as decoded; at most that share of free memory.
 MAX_BYTES, _SHARE = 8 << 30, 0.6

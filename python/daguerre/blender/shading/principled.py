@@ -11,10 +11,10 @@ from __future__ import annotations
 import numpy as np
 
 from daguerre.blender.settings import LUMENS_PER_WATT
-from daguerre.io.shading.channels import Value
-from daguerre.io.shading.inputs import refraction_index, stretched
-from daguerre.io.shading.layers import coated, is_set, with_film
-from daguerre.io.shading.surface import Surface
+from daguerre.shading.channels import Value
+from daguerre.shading.inputs import refraction_index, stretched
+from daguerre.shading.layers import coated, is_set, with_film
+from daguerre.shading.surface import Surface
 
 from .closures import WHITE, Closure
 from .sockets import Sockets

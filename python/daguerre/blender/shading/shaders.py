@@ -10,10 +10,10 @@ from collections.abc import Callable
 import numpy as np
 
 from daguerre.blender.settings import LUMENS_PER_WATT
-from daguerre.io.shading.channels import numbers_of
-from daguerre.io.shading.inputs import refraction_index
-from daguerre.io.shading.layers import is_set, with_film
-from daguerre.io.shading.surface import Surface
+from daguerre.shading.channels import numbers_of
+from daguerre.shading.inputs import refraction_index
+from daguerre.shading.layers import is_set, with_film
+from daguerre.shading.surface import Surface
 
 from .closures import BLACK, WHITE, Closure, mirror
 from .principled import anisotropic, emitted, normal_of, principled

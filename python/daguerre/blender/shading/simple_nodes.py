@@ -12,8 +12,8 @@ import numpy as np
 
 from daguerre.blender.patterns import simple
 from daguerre.blender.patterns.fractals import Octaves
-from daguerre.io.shading.channels import Value, broadcast
-from daguerre.io.shading.evaluate import Arguments
+from daguerre.shading.channels import Value, broadcast
+from daguerre.shading.evaluate import Arguments
 
 from .outputs import Outputs
 from .pattern_nodes import Pattern, averaged

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from daguerre.io.materialx.graph import Constant, Link
-from daguerre.io.shading.channels import Texel, Value, broadcast, numbers_of
-from daguerre.io.shading.evaluate import Arguments, constant
+from daguerre.shading.channels import Texel, Value, broadcast, numbers_of
+from daguerre.shading.evaluate import Arguments, constant
+from daguerre.shading.materialx.graph import Constant, Link
 
 
 class Sockets:

@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 from daguerre.color import srgb
 from daguerre.color.encodings import Encoding
-from daguerre.io.materialx.graph import Constant
-from daguerre.io.shading.bake import Canvas
-from daguerre.io.shading.channels import (
+from daguerre.shading.bake import Canvas
+from daguerre.shading.channels import (
     Channel,
     Coordinate,
     Texel,
@@ -26,9 +25,10 @@ from daguerre.io.shading.channels import (
     coordinates,
     fit,
 )
-from daguerre.io.shading.evaluate import Arguments, known_encoding
-from daguerre.io.shading.lookup import looked_up
-from daguerre.io.shading.texture_nodes import file_of, sampled
+from daguerre.shading.evaluate import Arguments, known_encoding
+from daguerre.shading.lookup import looked_up
+from daguerre.shading.materialx.graph import Constant
+from daguerre.shading.texture_nodes import file_of, sampled
 
 from .outputs import Outputs
 from .sockets import Sockets

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from daguerre.errors import InputError
-from daguerre.io.materialx.graph import Graph, Link
-from daguerre.io.shading.arithmetic import Arithmetic
-from daguerre.io.shading.evaluate import Evaluator
+from daguerre.shading.arithmetic import Arithmetic
+from daguerre.shading.evaluate import Evaluator
+from daguerre.shading.materialx.graph import Graph, Link
 
 from .closures import Closure, added, is_diffuse, is_mirror, mixed
 from .shaders import SHADERS, other

@@ -69,7 +69,7 @@ def _is_given(value: Any) -> bool:
 
 def _read(row: Parameter, value: Any) -> Any:
     if row.kind == "picture":
-        from daguerre.io.iris import read_grey
+        from daguerre.pictures.iris import read_grey
 
         return read_grey(value)
     return tuple(map(row.from_text, value)) if row.repeated else row.from_text(value)

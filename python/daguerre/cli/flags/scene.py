@@ -255,7 +255,7 @@ class SceneFlags(SceneFileFlags):
     def _panorama(path: Path) -> Any:
         from daguerre.cli import console
         from daguerre.files.notes import Notes
-        from daguerre.io.light import read_environment
+        from daguerre.pictures.light import read_environment
 
         notes = Notes()
         image = read_environment(path, notes)

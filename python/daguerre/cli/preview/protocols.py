@@ -13,7 +13,7 @@ from base64 import b64encode
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.io.png_chunks import encoded
+from daguerre.pictures.png_chunks import encoded
 
 from .terminal import Way
 

@@ -74,7 +74,7 @@ def run(
 
 def describe(plan: Plan, scene: Scene, path: Path) -> int:
     """Prints what would be drawn: the first frame of a sequence, each camera of a rig."""
-    from daguerre.io.exr.write import jsonable, without_infinity
+    from daguerre.pictures.exr.write import jsonable, without_infinity
 
     job, frame = _job(plan, scene, path), plan.pictures[0].frame
     first = [picture for picture in plan.pictures if picture.frame == frame]

@@ -20,7 +20,7 @@ from daguerre.frame.frame import Frame
 from daguerre.frame.over import AUTO, change_of_rgb
 from daguerre.frame.picture import Picture
 from daguerre.frame.raw import Raw
-from daguerre.io.exr.read import load_frame
+from daguerre.pictures.exr.read import load_frame
 from daguerre.plates.files import read
 from daguerre.plates.match.like import PlateLook
 from daguerre.plates.match.plate_camera import PlateCamera

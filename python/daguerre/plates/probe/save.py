@@ -34,7 +34,7 @@ def write_environment(
         _write_hdr(path, image)
         return
     from daguerre import _core
-    from daguerre.io.exr.write import attributes, write_planes
+    from daguerre.pictures.exr.write import attributes, write_planes
 
     header = attributes({"version": _core.__version__})
     header["daguerre:light_probe"] = json.dumps(facts, sort_keys=True)
@@ -68,7 +68,7 @@ def write_sun(path: str | os.PathLike[str], sun: Sun | None) -> None:
         UsageError: The path has another suffix.
         OutputError: The file cannot be written.
     """
-    from daguerre.io.gltf.writer import Glb
+    from daguerre.exporters.gltf import Glb
 
     check_written(path, SUNS)
     if sun is None:

@@ -16,7 +16,7 @@ from daguerre.color.spectra import rgb_from_xyz
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.files.reading import size_of
-from daguerre.io.light import read_environment
+from daguerre.pictures.light import read_environment
 from daguerre.plates.display_file import read_display
 from daguerre.plates.files import DISPLAY
 from daguerre.plates.raw_file import raw_facts

@@ -122,7 +122,7 @@ def iris_of(values: Values) -> Iris:
         raise UsageError(f"blades: wanted 0 (round) or 3 to 64, got {values['blades']}")
     mask = None
     if values["dust"] is not None:
-        from daguerre.io.iris import read_grey
+        from daguerre.pictures.iris import read_grey
 
         mask = np.minimum(read_grey(Path(values["dust"])), 1)
     return Iris(values["blades"], values["rotation"], values["curvature"], mask=mask)
@@ -135,7 +135,7 @@ def _needs_rgb(canvas: Canvas, name: str) -> None:
 
 
 def _psf(canvas: Canvas, values: Values) -> Step:
-    from daguerre.io.light import read_environment
+    from daguerre.pictures.light import read_environment
 
     kernel: Any = read_environment(Path(values["file"]), is_data=True)
     height, width = kernel.shape[:2]

@@ -17,7 +17,7 @@ from daguerre.convolution.rows import Rows
 from daguerre.distortion import Distortion
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
-from daguerre.io.exr.reader import ExrReader
+from daguerre.pictures.exr.reader import ExrReader
 from daguerre.post.array import step_on_array
 from daguerre.post.effect import Effect, Step, Values
 from daguerre.post.parameter import REQUIRED, Parameter

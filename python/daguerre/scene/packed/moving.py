@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from importlib import import_module
 from typing import Any
 
-_USD, _SUBDIVISION = "daguerre.io.usd.moving", "daguerre.scene.subdivision"
+_USD, _SUBDIVISION = "daguerre.importers.usd.moving", "daguerre.scene.subdivision"
 #: Names of classes by their module, which is imported on first use.
 _RECORDS = {
     f"{_USD}.operations": ("Operation", "Place", "Rigid", "Transform"),

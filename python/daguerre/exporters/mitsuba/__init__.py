@@ -1,0 +1,1 @@
+"""Writes scenes of Mitsuba 3."""

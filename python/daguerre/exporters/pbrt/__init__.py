@@ -1,0 +1,1 @@
+"""Writes scenes of pbrt-v4."""

@@ -1,0 +1,1 @@
+"""Writes cameras as USD."""
