@@ -1,13 +1,15 @@
-"""Floors of python/daguerre: an import that points up, or a circle of files, is an error.
+"""Floors of python/daguerre: an import that points up, a circle, or a look inside is an error.
 
 Every import counts: at the top of a file, for types alone, and inside functions. A value may hand
 itself up (``frame.save(path)``) only in a method that is listed in ``HAND_OVERS`` and whose body is
-one import and one call, so that nothing is decided there. ``script/check-floors`` runs this.
+one import and one call, so that nothing is decided there. A folder in ``FACES`` shows the modules
+listed there, and nothing else. ``script/check-floors`` runs this.
 """
 
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -47,6 +49,8 @@ LAYERS = {
 }
 FLOORS = [rooms for floors in LAYERS.values() for rooms in floors]
 LAYER = {room: name for name, floors in LAYERS.items() for rooms in floors for room in rooms}
+#: A string that names a module of the package, or a function of one.
+NAME = re.compile(r"daguerre\.([a-z_0-9.]+)(?::\w+)?")
 #: Compiled module below all rooms.
 FREE = {"_core"}
 #: (file, method, module above, or a higher one of its room): a value that hands itself up.
@@ -75,6 +79,29 @@ HAND_OVERS = {
     ("stocks/stock.py", "expose", "stocks.negative"),
 }
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
+#: Modules that a folder shows to others; the rest is its inside. A format's exporter sees the
+#: inside of its importer: both use one table of the format's names.
+FACES = {
+    "pictures.exr": {
+        *("read", "write", "reader", "rows", "parts", "crops"),  # whole files, rows, parts
+        *("header", "layout", "facts", "color_space"),  # their headers
+    },
+    "pictures.reading": {"read", "source", "kinds", "size"},
+    "shading.materialx": {"document", "elements", "graph"},
+    "importers.gltf": {"reader"},
+    "importers.mitsuba": {"reader"},
+    "importers.pbrt": {"reader"},
+    "importers.usd": {"wall"},
+    "importers.meshes": {"file_mesh", "obj", "ply", "serialized"},
+    "importers.volumes": {"density", "vol"},
+    "exporters.mitsuba": {"writer"},
+    "exporters.pbrt": {"writer"},
+    "exporters.usd": {"cameras"},
+}
+#: Folders for the other files of their room, which see all of them; other rooms see nothing.
+WITHIN = {"exporters.outgoing"}
+#: Rooms whose every folder is in one of these lists.
+WALLED = ("pictures", "shading", "importers", "exporters")
 
 
 @dataclass(frozen=True)
@@ -86,6 +113,7 @@ class Import:
     module: str  # empty: no file of the package
     method: str = ""  # of one import and one call, if it stands in such a one
     typed: bool = False  # for types alone
+    text: bool = False  # a string that names a module, as ``"daguerre.importers.ies:read"``
 
 
 def targets(node: ast.AST, package: list[str]) -> Iterator[list[str]]:
@@ -122,6 +150,14 @@ def for_types(node: ast.AST) -> bool:
     return isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING")
 
 
+def named(node: ast.AST) -> list[str]:
+    """Dotted name inside daguerre that a string is, as rows of tables have it; empty: none."""
+    if not isinstance(node, ast.Constant) or not isinstance(node.value, str):
+        return []
+    found = NAME.fullmatch(node.value)
+    return found.group(1).split(".") if found else []
+
+
 class Package:
     """Imports of all files of a package folder."""
 
@@ -148,6 +184,8 @@ class Package:
         plain = {id(hand_over(node)): getattr(node, "name", "") for node in nodes}
         typed = {id(line) for node in nodes if for_types(node) for line in ast.walk(node)}
         for node in nodes:
+            if name := named(node):
+                yield Import(getattr(node, "lineno", 0), name[0], self._module_of(name), text=True)
             for name in targets(node, package):
                 method = plain.get(id(node), "")
                 yield Import(
@@ -177,8 +215,13 @@ def upward(package: Package) -> list[str]:
         if room not in FLOOR:
             errors.append(f"{file}:1: room {room} is not in the table of floors")
             continue
+        folder = ".".join(file.split("/")[:2])
+        if room in WALLED and file.count("/") > 1 and folder not in {*FACES, *WITHIN}:
+            errors.append(f"{file}:1: folder {folder} has no row in FACES")
         for found in imports:
-            problem = judge(file, room, found)
+            problem = judge_face(module, found.module)
+            if problem is None and not found.text:
+                problem = judge(file, room, found)
             if problem:
                 errors.append(f"{file}:{found.line}: {problem}")
     return errors
@@ -210,6 +253,24 @@ def judge(file: str, room: str, found: Import) -> str | None:
     return f"points up: {other} {side} {room}{higher}"
 
 
+def judge_face(module: str, other: str) -> str | None:
+    """Why a module must not see another one, which is the inside of a folder; or None."""
+    folder = ".".join(other.split(".")[:2])
+    if module == folder or module.startswith(folder + "."):
+        return None
+    if folder in WITHIN:
+        room = folder.split(".")[0]
+        return None if module.startswith(room + ".") else f"{folder} is for {room} alone"
+    if folder not in FACES or other == folder:
+        return None
+    importer = "importers." + folder.split(".")[1]
+    if folder == importer and module.startswith(importer.replace("importers", "exporters") + "."):
+        return None
+    face = ", ".join(sorted(FACES[folder]))
+    inside = other.split(".")[2:] != [] and other.split(".")[2] not in FACES[folder]
+    return f"{other} is the inside of {folder}, which shows {face}" if inside else None
+
+
 def circles(package: Package) -> list[str]:
     """Files that import each other in a loop, hand-overs left out; one line a loop."""
     arrows = {
@@ -218,6 +279,7 @@ def circles(package: Package) -> list[str]:
                 found.module
                 for found in imports
                 if found.module
+                and not found.text
                 and not handed_over(package.files[module], found)
                 and not holds(found.module, module)
             }

@@ -11,16 +11,16 @@ import pytest
 from pxr import Gf, Sdf, Ts, Usd, Vt
 
 from daguerre.errors import InputError
-from daguerre.importers.usd.moving.quaternions import (
+from daguerre.importers.usd.values import Clock, authored, plain
+from daguerre.motion.values import at as value_at
+from daguerre.motion.values import is_dynamic
+from daguerre.scene.over_time.quaternions import (
     QuaternionKeys,
     moving_turns,
     of_vectors,
     product,
     slerp,
 )
-from daguerre.importers.usd.values import Clock, authored, plain
-from daguerre.motion.values import at as value_at
-from daguerre.motion.values import is_dynamic
 
 _RATE = 24.0
 _CODES = (-3.0, 0.0, 0.5, 2.0, 4.99, 5.0, 7.3, 10.0, 11.0, 12.0, 40.0)

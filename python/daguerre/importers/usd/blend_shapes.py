@@ -10,9 +10,9 @@ from pxr import UsdSkel
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.motion.values import is_dynamic
+from daguerre.scene.over_time.shapes import BlendShape, BlendShapes
+from daguerre.scene.over_time.surfaces import Array
 
-from .moving.shapes import BlendShape, BlendShapes
-from .moving.surfaces import Array
 from .primvars import as_rows
 from .values import Clock
 

@@ -14,10 +14,10 @@ from daguerre.files.notes import Notes
 from daguerre.motion.values import Dynamic, is_dynamic
 from daguerre.motion.values import at as value_at
 from daguerre.scene.curve_bases import fitting_counts
+from daguerre.scene.over_time.points import ChosenOverTime
+from daguerre.scene.over_time.surfaces import Array
 from daguerre.scene.scene import Scene
 
-from .moving.points import ChosenOverTime
-from .moving.surfaces import Array
 from .points import read_points
 from .primvars import note_length, read_primvar
 from .spheres import read_widths

@@ -28,10 +28,9 @@ from daguerre.files.reading import MISSING
 from daguerre.motion.values import at as value_at
 from daguerre.motion.values import is_dynamic
 from daguerre.pictures.panorama import resampled
+from daguerre.scene.over_time.blackbody import Color
+from daguerre.scene.over_time.emission import MOST, WHITE, Emission, Strength
 from daguerre.scene.scene import Scene
-
-from .moving.blackbody import Color
-from .moving.emission import MOST, WHITE, Emission, Strength
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.float32]

@@ -11,9 +11,9 @@ from pxr import Usd, UsdGeom
 
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
+from daguerre.scene.over_time.crowds import Crowd
+from daguerre.scene.over_time.quaternions import normalized, of_vectors, product
 
-from .moving.crowds import Crowd
-from .moving.quaternions import normalized, of_vectors, product
 from .values import Clock
 
 Array = NDArray[np.float64]

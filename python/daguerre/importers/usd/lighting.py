@@ -17,6 +17,7 @@ from daguerre.motion.values import MAX_TIME, is_dynamic
 from daguerre.scene.light_profile import LightProfile
 from daguerre.scene.lights import DirectionalLight, PointLight, SphereLight
 from daguerre.scene.materials import Diffuse, Gltf, Material, TextureSlot
+from daguerre.scene.over_time.operations import Rigid
 from daguerre.scene.scene import Scene
 from daguerre.scene.shapes import ShapeMesh
 from daguerre.scene.transforms import without_scale
@@ -26,7 +27,6 @@ from daguerre.shading.picture_bytes import is_known
 from .domes import Dome, is_dome, is_latlong, read_panorama, set_environment, turn_of
 from .light_shapes import area, cylinder, disk, rectangle
 from .lights import Lamp, cone_size, times
-from .moving.operations import Rigid
 from .placing import Placing, Spots
 from .prims import Visit
 from .shapes import ball

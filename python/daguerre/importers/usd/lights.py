@@ -21,9 +21,9 @@ from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.motion.values import at as value_at
 from daguerre.scene.limits import MAX_SIZE
+from daguerre.scene.over_time.blackbody import Color
+from daguerre.scene.over_time.emission import MOST, Emission, Shown, bounded
 
-from .moving.blackbody import Color
-from .moving.emission import MOST, Emission, Shown, bounded
 from .values import Clock, authored, plain
 
 _SHADOW = ("enable", "color", "distance", "falloff")

@@ -16,12 +16,12 @@ from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.motion.values import Composite, Dynamic, is_dynamic
 from daguerre.scene.motion import Vertices
+from daguerre.scene.over_time.points import ChosenOverTime
+from daguerre.scene.over_time.surfaces import Array, LimitOverTime, Primvar, Surface
 from daguerre.scene.point_cache import PointCache
 from daguerre.scene.polygons import triangulate, weld
 from daguerre.scene.scene import Scene
 
-from .moving.points import ChosenOverTime
-from .moving.surfaces import Array, LimitOverTime, Primvar, Surface
 from .primvars import as_rows, note_length, read_primvar
 from .topology import read_faces, surface_of
 from .values import Clock

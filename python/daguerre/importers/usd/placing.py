@@ -13,11 +13,11 @@ from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.motion.values import Dynamic, is_dynamic
 from daguerre.motion.values import at as value_at
+from daguerre.scene.over_time.operations import Matrix, Transform
 from daguerre.scene.scene import Scene
 from daguerre.scene.transforms import FLAT, ranks
 
 from .instancers import Copies
-from .moving.operations import Matrix, Transform
 
 Array = NDArray[np.float64]
 #: Maximum number of instances of a stage.

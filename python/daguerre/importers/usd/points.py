@@ -14,9 +14,9 @@ from pxr import Usd
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.motion.values import Dynamic, Keys, keys
+from daguerre.scene.over_time.points import Ballistic
+from daguerre.scene.over_time.surfaces import Array
 
-from .moving.points import Ballistic
-from .moving.surfaces import Array
 from .primvars import as_rows
 from .values import Clock
 

@@ -11,9 +11,9 @@ from pxr import Usd, UsdGeom
 from daguerre.cached import cached_property
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
+from daguerre.scene.over_time.emission import Shown
+from daguerre.scene.over_time.operations import Matrix, Transform
 
-from .moving.emission import Shown
-from .moving.operations import Matrix, Transform
 from .transforms import joined, local
 from .values import Clock
 

@@ -8,8 +8,8 @@ import numpy as np
 from pxr import Usd, UsdGeom
 
 from daguerre.files.notes import Notes
+from daguerre.scene.over_time.surfaces import Array, Primvar
 
-from .moving.surfaces import Array, Primvar
 from .values import Clock
 
 

@@ -21,6 +21,7 @@ from pxr import Usd, UsdGeom, UsdSkel
 from daguerre.checks import numbers, short
 from daguerre.errors import UsageError, suggest
 from daguerre.files.notes import Notes
+from daguerre.scene.over_time.operations import Matrix, Place, Transform
 from daguerre.scene.packed.gathered import Gathered
 from daguerre.scene.scene import Scene
 from daguerre.shading.images import Images
@@ -34,7 +35,6 @@ from .lighting import Lighting
 from .lights import is_light
 from .materials import Materials
 from .meshes import Meshes
-from .moving.operations import Matrix, Place, Transform
 from .nesting import Totals
 from .placing import Placing, Spots, one, times
 from .points import read_points

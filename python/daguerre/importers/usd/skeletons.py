@@ -18,12 +18,12 @@ from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.motion.values import Dynamic, is_dynamic
 from daguerre.motion.values import at as value_at
+from daguerre.scene.over_time.joints import JointPoses, Matrices, Skinned
+from daguerre.scene.over_time.quaternions import moving_turns
+from daguerre.scene.over_time.surfaces import Array
 from daguerre.scene.skinning import Influences
 
 from .blend_shapes import read_blend_shapes
-from .moving.joints import JointPoses, Matrices, Skinned
-from .moving.quaternions import moving_turns
-from .moving.surfaces import Array
 from .values import Clock
 
 _PREDICATE = Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)

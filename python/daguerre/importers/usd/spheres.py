@@ -10,13 +10,13 @@ from pxr import UsdGeom
 from daguerre.files.notes import Notes
 from daguerre.motion.values import Dynamic, Keys
 from daguerre.motion.values import at as value_at
+from daguerre.scene.over_time.crowds import Crowd
+from daguerre.scene.over_time.points import Ballistic
+from daguerre.scene.over_time.surfaces import Array, Primvar
 from daguerre.scene.scene import Scene
 
 from .bindings import Bindings
 from .instancers import Copies
-from .moving.crowds import Crowd
-from .moving.points import Ballistic
-from .moving.surfaces import Array, Primvar
 from .placing import Placing, Spots, times
 from .points import read_points
 from .prims import Visit

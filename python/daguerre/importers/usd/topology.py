@@ -8,9 +8,9 @@ from pxr import UsdGeom
 
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
+from daguerre.scene.over_time.surfaces import Faces, Subdivided, Surface
 from daguerre.scene.subdivision import Refiner, Rules, edges_of_chains
 
-from .moving.surfaces import Faces, Subdivided, Surface
 from .values import Clock
 
 Indices = NDArray[np.int64]

@@ -15,10 +15,10 @@ from daguerre.errors import InputError
 from daguerre.files.notes import Notes
 from daguerre.motion.values import at as value_at
 from daguerre.motion.values import is_dynamic
+from daguerre.scene.over_time.operations import Matrix, Operation, Rigid, Transform
+from daguerre.scene.over_time.quaternions import moving_turns
 from daguerre.scene.transforms import without_scale
 
-from .moving.operations import Matrix, Operation, Rigid, Transform
-from .moving.quaternions import moving_turns
 from .values import Clock, plain
 
 #: Difference of the last column of a matrix from 0, 0, 0, 1 that is rounding.

@@ -11,24 +11,24 @@ from collections.abc import Mapping
 from importlib import import_module
 from typing import Any
 
-_USD, _SUBDIVISION = "daguerre.importers.usd.moving", "daguerre.scene.subdivision"
+_OVER_TIME, _SUBDIVISION = "daguerre.scene.over_time", "daguerre.scene.subdivision"
 #: Names of classes by their module, which is imported on first use.
 _RECORDS = {
-    f"{_USD}.operations": ("Operation", "Place", "Rigid", "Transform"),
-    f"{_USD}.points": ("Ballistic", "ChosenOverTime"),
-    f"{_USD}.surfaces": ("Faces", "LimitOverTime"),
-    f"{_USD}.joints": ("JointPoses", "Skinned"),
-    f"{_USD}.shapes": ("BlendShape", "BlendShapes"),
-    f"{_USD}.crowds": ("Crowd", "OneOfCrowd"),
-    f"{_USD}.emission": ("Emission", "Shown", "Strength"),
-    f"{_USD}.quaternions": ("QuaternionKeys",),
+    f"{_OVER_TIME}.operations": ("Operation", "Place", "Rigid", "Transform"),
+    f"{_OVER_TIME}.points": ("Ballistic", "ChosenOverTime"),
+    f"{_OVER_TIME}.surfaces": ("Faces", "LimitOverTime"),
+    f"{_OVER_TIME}.joints": ("JointPoses", "Skinned"),
+    f"{_OVER_TIME}.shapes": ("BlendShape", "BlendShapes"),
+    f"{_OVER_TIME}.crowds": ("Crowd", "OneOfCrowd"),
+    f"{_OVER_TIME}.emission": ("Emission", "Shown", "Strength"),
+    f"{_OVER_TIME}.quaternions": ("QuaternionKeys",),
     f"{_SUBDIVISION}.faces": ("Faces",),
     f"{_SUBDIVISION}.rules": ("Rules",),
     "daguerre.scene.motion": ("Vertices",),
     "daguerre.scene.polygon_mesh": ("Picked", "SurfaceOverTime"),
     "daguerre.scene.skinning": ("Influences",),
 }
-_SUBDIVIDED, _REFINER = f"{_USD}.surfaces:Subdivided", f"{_SUBDIVISION}.refiner:Refiner"
+_SUBDIVIDED, _REFINER = f"{_OVER_TIME}.surfaces:Subdivided", f"{_SUBDIVISION}.refiner:Refiner"
 #: Names of all classes, as ``module:class``.
 NAMES = frozenset(
     {f"{module}:{name}" for module, names in _RECORDS.items() for name in names}
