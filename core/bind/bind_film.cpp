@@ -4,7 +4,6 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include <cstring>
 #include <vector>
 
 #include "bind/arrays.h"
@@ -12,6 +11,7 @@
 #include "bind/unlocked.h"
 #include "film/film.h"
 #include "film/filter.h"
+#include "film/kept_films.h"
 #include "film/neighbours.h"
 #include "film/word_columns.h"
 #include "math/error.h"
@@ -62,32 +62,25 @@ using Curves = nb::ndarray<const double, nb::shape<-1, 401>, nb::c_contig, nb::d
 using Words = nb::ndarray<const std::uint32_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 using WordsView = nb::ndarray<nb::numpy, const std::uint32_t, nb::ndim<3>>;
 
-constexpr const char* kObjects = "objects";
-
-/// Lists of objects as words, (H, entries of the longest row, 4).
-WordsView objects(const dg::Film& film) {
-    auto kept = std::make_unique<std::vector<std::uint32_t>>(film.object_words());
-    const std::size_t height = film.layout().height, each = dg::CoverLists::kEntryWords;
-    const std::size_t columns = kept->size() / height / each;
-    const std::uint32_t* const words = kept->data();
-    const nb::capsule owner(kept.release(), [](void* p) noexcept { delete static_cast<std::vector<std::uint32_t>*>(p); });
-    return WordsView(words, {height, columns, each}, owner);
-}
-
-void set_objects(dg::Film& film, const Words& words) {
-    if (words.shape(0) != std::size_t(film.layout().height) || words.shape(2) != dg::CoverLists::kEntryWords)
-        throw dg::input_error("film state", "objects", "entries of 4 words in each row of the film",
-                              std::to_string(words.shape(0)) + " rows of entries of " + std::to_string(words.shape(2)) + " words");
-    film.set_object_words(std::span(words.data(), words.size()));
-}
-
-/// Part of a film's state, (H, W, words), in place: it lives as long as the film does.
+/// Part of a film's state, (H, W, words), in place: it lives as long as the film does. Of lists a copy, (H, entries of the
+/// longest row, words).
 WordsView state(nb::handle film, const std::string& part) {
     const auto& f = nb::cast<const dg::Film&>(film);
-    if (part == kObjects && f.layout().objects) return objects(f);
-    const auto bytes = f.state(part);
-    const std::size_t height = f.layout().height, width = f.layout().width;
-    return WordsView(bytes.data(), {height, width, bytes.size() / 4 / height / width}, film);
+    auto found = std::make_unique<dg::LayerState>(f.state(part));
+    const std::size_t height = f.layout().height, entries = found->entries;
+    const std::size_t each = found->bytes.size() / 4 / height / entries;
+    const std::byte* const words = found->bytes.data();
+    if (found->made.empty()) return WordsView(words, {height, entries, each}, film);
+    const nb::capsule owner(found.release(), [](void* p) noexcept { delete static_cast<dg::LayerState*>(p); });
+    return WordsView(words, {height, entries, each}, owner);
+}
+
+void set_state(dg::Film& film, const std::string& part, const Words& words) {
+    const std::size_t rows = film.layout().height, each = film.words_of(part);
+    if (words.shape(0) != rows || words.shape(2) != each)
+        throw dg::input_error("film state", part, std::to_string(rows) + " rows of entries of " + std::to_string(each) + " words",
+                              std::to_string(words.shape(0)) + " of " + std::to_string(words.shape(2)));
+    film.set_state(part, std::as_bytes(std::span(words.data(), words.size())));
 }
 
 using FlatWords = nb::ndarray<const std::uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
@@ -124,11 +117,7 @@ using FlatBytes = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb:
 
 void add_state(dg::Film& film, const std::string& part, const FlatWords& columns, const FlatBytes& words) {
     const dg::bind::Unlocked unlocked;
-    const std::span all = std::as_bytes(std::span(words.data(), words.size()));
-    if (part != kObjects) return film.add_state(part, {columns.data(), columns.size()}, all);
-    std::vector<std::uint32_t> lists(all.size() / 4);
-    if (!lists.empty()) std::memcpy(lists.data(), all.data(), 4 * lists.size());
-    film.add_object_words(lists);
+    film.add_state(part, {columns.data(), columns.size()}, std::as_bytes(std::span(words.data(), words.size())));
 }
 
 using Ids = nb::ndarray<const std::uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
@@ -140,6 +129,28 @@ auto ranked(const dg::Film& film, const Ids& ids, int ranks) {
                           found.cut_pixels, found.most_cut);
 }
 
+/// A keyword for a layer: whether to keep it, or how many values of it.
+template <class Row>
+void def_layer(nb::class_<dg::FilmLayout>& c, const Row& row) {
+    using dg::FilmLayout;
+    const dg::Layer layer = row.layer;
+    if (row.most == 1)
+        c.def_prop_rw(
+            row.name, [layer](const FilmLayout& l) { return l.layers[layer] != 0; },
+            [layer](FilmLayout& l, bool keep) { l.layers[layer] = keep; }, row.about);
+    else if (row.most > 1)
+        c.def_prop_rw(
+            row.name, [layer](const FilmLayout& l) { return l.layers[layer]; },
+            [layer](FilmLayout& l, int count) { l.layers[layer] = count; }, row.about);
+}
+
+/// Means of a layer of plain sums, (H, W, values).
+auto means(const dg::Film& film, const std::string& layer) {
+    std::vector<float> found = film.means(layer);
+    const int each = int(found.size() / film.layout().pixels());
+    return stacks(film, std::move(found), each);
+}
+
 void bind_layout(nb::module_& m) {
     using dg::FilmLayout;
     nb::class_<FilmLayout> c(m, "FilmLayout", "What a film keeps, and of which part of the frame.");
@@ -147,16 +158,13 @@ void bind_layout(nb::module_& m) {
     c.def_rw("width", &FilmLayout::width, "px, of the region that is stored.")
         .def_rw("height", &FilmLayout::height)
         .def_rw("offset_x", &FilmLayout::offset_x, "px, of that region in the full frame.")
-        .def_rw("offset_y", &FilmLayout::offset_y)
-        .def_rw("aovs", &FilmLayout::aovs, "Auxiliary channels, FILM_AOVS.")
-        .def_rw("splats", &FilmLayout::splats, "Light paths may add to any pixel.")
-        .def_rw("flare", &FilmLayout::flare, "Ghosts may add to any pixel.")
-        .def_rw("halves", &FilmLayout::halves, "The picture of every other sample beside that of all.")
-        .def_rw("coverage", &FilmLayout::coverage, "Share of each pixel that objects cover.")
-        .def_rw("objects", &FilmLayout::objects, "Share of each object of it.")
-        .def_rw("catchers", &FilmLayout::catchers, "Light of the set beside that of the objects.")
-        .def_rw("bands", &FilmLayout::bands, "Bands of equal width over all wavelengths.")
-        .def_rw("channels", &FilmLayout::channels, "Channels of a sensor (Film.set_responses).");
+        .def_rw("offset_y", &FilmLayout::offset_y);
+    nb::dict layers;   // by name: how many a film may be asked for, and the words of a record
+    dg::LayerStores<dg::kLayers>::for_each_row([&]<class Row>(const Row& row) {
+        def_layer(c, row);
+        if (row.most) layers[row.name] = nb::make_tuple(row.most, Row::Store::kWords);
+    });
+    m.attr("FILM_LAYERS") = layers;
     m.attr("FILM_AOVS") = dg::bind::names_of(dg::kAovChannels);
 }
 
@@ -179,9 +187,9 @@ void bind_film(nb::module_& m) {
         .def("merge", &Film::merge, "other"_a, "Adds the sums of another film, exactly.")
         .def("mean_xyz", [](const Film& f) { return triples(f, f.mean_xyz()); })
         .def("mean_rgb", [](const Film& f) { return triples(f, to_rgb(f.mean_xyz())); })
-        .def("splats_rgb", [](const Film& f) { return triples(f, to_rgb(f.layer_xyz(Film::Layer::splats))); },
+        .def("splats_rgb", [](const Film& f) { return triples(f, to_rgb(f.means("splats"))); },
              "Linear Rec.709 (H, W, 3) that light paths brought; ValueError without a layer of splats.")
-        .def("flare_rgb", [](const Film& f) { return triples(f, to_rgb(f.flare_xyz())); },
+        .def("flare_rgb", [](const Film& f) { return triples(f, to_rgb(f.means("flare"))); },
              "Light that ghosts added to it.")
         .def("half_rgb",
              [](const Film& f, bool odd, bool by_light_paths) {
@@ -193,18 +201,22 @@ void bind_film(nb::module_& m) {
         .def("ranked", &ranked, "ids"_a, "ranks"_a,
              "The same by groups of objects, each object's under its id: ids and shares (H, W, ranks), the number of "
              "pixels with more groups, and the largest share of a pixel that those leave out.")
-        .def("set_rgb", [](const Film& f, bool with_objects) { return triples(f, to_rgb(f.set_xyz(with_objects))); },
+        .def("set_rgb", [](const Film& f, bool with_objects) {
+                 return triples(f, to_rgb(f.means("catchers", with_objects ? 0 : 3, 3)));
+             },
              "with_objects"_a, "Light of the set, linear Rec.709 (H, W, 3), with the objects there or without.")
         .def("set_channels",
              [](const Film& f, bool with_objects) {
-                 return stacks(f, f.set_channels(with_objects), f.layout().channels);
+                 const int each = f.count_of(Layer::channels);
+                 return stacks(f, f.means("catcher_channels", with_objects ? 0 : each, each), each);
              },
              "with_objects"_a, "The same in the sensor's channels, (H, W, channels).")
-        .def("mean_bands", [](const Film& f) { return stacks(f, f.mean_bands(), f.layout().bands); },
+        .def("mean_bands", [](const Film& f) { return means(f, "bands"); },
              "Mean radiance of each band, (H, W, bands).")
         .def("mean_channels",
-             [](const Film& f) { return stacks(f, f.mean_channels(), f.layout().channels); },
+             [](const Film& f) { return stacks(f, f.mean_channels(), f.count_of(Layer::channels)); },
              "Mean of each of the sensor's channels, (H, W, channels).")
+        .def("means", &means, "layer"_a, "Means of a layer of plain sums over the samples of the pixel, (H, W, values).")
         .def("variance_rgb", [](const Film& f) { return triples(f, f.variance_rgb()); })
         .def("relative_variance",
              [](const Film& f, float dark) { return plane(f, f.relative_variance(dark)); }, "dark"_a)
@@ -218,19 +230,11 @@ void bind_film(nb::module_& m) {
                          for (const BadSample& b : f.bad_samples()) out.emplace_back(b.x, b.y, b.sample);
                          return out;
                      })
-        .def("state_parts",
-             [](const Film& f) {
-                 std::vector<std::string> parts = f.state_parts();
-                 if (f.layout().objects) parts.push_back(kObjects);
-                 return parts;
-             })
+        .def("state_parts", &Film::state_parts)
         .def("state", &state, "part"_a,
              "32-bit words of the sums, (H, W, words), read-only, in place. The part objects is a copy, whose rows are "
              "lists: (H, entries of the longest, 4).")
-        .def("set_state", [](Film& f, const std::string& part, const Words& words) {
-            if (part == kObjects) return set_objects(f, words);
-            f.set_state(part, std::as_bytes(std::span(words.data(), words.size())));
-        })
+        .def("set_state", &set_state, "part"_a, "words"_a)
         .def("add_state", &add_state, "part"_a, "columns"_a, "words"_a,
              "Adds a part of the state of a film of the same layout: of its words the bytes of those of these "
              "columns, as take_columns takes them.")

@@ -15,6 +15,9 @@ _core.LensError.code:
 _core.LensError.surface:
     surface: int | None
 
+_core.FILM_LAYERS:
+    FILM_LAYERS: dict[str, tuple[int, int]]
+
 _core.FILM_AOVS:
     FILM_AOVS: tuple[str, ...]
 

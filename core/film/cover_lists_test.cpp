@@ -98,7 +98,7 @@ TEST_CASE("words that are no lists are refused") {
 }
 
 TEST_CASE("shares of groups are ranked by magnitude, and what they leave out is told") {
-    Film film({.width = 2, .height = 1, .coverage = true, .objects = true});
+    Film film({.width = 2, .height = 1, .layers = {Layer::coverage, Layer::objects}});
     const Wavelengths nm = Wavelengths::sample(0.5f);
     const auto add = [&](std::vector<ObjectCover> covers) {
         CameraLight light{.white = 1};
@@ -121,6 +121,6 @@ TEST_CASE("shares of groups are ranked by magnitude, and what they leave out is 
     const Ranked negative = film.ranked(ids, 2);
     CHECK(negative.ids == std::vector<std::uint32_t>{70, 80, 0, 0});
     CHECK(negative.shares[1] == -0.3f);
-    CHECK_THROWS_AS(Film({.width = 1, .height = 1, .coverage = true}).ranked(ids, 2), Error);
-    CHECK_THROWS_AS(Film({.width = 1, .height = 1, .objects = true}), Error);
+    CHECK_THROWS_AS(Film({.width = 1, .height = 1, .layers = {Layer::coverage}}).ranked(ids, 2), Error);
+    CHECK_THROWS_AS(Film({.width = 1, .height = 1, .layers = {Layer::objects}}), Error);
 }

@@ -1,13 +1,4 @@
-// film_read.cpp -- what is read from the exact sums: means, variance, auxiliary values,
-// bad samples.
-//
-// Variance of the mean of n samples s: (sum s^2 - (sum s)^2 / n) / (n (n - 1)), which
-// takes samples as independent; stratified ones scatter less, so it errs on the safe
-// side. A splat adds its value and its square but no count: the pixel then is a sum of
-// independent arrivals (compound Poisson), whose variance is the expected sum of squares.
-// The formula takes the square of the mean off those too: it is too low by at most
-// mean^2 / n, little where samples scatter by more than their mean. Splats of one camera
-// sample in one pixel would be correlated: the caller adds them up first.
+// film_read.cpp -- pictures out of exact sums: means, auxiliary values, objects, bad samples.
 #include <algorithm>
 #include <cmath>
 
@@ -16,12 +7,18 @@
 
 namespace dg {
 
+template <Layer kLayer>
+const auto& Film::require() const {
+    if (of<kLayer>().empty()) Stores::with(stores_, std::get<std::size_t(kLayer)>(kLayers).name, [](auto&, auto&) {});
+    return of<kLayer>();
+}
+
 Vec3d Film::sum_xyz(std::size_t i) const {
     Vec3d sum;
     for (int k = 0; k < 3; ++k) {
-        ValueSum all = pixels_[i].xyz[k];
-        if (layout_.splats) all.add(splats_[i].xyz[k]);
-        if (layout_.flare) all.add(flare_[i].xyz[k]);
+        ValueSum all = of<Layer::sums>()[i].xyz[k];
+        for (const Plane<ColorSums>* lit : {&of<Layer::splats>(), &of<Layer::flare>()})
+            if (!lit->empty()) all.add((*lit)[i].xyz[k]);
         sum[k] = all.value();
     }
     return sum;
@@ -29,37 +26,62 @@ Vec3d Film::sum_xyz(std::size_t i) const {
 
 std::vector<float> Film::mean_xyz() const {
     std::vector<float> mean;
-    mean.reserve(3 * pixels_.size());
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    mean.reserve(3 * layout_.pixels());
+    for (std::size_t i = 0; i < layout_.pixels(); ++i) {
         const Vec3d sum = sum_xyz(i);
-        const std::uint32_t n = pixels_[i].count;
+        const std::uint32_t n = of<Layer::sums>()[i].count;
         for (int k = 0; k < 3; ++k) mean.push_back(n ? float(sum[k] / n) : 0.f);
     }
     return mean;
 }
 
-std::vector<float> Film::layer_xyz(Layer layer) const {
-    const std::vector<Sums>& sums = layer == Layer::splats ? splats_ : flare_;
-    if (sums.empty())
-        throw Error(std::string("film: this film was made without a layer of ") +
-                    (layer == Layer::splats ? "light paths" : "flare"));
+std::vector<float> Film::means(const std::string& layer, std::size_t first, std::size_t count) const {
     std::vector<float> mean;
-    mean.reserve(3 * pixels_.size());
-    for (std::size_t i = 0; i < pixels_.size(); ++i)
-        for (const ValueSum& sum : sums[i].xyz)
-            mean.push_back(pixels_[i].count ? float(sum.value() / pixels_[i].count) : 0.f);
+    const auto read = [&]<HasMeans R>(const Plane<R>& plane) {
+        const std::size_t of_record = R().values().size(), pixels = layout_.pixels();
+        const std::size_t records = plane.size() / pixels, last = std::min(records * of_record, first + count);
+        DG_CHECK(first, <, last);
+        mean.reserve((last - first) * pixels);
+        for (std::size_t i = 0; i < pixels; ++i)
+            for (std::size_t k = first; k < last; ++k) {
+                const ValueSum& sum = plane[records * i + k / of_record].values()[k % of_record];
+                const std::uint32_t n = of<Layer::sums>()[i].count;
+                mean.push_back(n ? float(sum.value() / n) : 0.f);
+            }
+    };
+    Stores::with(stores_, layer, [&](const auto&, const auto& store) {
+        if constexpr (requires { read(store); }) read(store);
+        else throw input_error("film", "means", "a layer of plain sums", layer);
+    });
+    return mean;
+}
+
+std::vector<float> Film::mean_channels() const {
+    const Plane<ValueSum>& own = require<Layer::channels>();
+    const Plane<ValueSum>& splats = of<Layer::channel_splats>();
+    const std::size_t each = own.size() / layout_.pixels();
+    std::vector<float> mean;
+    mean.reserve(own.size());
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        ValueSum sum = own[i];
+        if (!splats.empty()) sum.add(splats[i]);
+        const std::uint32_t n = of<Layer::sums>()[i / each].count;
+        mean.push_back(n ? float(sum.value() / n) : 0.f);
+    }
     return mean;
 }
 
 std::vector<float> Film::half_xyz(Half half, bool by_light_paths) const {
-    if (halves_.empty()) throw Error("film: this film was made without halves");
-    std::vector<float> mean(3 * pixels_.size());
-    if (by_light_paths && splats_.empty()) return mean;
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
-        const HalfPixel& even = halves_[i];
-        const std::uint32_t n = half == Half::even ? even.count : pixels_[i].count - even.count;
+    const Plane<HalfSums>& halves = require<Layer::halves>();
+    const Plane<CameraSums>& pixels = of<Layer::sums>();
+    const Plane<ColorSums>& splats = of<Layer::splats>();
+    std::vector<float> mean(3 * layout_.pixels());
+    if (by_light_paths && splats.empty()) return mean;
+    for (std::size_t i = 0; i < layout_.pixels(); ++i) {
+        const HalfSums& even = halves[i];
+        const std::uint32_t n = half == Half::even ? even.count : pixels[i].count - even.count;
         const ValueSum* const part = by_light_paths ? even.splats : even.own;
-        const ValueSum* const all = by_light_paths ? splats_[i].xyz : pixels_[i].xyz;
+        const ValueSum* const all = by_light_paths ? splats[i].xyz : pixels[i].xyz;
         for (int k = 0; k < 3 && n; ++k)
             mean[3 * i + k] =
                 float((half == Half::even ? part[k].value() : all[k].value() - part[k].value()) / n);
@@ -68,24 +90,25 @@ std::vector<float> Film::half_xyz(Half half, bool by_light_paths) const {
 }
 
 std::vector<float> Film::coverage() const {
-    if (coverage_.empty()) throw Error("film: this film was made without coverage");
     std::vector<float> shares;
-    shares.reserve(coverage_.size());
-    for (const CoveragePixel& p : coverage_) shares.push_back(p.white > 0 ? float(double(p.covered) / double(p.white)) : 0.f);
+    shares.reserve(layout_.pixels());
+    for (const CoverageSums& p : require<Layer::coverage>())
+        shares.push_back(p.white > 0 ? float(double(p.covered) / double(p.white)) : 0.f);
     return shares;
 }
 
 Ranked Film::ranked(std::span<const std::uint32_t> ids, int ranks) const {
-    if (!objects_) throw Error("film: this film was made without objects");
+    const CoverLists& objects = *require<Layer::objects>();
+    const Plane<CoverageSums>& cover = of<Layer::coverage>();
     if (ranks < 1) throw input_error("film", "ranks", "at least 1", std::to_string(ranks));
     Ranked found;
-    found.ids.resize(std::size_t(ranks) * pixels_.size());
+    found.ids.resize(std::size_t(ranks) * layout_.pixels());
     found.shares.resize(found.ids.size());
     std::vector<CoverLists::Entry> groups;   // of a pixel
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
-        if (coverage_[i].white <= 0) continue;
+    for (std::size_t i = 0; i < layout_.pixels(); ++i) {
+        if (cover[i].white <= 0) continue;
         groups.clear();
-        for (const CoverLists::Entry& e : objects_->of(i)) {
+        for (const CoverLists::Entry& e : objects.of(i)) {
             if (e.object >= ids.size()) continue;
             const auto known = std::ranges::find(groups, ids[e.object], &CoverLists::Entry::object);
             if (known == groups.end()) groups.push_back({ids[e.object], e.steps});
@@ -98,7 +121,7 @@ Ranked Film::ranked(std::span<const std::uint32_t> ids, int ranks) const {
         const std::size_t kept = std::min(groups.size(), std::size_t(ranks));
         double left = 0;
         for (std::size_t k = 0; k < groups.size(); ++k) {
-            const double share = double(groups[k].steps) / double(coverage_[i].white);
+            const double share = double(groups[k].steps) / double(cover[i].white);
             if (k < kept) found.ids[ranks * i + k] = groups[k].object, found.shares[ranks * i + k] = float(share);
             else left += share;
         }
@@ -108,107 +131,11 @@ Ranked Film::ranked(std::span<const std::uint32_t> ids, int ranks) const {
     return found;
 }
 
-std::vector<float> Film::set_xyz(bool with_objects) const {
-    if (catchers_.empty()) throw Error("film: this film was made without catchers");
-    std::vector<float> mean;
-    mean.reserve(3 * pixels_.size());
-    for (std::size_t i = 0; i < pixels_.size(); ++i)
-        for (const ValueSum& sum : with_objects ? catchers_[i].with : catchers_[i].without)
-            mean.push_back(pixels_[i].count ? float(sum.value() / pixels_[i].count) : 0.f);
-    return mean;
-}
-
-std::vector<float> Film::set_channels(bool with_objects) const {
-    if (catcher_channels_.empty()) throw Error("film: this film was made without catchers, or without channels");
-    std::vector<float> mean;
-    mean.reserve(channels_.size());
-    const std::size_t channels = layout_.channels;
-    for (std::size_t i = 0; i < pixels_.size(); ++i)
-        for (std::size_t c = 0; c < channels; ++c) {
-            const ValueSum& sum = catcher_channels_[(2 * i + (with_objects ? 0 : 1)) * channels + c];
-            mean.push_back(pixels_[i].count ? float(sum.value() / pixels_[i].count) : 0.f);
-        }
-    return mean;
-}
-
-std::vector<float> Film::mean_bands() const {
-    if (bands_.empty()) throw Error("film: this film was made without bands");
-    return means(bands_, layout_.bands);
-}
-
-std::vector<float> Film::mean_channels() const {
-    if (channels_.empty()) throw Error("film: this film was made without channels of a sensor");
-    if (channel_splats_.empty()) return means(channels_, layout_.channels);
-    std::vector<ValueSum> all = channels_;
-    for (std::size_t i = 0; i < all.size(); ++i) all[i].add(channel_splats_[i]);
-    return means(all, layout_.channels);
-}
-
-std::vector<float> Film::means(const std::vector<ValueSum>& sums, int each) const {
-    std::vector<float> mean;
-    mean.reserve(sums.size());
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-        const std::uint32_t n = pixels_[i / each].count;
-        mean.push_back(n ? float(sums[i].value() / n) : 0.f);
-    }
-    return mean;
-}
-
-Film::Estimate Film::estimate(std::size_t i) const {
-    const Pixel& p = pixels_[i];
-    Vec3d xyz{p.xyz[0].value(), p.xyz[1].value(), p.xyz[2].value()}, all = sum_xyz(i);
-    for (int k = 0; k < 3 && layout_.catchers; ++k) {   // the noise of light and change, beside what is seen
-        const double with = catchers_[i].with[k].value();
-        xyz[k] += with - catchers_[i].without[k].value();
-        all[k] += with;
-    }
-    const double n = p.count;
-    Estimate e;
-    for (int k = 0; k < 3; ++k) {
-        const double own = dot(to_double(rgb_from_xyz_[k]), xyz);
-        e.sum[k] = dot(to_double(rgb_from_xyz_[k]), all);
-        const double scatter = p.rgb_squares[k].value() - own * own / n;
-        e.variance[k] = n < 2 ? 0 : std::max(0.0, scatter / (n * (n - 1)));
-        if (layout_.splats && n > 0) e.variance[k] += splats_[i].rgb_squares[k].value() / (n * n);
-        if (layout_.flare && n > 0) e.variance[k] += flare_[i].rgb_squares[k].value() / (n * n);
-    }
-    return e;
-}
-
-std::vector<float> Film::variance_rgb() const {
-    std::vector<float> variance;
-    variance.reserve(3 * pixels_.size());
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
-        const Estimate e = estimate(i);
-        for (double v : e.variance) variance.push_back(float(v));
-    }
-    return variance;
-}
-
-std::vector<float> Film::relative_variance(float dark) const {
-    std::vector<float> relative;
-    relative.reserve(pixels_.size());
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
-        const Estimate e = estimate(i);
-        const double n = std::max(1u, pixels_[i].count);
-        double sum = 0;
-        for (int k = 0; k < 3; ++k)
-            sum += e.variance[k] / (e.sum[k] * e.sum[k] / (n * n) + dark);
-        relative.push_back(float(sum * n / 3));
-    }
-    return relative;
-}
-
 std::vector<std::uint32_t> Film::sample_counts() const {
     std::vector<std::uint32_t> counts;
-    counts.reserve(pixels_.size());
-    for (const Pixel& p : pixels_) counts.push_back(p.count);
+    counts.reserve(layout_.pixels());
+    for (const CameraSums& p : of<Layer::sums>()) counts.push_back(p.count);
     return counts;
-}
-
-const std::vector<Film::AovPixel>& Film::require_aovs() const {
-    if (!layout_.aovs) throw Error("film: this film was made without aovs");
-    return aovs_;
 }
 
 std::vector<float> Film::aov(const std::string& name) const {
@@ -220,8 +147,8 @@ std::vector<float> Film::aov(const std::string& name) const {
     }
     const auto k = std::size_t(found - kAovChannels.begin());
     std::vector<float> mean;
-    mean.reserve(pixels_.size());
-    for (const AovPixel& p : require_aovs()) {
+    mean.reserve(layout_.pixels());
+    for (const AovSums& p : require<Layer::aovs>()) {
         const std::uint32_t n = found->of_hits ? p.hits : p.passed;
         mean.push_back(n ? float(p.sums[k].value() / n) : 0.f);
     }
@@ -230,24 +157,24 @@ std::vector<float> Film::aov(const std::string& name) const {
 
 std::vector<std::uint32_t> Film::object_ids() const {
     std::vector<std::uint32_t> ids;
-    ids.reserve(pixels_.size());
-    for (const AovPixel& p : require_aovs()) ids.push_back(p.object_id);
+    ids.reserve(layout_.pixels());
+    for (const AovSums& p : require<Layer::aovs>()) ids.push_back(p.object_id);
     return ids;
 }
 
 std::vector<BadSample> Film::bad_samples() const {
+    const Plane<CameraSums>& pixels = of<Layer::sums>();
     std::vector<BadSample> bad;
-    for (std::size_t i = 0; i < pixels_.size() && bad.size() < 100; ++i)
-        if (pixels_[i].bad)
-            bad.push_back({layout_.offset_x + int(i % layout_.width),
-                           layout_.offset_y + int(i / layout_.width),
-                           pixels_[i].first_bad});
+    for (std::size_t i = 0; i < pixels.size() && bad.size() < 100; ++i)
+        if (pixels[i].bad)
+            bad.push_back({layout_.offset_x + int(i % layout_.width), layout_.offset_y + int(i / layout_.width),
+                           pixels[i].first_bad});
     return bad;
 }
 
 std::uint64_t Film::bad_sample_count() const {
     std::uint64_t count = 0;
-    for (const Pixel& p : pixels_) count += p.bad;
+    for (const CameraSums& p : of<Layer::sums>()) count += p.bad;
     return count;
 }
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numeric>
 
+#include "film/kept_films.h"
 #include "film/word_columns.h"
 #include "math/error.h"
 #include "math/hash.h"
@@ -21,7 +22,7 @@ using namespace dg;
 namespace {
 
 constexpr int kWidth = 5, kHeight = 4, kPerPixel = 40;
-constexpr FilmLayout kLayout{kWidth, kHeight, 10, 20, true};
+constexpr FilmLayout kLayout{kWidth, kHeight, 10, 20, {Layer::aovs}};
 
 /// Values over many orders of magnitude that are no sums of powers of two; some negative,
 /// some bad.
@@ -64,11 +65,21 @@ void draw(Film& film, const Draw& d) {
                  {d.id % 4 != 0, v.y, v, normalize(v), v, std::uint32_t(d.id), 0.3f});
 }
 
+void splat(Film& film, int x, int y, std::uint32_t sample, Vec3f xyz, Layer layer = Layer::splats) {
+    film.splat_row(x, y, sample, std::span(&xyz, 1), layer);
+}
+
+/// The values of a draw as light, which comes in wavelengths.
+CameraLight light_of(const Draw& d) {
+    const Vec3f v = value(d.id);
+    return {.light = Spectrum(v.x, v.y, v.z, v.x)};
+}
+
 std::vector<std::byte> whole_state(const Film& film) {
     std::vector<std::byte> all;
     for (const std::string& part : film.state_parts()) {
-        const auto bytes = film.state(part);
-        all.insert(all.end(), bytes.begin(), bytes.end());
+        const LayerState state = film.state(part);
+        all.insert(all.end(), state.bytes.begin(), state.bytes.end());
     }
     return all;
 }
@@ -108,12 +119,13 @@ TEST_CASE("any order and any split with any order of merging give the same bits"
 TEST_CASE("shared adding: from several threads, in any order, the bits of adding alone") {
     std::vector<Draw> draws = all_draws();
     Film direct(kLayout), shared(kLayout);
-    for (const Draw& d : draws) direct.add(d.x, d.y, d.sample, value(d.id));
+    const Wavelengths w = Wavelengths::sample(0.4f);
+    for (const Draw& d : draws) direct.add(d.x, d.y, d.sample, w, light_of(d));
     shuffle(draws, 5);
     const auto add_third = [&](std::size_t first) {
         for (std::size_t i = first; i < draws.size(); i += 3)
-            shared.add_shared(draws[i].x, draws[i].y, draws[i].sample, value(draws[i].id));
-        shared.add_shared(0, 0, 0, {1, 1, 1});  // outside the region: ignored
+            shared.add_shared(draws[i].x, draws[i].y, draws[i].sample, w, light_of(draws[i]));
+        shared.add_shared(0, 0, 0, w, {.light = 1.f});  // outside the region: ignored
     };
     std::vector<std::thread> threads;
     for (std::size_t k = 0; k < 3; ++k) threads.emplace_back(add_third, k);
@@ -126,18 +138,18 @@ TEST_CASE("the state comes back bit by bit") {
     Film film(kLayout), copy(kLayout);
     for (const Draw& d : all_draws()) draw(film, d);
     for (const std::string& part : film.state_parts())
-        copy.set_state(part, film.state(part));
+        copy.set_state(part, film.state(part).bytes);
     CHECK(whole_state(copy) == whole_state(film));
     CHECK(copy.mean_xyz() == film.mean_xyz());
     CHECK(copy.aov("P.Y") == film.aov("P.Y"));
     CHECK(copy.object_ids() == film.object_ids());
     CHECK(copy.bad_samples()[0].sample == film.bad_samples()[0].sample);
     CHECK(copy.sample_counts() == film.sample_counts());
-    CHECK_THROWS_AS(film.state("sum.Q.0"), Error);
-    CHECK_THROWS_AS(film.set_state("sums", film.state("aovs")), Error);
-    const Film bare(FilmLayout{2, 2, 0, 0, false});
-    CHECK_THROWS_AS(bare.state("aovs"), Error);
-    CHECK(bare.state("sums").size() == 4 * 112);
+    CHECK_THROWS_AS(film.state("sum.Q.0").bytes, Error);
+    CHECK_THROWS_AS(film.set_state("sums", film.state("aovs").bytes), Error);
+    const Film bare(FilmLayout{2, 2, 0, 0});
+    CHECK_THROWS_AS(bare.state("aovs").bytes, Error);
+    CHECK(bare.state("sums").bytes.size() == 4 * 112);
 }
 
 TEST_CASE("a fixed sum is exact where a double is not") {
@@ -164,7 +176,7 @@ TEST_CASE(
     const int n = 64, films = 400;
     std::vector<double> means, variances;
     for (int f = 0; f < films; ++f) {
-        Film film(FilmLayout{1, 1, 0, 0, false});
+        Film film(FilmLayout{1, 1, 0, 0});
         std::vector<double> green;
         for (int i = 0; i < n; ++i) {
             const Rgb rgb{1, float(2 * hash_uniform(f, i)), 0.5f};
@@ -184,7 +196,7 @@ TEST_CASE(
     }
     CHECK(moments(variances).mean / moments(means).variance ==
           doctest::Approx(1).epsilon(0.08));
-    Film one(FilmLayout{1, 1, 0, 0, false});
+    Film one(FilmLayout{1, 1, 0, 0});
     CHECK(one.mean_xyz()[0] == 0);
     one.add(0, 0, 0, {1, 1, 1});
     one.count(0, 0);
@@ -195,7 +207,7 @@ TEST_CASE("variance where wavelengths of other samples land: a pixel that also r
     const int n = 64, films = 600;
     std::vector<double> means, variances;
     for (int f = 0; f < films; ++f) {
-        Film film(FilmLayout{1, 1, 0, 0, false});
+        Film film(FilmLayout{1, 1, 0, 0});
         for (int i = 0; i < n; ++i) {
             film.count(0, 0);
             if (hash_uniform(f, i) < 0.3) film.add(0, 0, i, xyz_from_rgb({1, 1, 1}));
@@ -216,13 +228,13 @@ TEST_CASE("splats: means have the same divisor, variances know that arrivals are
     const int n = 64, films = 600;
     std::vector<double> means, variances;
     for (int f = 0; f < films; ++f) {
-        Film film(FilmLayout{1, 1, 0, 0, false, true});
+        Film film(FilmLayout{1, 1, 0, 0, {Layer::splats}});
         for (int i = 0; i < n; ++i) {
             film.count(0, 0);
             if (hash_uniform(f, i) < 0.3) film.add(0, 0, i, xyz_from_rgb({1, 1, 1}));
             for (int k = 0; k < 8; ++k)   // eight light paths per sample, few of which come here
                 if (hash_uniform(f + 9999, 8 * i + k) < 0.05)
-                    film.splat(0, 0, i, xyz_from_rgb({2, 2, 2}));
+                    splat(film, 0, 0, i, xyz_from_rgb({2, 2, 2}));
         }
         means.push_back(film.mean_xyz()[1]);
         variances.push_back(film.variance_rgb()[1]);
@@ -234,50 +246,50 @@ TEST_CASE("splats: means have the same divisor, variances know that arrivals are
 }
 
 TEST_CASE("splats: the same bits in any order, from any thread and any split; none where there are none") {
-    const FilmLayout layout{kWidth, kHeight, 10, 20, false, true};
+    const FilmLayout layout{kWidth, kHeight, 10, 20, {Layer::splats}};
     Film whole(layout), split(layout), part(layout);
     std::vector<Draw> draws = all_draws();
-    for (const Draw& d : draws) whole.splat(d.x, d.y, d.sample, value(d.id));
+    for (const Draw& d : draws) splat(whole, d.x, d.y, d.sample, value(d.id));
     shuffle(draws, 3);
     const std::size_t half = draws.size() / 2;
     std::thread other([&] {
         for (std::size_t i = 0; i < half; ++i)
-            split.splat(draws[i].x, draws[i].y, draws[i].sample, value(draws[i].id));
+            splat(split, draws[i].x, draws[i].y, draws[i].sample, value(draws[i].id));
     });
     for (std::size_t i = half; i < draws.size(); ++i) {
         Film& film = i % 2 ? split : part;
-        film.splat(draws[i].x, draws[i].y, draws[i].sample, value(draws[i].id));
+        splat(film, draws[i].x, draws[i].y, draws[i].sample, value(draws[i].id));
     }
     other.join();
     split.merge(part);
     for (const std::string& name : whole.state_parts())
-        CHECK(std::ranges::equal(whole.state(name), split.state(name)));
+        CHECK(std::ranges::equal(whole.state(name).bytes, split.state(name).bytes));
     Film again(layout);
-    again.set_state("splats", whole.state("splats"));
-    CHECK(std::ranges::equal(whole.state("splats"), again.state("splats")));
-    CHECK(whole.state("splats").size() == Film::kSplatBytes * kWidth * kHeight);
+    again.set_state("splats", whole.state("splats").bytes);
+    CHECK(std::ranges::equal(whole.state("splats").bytes, again.state("splats").bytes));
+    CHECK(whole.state("splats").bytes.size() == 96 * kWidth * kHeight);
 
     // Ghosts are a layer of their own, and part of the picture.
-    const FilmLayout lit{.width = 1, .height = 1, .splats = true, .flare = true};
+    const FilmLayout lit{.width = 1, .height = 1, .layers = {Layer::splats, Layer::flare}};
     Film film(lit), more(lit);
     film.count(0, 0), more.count(0, 0);
-    film.add(0, 0, 0, {1, 1, 1}), film.splat(0, 0, 0, {2, 2, 2});
-    more.splat(0, 0, 1, {4, 6, 8}, Film::Layer::flare);
+    film.add(0, 0, 0, {1, 1, 1}), splat(film, 0, 0, 0, {2, 2, 2});
+    splat(more, 0, 0, 1, {4, 6, 8}, Layer::flare);
     film.merge(more);
-    CHECK(film.flare_xyz() == std::vector<float>{2, 3, 4});
+    CHECK(film.means("flare") == std::vector<float>{2, 3, 4});
     CHECK(film.mean_xyz() == std::vector<float>{3.5f, 4.5f, 5.5f});
     CHECK(film.state_parts() == std::vector<std::string>{"sums", "splats", "flare"});
 
-    const Film bare(FilmLayout{2, 2, 0, 0, false});
-    CHECK_THROWS_AS(bare.flare_xyz(), Error);
+    const Film bare(FilmLayout{2, 2, 0, 0});
+    CHECK_THROWS_AS(bare.means("flare"), Error);
     CHECK(bare.state_parts() == std::vector<std::string>{"sums"});
-    CHECK_THROWS_AS(bare.state("splats"), Error);
-    CHECK_THROWS_AS(whole.merge(Film(FilmLayout{kWidth, kHeight, 10, 20, false})), Error);
+    CHECK_THROWS_AS(bare.state("splats").bytes, Error);
+    CHECK_THROWS_AS(whole.merge(Film(FilmLayout{kWidth, kHeight, 10, 20})), Error);
 }
 
 TEST_CASE("NaN, infinity and monsters are dropped, counted and found again") {
     const float inf = std::numeric_limits<float>::infinity();
-    Film film(FilmLayout{4, 3, 100, 200, true});
+    Film film(FilmLayout{4, 3, 100, 200, {Layer::aovs}});
     film.add(101, 201, 9, {1, 2, 3});
     film.add(101, 201, 8, {1, inf, 3});
     film.add(101, 201, 7, {1, 2, std::nanf("")});
@@ -293,14 +305,14 @@ TEST_CASE("NaN, infinity and monsters are dropped, counted and found again") {
     CHECK((bad[2].x == 100 && bad[2].y == 202 && bad[2].sample == 2));
     film.count(101, 201);
     CHECK(film.mean_xyz()[3 * 5 + 1] == 2);
-    Film many(FilmLayout{20, 20, 0, 0, false});
+    Film many(FilmLayout{20, 20, 0, 0});
     for (int i = 0; i < 400; ++i) many.add(i % 20, i / 20, 3, {inf, 0, 0});
     CHECK(many.bad_sample_count() == 400);
     CHECK(many.bad_samples().size() == 100);
 }
 
 TEST_CASE("the largest values neither overflow nor disturb") {
-    Film film(FilmLayout{1, 1, 0, 0, false});
+    Film film(FilmLayout{1, 1, 0, 0});
     for (int i = 0; i < 1000; ++i) {
         film.add(0, 0, i, {kMaxFilmValue, kMaxFilmValue, kMaxFilmValue});
         film.count(0, 0);
@@ -312,7 +324,7 @@ TEST_CASE("the largest values neither overflow nor disturb") {
 
 TEST_CASE(
     "auxiliary values: means over those that brought one, object of the lowest sample") {
-    Film film(FilmLayout{2, 1, 0, 0, true});
+    Film film(FilmLayout{2, 1, 0, 0, {Layer::aovs}});
     film.add_aov(0, 0, 5, {true, 2, {1, 2, 3}, {0, 0, 1}, {0.5f, 0, 0}, 7});
     film.add_aov(0, 0, 3, {true, 4, {3, 2, 1}, {0, 1, 0}, {0.1f, 0, 0}, 9});
     film.add_aov(0, 0, 1, {false, 99, {9, 9, 9}, {9, 9, 9}, {0, 0, 0}, 0});
@@ -322,18 +334,19 @@ TEST_CASE(
     CHECK(film.aov("albedo.R")[0] == doctest::Approx(0.2));
     CHECK(film.object_ids() == std::vector<std::uint32_t>{9, 0});
     CHECK_THROWS_WITH_AS(film.aov("normal"), doctest::Contains("depth.Z"), Error);
-    const Film bare(FilmLayout{2, 2, 0, 0, false});
+    const Film bare(FilmLayout{2, 2, 0, 0});
     CHECK_THROWS_AS(bare.aov("albedo.R"), Error);
 }
 
 TEST_CASE("halves share no sample, make up the picture, and have no ghosts") {
-    Film film(FilmLayout{.width = 1, .height = 1, .splats = true, .flare = true, .halves = true}), more(film.layout());
+    Film film(FilmLayout{.width = 1, .height = 1, .layers = {Layer::splats, Layer::flare, Layer::halves}}),
+        more(film.layout());
     const auto draw = [](Film& to, std::uint32_t sample) {
         const float v = float(sample + 1);
         to.count(0, 0, sample);
         to.add(0, 0, sample, {v, 2 * v, 3 * v});
-        to.splat(0, 0, sample, {8 * v, 0, 0});
-        to.splat(0, 0, sample, {99, 99, 99}, Film::Layer::flare);
+        splat(to, 0, 0, sample, {8 * v, 0, 0});
+        splat(to, 0, 0, sample, {99, 99, 99}, Layer::flare);
     };
     for (const std::uint32_t sample : {0, 1, 2}) draw(film, sample);
     for (const std::uint32_t sample : {3, 4}) draw(more, sample);
@@ -350,14 +363,15 @@ TEST_CASE("halves share no sample, make up the picture, and have no ghosts") {
 }
 
 TEST_CASE("sums that come as columns of words are added as a merge adds them") {
-    const FilmLayout layout{.width = 3, .height = 2, .aovs = true, .splats = true, .flare = true, .halves = true,
-                            .coverage = true, .catchers = true, .bands = 3, .channels = 2};
+    const FilmLayout layout{.width = 3, .height = 2,
+                            .layers = {Layer::aovs, Layer::splats, Layer::flare, Layer::halves, Layer::coverage,
+                                       Layer::catchers, {Layer::bands, 3}, {Layer::channels, 2}}};
     Film merged(layout), added(layout), more(layout);
     std::uint64_t number = 0;
     for (Film* film : {&merged, &added, &more}) {
         number = film == &added ? 0 : number;   // these two begin alike
         for (const std::string& part : film->state_parts()) {
-            std::vector<std::uint32_t> words(film->state(part).size() / 4);
+            std::vector<std::uint32_t> words(film->state(part).bytes.size() / 4);
             for (std::uint32_t& word : words) {
                 const std::uint64_t dice = hash64(1, number++);
                 word = dice % 3 ? std::uint32_t(dice >> 32) : 0;
@@ -368,7 +382,7 @@ TEST_CASE("sums that come as columns of words are added as a merge adds them") {
     CHECK(whole_state(merged) == whole_state(added));
     merged.merge(more);
     for (const std::string& part : more.state_parts()) {
-        const std::span<const std::byte> bytes = more.state(part);
+        const std::span<const std::byte> bytes = more.state(part).bytes;
         std::vector<std::uint32_t> words(bytes.size() / 4);
         std::memcpy(words.data(), bytes.data(), bytes.size());
         const std::size_t each = words.size() / 6;
@@ -385,18 +399,19 @@ TEST_CASE("sums that come as columns of words are added as a merge adds them") {
     }
     CHECK(whole_state(merged) == whole_state(added));
     CHECK_THROWS_AS(added.add_state("nonsense", {}, {}), Error);
-    CHECK_THROWS_AS(added.add_object_words({}), Error);
+    CHECK_THROWS_AS(added.add_state("objects", {}, {}), Error);
 }
 
 TEST_CASE("a film in the memory of another one is empty") {
-    const FilmLayout all{3, 2, 1, 1, true, true, true, true, true, true, true, 2, 0};
+    const FilmLayout all{3, 2, 1, 1, {Layer::aovs, Layer::splats, Layer::flare, Layer::halves, Layer::coverage,
+                                      Layer::objects, Layer::catchers, {Layer::bands, 2}}};
     const auto draw = [](Film& film) {
         film.add(1, 1, 0, {1, 2, 3});
         film.count(1, 1);
-        film.splat(2, 2, 1, {3, 2, 1});
-        film.add_shared(2, 1, 5, {std::numeric_limits<float>::quiet_NaN(), 0, 0});
+        splat(film, 2, 2, 1, {3, 2, 1});
+        film.add_shared(2, 1, 5, Wavelengths::sample(0.5f), {.light = std::numeric_limits<float>::quiet_NaN()});
     };
-    const auto memory = [](const Film& film) { return film.state("sums").data(); };
+    const auto memory = [](const Film& film) { return film.state("sums").bytes.data(); };
     const Film fresh(all);
     const KeptFilms keep;
     {
@@ -435,15 +450,15 @@ TEST_CASE("a small film leaves kept memory alone, and another large one ends it"
         const std::byte* place = nullptr;
         {
             const Film film(large);
-            place = film.state("sums").data();
+            place = film.state("sums").bytes.data();
         }
-        const std::size_t bytes = 64 * 64 * Film::kSumBytes;
+        const std::size_t bytes = 64 * 64 * 112;
         CHECK(KeptFilms::bytes() == bytes);
         { const Film pilot(small); CHECK(KeptFilms::bytes() == bytes); }
         CHECK(KeptFilms::bytes() == bytes);
         {
             const Film film(large);
-            CHECK(film.state("sums").data() == place);
+            CHECK(film.state("sums").bytes.data() == place);
             CHECK(KeptFilms::bytes() == 0);
         }
         const Film film(other);
@@ -463,15 +478,15 @@ TEST_CASE("columns of zeros stay away") {
 }
 
 TEST_CASE("films of different layout do not merge") {
-    Film a(FilmLayout{2, 2, 0, 0, false});
-    CHECK_THROWS_AS(a.merge(Film(FilmLayout{2, 2, 1, 0, false})), Error);
-    CHECK_THROWS_AS(a.merge(Film(FilmLayout{2, 2, 0, 0, true})), Error);
-    CHECK_THROWS_AS(Film(FilmLayout{0, 5, 0, 0, false}), Error);
-    CHECK_THROWS_AS(Film(FilmLayout{100000, 100000, 0, 0, false}), Error);
+    Film a(FilmLayout{2, 2, 0, 0});
+    CHECK_THROWS_AS(a.merge(Film(FilmLayout{2, 2, 1, 0})), Error);
+    CHECK_THROWS_AS(a.merge(Film(FilmLayout{2, 2, 0, 0, {Layer::aovs}})), Error);
+    CHECK_THROWS_AS(Film(FilmLayout{0, 5, 0, 0}), Error);
+    CHECK_THROWS_AS(Film(FilmLayout{100000, 100000, 0, 0}), Error);
 }
 
 TEST_CASE("the relative variance of one sample, from the variance of the mean") {
-    Film film({2, 1, 0, 0, false});
+    Film film({2, 1, 0, 0});
     const float dark = 0.01f;
     const int n = 50;
     for (int i = 0; i < n; ++i) {
@@ -491,13 +506,13 @@ TEST_CASE("the relative variance of one sample, from the variance of the mean") 
 }
 
 TEST_CASE("a state out of a damaged file, locks and all, can be drawn into and added") {
-    dg::Film film({2, 1, 0, 0, true}), other({2, 1, 0, 0, true});
+    dg::Film film({2, 1, 0, 0, {Layer::aovs}}), other({2, 1, 0, 0, {Layer::aovs}});
     for (const std::string& part : film.state_parts()) {
-        const std::vector<std::byte> ones(film.state(part).size(), std::byte{0xff});
+        const std::vector<std::byte> ones(film.state(part).bytes.size(), std::byte{0xff});
         film.set_state(part, ones);
         other.set_state(part, ones);
     }
-    film.add_shared(1, 0, 0, {1, 1, 1});  // would wait for ever
+    film.add_shared(1, 0, 0, Wavelengths::sample(0.5f), {.light = 1.f});  // would wait for ever
     film.merge(other);
     CHECK(film.sample_counts()[0] == 0xfffffffeu);
     CHECK(std::isfinite(film.mean_xyz()[0]));
@@ -505,22 +520,22 @@ TEST_CASE("a state out of a damaged file, locks and all, can be drawn into and a
 
 TEST_CASE("bands hold the mean radiance of their wavelengths, whoever brings it") {
     constexpr int kBands = 16, kSamples = 1 << 16;
-    FilmLayout layout{.width = 2, .height = 1, .splats = true, .flare = true, .bands = kBands};
+    FilmLayout layout{.width = 2, .height = 1, .layers = {Layer::splats, Layer::flare, {Layer::bands, kBands}}};
     Film film(layout), half(layout);
     for (int i = 0; i < kSamples; ++i) {
         Wavelengths w = Wavelengths::sample((i + 0.5f) / kSamples);
         if (i % 2) w.end_secondary();
         Film& to = i % 4 == 1 ? half : film;
-        to.add(0, 0, i, w, 3.f);
+        to.add(0, 0, i, w, {.light = 3.f});
         to.splat(0, 0, i, w, 1.f);
-        to.splat(0, 0, i, w, 2.f, Film::Layer::flare);
-        to.add_shared(1, 0, i, w, w.d65);
+        to.splat(0, 0, i, w, 2.f, Layer::flare);
+        to.add_shared(1, 0, i, w, {.light = w.d65});
         for (int x = 0; x < 2; ++x) to.count(x, 0);
     }
-    film.add(0, 0, kSamples, Wavelengths::sample(0.5f), std::numeric_limits<float>::quiet_NaN());
+    film.add(0, 0, kSamples, Wavelengths::sample(0.5f), {.light = std::numeric_limits<float>::quiet_NaN()});
     film.merge(half);
     CHECK(film.bad_sample_count() == 1);
-    const std::vector<float> mean = film.mean_bands();
+    const std::vector<float> mean = film.means("bands");
     REQUIRE(mean.size() == 2 * kBands);
     const double scale = double(Wavelengths::sample(0.5f).d65[0]) / d65(Wavelengths::sample(0.5f).nm[0]);
     for (int b = 0; b < kBands; ++b) {
@@ -530,23 +545,23 @@ TEST_CASE("bands hold the mean radiance of their wavelengths, whoever brings it"
         CHECK(mean[kBands + b] == doctest::Approx(wanted).epsilon(0.01));
     }
     Film again(layout);
-    for (const std::string& part : film.state_parts()) again.set_state(part, film.state(part));
-    CHECK(again.mean_bands() == mean);
-    layout.bands = 8;
+    for (const std::string& part : film.state_parts()) again.set_state(part, film.state(part).bytes);
+    CHECK(again.means("bands") == mean);
+    layout.layers[Layer::bands] = 8;
     CHECK_THROWS_AS(film.merge(Film(layout)), Error);
-    CHECK_THROWS_AS(Film({.width = 2, .height = 1, .bands = 65}), Error);
+    CHECK_THROWS_AS(Film({.width = 2, .height = 1, .layers = {{Layer::bands, 65}}}), Error);
 }
 
 TEST_CASE("bands of a film are the same bits in any order") {
-    const FilmLayout layout{.width = 1, .height = 1, .bands = 5};
+    const FilmLayout layout{.width = 1, .height = 1, .layers = {{Layer::bands, 5}}};
     Film forward(layout), backward(layout);
     const auto draw = [](Film& film, int i) {
         film.add(0, 0, i, Wavelengths::sample(float(hash_uniform(3, i))),
-                 std::exp(20 * float(hash_uniform(4, i))));
+                 {.light = std::exp(20 * float(hash_uniform(4, i)))});
     };
     for (int i = 0; i < 500; ++i) draw(forward, i), draw(backward, 499 - i);
     forward.count(0, 0), backward.count(0, 0);
-    CHECK(forward.mean_bands() == backward.mean_bands());
+    CHECK(forward.means("bands") == backward.means("bands"));
 }
 
 namespace {
@@ -562,20 +577,20 @@ Responses step_responses() {
 
 TEST_CASE("channels hold light times response, whoever brings it") {
     constexpr int kSamples = 1 << 16;
-    FilmLayout layout{.width = 2, .height = 1, .splats = true, .flare = true, .channels = 2};
+    FilmLayout layout{.width = 2, .height = 1, .layers = {Layer::splats, Layer::flare, {Layer::channels, 2}}};
     Film film(layout), half(layout);
     for (Film* f : {&film, &half}) f->set_responses(step_responses());
     for (int i = 0; i < kSamples; ++i) {
         Wavelengths w = Wavelengths::sample((i + 0.5f) / kSamples);
         if (i % 2) w.end_secondary();
         Film& to = i % 4 == 1 ? half : film;
-        to.add(0, 0, i, w, 3.f);
+        to.add(0, 0, i, w, {.light = 3.f});
         to.splat(0, 0, i, w, 1.f);
-        to.splat(0, 0, i, w, 2.f, Film::Layer::flare);
-        to.add_shared(1, 0, i, w, w.d65);
+        to.splat(0, 0, i, w, 2.f, Layer::flare);
+        to.add_shared(1, 0, i, w, {.light = w.d65});
         for (int x = 0; x < 2; ++x) to.count(x, 0);
     }
-    film.add(0, 0, kSamples, Wavelengths::sample(0.5f), std::numeric_limits<float>::quiet_NaN());
+    film.add(0, 0, kSamples, Wavelengths::sample(0.5f), {.light = std::numeric_limits<float>::quiet_NaN()});
     film.merge(half);
     CHECK(film.bad_sample_count() == 1);
     const std::vector<float> mean = film.mean_channels();
@@ -586,21 +601,21 @@ TEST_CASE("channels hold light times response, whoever brings it") {
     const std::vector<float> xyz = film.mean_xyz();
     for (int i = 3; i < 6; ++i) CHECK(xyz[i] == doctest::Approx(xyz_from_rgb({1, 1, 1})[i - 3]).epsilon(1e-3));
     Film again(layout);   // as out of a file: without responses
-    for (const std::string& part : film.state_parts()) again.set_state(part, film.state(part));
+    for (const std::string& part : film.state_parts()) again.set_state(part, film.state(part).bytes);
     CHECK(again.mean_channels() == mean);
-    layout.channels = 3;
+    layout.layers[Layer::channels] = 3;
     CHECK_THROWS_AS(film.merge(Film(layout)), Error);
     CHECK_THROWS_AS(again.set_responses(Responses()), Error);
-    CHECK_THROWS_AS(Film({.width = 2, .height = 1, .channels = 5}), Error);
+    CHECK_THROWS_AS(Film({.width = 2, .height = 1, .layers = {{Layer::channels, 5}}}), Error);
     CHECK_THROWS_AS(Film({.width = 2, .height = 1}).mean_channels(), Error);
 }
 
 TEST_CASE("channels beside bands, and XYZ beside both, are the same bits in any order and company") {
     const auto draw = [](Film& film, int i) {
-        film.add(0, 0, i, Wavelengths::sample(float(hash_uniform(3, i))), std::exp(20 * float(hash_uniform(4, i))));
+        film.add(0, 0, i, Wavelengths::sample(float(hash_uniform(3, i))), {.light = std::exp(20 * float(hash_uniform(4, i)))});
     };
     const auto film_with = [](int bands, int channels) {
-        Film film({.width = 1, .height = 1, .bands = bands, .channels = channels});
+        Film film({.width = 1, .height = 1, .layers = {{Layer::bands, bands}, {Layer::channels, channels}}});
         if (channels) film.set_responses(step_responses());
         film.count(0, 0);
         return film;
@@ -611,7 +626,7 @@ TEST_CASE("channels beside bands, and XYZ beside both, are the same bits in any 
     }
     CHECK(forward.mean_channels() == backward.mean_channels());
     CHECK(forward.mean_channels() == alone.mean_channels());
-    CHECK(forward.mean_bands() == backward.mean_bands());
+    CHECK(forward.means("bands") == backward.means("bands"));
     CHECK(forward.mean_xyz() == plain.mean_xyz());
     CHECK(forward.variance_rgb() == plain.variance_rgb());
 }
@@ -630,15 +645,14 @@ TEST_CASE("a film that is placed elsewhere keeps its sums and takes other pixels
 }
 
 TEST_CASE("bytes of a pixel are those of its parts, whatever the film keeps") {
+    constexpr Layer kSix[] = {Layer::aovs, Layer::splats, Layer::flare, Layer::halves, Layer::coverage, Layer::catchers};
     for (int which = 0; which < 64; ++which)
         for (int channels : {0, 3}) {
-            FilmLayout l{.width = 3, .height = 2};
-            l.aovs = which & 1, l.splats = which & 2, l.flare = which & 4, l.halves = which & 8;
-            l.coverage = which & 16, l.catchers = which & 32;
-            l.channels = channels, l.bands = 5 * (which % 3);
+            FilmLayout l{.width = 3, .height = 2, .layers = {{Layer::channels, channels}, {Layer::bands, 5 * (which % 3)}}};
+            for (int k = 0; k < 6; ++k) l.layers[kSix[k]] = which >> k & 1;
             const Film film(l);
             std::size_t bytes = 0;
-            for (const std::string& part : film.state_parts()) bytes += film.state(part).size();
+            for (const std::string& part : film.state_parts()) bytes += film.state(part).bytes.size();
             CHECK(bytes == 6 * Film::pixel_bytes(l));
         }
 }

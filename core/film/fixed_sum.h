@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 namespace dg {
 
@@ -32,6 +33,7 @@ class FixedSum {
     void add_steps(Int128 steps) { add_bits(steps); }
     static constexpr int kBits = kFractionBits;
 
+    std::span<const FixedSum> values() const { return {this, 1}; }
     /// Nearest double.
     double value() const { return double(bits_) * (1.0 / double(1ull << kFractionBits)); }
     friend bool operator==(const FixedSum& a, const FixedSum& b) = default;

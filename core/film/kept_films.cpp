@@ -1,10 +1,10 @@
-// kept_films.cpp -- memory of films that ended, for the next ones.
+#include "film/kept_films.h"
+
 #include <algorithm>
 #include <mutex>
 #include <utility>
 
 #include "film/film.h"
-#include "math/cancel.h"
 
 namespace dg {
 namespace {
@@ -12,15 +12,6 @@ namespace {
 std::mutex guard;
 int keepers = 0;
 Film* kept = nullptr;   // never destroyed at exit, when other globals may be gone
-
-template <class T>
-void reset(std::vector<T>& all) {
-    constexpr std::size_t kStep = 1 << 20;
-    for (std::size_t i = 0; i < all.size(); i += kStep) {
-        throw_if_cancelled();
-        std::fill_n(all.begin() + i, std::min(kStep, all.size() - i), T{});
-    }
-}
 
 }  // namespace
 
@@ -42,46 +33,37 @@ std::size_t KeptFilms::bytes() {
 
 std::size_t Film::state_bytes() const {
     std::size_t all = 0;
-    for (const std::string& part : state_parts()) all += state(part).size();
+    stores_.for_each([&](const auto&, const auto& store) { all += store.bytes(); });
     return all;
 }
 
 std::unique_ptr<Film> Film::take_kept(const FilmLayout& layout) {
     constexpr std::size_t kSmall = 16;   // so many films of a pilot render, or more, fit in the memory that is kept
     std::unique_ptr<Film> found;
+    Stores ended;   // destroyed after the lock
     const std::lock_guard lock(guard);
     if (!kept) return nullptr;
-    const std::size_t needed = pixel_bytes(layout) * std::size_t(layout.width) * std::size_t(layout.height);
+    const std::size_t needed = pixel_bytes(layout) * layout.pixels();
     if (kept->layout_ == layout || needed * kSmall >= kept->state_bytes()) found.reset(std::exchange(kept, nullptr));
     if (found && found->layout_ == layout) return found;
-    if (found) found->pixels_ = {};   // so that it is not kept again
+    if (found) ended = std::exchange(found->stores_, {});   // so that it is not kept again
     return nullptr;
 }
 
 Film::~Film() {
-    if (pixels_.empty()) return;   // moved from, or given up
-    std::unique_ptr<Film> before;  // destroyed after the lock, when another one is kept
+    if (of<Layer::sums>().empty()) return;   // moved from, or given up
+    std::unique_ptr<Film> before;   // both destroyed after the lock
+    Stores ended;
     const std::lock_guard lock(guard);
     if (keepers == 0 || (kept && kept->state_bytes() >= state_bytes())) return;
     before.reset(std::exchange(kept, new Film(std::move(*this))));
-    if (before) before->pixels_ = {};   // so that it is not kept in turn
-    if (kept->objects_) kept->objects_ = std::make_unique<CoverLists>(kept->pixels_.size());
+    if (before) ended = std::exchange(before->stores_, {});   // so that it is not kept in turn
+    kept->stores_.for_each([](const auto&, auto& store) { store.rest(); });
 }
 
 void Film::clear() {
-    reset(pixels_);
-    reset(aovs_);
-    reset(splats_);
-    reset(flare_);
-    reset(halves_);
-    reset(coverage_);
-    if (objects_) objects_ = std::make_unique<CoverLists>(pixels_.size());
-    reset(catchers_);
-    reset(row_locks_);
-    reset(bands_);
-    reset(channels_);
-    reset(channel_splats_);
-    reset(catcher_channels_);
+    stores_.for_each([](const auto&, auto& store) { store.clear(); });
+    std::ranges::fill(row_locks_, 0u);
 }
 
 }  // namespace dg

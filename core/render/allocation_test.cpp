@@ -84,12 +84,13 @@ std::vector<float> whole_render(double flare) {
     s.sensor = {8, 6, 24, 18, {0, 0}};
     s.threads = 2, s.sample_end = 2;
     if (flare == 0) s.light = {60, 60};
-    Film film(FilmLayout{.width = 8, .height = 6, .aovs = true, .splats = flare == 0, .flare = flare > 0,
-                         .coverage = true, .objects = true});
+    Film film(FilmLayout{.width = 8, .height = 6,
+                         .layers = {Layer::aovs, {Layer::splats, flare == 0}, {Layer::flare, flare > 0},
+                                    Layer::coverage, Layer::objects}});
     render(*scene, camera, film, s, nullptr);
-    const auto words = film.object_words();
+    const LayerState words = film.state("objects");
     Film other(film.layout());
-    other.set_object_words(words);
+    other.set_state("objects", words.bytes);
     other.merge(film);
     return other.mean_xyz();
 }

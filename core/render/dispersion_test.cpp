@@ -22,7 +22,7 @@ double largest_deviation(const Filter& filter, const std::vector<std::uint32_t>&
                          std::span<const std::uint32_t> told, const Shutter& shutter = {},
                          bool told_shutter = true) {
     const Sensor sensor{8, 6, 8, 6, {0, 0}};
-    const FilmLayout region{8, 6, 0, 0, false};
+    const FilmLayout region{8, 6, 0, 0};
     const FilmDensity density(filter, region, told, told_shutter ? &shutter : nullptr);
     const bool brightens = shutter.duration_s() > 0;
     const std::array<Vec2f, kWavelengths> shift{Vec2f{0, 0}, {0.7f, 0.2f}, {-0.5f, 0.4f}, {1.6f, -1.3f}};
@@ -107,7 +107,7 @@ TEST_CASE("wavelengths land on lines that are open then, in proportion to how fa
 
 TEST_CASE("without dispersion all four wavelengths keep the pixel and the plain weight") {
     const Sensor sensor{8, 6, 8, 6, {0, 0}};
-    const FilmLayout region{8, 6, 0, 0, false};
+    const FilmLayout region{8, 6, 0, 0};
     for (const FilterKind kind : {FilterKind::box, FilterKind::mitchell}) {
         const Filter filter(kind);
         const FilmDensity density(filter, region);
@@ -126,7 +126,7 @@ TEST_CASE("without dispersion all four wavelengths keep the pixel and the plain 
 
 TEST_CASE("a wavelength that the lens stops brings nothing and takes nothing") {
     const Sensor sensor{8, 6, 8, 6, {0, 0}};
-    const FilmLayout region{8, 6, 0, 0, false};
+    const FilmLayout region{8, 6, 0, 0};
     const Filter filter(FilterKind::box);
     const FilmDensity density(filter, region);
     const Hero hero{{4.4f, 3.3f}, {4, 3}, 0, 0.8f, 0.8f};

@@ -36,7 +36,7 @@ void add_emitter_passes(Passes& passes, const Picture& p, const DrawnSamples& dr
         need_exact(p.camera, "flare");
         auto guide = plan.guide ? plan.guide : std::make_shared<const FlareGuide>(aim_of(p), p.settings);
         aim = guide->shared_aim();
-        if (!guide->sheets().empty() && p.film.layout().bands > 0)
+        if (!guide->sheets().empty() && p.film.count_of(Layer::bands) > 0)
             throw input_error("render", "flare maps", "a film without bands, or no maps", "a film with bands");
         if (!guide->sheets().empty())
             passes.add(std::make_unique<SheetPass>(p, drawn.indices(), plan.per_sample, per_count, guide));

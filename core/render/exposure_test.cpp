@@ -38,7 +38,7 @@ std::vector<float> expose(const LensKind& lens, const ShutterSettings& shutter, 
     settings.filter = Filter(FilterKind::box);
     settings.shutter = Shutter(shutter, kWide, kHigh);
     settings.sample_end = std::uint32_t(spp);
-    Film film(FilmLayout{kWide, kHigh, 0, 0, false});
+    Film film(FilmLayout{kWide, kHigh, 0, 0});
     const Camera camera{Motion::keys(times, poses, Interpolation::decomposed), lens};
     render(*half_wall(path.y != 0), camera, film, settings, nullptr);
     const auto xyz = film.mean_xyz();

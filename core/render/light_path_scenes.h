@@ -59,7 +59,7 @@ inline Blocks draw(const Scene& scene, const Camera& camera, const Look& look, T
                                  : technique == Technique::camera ? look.camera_spp
                                                          : look.light_spp);
         if (technique != Technique::camera) s.light.m2 = look.m2;
-        Film film(FilmLayout{.width = kWidth, .height = kHeight, .splats = !s.light.off()});
+        Film film(FilmLayout{.width = kWidth, .height = kHeight, .layers = {{Layer::splats, !s.light.off()}}});
         render(scene, camera, film, s, nullptr);
         const auto xyz = film.mean_xyz();
         std::vector<double> blocks(std::size_t(kWidth / kBlock) * (kHeight / kBlock), 0);

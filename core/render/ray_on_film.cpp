@@ -39,7 +39,7 @@ RayOnFilm::RayOnFilm(const FilmDensity& density, const Sensor& sensor,
 }
 
 void RayOnFilm::splat(Film& film, Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
-                      std::uint32_t sample, Film::Layer layer) const {
+                      std::uint32_t sample, Layer layer) const {
     if (film_density_.filter().radius() <= kWideFilter) {
         splat_all(film, radiance * response(), wavelengths, sample, layer);
         return;
@@ -74,7 +74,7 @@ float RayOnFilm::spread() const {
 }
 
 void RayOnFilm::splat_all(Film& film, Spectrum light, const Wavelengths& wavelengths,
-                          std::uint32_t sample, Film::Layer layer) const {
+                          std::uint32_t sample, Layer layer) const {
     if (landings_.size() == 1) return splat_box(film, light, wavelengths, sample, layer, 0, 1);
     // By where they land in the frame: in whatever region of it, a pixel's sums have the same bits.
     const float most = kWidestBox - 1 - 2 * film_density_.filter().radius();
@@ -98,11 +98,11 @@ Footprint::Box RayOnFilm::box(std::size_t first, std::size_t last) const {
 
 /// Splats one wavelength by itself: the colour is the same in all pixels.
 void RayOnFilm::splat_color(Film& film, Spectrum light, const Wavelengths& wavelengths, std::uint32_t sample,
-                            Film::Layer layer, const Footprint& at) const {
+                            Layer layer, const Footprint& at) const {
     const Footprint::Box box = at.box();
     const std::size_t width = std::size_t(box.x1 - box.x0);
     const Vec3f xyz = wavelengths.to_xyz(light);
-    const bool seen = film.layout().channels > 0;
+    const bool seen = film.count_of(Layer::channels) > 0;
     const Spectrum sensor = seen ? film.responses().of(wavelengths, light) : Spectrum();
     std::array<Vec3f, kWidestBox> row;
     std::array<Spectrum, kWidestBox> channels;
@@ -118,7 +118,7 @@ void RayOnFilm::splat_color(Film& film, Spectrum light, const Wavelengths& wavel
 
 /// Splats landings [first, last), one value for each pixel.
 void RayOnFilm::splat_box(Film& film, Spectrum light, const Wavelengths& wavelengths,
-                          std::uint32_t sample, Film::Layer layer, std::size_t first,
+                          std::uint32_t sample, Layer layer, std::size_t first,
                           std::size_t last) const {
     const Footprint::Box all = box(first, last);
     const int width = all.x1 - all.x0, height = all.y1 - all.y0;
@@ -128,7 +128,7 @@ void RayOnFilm::splat_box(Film& film, Spectrum light, const Wavelengths& wavelen
         for (int x = 0; x < width; ++x) columns[x].set(int(i), at_[i]->column(all.x0 + x));
         for (int y = 0; y < height; ++y) rows[y].set(int(i), at_[i]->row(all.y0 + y));
     }
-    if (last - first == 1 && landings_.size() > 1 && film.layout().bands == 0 && film_density_.even()) {
+    if (last - first == 1 && landings_.size() > 1 && film.count_of(Layer::bands) == 0 && film_density_.even()) {
         Spectrum own{0.f};
         own.set(int(first), light[int(first)]);
         return splat_color(film, own, wavelengths, sample, layer, *at_[first]);

@@ -28,7 +28,7 @@ class RayOnFilm {
     /// Adds radiance x response to all pixels whose filter it reaches. Of a wide filter to one pixel per
     /// wavelength, chosen by its share with u in [0,1)^2: the same u for all, so that most are one value.
     void splat(Film& film, Spectrum radiance, const Wavelengths& wavelengths, Vec2f u,
-               std::uint32_t sample, Film::Layer layer = Film::Layer::splats) const;
+               std::uint32_t sample, Layer layer = Layer::splats) const;
 
     /// Light that comes to one pixel.
     struct Splat {
@@ -43,11 +43,11 @@ class RayOnFilm {
   private:
     Spectrum response() const;
     void splat_all(Film& film, Spectrum light, const Wavelengths& wavelengths,
-                   std::uint32_t sample, Film::Layer layer) const;
+                   std::uint32_t sample, Layer layer) const;
     void splat_color(Film& film, Spectrum light, const Wavelengths& wavelengths, std::uint32_t sample,
-                     Film::Layer layer, const Footprint& at) const;
+                     Layer layer, const Footprint& at) const;
     void splat_box(Film& film, Spectrum light, const Wavelengths& wavelengths, std::uint32_t sample,
-                   Film::Layer layer, std::size_t first, std::size_t last) const;
+                   Layer layer, std::size_t first, std::size_t last) const;
     Footprint::Box box(std::size_t first, std::size_t last) const;
     bool reaches(std::size_t landing) const { return at_[landing] && at_[landing]->total() > 0; }
 

@@ -13,7 +13,7 @@ using namespace dg;
 namespace {
 
 const Sensor kSensor{8, 6, 8, 6};   // 1 mm per px
-const FilmLayout kRegion{8, 6, 0, 0, false, true};
+const FilmLayout kRegion{8, 6, 0, 0, {Layer::splats}};
 
 Reprojection landing(Vec2f px, float response = 3) {
     return {kSensor.mm_from_px(px), 1, 1, 0.5f, response};
@@ -85,7 +85,7 @@ TEST_CASE("wavelengths land on film points of their own; those that are stopped 
     CHECK(luminance(3) == 0);
     const std::array out{landing({-5, 1}), landing({20, 1})};
     CHECK(RayOnFilm(density, kSensor, out, 0).off_frame());
-    const FilmLayout crop{2, 2, 0, 0, false, true};
+    const FilmLayout crop{2, 2, 0, 0, {Layer::splats}};
     const FilmDensity cropped(filter, crop);
     const std::array beside{landing({5, 5})};   // in the frame, but not in the crop
     CHECK_FALSE(RayOnFilm(cropped, kSensor, beside, 0).off_frame());

@@ -132,7 +132,7 @@ class CameraPass {
         std::optional<CameraFirstRay> first;
         if (!weight_.off()) first.emplace(weight_, camera_ray.ray, density_, settings_.sensor, landings);
         FirstHit hit;
-        FirstHit* const wanted = film_.layout().aovs ? &hit : nullptr;
+        FirstHit* const wanted = film_.count_of(Layer::aovs) ? &hit : nullptr;
         const Sight sight = look(scene_, ray, sample.wavelengths, sample.sampler, path_, wanted,
                                  &work.counters.rays, first ? &*first : nullptr);
         if (wanted) add_aov(sample, ray.time, hit);
@@ -150,12 +150,12 @@ class CameraPass {
     template <typename ToFilm>
     CameraLight arrived(const Sample& sample, const Sight& sight, Spectrum weight, const ToFilm& to_film) const {
         CameraLight all{.light = to_film(sight.light)};
-        if (film_.layout().catchers) all.with = to_film(sight.with), all.without = to_film(sight.without);
-        if (!film_.layout().coverage) return all;
+        if (film_.count_of(Layer::catchers)) all.with = to_film(sight.with), all.without = to_film(sight.without);
+        if (!film_.count_of(Layer::coverage)) return all;
         const Spectrum luminance = sample.wavelengths.d65 * sample.wavelengths.cie_y * weight;
         all.white = 4 * luminance.average();
         all.covered = all.white * sight.covers.sum();
-        if (film_.layout().objects) add_objects(all, sight.covers);
+        if (film_.count_of(Layer::objects)) add_objects(all, sight.covers);
         return all;
     }
 
@@ -215,9 +215,9 @@ class CameraPass {
 
 RenderCounters render(const Scene& scene, const Camera& camera, Film& film, const RenderSettings& settings,
                       const std::function<bool(double)>& progress) {
-    if (film.responses().count() != film.layout().channels)
+    if (film.responses().count() != film.count_of(Layer::channels))
         throw input_error("render", "film", "the responses of its channels", "none");
-    if (scene.has_catchers() && !(film.layout().catchers && settings.light.off()))
+    if (scene.has_catchers() && !(film.count_of(Layer::catchers) && settings.light.off()))
         throw Error("render: a scene with catchers needs a film with catchers, and no light paths");
     const DrawnSamples drawn(settings, film.layout());
     const FilmDensity density(settings.filter, drawn.region(), drawn.counts(), &settings.shutter);

@@ -19,13 +19,13 @@ RenderSettings small(std::uint32_t begin, std::uint32_t end) {
     return s;
 }
 
-FilmLayout layout() { return {.width = 20, .height = 14, .aovs = true, .splats = true, .coverage = true}; }
+FilmLayout layout() { return {.width = 20, .height = 14, .layers = {Layer::aovs, Layer::splats, Layer::coverage}}; }
 
 /// All words of a film's sums.
 std::vector<std::byte> bits(const Film& film) {
     std::vector<std::byte> all;
     for (const std::string& part : film.state_parts()) {
-        const auto words = film.state(part);
+        const auto words = film.state(part).bytes;
         all.insert(all.end(), words.begin(), words.end());
     }
     return all;
@@ -124,13 +124,13 @@ TEST_CASE("a white world is 1 in every pixel of a pinhole, and its light, depth 
 
 TEST_CASE("what cannot be drawn is refused in words") {
     const auto scene = lamp_scene();
-    Film film(FilmLayout{.width = 20, .height = 14, .flare = true});
+    Film film(FilmLayout{.width = 20, .height = 14, .layers = {Layer::flare}});
     RenderSettings s = small(0, 1);
     s.flare.per_sample = 10;
     CHECK_THROWS_WITH_AS(render(*scene, thin(), film, s, nullptr), doctest::Contains("flare"), Error);
     s.flare.per_sample = 0, s.scatter.per_sample = 10;
     CHECK_THROWS_WITH_AS(render(*scene, thin(), film, s, nullptr), doctest::Contains("scatter"), Error);
-    Film channels(FilmLayout{.width = 20, .height = 14, .channels = 3});
+    Film channels(FilmLayout{.width = 20, .height = 14, .layers = {{Layer::channels, 3}}});
     CHECK_THROWS_WITH_AS(render(*scene, thin(), channels, small(0, 1), nullptr), doctest::Contains("responses"),
                          Error);
 }

@@ -207,7 +207,7 @@ CASES = [
         Case(f"pass-{name}", make, error, command=MERGE)
         for name, make, error in (
             ("missing", lambda folder: folder / "none.exr", "^no such file"),
-            ("objects alone", _objects_alone, f"{D}: film: objects need coverage"),
+            ("objects alone", _objects_alone, f"{D}: film: objects: wanted coverage, got none"),
             ("pipe", _pipe, "not a regular file"),
             ("empty", _bytes(b""), "wanted an OpenEXR file"),
             ("text", _bytes(b"hello"), "wanted an OpenEXR file"),

@@ -5,6 +5,8 @@ from __future__ import annotations
 import copy
 import math
 import pickle
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -59,6 +61,70 @@ def test_a_film_has_the_channels_that_the_core_lists() -> None:
         film.aov("velocity")
     # Sums of each channel, and 16 bytes of counts and the object.
     assert film.state("aovs").shape == (2, 3, 4 * (len(_core.FILM_AOVS) + 1))
+
+
+def test_a_film_has_a_keyword_for_each_layer() -> None:
+    assert list(_core.FILM_LAYERS) == [
+        *("aovs", "splats", "flare", "halves", "coverage"),
+        *("catchers", "bands", "channels", "objects"),
+    ]
+    for name, (most, words) in _core.FILM_LAYERS.items():
+        needed = {"coverage": True} if name == "objects" else {}
+        asked = most if most > 1 else True
+        layout = _core.FilmLayout(width=3, height=2, **{name: asked}, **needed)
+        assert getattr(layout, name) == most
+        film = _core.Film(layout)
+        assert film.state_parts() == ["sums", *needed, name]
+        if name != "objects":
+            records = {"catchers": 2}.get(name, most)
+            assert film.state(name).shape == (2, 3, records * words)
+    with pytest.raises(TypeError):
+        _core.FilmLayout(splats=2)
+    with pytest.raises(AttributeError):
+        _core.FilmLayout(sums=True)
+
+
+def test_means_of_a_layer_are_read_by_its_name() -> None:
+    film = _core.Film(_core.FilmLayout(width=3, height=2, catchers=True, bands=5, coverage=True))
+    assert [film.means(name).shape[2] for name in ("sums", "catchers", "bands")] == [3, 6, 5]
+    with pytest.raises(_core.Error, match="wanted a layer of plain sums, got coverage"):
+        film.means("coverage")
+    with pytest.raises(_core.Error, match="wanted sums or coverage or catchers or bands, got 'x'"):
+        film.means("x")
+
+
+def test_words_of_a_state_have_its_shape() -> None:
+    layout = _core.FilmLayout(width=3, height=2, coverage=True, objects=True)
+    film = _core.Film(layout)
+    for part in film.state_parts():
+        words = np.array(film.state(part))
+        film.set_state(part, words)
+        for wrong in (words[:1], words[..., :-1], words.transpose(1, 0, 2)):
+            with pytest.raises(_core.Error, match=f"film state: {part}: wanted 2 rows of entries"):
+                film.set_state(part, np.ascontiguousarray(wrong))
+
+
+def test_a_film_is_refused_before_it_takes_memory() -> None:
+    program = """
+import resource
+from daguerre import _core
+for wrong in ({"objects": True}, {"bands": 65}, {"channels": 5}):
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    try:
+        _core.Film(_core.FilmLayout(width=1500, height=1000, **wrong))
+    except _core.Error as error:
+        print(error)
+    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+"""
+    found = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    ).stdout.splitlines()
+    assert found[::2] == [
+        "film: objects: wanted coverage, got none",
+        "film: bands: wanted 0 to 64, got 65",
+        "film: channels: wanted 0 to 4, got 5",
+    ]
+    assert max(int(kilobytes) for kilobytes in found[1::2]) < 5000  # the film would take 168 MB
 
 
 def test_truth_has_the_planes_that_the_core_lists() -> None:

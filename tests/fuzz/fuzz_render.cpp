@@ -58,9 +58,10 @@ void draw(FuzzInput& in) {
     s.path.max_depth = 1 + in.below(6);
     s.path.see_through = in.flag();
     if (in.flag()) s.light = {double(in.below(40)), double(in.below(40))};
-    FilmLayout layout{.width = width, .height = height, .offset_x = 0, .offset_y = 0};
-    layout.aovs = in.flag(), layout.coverage = true, layout.objects = in.flag();
-    layout.splats = !s.light.off(), layout.halves = in.flag(), layout.bands = in.flag() ? 4 : 0;
+    FilmLayout layout{.width = width, .height = height, .layers = {Layer::coverage}};
+    layout.layers[Layer::aovs] = in.flag(), layout.layers[Layer::objects] = in.flag();
+    layout.layers[Layer::splats] = !s.light.off(), layout.layers[Layer::halves] = in.flag();
+    layout.layers[Layer::bands] = in.flag() ? 4 : 0;
     Film film(layout);
     render(*scene, camera, film, s, nullptr);
     if (film.bad_sample_count()) {
@@ -71,13 +72,13 @@ void draw(FuzzInput& in) {
     }
     for (const float v : film.mean_xyz())
         if (!std::isfinite(v)) std::abort();
-    if (!layout.objects) return;
-    std::vector<std::uint32_t> words = film.object_words();
+    if (!layout.layers[Layer::objects]) return;
+    std::vector<std::uint32_t> words = film.state("objects").made;
     Film other(layout);
-    other.set_object_words(words);
-    if (other.object_words() != words) std::abort();
+    other.set_state("objects", std::as_bytes(std::span(words)));
+    if (other.state("objects").made != words) std::abort();
     for (int i = in.below(8); i > 0; --i) words[in.raw<std::uint16_t>() % words.size()] = in.raw<std::uint32_t>();
-    other.set_object_words(words);
+    other.set_state("objects", std::as_bytes(std::span(words)));
     const std::vector<std::uint32_t> ids{3, 5, 5};
     other.ranked(ids, 1 + in.below(4));
 }

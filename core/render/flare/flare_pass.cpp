@@ -89,7 +89,7 @@ void FlarePass::prefetch(const Workspace& work, std::size_t path) const {
         const Vec2f px = picture_.settings.sensor.px_from_mm(work.landings[k].film_mm);
         if (!(std::abs(px.x) < kFarthestPx && std::abs(px.y) < kFarthestPx)) continue;
         picture_.film.prefetch(int(std::floor(px.x - reach)), int(std::ceil(px.x + reach)), int(std::floor(px.y - reach)),
-                       int(std::ceil(px.y + reach)), Film::Layer::flare);
+                       int(std::ceil(px.y + reach)), Layer::flare);
     }
 }
 
@@ -101,7 +101,7 @@ void FlarePass::finish(Workspace& work, std::size_t index, std::span<const Repro
                                        work.samplers[index], work.counters.rays);
     if (light.is_black()) return;
     on_film.splat(picture_.film, light * float(1 / path.density), path.wavelengths, work.u_pixel[index],
-                  work.sample[index], Film::Layer::flare);
+                  work.sample[index], Layer::flare);
 }
 
 }  // namespace dg

@@ -133,10 +133,10 @@ TEST_CASE("a lens that reflects nothing has no flare") {
     Prescription lens = test::tessar();
     lens.coating = Coating::perfect;
     const auto scene = bright_scene();
-    Film film(FilmLayout{.width = kWidth, .height = kHeight, .flare = true});
+    Film film(FilmLayout{.width = kWidth, .height = kHeight, .layers = {Layer::flare}});
     const RenderCounters counters = draw_flare(*scene, camera_with(lens), film, settings(1, 1000));
     CHECK(counters.flare_paths == 0);
-    for (const float v : film.flare_xyz()) CHECK(v == 0);
+    for (const float v : film.means("flare")) CHECK(v == 0);
 }
 
 TEST_CASE("ghosts of lights without size are the limit of small lamps") {
@@ -192,14 +192,14 @@ TEST_CASE("flare has the same bits on any number of threads, and ranges of sampl
         s.threads = threads, s.sample_begin = begin, s.sample_end = end;
         draw_flare(*scene, camera, film, s);
     };
-    check_same_bits({.width = kWidth, .height = kHeight, .flare = true}, drawn);
+    check_same_bits({.width = kWidth, .height = kHeight, .layers = {Layer::flare}}, drawn);
 }
 
 TEST_CASE("most rays of the sun's ghosts come to the film") {
     SceneDescription d;
     d.lights = {DirectionalLight{-normalize(Vec3f{0.08f, 0.1f, -1}), {1e5f, 1e5f, 1e5f}}};
     const auto scene = Scene::build(std::move(d));
-    Film film(FilmLayout{.width = kWidth, .height = kHeight, .flare = true});
+    Film film(FilmLayout{.width = kWidth, .height = kHeight, .layers = {Layer::flare}});
     RenderSettings s = settings(1, 200000);
     s.flare.maps = false;
     const RenderCounters c = draw_flare(*scene, camera_with(test::wide_angle()), film, s);

@@ -51,9 +51,9 @@ inline Blocks forward(const Scene& scene, const Camera& camera, int pictures, do
     s.flare.guide = std::make_shared<const FlareGuide>(std::make_shared<const FlareAim>(scene, camera, s), s);
     for (int k = 0; k < pictures; ++k) {
         s.seed = std::uint64_t(k) + 1;
-        Film film(FilmLayout{.width = kWidth, .height = kHeight, .flare = true});
+        Film film(FilmLayout{.width = kWidth, .height = kHeight, .layers = {Layer::flare}});
         draw_flare(scene, camera, film, s);
-        all.push_back(by_blocks(film.flare_xyz()));
+        all.push_back(by_blocks(film.means("flare")));
     }
     return all;
 }
@@ -171,18 +171,18 @@ void check_same_bits(const FilmLayout& layout, const Drawn& drawn) {
     Film one(layout), four(layout), first(layout), second(layout);
     drawn(1, 0, 5, one), drawn(4, 0, 5, four), drawn(2, 0, 2, first), drawn(3, 2, 5, second);
     first.merge(second);
-    for (const Film* other : {&four, &first}) CHECK(std::ranges::equal(one.state("flare"), other->state("flare")));
+    for (const Film* other : {&four, &first}) CHECK(std::ranges::equal(one.state("flare").bytes, other->state("flare").bytes));
 }
 
 /// The same of a part of the frame of wide_settings().
 template <typename Drawn>
 void check_crop(const Drawn& drawn) {
-    Film one(FilmLayout{.width = kWide, .height = kHigh, .flare = true});
+    Film one(FilmLayout{.width = kWide, .height = kHigh, .layers = {Layer::flare}});
     drawn(1, 0, 5, one);
-    const FilmLayout part{.width = 40, .height = 30, .offset_x = 60, .offset_y = 50, .flare = true};
+    const FilmLayout part{.width = 40, .height = 30, .offset_x = 60, .offset_y = 50, .layers = {Layer::flare}};
     Film crop(part);
     drawn(2, 0, 5, crop);
-    const std::vector<float> all = one.flare_xyz(), own = crop.flare_xyz();
+    const std::vector<float> all = one.means("flare"), own = crop.means("flare");
     for (int y = 0; y < part.height; ++y)
         for (int x = 0; x < part.width; ++x)
             CHECK(own[3 * (std::size_t(y) * part.width + x) + 1] ==

@@ -15,13 +15,13 @@ constexpr double kBright = 32;          // times a usual path: a bright one
 }  // namespace
 
 bool ScatterNodes::serve(const Picture& picture, const ScatterGuide& guide) {
-    return picture.settings.scatter.nodes && guide.light() > 0 && picture.film.layout().bands == 0 &&
+    return picture.settings.scatter.nodes && guide.light() > 0 && picture.film.count_of(Layer::bands) == 0 &&
            picture.settings.filter.variance() <= CoarseLight::kWidestFilter;
 }
 
 ScatterNodes::ScatterNodes(const Picture& picture, const ScatterGuide& guide)
     : picture_(picture), px2_per_mm2_(float(1 / picture.settings.sensor.mm2_per_px())),
-      exposure_(picture.density.integral() * px2_per_mm2_), values_(3 + picture.film.layout().channels) {
+      exposure_(picture.density.integral() * px2_per_mm2_), values_(3 + picture.film.count_of(Layer::channels)) {
     const Sensor& sensor = picture.settings.sensor;
     most_ = std::min(CoarseLight::widest(sensor), CoarseLight::variance(CoarseLight::kMostLevel));
     const double all = guide.light() * px2_per_mm2_, mean = all / sensor.width / sensor.height;
@@ -80,7 +80,7 @@ void ScatterNodes::add(Work& work, const Places& places, const Wavelengths& wave
         own.set(place.wavelength, light[place.wavelength] * place.light);
         const Vec3f xyz = wavelengths.to_xyz(own);
         if (!fits_film(xyz.x) || !fits_film(xyz.y) || !fits_film(xyz.z)) {
-            film.splat(int(std::floor(place.px.x)), int(std::floor(place.px.y)), sample, xyz, Film::Layer::flare);
+            film.splat_row(int(std::floor(place.px.x)), int(std::floor(place.px.y)), sample, std::span(&xyz, 1), Layer::flare);
             continue;
         }
         FilmColor color{xyz.x, xyz.y, xyz.z};

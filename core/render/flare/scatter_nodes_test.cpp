@@ -36,9 +36,9 @@ Blocks pictures(const Scene& scene, const Camera& camera, int count, double path
                                                            camera, s);
     for (int k = 0; k < count; ++k) {
         s.seed = std::uint64_t(k) + (nodes ? 1 : 101);
-        Film film(FilmLayout{.width = kWide, .height = kHigh, .flare = true});
+        Film film(FilmLayout{.width = kWide, .height = kHigh, .layers = {Layer::flare}});
         render(scene, camera, film, s, nullptr);
-        all.push_back(blocks_of(film.flare_xyz()));
+        all.push_back(blocks_of(film.means("flare")));
     }
     return all;
 }
@@ -65,9 +65,9 @@ TEST_CASE("nodes keep the peak that glass leaves about the image of a light") {
         camera.scatter.surface_lobe.knee = knee;
         // The same paths, with and without nodes: the brightest square of 4 x 4 pixels.
         const auto peak = [&](bool nodes) {
-            Film film(FilmLayout{.width = kWide, .height = kHigh, .flare = true});
+            Film film(FilmLayout{.width = kWide, .height = kHigh, .layers = {Layer::flare}});
             render(*scene, camera, film, node_settings(1, 40000, nodes), nullptr);
-            const std::vector<float> xyz = film.flare_xyz();
+            const std::vector<float> xyz = film.means("flare");
             double most = 0;
             for (int y = 0; y + 4 <= kHigh; ++y)
                 for (int x = 0; x + 4 <= kWide; ++x) {
@@ -91,7 +91,7 @@ TEST_CASE("scatter on nodes has the same bits on any number of threads, in range
             s.threads = threads, s.sample_begin = begin, s.sample_end = end;
             render(*scene, camera, film, s, nullptr);
         };
-        check_same_bits({.width = kWide, .height = kHigh, .flare = true}, drawn);
+        check_same_bits({.width = kWide, .height = kHigh, .layers = {Layer::flare}}, drawn);
         check_crop(drawn);
     }
 }
@@ -107,11 +107,11 @@ TEST_CASE("the film knows the variance of scatter on nodes") {
     double told = 0, found = 0;
     for (int k = 0; k < kPictures; ++k) {
         s.seed = std::uint64_t(k) + 1;
-        Film film(FilmLayout{.width = kWide, .height = kHigh, .flare = true});
+        Film film(FilmLayout{.width = kWide, .height = kHigh, .layers = {Layer::flare}});
         for (int y = 0; y < kHigh; ++y)
             for (int x = 0; x < kWide; ++x) film.count(x, y);
         render(*scene, camera, film, s, nullptr);
-        const std::vector<float> xyz = film.flare_xyz(), variance = film.variance_rgb();
+        const std::vector<float> xyz = film.means("flare"), variance = film.variance_rgb();
         for (std::size_t i = 0; i < sum.size(); ++i) {
             const double g = rgb_from_xyz({xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]}).y;
             sum[i] += g, squares[i] += g * g;
@@ -129,9 +129,9 @@ TEST_CASE("where nodes cannot serve, paths bring light to their own pixels") {
     const auto drawn = [&](bool nodes, const Filter& filter, int bands) {
         RenderSettings s = node_settings(5, 3000, nodes);
         s.filter = filter;
-        Film film(FilmLayout{.width = kWide, .height = kHigh, .flare = true, .bands = bands});
+        Film film(FilmLayout{.width = kWide, .height = kHigh, .layers = {Layer::flare, {Layer::bands, bands}}});
         render(*scene, camera, film, s, nullptr);
-        return film.flare_xyz();
+        return film.means("flare");
     };
     const Filter usual, wide(FilterKind::gaussian, 6);
     CHECK(drawn(true, usual, 0) != drawn(false, usual, 0));

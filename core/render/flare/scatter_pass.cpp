@@ -47,7 +47,7 @@ void ScatterPass::draw_one(Workspace& work, std::uint64_t index) const {
     const auto sample = std::uint32_t(double(index) / picture_.settings.scatter.per_sample);
     if (places.count > 0) nodes_->add(work.arrivals, places, path->wavelengths, light, sample);
     if (on_pixels.in_reach())
-        on_pixels.splat(picture_.film, light, path->wavelengths, u_pixel, sample, Film::Layer::flare);
+        on_pixels.splat(picture_.film, light, path->wavelengths, u_pixel, sample, Layer::flare);
 }
 
 }  // namespace dg

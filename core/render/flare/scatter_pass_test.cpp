@@ -46,9 +46,9 @@ Blocks from_emitters(const Scene& scene, const Camera& camera, int pictures, dou
     s.scatter.guide = std::make_shared<const ScatterGuide>(aim, scene, camera, s);
     for (int k = 0; k < pictures; ++k) {
         s.seed = std::uint64_t(k) + 1;
-        Film film(FilmLayout{.width = kWidth, .height = kHeight, .flare = true});
+        Film film(FilmLayout{.width = kWidth, .height = kHeight, .layers = {Layer::flare}});
         render(scene, camera, film, s, nullptr);
-        all.push_back(by_blocks(film.flare_xyz()));
+        all.push_back(by_blocks(film.means("flare")));
     }
     return all;
 }
@@ -133,11 +133,11 @@ TEST_CASE("what a white wall sends to the lens is scattered as if the wall shone
 
 TEST_CASE("a lens whose parts are black and smooth scatters nothing") {
     const auto scene = bright_scene();
-    Film film(FilmLayout{.width = kWidth, .height = kHeight, .flare = true});
+    Film film(FilmLayout{.width = kWidth, .height = kHeight, .layers = {Layer::flare}});
     const RenderCounters c =
         render(*scene, scattering(test::tessar(), {kBlack, kBlack, 0}), film, scatter_settings(1, 1000), nullptr);
     CHECK(c.scatter_paths == 0);
-    for (const float v : film.flare_xyz()) CHECK(v == 0);
+    for (const float v : film.means("flare")) CHECK(v == 0);
 }
 
 TEST_CASE("scattered light of a light without size is the limit of that of a small lamp") {
@@ -164,5 +164,5 @@ TEST_CASE("scatter has the same bits on any number of threads, and ranges of sam
         s.threads = threads, s.sample_begin = begin, s.sample_end = end;
         render(*scene, camera, film, s, nullptr);
     };
-    check_same_bits({.width = kWidth, .height = kHeight, .flare = true}, drawn);
+    check_same_bits({.width = kWidth, .height = kHeight, .layers = {Layer::flare}}, drawn);
 }

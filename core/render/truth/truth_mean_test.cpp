@@ -10,7 +10,7 @@ namespace dg {
 namespace {
 
 const Sensor kSensor{40, 30, 36, 27};   // px of 0.9 mm
-const FilmLayout kAll{kSensor.width, kSensor.height, 0, 0, false};
+const FilmLayout kAll{kSensor.width, kSensor.height, 0, 0};
 constexpr double kPixels = 50 / 0.9;    // film distance of the 50 mm lens, px
 constexpr double kRadius = 0.0125;      // of the iris, m: 50 mm at f/2
 constexpr double kFocus = 0.25;         // m

@@ -11,7 +11,7 @@ namespace dg {
 namespace {
 
 const Sensor kSensor{40, 30, 36, 27};  // px of 0.9 mm
-const FilmLayout kAll{kSensor.width, kSensor.height, 0, 0, false};
+const FilmLayout kAll{kSensor.width, kSensor.height, 0, 0};
 constexpr double kPixels = 50 / 0.9;   // film distance of the 50 mm lens, px
 
 /// A square of half side `half`, turned about x by `degrees`.

@@ -67,7 +67,7 @@ struct World {
     }
 };
 
-const FilmLayout kAll{kSensor.width, kSensor.height, 0, 0, false};
+const FilmLayout kAll{kSensor.width, kSensor.height, 0, 0};
 
 Vec2d centre(std::size_t i) {
     return {double(i % kSensor.width) + 0.5, double(i / kSensor.width) + 0.5};

@@ -10,17 +10,15 @@ from typing import Any
 
 from daguerre.errors import InputError, MismatchError, core_errors
 from daguerre.frame.frame import Frame
-from daguerre.sensors.bands import MOST_BANDS, MOST_CHANNELS
 
 from .film_frame import OBJECTS, frame_of, set_film_state
-from .passes import Pass, State, check_key, read_pass
+from .passes import Pass, check_key, read_pass
 from .ranges import Range, join_ranges
 
 #: Metadata that set the brightness and white of a picture, and not its light.
 _EXPOSURE = (
     "exposure", "isoSpeed", "exposure_compensation", "luminance_exposure", "white_balance"
 )  # fmt: skip
-BAND_WORDS = 4  # of 32 bits: a sum
 
 
 def merge(
@@ -78,7 +76,7 @@ def merge(
         "bad_sample_places": [list(place) for place in total.bad_samples],
     }
     state = {part: total.state(part) for part in total.state_parts()}
-    frame = frame_of(total, metadata, aovs=aovs and _has_aovs(state))
+    frame = frame_of(total, metadata, aovs=aovs and "aovs" in state)
     return frame, Pass(state, merged, first.key, metadata, truth=first.truth, notes=tuple(notes))
 
 
@@ -101,21 +99,17 @@ def _truth_facts(one: Pass) -> dict[str, Any]:
 
 def film_of(one: Pass) -> Any:
     """Makes a film of the core with the sums of a pass."""
-    from daguerre._core import Film, FilmLayout
+    from daguerre._core import FILM_LAYERS, Film, FilmLayout
 
     if not one.state.keys() - {OBJECTS}:
         raise InputError(f"{one.path}: damaged pass file: it has no sums")
     height, width = next(w for part, w in one.state.items() if part != OBJECTS).shape[:2]
     x0, y0 = (one.metadata.get("crop") or (0, 0))[:2]
     layout = FilmLayout(width=width, height=height, offset_x=int(x0), offset_y=int(y0))
-    layout.aovs = _has_aovs(one.state)
-    layout.splats, layout.flare = "splats" in one.state, "flare" in one.state
-    for part in ("halves", "coverage", "objects", "catchers"):
-        setattr(layout, part, part in one.state)
-    if "bands" in one.state:
-        layout.bands = min(one.state["bands"].shape[2] // BAND_WORDS, MOST_BANDS)
-    if "channels" in one.state:
-        layout.channels = min(one.state["channels"].shape[2] // BAND_WORDS, MOST_CHANNELS)
+    for part, (most, words) in FILM_LAYERS.items():
+        if part in one.state:
+            count = min(one.state[part].shape[2] // words, most) if most > 1 else True
+            setattr(layout, part, count)
     with core_errors(InputError, f"{one.path}: damaged pass file"):
         film = Film(layout)
     set_film_state(film, one.state, str(one.path))
@@ -131,7 +125,3 @@ def _check_overlap(seen: list[tuple[Range, Path | None]], one: Pass) -> None:
                     f"{one.path}: samples {low}:{high} are also in {path}; "
                     "each sample may be added once"
                 )
-
-
-def _has_aovs(state: State) -> bool:
-    return "aovs" in state

@@ -10,11 +10,11 @@ namespace {
 
 constexpr int kWide = 96, kHigh = 80;
 constexpr double kFilter = 0.15;   // px2
-const FilmLayout kFrame{.width = kWide, .height = kHigh, .flare = true};
+const FilmLayout kFrame{.width = kWide, .height = kHigh, .layers = {Layer::flare}};
 
 struct Drawn {
     Film film;
-    explicit Drawn(FilmLayout layout = {.width = kWide, .height = kHigh, .flare = true}) : film(layout) {
+    explicit Drawn(FilmLayout layout = {.width = kWide, .height = kHigh, .layers = {Layer::flare}}) : film(layout) {
         for (int y = layout.offset_y; y < layout.offset_y + layout.height; ++y)
             for (int x = layout.offset_x; x < layout.offset_x + layout.width; ++x) film.count(x, y);
     }
@@ -25,7 +25,7 @@ struct Drawn {
     }
     float y(int px, int py) const {
         const FilmLayout& l = film.layout();
-        return film.flare_xyz()[3 * (std::size_t(py - l.offset_y) * l.width + px - l.offset_x) + 1];
+        return film.means("flare")[3 * (std::size_t(py - l.offset_y) * l.width + px - l.offset_x) + 1];
     }
 };
 
@@ -76,11 +76,11 @@ TEST_CASE("even light on coarse nodes is even on pixels") {
             light.add({&one, 1});
         }
     Drawn drawn;
-    drawn.film = Film({.width = kWide, .height = kHigh, .flare = true, .channels = 2});
+    drawn.film = Film({.width = kWide, .height = kHigh, .layers = {Layer::flare, {Layer::channels, 2}}});
     drawn.take(light);
     for (int y = 0; y < kHigh; ++y)
         for (int x = 0; x < kWide; ++x) drawn.film.count(x, y);
-    for (const float v : drawn.film.flare_xyz()) CHECK(v == doctest::Approx(0.2).epsilon(1e-5));
+    for (const float v : drawn.film.means("flare")) CHECK(v == doctest::Approx(0.2).epsilon(1e-5));
     const std::vector<float> channels = drawn.film.mean_channels();
     CHECK(channels[100] == doctest::Approx(0.1).epsilon(1e-5));
     CHECK(channels[101] == doctest::Approx(0.3).epsilon(1e-5));
@@ -91,16 +91,16 @@ TEST_CASE("coarse light has the same bits in parts, in any order, and in a crop"
         backward(kFrame, 3, 2, 1e-4, kFilter);
     scatter(whole, 0, 500), scatter(first, 0, 200), scatter(second, 200, 500);
     scatter(backward, 200, 500), scatter(backward, 0, 200);
-    const FilmLayout part{.width = 20, .height = 12, .offset_x = 31, .offset_y = 17, .flare = true};
+    const FilmLayout part{.width = 20, .height = 12, .offset_x = 31, .offset_y = 17, .layers = {Layer::flare}};
     CoarseLight cut(part, 3, 2, 1e-4, kFilter);
     scatter(cut, 0, 500);
     Drawn one, apart, turned, crop(part);
     one.take(whole), apart.take(first), apart.take(second), turned.take(backward), crop.take(cut);
-    CHECK(one.film.flare_xyz() == apart.film.flare_xyz());
-    CHECK(one.film.flare_xyz() == turned.film.flare_xyz());
+    CHECK(one.film.means("flare") == apart.film.means("flare"));
+    CHECK(one.film.means("flare") == turned.film.means("flare"));
     for (const char* name : {"flare"}) {
-        CHECK(std::ranges::equal(one.film.state(name), apart.film.state(name)));
-        CHECK(std::ranges::equal(one.film.state(name), turned.film.state(name)));
+        CHECK(std::ranges::equal(one.film.state(name).bytes, apart.film.state(name).bytes));
+        CHECK(std::ranges::equal(one.film.state(name).bytes, turned.film.state(name).bytes));
     }
     for (int y = part.offset_y; y < part.offset_y + part.height; ++y)
         for (int x = part.offset_x; x < part.offset_x + part.width; ++x) CHECK(crop.y(x, y) == one.y(x, y));

@@ -18,9 +18,9 @@ Blocks pictures(const Scene& scene, const Camera& camera, int count, double path
     CHECK(s.flare.guide->sheets().empty() == !maps);
     for (int k = 0; k < count; ++k) {
         s.seed = std::uint64_t(k) + 1;
-        Film film(FilmLayout{.width = kWide, .height = kHigh, .flare = true});
+        Film film(FilmLayout{.width = kWide, .height = kHigh, .layers = {Layer::flare}});
         draw_flare(scene, camera, film, s);
-        all.push_back(blocks_of(film.flare_xyz()));
+        all.push_back(blocks_of(film.means("flare")));
     }
     return all;
 }
@@ -117,7 +117,7 @@ TEST_CASE("maps have the same bits on any number of threads, and ranges of sampl
         s.threads = threads, s.sample_begin = begin, s.sample_end = end;
         draw_flare(*scene, camera, film, s);
     };
-    check_same_bits({.width = kWide, .height = kHigh, .flare = true}, drawn);
+    check_same_bits({.width = kWide, .height = kHigh, .layers = {Layer::flare}}, drawn);
     check_crop(drawn);
 }
 
