@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 
 import daguerre as dg
+from daguerre import _core
 from daguerre.setup.camera import set_up
+from daguerre.setup.scene import build
 
 SIZE = (36, 24)
 FOCAL, FOCUS, INDEX = 25.0, 1.5, 1.5168
@@ -83,6 +85,27 @@ def slope() -> list[float]:
     return [float(found.min()), float(found.max())]
 
 
+def bright() -> list[float]:
+    """Y of bright samples: under dim and bright skies, of a merged film, and of a saved one."""
+    found = []
+    for luminance in (0.5, 2.0):
+        scene = dg.Scene()
+        scene.set_environment(color=(luminance,) * 3)
+        core = _core.RenderSettings()
+        core.resolution, core.sensor_size_mm, core.threads = SIZE, (36.0, 24.0), 1
+        layout = _core.FilmLayout(width=SIZE[0], height=SIZE[1], bright=True)
+        films = _core.Film(layout), _core.Film(layout), _core.Film(layout)
+        camera = set_up(scene, dg.Camera(), SIZE, None).core
+        for film, samples in zip(films, ((0, 8), (8, 16), (0, 16)), strict=False):
+            _core.render(build(scene), camera, film, core, *samples)
+        films[0].merge(films[1])
+        found.append(float(films[2].means("bright")[..., 1].mean()))
+    again = _core.Film(layout)
+    again.set_state("sums", np.array(films[2].state("sums")))
+    again.set_state("bright", np.array(films[2].state("bright")))
+    return [*found, *(float(film.means("bright")[..., 1].mean()) for film in (films[0], again))]
+
+
 def albedos() -> list[float]:
     """Light of a rough matte plane under an even sky, seen from 0 and from 60 degrees."""
     found = []
@@ -130,6 +153,7 @@ if __name__ == "__main__":
                 "still": techniques(singlet()),
                 "focusing": techniques(singlet(focus_distance=pull, shutter_time=0.5)),
                 "slope": slope(),
+                "bright": bright(),
                 "albedos": albedos(),
                 "rough_diffuse_refusal": rough_diffuse_refusal(),
                 "refusal": refusal(),

@@ -1,4 +1,4 @@
-"""The diffs of examples/ that add a kind of camera, a BSDF and a channel: short, and right."""
+"""The diffs of examples/ that add a camera, a BSDF, a channel and a layer: short, and right."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-MOST = {"camera_kind": 4, "bsdf": 9, "aov": 2}  # files
+MOST = {"camera_kind": 4, "bsdf": 9, "aov": 2, "film_layer": 3}  # files
 
 pytestmark = pytest.mark.skipif(shutil.which("git") is None, reason="git applies the diffs")
 
@@ -151,3 +151,12 @@ def test_a_rough_matte_plane_has_the_albedo_of_its_formula(measured: Any) -> Non
 @pytest.mark.xdist_group("patched core")
 def test_a_surface_that_passes_light_has_no_roughness(measured: Any) -> None:
     assert "roughness: wanted a number from 0 to 0, got 1" in measured["rough_diffuse_refusal"]
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("patched core")
+def test_a_layer_of_bright_samples_holds_them(measured: Any) -> None:
+    dim, bright, merged, saved = measured["bright"]
+    assert dim == 0
+    assert bright == pytest.approx(2, rel=0.02)
+    assert merged == saved == bright
