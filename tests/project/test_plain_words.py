@@ -25,7 +25,6 @@ LEFT = {
     "core/math",
     "core/medium",
     "core/motion",
-    "core/optics",
     "core/post",
     "core/render",
     "core/scene",

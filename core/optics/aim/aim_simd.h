@@ -1,30 +1,29 @@
-// aim_simd.h -- the aim on batches of rays, beside the trace of trace_simd.h. What it does is pupil.h; tests hold
-// them equal on every target.
+// aim_simd.h -- aimed rays (pupil.h) in batches, for the kernels of trace_simd.h. Tests compare
+// them with the scalar version on every instruction set.
 #pragma once
 #include "optics/aim/aim_tables.h"
 #include "optics/trace/trace_simd.h"
 
 namespace dg {
 
-/// Samples that the guided sampler starts from: film point, lens sample, wavelength.
+/// Input of the aimed sampler: film point (mm), two uniform numbers, wavelength (nm).
 struct alignas(64) LensSamples {
     float x[kLensBatch], y[kLensBatch], u[kLensBatch], v[kLensBatch], nm[kLensBatch];
 };
 
-/// Draws rays by the aim (pupil.h) and traces them. `aim` receives A' J / (1+m^2)^2
-/// (mm^2/mm^2: radiance to film irradiance) of every ray, `slopes` (if any) what was
-/// traced.
+/// Samples rays with the aim (pupil.h) and traces them. `aim` receives the weight A' J / (1+m^2)^2
+/// of each ray (mm^2/mm^2, from radiance to film irradiance); `slopes`, if not null, receives the
+/// film rays.
 void guided_rays(const LensTables& lens, const AimTables& aim, const LensSamples& in,
                  SceneRays& out, float* aim_weight, FilmRays* slopes, int count);
-/// The same rays as they leave the film, not traced.
+/// Samples the same rays without tracing them.
 void aimed_rays(const LensTables& lens, const AimTables& aim, const LensSamples& in, FilmRays& out,
                 float* aim_weight, int count);
-/// The same weight for given film rays whose iris points are known: as if the aim had
-/// drawn them.
+/// Weights that the aim would give to film rays with known iris points.
 void aim_weights(const LensTables& lens, const AimTables& aim, const FilmRays& rays,
                  const SceneRays& traced, float* aim_weight, int count);
-/// Film slopes of given points of the iris (in.u, in.v: mm, meridional frame) with the
-/// aim's Jacobian.
+/// Film slopes toward given iris points (in.u, in.v: mm, meridional frame), and the Jacobian of the
+/// map.
 void aim_slopes(const LensTables& lens, const AimTables& aim, const LensSamples& in,
                 FilmRays& out, float* jacobian, int count);
 

@@ -10,9 +10,9 @@
 namespace dg {
 namespace {
 
-constexpr int kSide = 13;  // nodes a side
+constexpr int kSide = 13;  // grid nodes per side
 
-/// Solution for v of a 2 x 2 matrix with columns x, y.
+/// Solves the 2 x 2 system with matrix columns x, y for the right-hand side v.
 Vec2d solve2(Vec2d x, Vec2d y, Vec2d v) {
     const double det = x.x * y.y - y.x * x.y;
     return {(v.x * y.y - y.x * v.y) / det, (x.x * v.y - v.x * x.y) / det};
@@ -29,7 +29,7 @@ std::optional<Vec2d> ChiefMap::iris(Vec2d film, Vec2d m) const {
                            1e6);
 }
 
-/// Newton's method to the middle of the iris; steps that lose the ray are halved.
+/// Newton's method to the centre of the iris; halves steps that lose the ray.
 ChiefMap::Local ChiefMap::solve(Vec2d film, Vec2d start) const {
     constexpr double h = 1e-5;
     Local local{start};
@@ -65,7 +65,7 @@ ChiefMap::ChiefMap(const Tracer& tracer, const FilmPlane& plane, const FilmRecta
       film_(film),
       index_(tracer.at(kDesignWavelength)),
       nodes_(kSide * kSide) {
-    // From the middle outward, each node from its nearest neighbour that is done.
+    // Solve nodes outward from the centre, each starting from its nearest solved neighbour.
     std::vector<int> order(nodes_.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [](int a, int b) {
@@ -82,11 +82,11 @@ ChiefMap::ChiefMap(const Tracer& tracer, const FilmPlane& plane, const FilmRecta
                 nearest = k;
         if (nearest >= 0) start = nodes_[nearest].at(node(i) - node(nearest), {});
         nodes_[i] = solve(node(i), start);
-        if (nearest < 0 && !nodes_[i].ok)  // a glass before the film is no place to aim at
+        if (nearest < 0 && !nodes_[i].ok)  // a cover glass gives no start; use the exit pupil
             nodes_[i] = solve(node(i), toward(first_order(tracer.prescription()).exit_pupil_z));
         if (nodes_[i].ok) {
             done.push_back(i);
-        } else if (nearest >= 0) {   // in the dark: as its neighbour sees it
+        } else if (nearest >= 0) {   // dark node: extrapolate from the neighbour
             nodes_[i] = nodes_[nearest];
             nodes_[i].chief = start, nodes_[i].ok = false;
         }
@@ -100,7 +100,7 @@ ChiefMap::ChiefMap(const Tracer& tracer, const FilmPlane& plane, const FilmRecta
 Vec2d ChiefMap::slope(Vec2d film, Vec2d iris) const {
     const auto place = [](double u) {
         const double at = 0.5 * (u + 1) * (kSide - 1);
-        return at > 0 ? std::min(at, kSide - 1.0) : 0.0;  // NaN is nowhere
+        return at > 0 ? std::min(at, kSide - 1.0) : 0.0;  // NaN maps to 0
     };
     const double px = place(film.x), py = place(film.y);
     const int x = std::min(int(px), kSide - 2), y = std::min(int(py), kSide - 2);

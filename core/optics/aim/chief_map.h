@@ -1,5 +1,5 @@
-// chief_map.h -- for a lens without symmetry: the film slopes that lead to given points of the iris, to
-// first order about the chief rays of a grid of film points. Where searches begin; nothing is exact here.
+// chief_map.h -- first-order map from iris points to film slopes about the chief rays of a grid of
+// film points, for lenses without symmetry. Used as a starting point for searches only.
 #pragma once
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace dg {
 
-/// The part of the film that is asked for, in the film's coordinates, mm.
+/// Used part of the film in film coordinates, mm.
 struct FilmRectangle {
     Vec2d center{}, half{};
 
@@ -17,15 +17,16 @@ struct FilmRectangle {
 
 class ChiefMap {
   public:
-    /// Mounts do not count. Error if no ray leads from the film's centre to the iris.
+    /// Ignores clear apertures. Throws Error if no ray leads from the film's centre to the iris.
     ChiefMap(const Tracer& tracer, const FilmPlane& plane, const FilmRectangle& film);
 
-    /// Slope at a film point (unit coordinates of the rectangle) toward an iris point, mm.
+    /// Slope at a film point (unit coordinates of the rectangle) toward an iris point in mm.
     Vec2d slope(Vec2d film, Vec2d iris) const;
 
   private:
     struct Local {
-        Vec2d chief{}, film_x{}, film_y{}, iris_x{}, iris_y{};  // m and its derivatives, unit film, mm
+        Vec2d chief{}, film_x{}, film_y{}, iris_x{}, iris_y{};  // m, and its derivatives by unit film coordinates
+                                                                // and by mm on the iris
         bool ok = false;
 
         Vec2d at(Vec2d film, Vec2d iris) const {

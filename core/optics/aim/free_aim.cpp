@@ -42,8 +42,8 @@ class FreeAimMaker {
     FilmPlane plane_;
     FilmRectangle film_;
     ChiefMap chief_;
-    LensTables open_, real_;  // without the iris; with it
-    double outer_;            // mm, radius around the enlarged iris
+    LensTables open_, real_;  // without the iris; with the iris
+    double outer_;            // mm, radius of the enlarged iris
     std::vector<Columns> columns_;
     std::vector<bool> jacobian_ok_;
     Aim aim_;
@@ -96,7 +96,7 @@ std::array<int, 4> FreeAimMaker::corners(int cell) {
     return {first, first + 1, first + kNodes, first + kNodes + 1};
 }
 
-/// Whether any of the cell lies within the film radius.
+/// Whether a cell overlaps the disc of the film radius.
 bool FreeAimMaker::used(int cell) const {
     const std::array<int, 4> at = corners(cell);
     const Vec2d a = film_.at(node(at[0])), b = film_.at(node(at[3]));
@@ -104,7 +104,7 @@ bool FreeAimMaker::used(int cell) const {
     return hypot(x, y) <= request_.film_radius;
 }
 
-/// Rays over the film and somewhat more than the iris, traced to the stop.
+/// Rays from all over the film through a slightly enlarged iris, traced to the stop.
 std::vector<FreeSlopeSample> FreeAimMaker::training(int count, int first) const {
     std::vector<FreeSlopeSample> samples;
     for (int n = first; int(samples.size()) < count && n < first + 12 * count; ++n) {
@@ -122,7 +122,7 @@ std::vector<FreeSlopeSample> FreeAimMaker::training(int count, int first) const 
     return samples;
 }
 
-/// False, with nothing fitted, if too few rays reach the iris.
+/// Returns false, without a fit, if too few rays reach the iris.
 bool FreeAimMaker::fit(int degree) {
     const int terms = free_term_count(degree);
     FreeAimTables& t = aim_.tables.free;
@@ -184,11 +184,11 @@ void FreeAimMaker::choose_regions() {
     }
 }
 
-/// Whether the aim would draw this passing ray.
+/// Whether the aim's sampling domain contains a passing ray.
 bool FreeAimMaker::covers(int cell, Vec2d f, Vec2d m, Vec2d iris, double l) const {
     const AimTables& t = aim_.tables;
     Vec2d a = iris * (1 / t.iris_scale);
-    for (int step = 0; step < 3; ++step) {  // Newton: the aim's own iris point
+    for (int step = 0; step < 3; ++step) {  // Newton's method for the iris point of the aim's polynomial
         const SlopeValue v = aim_.free_slopes.evaluate(f, a, l);
         a = a + v.step(m - v.m);
     }
@@ -198,7 +198,8 @@ bool FreeAimMaker::covers(int cell, Vec2d f, Vec2d m, Vec2d iris, double l) cons
                                             t.enlargement);
 }
 
-/// Cells in which a fresh passing ray lies outside what is drawn, or the Jacobian changes sign.
+/// Cells with an unsampled passing ray among fresh random rays, or with a sign change of the
+/// Jacobian.
 std::vector<bool> FreeAimMaker::uncovered_cells() const {
     std::vector<bool> bad(kCells);
     for (int i = 0; i < kCells; ++i) bad[i] = used(i) && !jacobian_ok_[i];
@@ -209,7 +210,7 @@ std::vector<bool> FreeAimMaker::uncovered_cells() const {
         for (int i = 0; i < kLensBatch; ++i) {
             const auto q = quasi_random<5>(200000 + n + i);
             at[i] = {2 * q[0] - 1, 2 * q[1] - 1};
-            // Half of the rays crowd at the rim of the iris, where coverage is lost first.
+            // Half of the rays are near the rim of the iris, where coverage fails first.
             Vec2d target = concentric_disc({q[2], q[3]});
             if (i % 2) target = target * (1 / std::max(1e-9, length(target)));
             target = target * (outer_ * (i % 2 ? 0.97 + 0.04 * q[3] : 1.1));
@@ -229,7 +230,7 @@ std::vector<bool> FreeAimMaker::uncovered_cells() const {
     return bad;
 }
 
-/// Box around the slopes that pass at a node.
+/// Bounding box of the passing slopes at a node.
 SlopeBox FreeAimMaker::slope_box(int i) const {
     const auto range = [&](double reach) {
         SlopeBox box;

@@ -1,5 +1,5 @@
-// free_aim.h -- the aim of a lens without axial symmetry, or of a tilted film: see pupil.h. The film is
-// divided into cells in place of radii.
+// free_aim.h -- aim (pupil.h) of a lens without axial symmetry, or with a tilted film. Cells of the
+// film take the place of radial segments.
 #pragma once
 #include "optics/aim/pupil.h"
 

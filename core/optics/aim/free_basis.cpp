@@ -26,7 +26,7 @@ int free_term_count(int degree) {
     return count;
 }
 
-// Nested Horner; the derivatives by a.x and a.y are carried along in the two outer loops.
+// Nested Horner scheme; the two outer loops also accumulate the derivatives by a.x and a.y.
 SlopeValue FreePolynomial::evaluate(Vec2d f, Vec2d a, double l) const {
     const double* c = coefficients.data();
     Vec2d m{}, by_x{}, by_y{};

@@ -1,6 +1,7 @@
-// free_basis.h -- the film slope of a lens without axial symmetry (anamorphic, decentred, or with a
-// tilted film): m(f, a, l) in the complete basis of the two film coordinates f, the two iris coordinates a
-// and the wavelength variable l, all at most 1. A power of l costs two, as in symmetric_basis.h.
+// free_basis.h -- film slope of a lens without axial symmetry (anamorphic, decentred, or with a
+// tilted film): m(f, a, l) in the complete polynomial basis of film coordinates f, iris coordinates
+// a and wavelength variable l, all within [-1, 1]. A power of l counts twice in the degree, as in
+// symmetric_basis.h.
 #pragma once
 #include <vector>
 
@@ -8,8 +9,8 @@
 
 namespace dg {
 
-/// Calls visit(i, j, p, q, r), the powers of a.x, a.y, f.x, f.y and l, in the order in which the
-/// coefficients are stored: that of Horner's rule, a.x outside.
+/// Calls visit(i, j, p, q, r) with the powers of a.x, a.y, f.x, f.y and l, in the storage order of
+/// the coefficients: Horner's rule, with a.x outermost.
 template <typename Visit>
 void for_each_free_term(int degree, Visit visit) {
     for (int i = degree; i >= 0; --i)
@@ -27,7 +28,7 @@ struct FreeSlopeSample {
     Vec2d m;
 };
 
-/// The coefficients of m.x and m.y in turn.
+/// Polynomials for m.x and m.y; coefficients are interleaved.
 struct FreePolynomial {
     int degree = 3;
     std::vector<double> coefficients;
@@ -35,7 +36,7 @@ struct FreePolynomial {
     SlopeValue evaluate(Vec2d f, Vec2d a, double l) const;
 };
 
-/// Least squares fit to traced rays by Householder QR.
+/// Least-squares fit to traced rays by Householder QR.
 FreePolynomial fit_free_slopes(const std::vector<FreeSlopeSample>& samples, int degree);
 
 }  // namespace dg

@@ -1,4 +1,4 @@
-// free_pupil-inl.h -- the aim of a lens without axial symmetry in SIMD lanes. Included once per
+// free_pupil-inl.h -- aim of a lens without axial symmetry in SIMD lanes. Included once per
 // instruction set.
 #if defined(DG_OPTICS_FREE_PUPIL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DG_OPTICS_FREE_PUPIL_INL_H_
@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
 
-/// A film point, f in [-1, 1], and the cell that it lies in.
+/// Film point f in [-1, 1], and its cell.
 struct LaneFilm {
     V fx, fy;
     VI cell;
@@ -79,7 +79,7 @@ HWY_INLINE LaneSlope free_slope_at(const FreeAimTables& aim, const LaneFilm& f, 
     return free_slope_lanes(aim.coefficients.data(), aim.degree, f.fx, f.fy, ax, ay, l);
 }
 
-/// Solid angle and cosine: A' J cos(theta_film) / (1+m^2)^(3/2), the film's normal not being the axis.
+/// Weight A' J cos(theta_film) / (1+m^2)^(3/2): the film's normal may differ from the axis.
 HWY_INLINE V film_weight(const FreeAimTables& aim, V area_jacobian, V mx, V my) {
     const V facing = hn::MulAdd(constant(aim.normal[0]), mx,
                                 hn::MulAdd(constant(aim.normal[1]), my, constant(aim.normal[2])));
@@ -115,7 +115,7 @@ HWY_INLINE LaneAim draw_free_lanes(const LensTables& lens, const AimTables& aim,
     return o;
 }
 
-/// weight_lanes for such a lens.
+/// weight_lanes for a lens without symmetry.
 HWY_INLINE V weight_free_lanes(const AimTables& aim, V x, V y, V mx, V my, V qx, V qy, V l) {
     const D d;
     const FreeAimTables& t = aim.free;

@@ -1,5 +1,5 @@
-// pupil-inl.h -- drawing iris points and evaluating the aim in SIMD lanes. Included once
-// per instruction set.
+// pupil-inl.h -- sampling of iris points and evaluation of the aim in SIMD lanes. Included once per
+// instruction set.
 #if defined(DG_OPTICS_PUPIL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DG_OPTICS_PUPIL_INL_H_
 #undef DG_OPTICS_PUPIL_INL_H_
@@ -14,8 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
 
-/// stop.h's concentric_disc in lanes; the angle stays within pi/4, where short Taylor
-/// sums suffice.
+/// concentric_disc (stop.h) in lanes. The angle stays within pi/4, so short Taylor series suffice.
 HWY_INLINE void disc_lanes(V u, V v, V& x, V& y) {
     const D d;
     const V a = hn::MulAdd(u, constant(2), constant(-1)),
@@ -38,7 +37,7 @@ HWY_INLINE void disc_lanes(V u, V v, V& x, V& y) {
     y = hn::IfThenElse(steep, rc, rs);
 }
 
-/// Splits u into a table index and what is left of it.
+/// Splits u into a table index and the fraction within that entry.
 HWY_INLINE VI split(V& u, std::size_t size) {
     const V scaled = hn::Mul(u, constant(float(size)));
     const VI i = hn::ConvertTo(DI(), hn::Min(scaled, constant(float(size) - 0.5f)));
@@ -79,8 +78,7 @@ struct LaneSlope {
     V mx, my, m11, m12, m21, m22;
 };
 
-/// Not inlined: one unrolled copy per degree serves all callers and keeps compilation
-/// short.
+/// Not inlined: callers share one unrolled copy per degree, which shortens compilation.
 template <int K>
 HWY_NOINLINE LaneSlope slope_lanes(const float* c, V r, V ax, V ay, V l) {
     const D d;
@@ -145,11 +143,11 @@ HWY_INLINE V jacobian(const LaneSlope& s) {
     return hn::MulSub(s.m11, s.m22, hn::Mul(s.m12, s.m21));
 }
 
-/// The film point in the meridional frame: radius / film_radius, and the direction of the
-/// x axis.
+/// Film point in the meridional frame: radius / film_radius, and the direction of the frame's x
+/// axis.
 struct Meridian {
     V r, ex, ey;
-    M covered;  // within the film radius that the aim was made for
+    M covered;  // within the film radius of the aim
 };
 
 HWY_INLINE Meridian meridian_of(const AimTables& aim, V x, V y) {
@@ -170,9 +168,9 @@ HWY_INLINE VI segment_of(V r) {
     return hn::ConvertTo(DI(), hn::Min(scaled, constant(kRadialSegments - 0.5f)));
 }
 
-/// A drawn ray in the film's meridional frame.
+/// Sampled ray in the meridional frame of the film point.
 struct LaneAim {
-    V mx, my;  // slopes, lens frame
+    V mx, my;  // slopes in the lens frame
     V weight;  // A' J / (1+m^2)^2
 };
 
@@ -219,12 +217,12 @@ HWY_INLINE LaneAim draw_lanes(const LensTables& lens, const AimTables& aim, V x,
     return o;
 }
 
-/// The weight that draw_lanes would have given to the slope (mx, my) with the iris point
-/// (qx, qy) mm: two Newton steps from the true iris point to the aim's own.
+/// Weight that draw_lanes gives to the slope (mx, my), for a ray with the traced iris point (qx,
+/// qy) in mm. Newton steps lead from this point to the iris point of the aim's polynomial.
 HWY_INLINE V weight_lanes(const AimTables& aim, V x, V y, V mx, V my, V qx, V qy, V l) {
     const D d;
     const Meridian f = meridian_of(aim, x, y);
-    const V tx = hn::MulAdd(mx, f.ex, hn::Mul(my, f.ey));  // meridional slopes
+    const V tx = hn::MulAdd(mx, f.ex, hn::Mul(my, f.ey));  // slopes in the meridional frame
     const V ty = hn::MulSub(my, f.ex, hn::Mul(mx, f.ey));
     const V to_unit = constant(1 / aim.iris_scale);
     V ax = hn::Mul(to_unit, hn::MulAdd(qx, f.ex, hn::Mul(qy, f.ey)));

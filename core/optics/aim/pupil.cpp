@@ -17,7 +17,7 @@ void set_iris_scale(AimTables& t, const AimRequest& request) {
 }
 
 void set_enlargement(AimTables& t, const AimRequest& request, double iris_error) {
-    // Three times the largest error that was seen, and a thousandth for those that were not.
+    // Three times the largest measured error, plus 0.001 for rays that were not tested.
     const double margin = 0.001 + 3 * iris_error;
     const double enlargement = 1 + std::clamp(margin, 0.002, kEnlargement - 1);
     const double scale = request.iris_radius / t.iris_scale;

@@ -1,9 +1,9 @@
-// pupil.h -- guided exact tracing: where to aim from the film so that most rays pass
-// (aperture sampling: Hanika and Dachsbacher 2014, CGF 33(2)).
+// pupil.h -- guided exact tracing: importance sampling of film slopes such that most rays pass the
+// lens (aperture sampling: Hanika and Dachsbacher 2014, CGF 33(2)).
 //
-// A ray is drawn by choosing a point a of the iris (a little enlarged) and looking up the
-// film slope m(f, a, l) in a polynomial. The exact trace decides whether it passes. The
-// density is that of the polynomial, m being one-to-one in a: so the fit's error costs
+// A sample is a point a of the slightly enlarged iris; a polynomial maps it to the film slope m(f,
+// a, l), and the exact trace decides whether the ray passes. The density comes from the polynomial,
+// which is one-to-one in a, so an error of the fit costs efficiency but never adds bias.
 // efficiency and never bias.
 #pragma once
 #include <optional>
@@ -15,52 +15,54 @@
 
 namespace dg {
 
-/// The iris is drawn larger by this factor at most; by how much follows from the fit's error.
+/// Largest factor by which the sampled iris is enlarged; the factor follows from the error of the
+/// fit.
 inline constexpr double kEnlargement = 1.01;
-/// Fits reach this far beyond that.
+/// Fits extend beyond the enlarged iris by this factor.
 inline constexpr double kShapeMargin = 1.02;
-/// Training rays may leave the clear diameters by this factor, so that the fit is not cut off at the edge
-/// of what passes. Farther outside aspheres go wild, and rays can reach the iris a second time (a fold),
-/// which no one-to-one map follows.
+/// Factor by which training rays may exceed the clear diameters, so that the fit extends past the
+/// edge of the passing rays. Farther out, aspheres diverge and rays can reach an iris point twice
+/// (a fold), which a one-to-one map cannot represent.
 inline constexpr double kWidened = 1.05;
 
-/// Part of a lens that is drawn. All but the first are there to be compared with.
+/// Sampled part of the lens. All but the first are for comparison.
 enum class PupilDraw : std::uint8_t {
-    aimed,        // the iris, through polynomials
-    slope_boxes,  // a box of slopes around what passes
-    rear_disc,    // the whole last surface (symmetric lenses; for others as slope_boxes)
+    aimed,        // the iris, through the polynomials
+    slope_boxes,  // a bounding box of the passing slopes
+    rear_disc,    // the whole last surface (symmetric lenses; otherwise slope_boxes)
 };
 
 struct AimRequest {
     double film_z = 0;       // mm, lens frame
-    double film_radius = 0;  // mm, the farthest film point
+    double film_radius = 0;  // mm, farthest film point from the axis
     Iris iris;
     double iris_radius = 0;  // mm
     PupilDraw draw = PupilDraw::aimed;
-    std::optional<FilmPlane> tilted{};  // instead of film_z
-    FilmRectangle film{};  // its part that is asked for; half 0: all within film_radius
+    std::optional<FilmPlane> tilted{};  // replaces film_z
+    FilmRectangle film{};  // used part of the tilted film; half 0: all within film_radius
 };
 
 struct Aim {
-    SlopePolynomial slopes;  // in units of tables.film_radius, tables.iris_scale
-    FreePolynomial free_slopes;  // of a lens without symmetry, or with a tilted film
+    SlopePolynomial slopes;  // in units of tables.film_radius and tables.iris_scale
+    FreePolynomial free_slopes;  // for a lens without symmetry or a tilted film
     AimTables tables;
     double fit_error = 0;       // largest |error| of m on fresh rays
-    double iris_error = 0;      // the same on the iris, in units of its scale
-    int fallback_segments = 0;  // film radii or cells where exit-pupil boxes are drawn instead
+    double iris_error = 0;      // largest error on the iris, in units of its scale
+    int fallback_segments = 0;  // radial segments or cells that sample boxes of slopes instead
     bool covered = true;
 };
 
-/// Radius around the largest iris that is drawn, mm.
+/// Radius of the iris at its largest enlargement, mm.
 double outer_radius(const AimRequest& request);
-/// Scales of the iris in empty tables, and what is drawn of it once the fit's error is known.
+/// Sets the scales of the iris in new tables.
 void set_iris_scale(AimTables& tables, const AimRequest& request);
+/// Sets the enlargement of the sampled iris from the error of the fit on the iris.
 void set_enlargement(AimTables& tables, const AimRequest& request, double iris_error);
 
-/// Fits, bounds the mechanically visible part of the iris per film radius, and tests
-/// coverage: every passing ray of a fresh set must lie inside the region that is drawn,
-/// and the Jacobian must keep its sign there. The degree rises from 3 until that holds;
-/// radii where it never does fall back.
+/// Fits the aim, bounds the visible part of the iris per film radius, and tests coverage: all
+/// passing rays of a fresh set must be in the sampling domain, where the Jacobian must not change
+/// sign. The degree rises from 3 until both hold; radii at which they never hold fall back to boxes
+/// of slopes.
 Aim make_aim(const Tracer& tracer, const AimRequest& request);
 
 }  // namespace dg

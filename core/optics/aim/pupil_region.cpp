@@ -12,7 +12,8 @@ struct Range {
     double length() const { return std::max(0.0, high - low); }
 };
 
-/// All y of the outline from one x to where a sweep to the right has come. Places count its points.
+/// Range of y of the outline between a start x and the current position of a sweep to the right.
+/// Positions are in units of the outline's points.
 class Sweep {
   public:
     Sweep(const Outline& o, double x) : o_(o), from_(place(x)), next_(int(from_) + 1) {
@@ -23,12 +24,12 @@ class Sweep {
         const double last = o_.points() - 1;
         return std::clamp((x + o_.reach) * last / (2 * o_.reach), 0.0, last);
     }
-    int next() const { return next_; }   // the point that is not yet behind
+    int next() const { return next_; }   // next point that the sweep has not passed
     void pass_next() {
         if (o_.lit(next_)) swept_.add(o_.low[next_], o_.high[next_]);
         ++next_;
     }
-    /// Range up to `to`, which lies before or on the next point.
+    /// Range up to the position `to`, which must not exceed the next point.
     Range up_to(double to) const {
         Range r = swept_;
         add(r, to);
@@ -42,7 +43,7 @@ class Sweep {
         if (o_.lit(i) && o_.lit(i + 1))
             r.add(o_.low[i] + (o_.low[i + 1] - o_.low[i]) * t,
                   o_.high[i] + (o_.high[i + 1] - o_.high[i]) * t);
-        else if (o_.lit(i) || o_.lit(i + 1))   // it ends somewhere between the two
+        else if (o_.lit(i) || o_.lit(i + 1))   // the outline ends between the two points
             r.add(o_.low[o_.lit(i) ? i : i + 1], o_.high[o_.lit(i) ? i : i + 1]);
     }
 
@@ -52,7 +53,7 @@ class Sweep {
     Range swept_;
 };
 
-/// All y of the outline on [a, b].
+/// Range of y of the outline over [a, b].
 Range range(const Outline& o, double a, double b) {
     Sweep sweep(o, a);
     const double to = sweep.place(b);
@@ -60,7 +61,7 @@ Range range(const Outline& o, double a, double b) {
     return sweep.up_to(to);
 }
 
-/// Where a column that begins at `x` ends if it has this area; it may go beyond the outline's `end`.
+/// End of the column that starts at `x` and has the given area; it may exceed the outline's `end`.
 double column_end(const Outline& o, double x, double end, double area) {
     Sweep sweep(o, x);
     const double last = sweep.place(end);
@@ -112,7 +113,7 @@ Outline Outline::grown(double margin) const {
     while (first < points() && !lit(first)) ++first;
     while (last > first && !lit(last)) --last;
     if (first == points()) return o;
-    // A round rim bulges over its chords by an eighth of the second difference.
+    // A round rim exceeds its chords by an eighth of the second difference.
     const auto bulge = [](double left, double here, double right) {
         return std::max(0.0, 2 * here - left - right) / 4;
     };
@@ -122,7 +123,8 @@ Outline Outline::grown(double margin) const {
         o.high[i] = high[i] + bulge(high[l], high[i], high[r]) + margin;
         o.low[i] = low[i] - bulge(-low[l], -low[i], -low[r]) - margin;
     }
-    // At its ends it is too steep for that, and ends somewhere before the next point.
+    // The ends of the outline are too steep for the second difference; they extend toward the next
+    // point.
     const auto close = [&](int end, int inward) {
         const int inner = std::clamp(end + inward, first, last),
                   beyond = std::clamp(end - inward, 0, points() - 1);
@@ -152,8 +154,8 @@ Columns cover(const Outline& outline) {
     while (!outline.lit(last)) --last;
     const double begin = outline.x(std::max(first - 1, 0));
     const double end = outline.x(std::min(last + 1, points - 1));
-    // Each column is as wide as its area allows; the area for which the last one reaches the end is found
-    // by bisection.
+    // Each column is as wide as its area allows. Bisection finds the area for which the last column
+    // ends at the outline's end.
     const auto fill = [&](double area) {
         c.x[0] = begin;
         for (int k = 0; k < kColumns; ++k) {
@@ -165,7 +167,7 @@ Columns cover(const Outline& outline) {
         }
         return c.x[kColumns] >= end;
     };
-    // No columns are smaller than what they cover, and the best are hardly larger.
+    // The total area of the columns is at least the outline's area, and hardly more at the optimum.
     double low = 1e-9 * (end - begin), high = 0;
     const double step = outline.x(1) - outline.x(0);
     for (int i = first + 1; i < last; ++i)

@@ -1,5 +1,5 @@
-// pupil_region.h -- the part of the iris that the mounts leave visible from one film point (the cat's
-// eye), covered by columns of equal area, so that a point in it is drawn by two look-ups.
+// pupil_region.h -- region of the iris visible from a film point past the mounts (the cat's eye),
+// covered by columns of equal area; two table look-ups sample it.
 #pragma once
 #include <array>
 #include <vector>
@@ -8,35 +8,37 @@
 
 namespace dg {
 
-/// low(x) <= y <= high(x): given at equally spaced x from -reach to reach, linear between; low > high where
-/// nothing passes.
+/// Region low(x) <= y <= high(x), sampled at equally spaced x from -reach to reach and linear
+/// between; empty where low > high.
 struct Outline {
     double reach = 1;
     std::vector<double> low, high;
 
-    /// Nothing visible at any of the points.
+    /// Empty outline.
     static Outline dark(double reach, int points);
     int points() const { return int(high.size()); }
     double x(int i) const { return reach * (2.0 * i / (points() - 1) - 1); }
     bool lit(int i) const { return low[i] < high[i]; }
     bool empty() const;
-    /// Around both, and wider than that by a margin. Both must have the same reach and points.
+    /// Hull of both outlines, enlarged by a margin. Both must have the same reach and number of
+    /// points.
     Outline joined(const Outline& other, double margin = 0) const;
-    /// Wider by the margin, and by as much as a round rim bulges over the chords between points.
+    /// Outline enlarged by the margin and by the bulge of a round rim over the chords between
+    /// points.
     Outline grown(double margin) const;
 };
 
-/// Columns k: x[k] <= x <= x[k+1], low[k] <= y <= high[k]; all of the same area, so that a column drawn
-/// uniformly and a point drawn uniformly in it are a point drawn uniformly from all of them.
+/// Columns x[k] <= x <= x[k+1], low[k] <= y <= high[k] of equal area: a uniform point in a
+/// uniformly chosen column is uniform over their union.
 struct Columns {
     std::array<double, kColumns + 1> x{};
     std::array<double, kColumns> low{}, high{};
-    double area = 0;   // of all together; 0: nothing to draw
+    double area = 0;   // total area; 0: empty
 
     bool contain(double at_x, double at_y) const;
 };
 
-/// The columns of least area that cover the outline.
+/// Columns of least area that cover the outline.
 Columns cover(const Outline& outline);
 Columns rectangle(double x0, double x1, double y0, double y1);
 

@@ -8,7 +8,8 @@ using namespace dg;
 
 namespace {
 
-/// Overlap of two discs, as a front mount and the iris leave it: radius 1 about 0 and about `shift`.
+/// Half height of the overlap of two unit discs with centres 0 and `shift`, like a front mount and
+/// the iris.
 double cats_eye(double x, double shift) {
     const double h2 = 1 - std::max(x * x, (x - shift) * (x - shift));
     return h2 > 0 ? std::sqrt(h2) : 0;
@@ -46,7 +47,7 @@ TEST_CASE("columns of equal area hold the whole cat's eye, and little else") {
 }
 
 TEST_CASE("a margin that is missing shows at the rim") {
-    const Outline o = outline_of(1.0);   // chords alone, not joined: what lies over them is cut off
+    const Outline o = outline_of(1.0);   // chords only, without the bulge
     const Columns c = cover(o);
     int outside = 0;
     for (int i = 0; i < 20000; ++i) {

@@ -13,14 +13,14 @@ namespace {
 
 constexpr int kWavelengths = int(std::size(kBoundWavelengths));
 
-/// Which of the iris points are visible at any of the wavelengths.
-class Look {
+/// Tests which iris points are visible at any of the bound wavelengths.
+class VisibilityTest {
   public:
-    Look(const LensTables& open, const AimTables& aim, Vec2d film, double orientation)
+    VisibilityTest(const LensTables& open, const AimTables& aim, Vec2d film, double orientation)
         : open_(open), aim_(aim), film_(film), orientation_(orientation) {}
 
     std::vector<bool> operator()(const std::vector<Vec2d>& points) {
-        std::vector<bool> seen(points.size());
+        std::vector<bool> visible(points.size());
         const std::size_t rays = points.size() * kWavelengths;
         for (std::size_t begin = 0; begin < rays; begin += kLensBatch) {
             const auto ray = [&](int i) { return std::min(begin + i, rays - 1); };
@@ -34,10 +34,10 @@ class Look {
             trace_to_scene(open_, *rays_, *out_, kLensBatch);
             for (int i = 0; i < kLensBatch; ++i) {
                 jacobian_ok = jacobian_ok && jacobian_[i] * orientation_ > 0;
-                if (out_->pass[i] > 0) seen[ray(i) % points.size()] = true;
+                if (out_->pass[i] > 0) visible[ray(i) % points.size()] = true;
             }
         }
-        return seen;
+        return visible;
     }
     bool jacobian_ok = true;
 
@@ -52,8 +52,8 @@ class Look {
     alignas(64) float jacobian_[kLensBatch];
 };
 
-/// Around the slopes that pass the mounts and reach the iris within `radius` mm, of those in `range`, on a
-/// grid of n x n; grown by a step.
+/// Bounding box of the slopes within `range` that pass the mounts and reach the iris within
+/// `radius` mm, found on an n x n grid and enlarged by one grid step.
 SlopeBox passing_slopes(const LensTables& open, Vec2d film_mm, double radius, const SlopeBox& range,
                         int n) {
     SlopeBox box;
@@ -85,10 +85,10 @@ SlopeBox passing_slopes(const LensTables& open, Vec2d film_mm, double radius, co
 Visible visible_iris(const LensTables& open, const AimTables& aim, Vec2d film_mm, double reach,
                      double orientation) {
     constexpr int kPoints = 49, kRows = 24, kFine = 6;
-    Look look(open, aim, film_mm, orientation);
+    VisibilityTest test(open, aim, film_mm, orientation);
     Visible v{Outline::dark(reach, kPoints)};
     Outline& o = v.outline;
-    // Columns from end to end: the first and the last row that are seen lie between `step` and nothing.
+    // Scan each column: the first and the last visible row bound the outline to within one step.
     std::vector<Vec2d> points;
     const auto row = [&](int i, int k) {
         const double half = std::sqrt(std::max(0.0, reach * reach - o.x(i) * o.x(i)));
@@ -96,26 +96,27 @@ Visible visible_iris(const LensTables& open, const AimTables& aim, Vec2d film_mm
     };
     for (int i = 0; i < kPoints; ++i)
         for (int k = 0; k <= kRows; ++k) points.push_back({o.x(i), row(i, k)});
-    std::vector<bool> seen = look(points);
+    std::vector<bool> visible = test(points);
     std::vector<int> first(kPoints, -1), last(kPoints, -1);
     for (int i = 0; i < kPoints; ++i)
         for (int k = 0; k <= kRows; ++k)
-            if (seen[i * (kRows + 1) + k]) last[i] = k, first[i] = first[i] < 0 ? k : first[i];
+            if (visible[i * (kRows + 1) + k]) last[i] = k, first[i] = first[i] < 0 ? k : first[i];
     points.clear();
     for (int i = 0; i < kPoints; ++i)
-        for (int k = 1; k < kFine; ++k) {   // within the steps before the first and after the last
+        for (int k = 1; k < kFine; ++k) {   // refine within the steps before the first and after the last visible
+                                            // row
             const int f = std::max(first[i], 0), l = std::max(last[i], 0);
             const double t = double(k) / kFine;
             points.push_back({o.x(i), row(i, f) + t * (row(i, std::max(f - 1, 0)) - row(i, f))});
             points.push_back({o.x(i), row(i, l) + t * (row(i, std::min(l + 1, kRows)) - row(i, l))});
         }
-    seen = look(points);
+    visible = test(points);
     for (int i = 0; i < kPoints; ++i) {
         if (last[i] < 0) continue;
         int below = 0, above = 0;
         for (int k = 1; k < kFine; ++k) {
-            if (seen[2 * (i * (kFine - 1) + k - 1)]) below = k;
-            if (seen[2 * (i * (kFine - 1) + k - 1) + 1]) above = k;
+            if (visible[2 * (i * (kFine - 1) + k - 1)]) below = k;
+            if (visible[2 * (i * (kFine - 1) + k - 1) + 1]) above = k;
         }
         const double low = row(i, first[i]), high = row(i, last[i]);
         const double step = row(i, 1) - row(i, 0);
@@ -123,16 +124,16 @@ Visible visible_iris(const LensTables& open, const AimTables& aim, Vec2d film_mm
         o.high[i] = std::min(row(i, kRows), high + step * (above + 1) / kFine);
         if (!(o.low[i] < o.high[i])) o.low[i] -= 1e-3 * reach, o.high[i] += 1e-3 * reach;
     }
-    v.jacobian_ok = look.jacobian_ok;
+    v.jacobian_ok = test.jacobian_ok;
     return v;
 }
 
-/// Up to where the columns of the iris are visible: a coarse search upward from the meridian, then a fine
-/// one in the step where visibility ends.
+/// Finds the upper end of the visible part in each column of the iris: a coarse search upward from
+/// the meridian, then a fine search in the step in which visibility ends.
 Visible visible_half_iris(const LensTables& open, const AimTables& aim, double film_mm, double reach,
                           double orientation) {
     constexpr int kRows = 12, kFine = 8, kPoints = 97;
-    Look look(open, aim, {film_mm, 0}, orientation);
+    VisibilityTest test(open, aim, {film_mm, 0}, orientation);
     Visible v{Outline::dark(reach, kPoints)};
     std::array<double, kPoints> half{}, low{}, step{};
     for (int i = 0; i < kPoints; ++i) {
@@ -144,11 +145,11 @@ Visible visible_half_iris(const LensTables& open, const AimTables& aim, double f
         for (int i = 0; i < kPoints; ++i)
             for (int row = 0; row <= rows; ++row)
                 points.push_back({v.outline.x(i), low[i] + row * step[i]});
-        const std::vector<bool> seen = look(points);
+        const std::vector<bool> visible = test(points);
         for (int i = 0; i < kPoints; ++i) {
             int last = rows;
-            while (last >= 0 && !seen[i * (rows + 1) + last]) --last;
-            // Up to the first row that is not seen: conservative.
+            while (last >= 0 && !visible[i * (rows + 1) + last]) --last;
+            // Take the first row that is not visible: conservative.
             if (last >= 0) half[i] = low[i] + std::min(last + 1, rows) * step[i];
             low[i] += std::max(last, 0) * step[i];
         }
@@ -159,7 +160,7 @@ Visible visible_half_iris(const LensTables& open, const AimTables& aim, double f
     search(kFine);
     for (int i = 0; i < kPoints; ++i)
         if (coarse[i] > 0) v.outline.low[i] = -half[i], v.outline.high[i] = half[i];
-    v.jacobian_ok = look.jacobian_ok;
+    v.jacobian_ok = test.jacobian_ok;
     return v;
 }
 

@@ -1,5 +1,5 @@
-// pupil_visible.h -- what the mounts of a lens let through from one film point: the part of the iris, and
-// the box of slopes around it.
+// pupil_visible.h -- visibility from a film point past the mounts of a lens: region of the iris,
+// and bounding box of the slopes.
 #pragma once
 #include <functional>
 
@@ -8,20 +8,21 @@
 
 namespace dg {
 
-/// Bounds hold at these wavelengths, nm; between them edges move little and evenly.
+/// Wavelengths in nm at which visibility is tested. Between them edges move little and smoothly.
 inline constexpr double kBoundWavelengths[] = {380, 550, 780};
 
 struct Visible {
-    Outline outline;   // iris_scale = 1
-    bool jacobian_ok = true;   // of the sign `orientation` wherever the iris was looked at
+    Outline outline;   // in units of iris_scale
+    bool jacobian_ok = true;   // whether the Jacobian has the sign `orientation` at all tested points
 };
 
-/// Through `open` (mounts, no iris), from a film point in mm; `reach` is the radius around the iris,
-/// iris_scale = 1. Conservative to the step of the search.
+/// Visible region of the iris from a film point in mm through `open` (mounts without the iris).
+/// `reach` is the radius of the iris in units of iris_scale. Conservative to the step of the
+/// search.
 Visible visible_iris(const LensTables& open, const AimTables& aim, Vec2d film_mm, double reach,
                      double orientation);
 
-/// The same from (film_mm, 0) through a symmetric lens, whose outline is the same above and below.
+/// Visible region from (film_mm, 0) through a symmetric lens; its outline is symmetric in y.
 Visible visible_half_iris(const LensTables& open, const AimTables& aim, double film_mm, double reach,
                           double orientation);
 
@@ -32,8 +33,9 @@ struct SlopeBox {
     void grow(double x, double y);
 };
 
-/// Around the slopes that pass the mounts and reach the iris within `radius` mm, by search on grids in
-/// range_at(reach), which widens until the box lies inside; empty if nothing passes.
+/// Bounding box of the slopes that pass the mounts and reach the iris within `radius` mm. Searches
+/// grids over range_at(reach) and increases `reach` until the box is inside; empty if no slope
+/// passes.
 SlopeBox passing_box(const LensTables& open, Vec2d film_mm, double radius,
                      const std::function<SlopeBox(double)>& range_at);
 

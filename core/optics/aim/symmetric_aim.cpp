@@ -17,7 +17,7 @@ namespace {
 constexpr int kNodes = kRadialSegments + 1;
 constexpr int kMinDegree = 3, kMaxDegree = 6;
 constexpr int kCoverageRays = 16384;
-// Margin of the drawn outline beyond what was seen from the two ends of a segment, in iris radii.
+// Margin of the outline, in iris radii, beyond the visible regions at the two ends of a segment.
 constexpr double kOutlineMargin = 0.005;
 
 class AimMaker {
@@ -34,13 +34,13 @@ class AimMaker {
     bool covers(int segment, double r, Vec2d m, Vec2d iris, double l,
                 double azimuth) const;
     double unit(double iris_mm) const { return iris_mm / aim_.tables.iris_scale; }
-    /// Around what is drawn of the iris.
+    /// Radius of the sampled iris, in units of iris_scale.
     double reach() const { return unit(outer_) * aim_.tables.enlargement / kEnlargement; }
 
     const AimRequest& request_;
-    double outer_;  // mm, radius around the enlarged iris
+    double outer_;  // mm, radius of the enlarged iris
     SymmetricRays rays_;
-    LensTables open_;  // without the iris: what the mounts let through
+    LensTables open_;  // without the iris: the mounts only
     LensTables real_;
     std::array<bool, kRadialSegments> jacobian_ok_;
     std::array<Columns, kRadialSegments> columns_;
@@ -68,15 +68,15 @@ SlopeBox AimMaker::slope_box(double r) const {
     return passing_box(open_, {r, 0}, outer_, range);
 }
 
-/// Slopes toward the last surface, between its vertex and its rim, from the film radii of a segment: the
-/// discs as which it is seen from their ends, and all between.
+/// Slopes toward the last surface, between its vertex and its rim, for the film radii of a segment:
+/// columns that cover the discs seen from the segment's ends and from radii between.
 Columns AimMaker::rear_slopes(int segment) const {
     constexpr int kSteps = 8, kPoints = 4 * kColumns + 1;
     const SurfaceForm& rear = rays_.tracer().form(
         int(rays_.tracer().prescription().surfaces.size()) - 1);
     if (!std::isfinite(rear.clear))
         throw input_error("exact lens", "rear disc", "a last surface with a clear radius", "none");
-    std::vector<std::array<double, 2>> discs;  // middle and radius
+    std::vector<std::array<double, 2>> discs;  // centre and radius
     double reach = 0;
     for (int i = 0; i <= kSteps; ++i)
         for (int k = 0; k <= kSteps; ++k) {
@@ -129,14 +129,14 @@ void AimMaker::choose_regions() {
     }
 }
 
-/// Whether the aim would draw this passing ray. `azimuth` turns the meridian against the
-/// iris shape.
+/// Whether the aim's sampling domain contains a passing ray. `azimuth` rotates the meridian against
+/// the iris shape.
 bool AimMaker::covers(int segment, double r, Vec2d m, Vec2d iris, double l,
                       double azimuth) const {
     const AimTables& t = aim_.tables;
     const double rn = r / t.film_radius;
     Vec2d a{unit(iris.x), unit(iris.y)};
-    for (int step = 0; step < 3; ++step) {  // Newton: the aim's own iris point
+    for (int step = 0; step < 3; ++step) {  // Newton's method for the iris point of the aim's polynomial
         const SlopeValue v = aim_.slopes.evaluate(rn, a, l);
         a = a + v.step(m - v.m);
     }
@@ -149,8 +149,8 @@ bool AimMaker::covers(int segment, double r, Vec2d m, Vec2d iris, double l,
         turned * (t.iris_scale / request_.iris_radius), t.enlargement);
 }
 
-/// Segments in which a fresh passing ray lies outside what is drawn, or the Jacobian
-/// changes sign.
+/// Segments with an unsampled passing ray among fresh random rays, or with a sign change of the
+/// Jacobian.
 std::vector<bool> AimMaker::uncovered_segments() const {
     std::vector<bool> bad(kRadialSegments);
     const AimTables& t = aim_.tables;
@@ -163,8 +163,7 @@ std::vector<bool> AimMaker::uncovered_segments() const {
             const auto q = quasi_random<4>(200000 + n + i);
             radius[i] = t.film_radius * q[0];
             azimuth[i] = 2 * kPiD * std::fmod(q[1] * 97, 1.0);
-            // Half of the rays crowd at the rim of the iris, where coverage is lost
-            // first.
+            // Half of the rays are near the rim of the iris, where coverage fails first.
             Vec2d target = concentric_disc({q[1], q[2]});
             if (i % 2) target = target * (1 / std::max(1e-9, length(target)));
             target = target * (outer_ * (i % 2 ? 0.97 + 0.04 * q[2] : 1.2));

@@ -1,5 +1,5 @@
-// symmetric_aim.h -- the aim of an axially symmetric lens with its film across the axis: see pupil.h. All is
-// worked out in the meridional frame, f = (r, 0), for segments of the film radius.
+// symmetric_aim.h -- aim (pupil.h) of an axially symmetric lens with its film perpendicular to the
+// axis. Computed in the meridional frame, f = (r, 0), for radial segments of the film.
 #pragma once
 #include "optics/aim/pupil.h"
 

@@ -10,8 +10,8 @@ int term_count(int k) {
     return count;
 }
 
-// Nested Horner with derivatives in s and W carried along; see for_each_term for the
-// order.
+// Nested Horner scheme that also accumulates the derivatives by s and W, in the order of
+// for_each_term.
 SlopeValue SlopePolynomial::evaluate(double r, Vec2d a, double l) const {
     const double U = 2 * r * r - 1, s = r * a.x, W = 2 * dot(a, a) - 1;
     const double* c = coefficients.data();

@@ -1,11 +1,11 @@
-// symmetric_basis.h -- the complete basis with the lens's symmetry. With f the film point and
-// a the iris point, every axially symmetric map has the form m = f A(u, s, w, l) + a B(u,
-// s, w, l), where u = |f|^2, s = f.a, w = |a|^2 and l stands for the wavelength
-// (symmetry: Hullin, Hanika and Heidrich 2012, Polynomial Optics, CGF 31(4)).
+// symmetric_basis.h -- complete polynomial basis with axial symmetry. With film point f and iris
+// point a, every axially symmetric map has the form m = f A(u, s, w, l) + a B(u, s, w, l), where u
+// = |f|^2, s = f.a, w = |a|^2 and l is the wavelength variable (symmetry: Hullin, Hanika and
+// Heidrich 2012, Polynomial Optics, CGF 31(4)).
 //
-// f and a are given in units that make them at most 1, in the meridional frame: f = (r,
-// 0). The basis is all monomials U^p s^i W^j l^q, U = 2u-1, W = 2w-1, with p + i + j + 2q
-// <= k: dispersion is a small correction, so that a power of l costs two.
+// f and a are scaled to at most 1 and given in the meridional frame: f = (r, 0). The basis consists
+// of the monomials U^p s^i W^j l^q, U = 2u-1, W = 2w-1, with p + i + j + 2q <= k. A power of l
+// counts twice, because dispersion is a small correction.
 #pragma once
 #include <vector>
 
@@ -13,8 +13,8 @@
 
 namespace dg {
 
-/// Calls visit(i, j, p, q) in the order in which the coefficients are stored: highest
-/// powers first, the order of Horner's rule (s outside, then W, then U, then l).
+/// Calls visit(i, j, p, q) in the storage order of the coefficients: highest powers first, as in
+/// Horner's rule (s outermost, then W, then U, then l).
 template <typename Visit>
 void for_each_term(int k, Visit visit) {
     for (int i = k; i >= 0; --i)
@@ -30,13 +30,13 @@ struct SlopeValue {
     double jacobian;            // det dm/da, signed
     double m11, m12, m21, m22;  // dm/da
 
-    /// To first order, by how much a must change for m to change by e.
+    /// First-order change of a that changes m by e.
     Vec2d step(Vec2d e) const {
         return {(m22 * e.x - m12 * e.y) / jacobian, (m11 * e.y - m21 * e.x) / jacobian};
     }
 };
 
-/// A and B, coefficients in turn.
+/// Polynomials A and B; coefficients are interleaved.
 struct SlopePolynomial {
     int k = 3;
     std::vector<double> coefficients;
@@ -51,7 +51,7 @@ struct SlopeSample {
     Vec2d m;   // film slope
 };
 
-/// Least squares fit to traced rays by Householder QR.
+/// Least-squares fit to traced rays by Householder QR.
 SlopePolynomial fit_slopes(const std::vector<SlopeSample>& samples, int k);
 
 }  // namespace dg

@@ -31,7 +31,7 @@ std::optional<Vec2d> SymmetricRays::trace_iris(double r, Vec2d m, double nm) con
                            tracer_.at(nm), kWidened);
 }
 
-/// Rays over the film and somewhat more than the iris, traced to the stop.
+/// Rays from all over the film through a slightly enlarged iris, traced to the stop.
 std::vector<SlopeSample> SymmetricRays::training(const AimTables& t, int count, int first) const {
     std::vector<SlopeSample> samples;
     const WavelengthScale scale = WavelengthScale::visible();
@@ -48,7 +48,7 @@ std::vector<SlopeSample> SymmetricRays::training(const AimTables& t, int count, 
     return samples;
 }
 
-/// The farthest film point (mm) from which a ray reaches the iris, among many.
+/// Largest film radius (mm) from which any of many rays reaches the iris.
 double SymmetricRays::lit_radius() const {
     double lit = 0;
     for (int n = 0; n < kSearchRays; ++n) {
@@ -66,8 +66,8 @@ bool SymmetricRays::fit(Aim& aim, int k) {
     AimTables& t = aim.tables;
     std::vector<SlopeSample> samples = training(t, count, 0);
     if (int(samples.size()) < count / 2) {
-        // A film far wider than the image circle: what lies in the dark needs no aim, and
-        // film points beyond the tables' radius get no ray.
+        // The film is far larger than the image circle. The dark part needs no aim: film points
+        // beyond the tables' radius get no rays.
         const double lit = 1.1 * lit_radius();
         if (lit > 0 && lit < t.film_radius) {
             t.film_radius = float(lit);

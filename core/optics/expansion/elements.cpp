@@ -35,7 +35,7 @@ bool pass_series(const SurfaceForm& form, const PathStep& step, double mu,
                          got);
     };
     if (!form.odd.empty()) {
-        // Where the base ray meets it: the series of r^odd exists off the axis alone.
+        // r^odd has a series only away from the axis: check the base ray's intersection.
         RayOf<double> base{};
         for (int k = 0; k < 3; ++k)
             base.origin[k] = ray.origin[k].value(),
@@ -70,7 +70,7 @@ RayMap refraction(const SurfaceForm& form, double n1, double n2, int degree,
     return crossing(form, {-1, 1, false}, n1 / n2, degree, about);
 }
 
-// Behind the mirror z is counted the other way, so that the plane z = 0 stays.
+// The z axis is reversed behind the mirror, so that the map ends on the plane z = 0.
 RayMap reflection(const SurfaceForm& form, int degree, const RayNumbers& about) {
     return crossing(form, {-1, 1, true}, 1, degree, about);
 }
@@ -84,7 +84,7 @@ RayMap placement(const Vec3d& decenter, const Vec3d& tilt, bool back, int degree
     const SeriesRay there =
         back ? SeriesRay{place.out_of(ray.origin), place.turn_out(ray.direction)}
              : SeriesRay{place.into(ray.origin), place.turn_in(ray.direction)};
-    if (!(there.direction.z.value() > 1e-12))  // what rounding leaves of cos(90 degrees)
+    if (!(there.direction.z.value() > 1e-12))  // rounding error of cos(90 degrees)
         throw input_error("polynomial element", "tilt",
                           "a frame in which the base ray goes forward",
                           "a frame in which it goes along the plane or back");

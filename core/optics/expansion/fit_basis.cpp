@@ -7,7 +7,7 @@ namespace dg {
 namespace {
 
 constexpr int kMaxPower = 16;
-constexpr int kMaxAxialDispersion = 3;  // power of l, but for `dispersion`
+constexpr int kMaxAxialDispersion = 3;  // highest power of l without `dispersion`
 
 int total(const FitTerm& t) {
     return std::accumulate(t.begin(), t.end(), 0);
@@ -19,7 +19,7 @@ void sort_by_degree(std::vector<FitTerm>& terms) {
     });
 }
 
-/// Whether the parity of a power is what a mirror wants of it.
+/// Whether a power has the parity that a mirror symmetry requires.
 bool fits(bool mirror, bool odd, int power) {
     return !mirror || (power % 2 == 1) == odd;
 }
@@ -61,7 +61,7 @@ std::vector<FitTerm> free_terms(int degree, const FitSymmetry& symmetry, bool od
 
 std::vector<FitTerm> light_terms(const FitSymmetry& symmetry) {
     constexpr int kMostPower = 8,
-                  kPrice = 3;  // powers of l that a ray degree of 2 costs
+                  kPrice = 3;  // powers of l dropped per 2 ray degrees
     std::vector<FitTerm> terms;
     if (symmetry.axial) {
         for (const FitTerm& t : axial_terms(5))

@@ -9,22 +9,22 @@ namespace dg {
 namespace {
 
 constexpr int kLeastDegree = 5;
-/// The ray degrees of a bend and of the polynomials among which it is searched: what is
-/// best there is good for higher ones, too.
+/// Ray degrees of the bend, and of the polynomials that rate it in the search. A good bend at low
+/// degree is also good at higher degrees.
 struct BendDegrees {
     int bend, search;
 };
 BendDegrees bend_degrees(bool axial, int degree) {
     if (axial) return {5, std::min(degree, 7)};
-    return degree < 9 ? BendDegrees{3, 5} : BendDegrees{5, 7};  // seconds otherwise
+    return degree < 9 ? BendDegrees{3, 5} : BendDegrees{5, 7};  // higher degrees take seconds
 }
 constexpr int kRounds = 6;
 constexpr int kRaysPerTerm = 8;
-constexpr double kEnough = 0.97;   // of the error before: no more rounds
-constexpr double kLongest = 0.25;  // step of a coefficient
+constexpr double kEnough = 0.97;   // stop when a round leaves more than this fraction of the error
+constexpr double kLongest = 0.25;  // limit on a coefficient's step
 constexpr double kDamping = 1e-3;
 
-/// Terms that no linear change of q makes.
+/// Terms that are not linear transformations of q.
 std::vector<FitTerm> bend_terms(const FitSymmetry& symmetry, int degree, bool odd_x) {
     std::vector<FitTerm> terms;
     const auto all = symmetry.axial ? axial_terms(degree)
@@ -35,7 +35,7 @@ std::vector<FitTerm> bend_terms(const FitSymmetry& symmetry, int degree, bool od
     return terms;
 }
 
-/// A bend's coefficients in a row, and what each of them adds to q.
+/// Coefficients of a bend in one list, and their derivatives of q.
 struct Bend {
     FitBlock block;
     bool axial;
@@ -76,7 +76,7 @@ class BendSearch {
           degrees_(bend_degrees(fit.symmetry.axial, fit.degree)),
           best_(fit.symmetry, degrees_.bend),
           samples_(clear) {
-        // Errors of low degrees by higher powers of l would hide the rest.
+        // Otherwise dispersion errors would mask the others at low degrees.
         basis_ = {degrees_.search, fit.symmetry.axial && degrees_.search < 7 ? 1 : 0};
         const std::size_t rays =
             kRaysPerTerm *
@@ -112,8 +112,8 @@ class BendSearch {
         return {fit_.variables(s.f, q, s.l, tried_), s.f, q};
     }
 
-    /// Derivatives of the direction by each coefficient, by the polynomials of the round
-    /// before: [sample][coefficient].
+    /// Derivatives of the direction by each coefficient of the bend, with the polynomials of the
+    /// previous round: [sample][coefficient].
     std::vector<std::vector<Vec2d>> derivatives(const Bend& bend) const {
         constexpr double h = 1e-4;
         std::vector<std::vector<Vec2d>> all;
@@ -136,8 +136,8 @@ class BendSearch {
         return all;
     }
 
-    /// Root of the sum of squares that least squares leave. Makes the normal equations of
-    /// the next step, from the second call on.
+    /// Root of the residual sum of squares after the linear fit. From the second call on, also
+    /// builds the normal equations of the next step.
     double fit_directions(const Bend& bend) {
         tried_.bend = bend.block;
         const int n = directions_.x.count > 0 ? bend.size() : 0;

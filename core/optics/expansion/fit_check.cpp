@@ -1,5 +1,5 @@
-// fit_check.cpp -- whether the parts of a fit that was read fit together, so that no
-// kernel reads beyond them.
+// fit_check.cpp -- consistency checks of a fit read from a file, so that no kernel reads out of
+// bounds.
 #include <cmath>
 #include <string>
 

@@ -9,7 +9,7 @@ namespace dg {
 namespace {
 
 constexpr double kDependent =
-    1e-20;  // of a column's squared length: nothing of its own is left
+    1e-20;  // least part of a column's squared length that is independent of the chosen columns
 
 double product(const std::vector<double>& a, const std::vector<double>& b) {
     double sum = 0;

@@ -1,24 +1,24 @@
-// fit_equations.h -- least squares problems of a fit, complete or with few terms.
+// fit_equations.h -- linear least-squares problems of a fit, dense or sparse.
 #pragma once
 #include <vector>
 
 namespace dg {
 
-/// Rows of a matrix and of right-hand sides.
+/// Rows of a matrix and of one or more right-hand sides.
 struct FitEquations {
     int columns = 0, sides = 0;
     std::vector<double> matrix{}, rhs{};
 
     int rows() const { return int(rhs.size()) / sides; }
-    /// [column][side].
+    /// Dense solution, [column][side].
     std::vector<double> solve() const;
-    /// The same with at most `keep` columns that are not 0, chosen for each side by
-    /// itself; fewer once the root of what they leave, summed in squares, is `enough`.
+    /// Sparse solution with at most `keep` nonzero columns, chosen per right-hand side; stops early
+    /// when the root of the residual sum of squares is at most `enough`.
     std::vector<double> solve_sparse(int keep, double enough = 0) const;
-    /// Orthogonal matching pursuit: column after column the one that lowers the error
-    /// most, once what it has in common with those before is taken out. Source: Chen,
-    /// Billings and Luo 1989, Orthogonal Least Squares Methods and Their Application to
-    /// Non-linear System Identification, Int. J. Control 50(5).
+    /// Orthogonal matching pursuit: repeatedly selects the column that reduces the error most after
+    /// orthogonalization against the selected columns. Source: Chen, Billings and Luo 1989,
+    /// Orthogonal Least Squares Methods and Their Application to Non-linear System Identification,
+    /// Int. J. Control 50(5).
     std::vector<int> choose(int side, int keep, double enough = 0) const;
 };
 

@@ -9,7 +9,7 @@
 namespace dg {
 namespace {
 
-constexpr int kZones = 6;  // of equal film radius
+constexpr int kZones = 6;  // of equal width in film radius
 
 class Deviations {
   public:
@@ -21,18 +21,18 @@ class Deviations {
     int count_ = 0;
 };
 
-/// Errors of one ray.
+/// Errors of a ray.
 struct Compared {
     double radius = 0, direction = 0, film = -1, iris = 0, mount = 0, transmittance = 0;
     bool exact = false, fitted = false;
 };
 
-/// Where the exact lens sends the fitted scene ray on the film, mm from where the film
-/// ray began; negative if it does not get there.
+/// Traces the fitted scene ray exactly back to the film: distance in mm from the start of the film
+/// ray; negative if it does not reach the film.
 double film_error(const Tracer& tracer, const LensFit& fit, const FitValue& v,
                   const FitSample& s) {
     LensRay ray = fit.scene_ray(v.direction, v.offset);
-    // Far enough in front of the first surface: its vertex sphere is not its sag.
+    // Start well in front of the first surface: the vertex sphere differs from its sag.
     ray.direction = -ray.direction,
     ray.origin = ray.origin - ray.direction * (2 * length(ray.origin) + 10);
     const auto out = tracer.to_film(ray, tracer.at(s.nm), {false, nullptr, 0});

@@ -1,5 +1,5 @@
-// fit_error.h -- how far a fitted lens is from the exact one, on rays that it was not
-// fitted to.
+// fit_error.h -- errors of a fitted lens against the exact lens, on rays that were not used in the
+// fit.
 #pragma once
 #include <vector>
 
@@ -9,18 +9,17 @@ struct FitDeviation {
     double rms = 0, max = 0;
 };
 
-/// Over the film radii [low, high) mm.
+/// Errors for film radii in [low, high) mm.
 struct FitErrorZone {
     double low = 0, high = 0;
     int rays = 0;
     FitDeviation direction;  // rad
     FitDeviation
-        film;  // um: the fitted scene ray traced exactly back, against where it came from
+        film;  // um: fitted scene ray, traced exactly back to the film, against the original film point
     FitDeviation iris, mount;    // mm
-    FitDeviation transmittance;  // of 1
-    double lost = 0;             // share of the rays that pass which the fit stops
-    double leaked = 0;  // rays that the fit lets pass though they are stopped, against
-                        // those that pass
+    FitDeviation transmittance;  // absolute, of a transmittance in [0, 1]
+    double lost = 0;             // fraction of passing rays that the fit clips
+    double leaked = 0;  // rays that the fit passes but the lens clips, relative to passing rays
 };
 
 struct FitError {

@@ -1,4 +1,4 @@
-// fit_mounts.cpp -- which clear apertures limit a lens.
+// fit_mounts.cpp -- selects the clear apertures that limit a lens.
 #include <algorithm>
 
 #include "optics/expansion/lens_fit_make.h"
@@ -7,7 +7,7 @@ namespace dg {
 namespace {
 
 constexpr double kMissed =
-    1e-4;  // share of the passing rays that mounts which are not kept may stop
+    1e-4;  // fraction of passing rays that ignored mounts may clip
 
 bool stops(const Surface& s, Vec2d at) {
     const double r = length(at);

@@ -11,13 +11,13 @@ namespace dg {
 namespace {
 
 constexpr int kSearchRays = 1024;
-constexpr double kSearch = 1.8;  // paraxial exit pupils that are searched
+constexpr double kSearch = 1.8;  // range of the search, in radii of the paraxial exit pupil
 constexpr double kIrisWidened =
-    1.02;  // the iris is a hole: no need to follow far beyond its rim
-constexpr double kMaxPupilDistance = 1e4;  // mm: beyond, the film sees it at infinity
+    1.02;  // a margin suffices, as the iris is flat
+constexpr double kMaxPupilDistance = 1e4;  // mm: farther pupils count as telecentric
 
-/// The density of Chebyshev's nodes, under which the worst error of a polynomial is
-/// nearly the mean one.
+/// Density of Chebyshev nodes, for which the maximal error of a polynomial is close to its mean
+/// error.
 double toward_edges(double u) {
     return (1 - std::cos(kPiD * u)) / 2;
 }
@@ -33,8 +33,7 @@ bool mirrored_y(const Prescription& lens) {
     });
 }
 
-/// Half the slopes under which the middle of the film sees the exit pupil, which may be
-/// at infinity.
+/// Half the range of slopes from the film's centre to the exit pupil, which may be at infinity.
 double exit_slope(const FirstOrder& order, double iris_radius, double film_z) {
     const double distance = film_z - order.exit_pupil_z;
     if (std::isfinite(distance))
@@ -42,7 +41,7 @@ double exit_slope(const FirstOrder& order, double iris_radius, double film_z) {
     return iris_radius / std::abs(2 * order.f_number * order.stop_semi_diameter);
 }
 
-/// Centre c and slope k of the line c + k f through points (f, q), least squares.
+/// Offset c and slope k of the least-squares line c + k f through points (f, q).
 Vec2d line_through(const std::vector<Vec2d>& points) {
     double n = 0, f = 0, q = 0, ff = 0, fq = 0;
     for (const Vec2d p : points)
@@ -52,8 +51,8 @@ Vec2d line_through(const std::vector<Vec2d>& points) {
     return {(ff * q - f * fq) / det, (n * fq - f * q) / det};
 }
 
-/// Moves q so that its middle over the film is 0, and makes it as wide in x as in y.
-/// Mirrors stay mirrors: their middle is 0 as it is.
+/// Centres q over the film and equalizes its extents in x and y. Mirror symmetry is preserved:
+/// symmetric coordinates are already centred.
 void center_pupil(const std::vector<FitSample>& found, const FitSymmetry& symmetry,
                   FitPupil& p) {
     std::vector<Vec2d> x, y;
@@ -103,7 +102,7 @@ FitRays::FitRays(const Tracer& tracer, const LensFitRequest& request, LensFit& f
     find_domain(fit);
 }
 
-/// From the paraxial exit pupil to the disc that the exact rays fill.
+/// Refines the domain from the paraxial exit pupil to the disc that exact rays fill.
 void FitRays::find_domain(LensFit& fit) {
     const FirstOrder order = first_order(tracer_.prescription());
     fit.entrance_pupil_z = order.entrance_pupil_z;
@@ -123,7 +122,7 @@ void FitRays::find_domain(LensFit& fit) {
     double lit = 0;
     for (const FitSample& s : found) lit = std::max(lit, length(s.f));
     if (found.size() >= 16 && fit.symmetry.axial &&
-        lit < 0.95) {  // a film wider than the image circle
+        lit < 0.95) {  // a film larger than the image circle
         fit.film_half = fit.film_half * (1.02 * lit);
         found = look();
     }
@@ -157,7 +156,7 @@ std::optional<FitSample> FitRays::trace(Vec2d f, Vec2d q, double nm,
     return s;
 }
 
-/// By following the scene ray back.
+/// Adds the intersections with all surfaces by tracing the scene ray back.
 bool FitRays::add_met(const LensRay& scene, const LensIndices& index,
                       FitSample& s) const {
     const LensRay back{scene.origin + scene.direction, -scene.direction};
@@ -176,7 +175,7 @@ bool FitRays::add_met(const LensRay& scene, const LensIndices& index,
 }
 
 std::vector<FitSample> FitRays::draw(const FitDraw& what) const {
-    constexpr int kTries = 12;  // for each ray that is asked for
+    constexpr int kTries = 12;  // per requested ray
     const double blue = 1 / (380. * 380.), red = 1 / (780. * 780.);
     std::vector<FitSample> samples;
     for (int n = 0; n < kTries * what.count && int(samples.size()) < what.count; ++n) {
@@ -185,7 +184,8 @@ std::vector<FitSample> FitRays::draw(const FitDraw& what) const {
             return what.toward_edges ? toward_edges(u[k]) : u[k];
         };
         const double nm = 1 / std::sqrt(red + spread_out(0) * (blue - red));
-        // Over the pupil halfway to that density: mounts cut its edge anyway.
+        // Over the pupil, the mean of this density and a uniform density: mounts clip the edge
+        // anyway.
         const double w = std::sqrt((u[1] + spread_out(1)) / 2), phi = 2 * kPiD * u[2];
         Vec2d f, q{w * std::cos(phi), w * std::sin(phi)};
         if (fit_.symmetry.axial) {

@@ -1,4 +1,4 @@
-// fit_rays.h -- exact rays for the fit of a lens, and the domain that they fill.
+// fit_rays.h -- exact rays for fitting a lens, and their domain.
 #pragma once
 #include <optional>
 #include <vector>
@@ -7,39 +7,39 @@
 
 namespace dg {
 
-/// One ray of the exact lens, everything that a fit gives of it.
+/// Exact ray with all quantities that a fit models.
 struct FitSample {
     Vec2d f, q;  // unit coordinates
     Vec2d film, slope;
     double nm = 0, l = 0;
     Vec2d direction, offset, iris;
     double transmittance = 0;
-    std::vector<Vec2d> met;  // if asked for: each surface, in its own frame, mm
-    bool passes = false;     // then: iris and clear apertures
+    std::vector<Vec2d> met;  // optional: intersections with all surfaces in their local frames, mm
+    bool passes = false;     // optional: inside the iris and all clear apertures
 };
 
-/// Whether a field is so wide that light may enter along the glass: at its edge the film
-/// feels the offset as much as the direction, and both should err alike.
+/// Whether the field is so wide that light may enter parallel to the glass. At its edge, the film
+/// position depends as much on the offset as on the direction, so both need similar errors.
 bool is_wide(const std::vector<FitSample>& clear);
 
-/// Which rays are drawn.
+/// Selection of rays.
 struct FitDraw {
     int count = 0;
-    int first = 0;       // of the sequence
-    double widened = 1;  // clear apertures and iris may be left by this factor
+    int first = 0;       // first index in the low-discrepancy sequence
+    double widened = 1;  // factor by which rays may exceed clear apertures and iris
     bool toward_edges =
-        false;         // of film, pupil and wavelengths, where polynomials err most
-    bool met = false;  // whether `met` and `passes` are wanted
-    double u_low = 0, u_high = 1;  // |f|^2
+        false;         // higher density at the edges of film, pupil and wavelengths, where polynomials err most
+    bool met = false;  // computes `met` and `passes`
+    double u_low = 0, u_high = 1;  // range of |f|^2
 };
 
 class FitRays {
   public:
-    /// Finds what of the film is lit and where its light comes from, and sets the domain
-    /// of `fit`: film, pupil, symmetry. Error if no light reaches the film.
+    /// Finds the lit part of the film and the pupil, and sets the domain of `fit`: film, pupil,
+    /// symmetry. Throws Error if no light reaches the film.
     FitRays(const Tracer& tracer, const LensFitRequest& request, LensFit& fit);
 
-    /// Rays that get through, fewer than asked for where few do.
+    /// Rays that reach the scene; may be fewer than requested.
     std::vector<FitSample> draw(const FitDraw& what) const;
     const Tracer& tracer() const { return tracer_; }
 
@@ -52,7 +52,7 @@ class FitRays {
     const Tracer& tracer_;
     const LensFitRequest& request_;
     LensFit& fit_;
-    double outer_;  // mm, radius around the iris
+    double outer_;  // mm, radius of the iris's bounding circle
     Iris round_;
 };
 

@@ -1,4 +1,4 @@
-// fit_tables.cpp -- a fit in double, laid out for the kernels.
+// fit_tables.cpp -- converts a fit from double to the tables of the kernels.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -11,7 +11,7 @@ namespace {
 constexpr double kAngleError = 1e-8;
 constexpr int kAxialVariables = 4, kFreeVariables = 5;
 
-/// Lays out terms whose powers of the variables before `variable` are the same.
+/// Appends the Horner nodes of terms that share their powers of the variables before `variable`.
 class Nest {
   public:
     Nest(FitHorner& to, const FitFunctions& from, int first, int variables)
@@ -50,7 +50,7 @@ class Nest {
     int first_, variables_;
 };
 
-/// `count` functions from `first` on, without the terms that they do not use.
+/// Horner scheme of `count` functions starting at `first`, without terms that they do not use.
 FitHorner horner_tables(const FitFunctions& f, int first, int count, bool axial) {
     FitHorner h{count, {}, {}};
     std::vector<int> used;
@@ -64,7 +64,7 @@ FitHorner horner_tables(const FitFunctions& f, int first, int count, bool axial)
     return h;
 }
 
-/// The i-th vector of a block.
+/// Tables of the i-th vector of a block.
 FitVectorTables vector_tables(const FitBlock& b, int i, bool axial) {
     if (axial) return {horner_tables(b.x, 2 * i, 2, true), {}};
     return {horner_tables(b.x, i, 1, false), horner_tables(b.y, i, 1, false)};
@@ -92,7 +92,7 @@ FitSegmentTables segment_tables(const FitSegment& s, bool axial) {
     return t;
 }
 
-/// Terms after which sum (-t)^n / (2n + 1)! is exact to kAngleError.
+/// Number of terms for which the series sum (-t)^n / (2n + 1)! is exact to kAngleError.
 int angle_terms(double theta) {
     double term = 1;
     int n = 1;

@@ -1,4 +1,4 @@
-// fit_vectors.h -- vectors and numbers of samples as polynomials, by least squares.
+// fit_vectors.h -- least-squares fits of vectors and scalars of samples.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -12,31 +12,31 @@ namespace dg {
 
 struct FitBasis {
     int degree = 1, dispersion = 0;
-    int keep = 0;       // terms of each vector; 0: all
-    double enough = 0;  // root mean squared error; above 0: as few terms as leave no more
+    int keep = 0;       // number of terms per vector; 0: all
+    double enough = 0;  // root mean square error; positive: stop adding terms when it is reached
 };
 
-/// The point of a sample at which functions are fitted.
+/// Coordinates of a sample in the fit.
 struct FitPlace {
     FitVariables variables;
     Vec2d f, q;
 };
 
-/// All terms, or as few as the basis asks for.
+/// Dense or sparse solution, as the basis asks.
 std::vector<double> solve(const FitEquations& e, const FitBasis& few,
                           std::size_t samples);
 
-/// Without the terms that no function uses.
+/// Drops terms with only zero coefficients.
 FitFunctions packed(const FitFunctions& f);
-/// Some of the functions.
+/// Subset of the functions.
 FitFunctions functions_of(const FitFunctions& f, int first, int count);
-/// Some of the vectors.
+/// Subset of the vectors.
 FitBlock vectors_of(const FitBlock& b, int first, int count, bool axial);
-/// The functions of both, over the terms of either.
+/// Concatenates functions; the terms become the union.
 FitFunctions side_by_side(const FitFunctions& a, const FitFunctions& b);
 FitBlock side_by_side(const FitBlock& a, const FitBlock& b);
 
-/// f A + q B: two equations a sample, the coefficients of A and B as neighbours.
+/// Fits vectors f A + q B: two equations per sample; coefficients of A and B alternate.
 template <typename Place, typename Vectors>
 FitFunctions fit_axial(const std::vector<FitTerm>& terms,
                        const std::vector<FitSample>& samples, int vectors,
@@ -66,7 +66,7 @@ FitFunctions fit_axial(const std::vector<FitTerm>& terms,
     return packed(found);
 }
 
-/// Numbers over monomials: one equation a sample.
+/// Fits scalars: one equation per sample.
 template <typename Place, typename Numbers>
 FitFunctions fit_scalars(const std::vector<FitTerm>& terms,
                          const std::vector<FitSample>& samples, int count,

@@ -1,5 +1,4 @@
-// lens_fit-inl.h -- the polynomials of a fitted lens in SIMD lanes. Included once per
-// instruction set.
+// lens_fit-inl.h -- polynomials of a fitted lens in SIMD lanes. Included once per instruction set.
 #if defined(DG_OPTICS_LENS_FIT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DG_OPTICS_LENS_FIT_INL_H_
 #undef DG_OPTICS_LENS_FIT_INL_H_
@@ -15,8 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
 
-/// Two vectors of rays at once: one's chains of dependent operations hide behind the
-/// other's.
+/// Two vectors of rays, evaluated together to hide the latency of dependent operations.
 struct Pair {
     V a, b;
 };
@@ -60,16 +58,16 @@ HWY_INLINE void store(Pair v, float* p) {
     hn::Store(v.a, d, p), hn::Store(v.b, d, p + hn::Lanes(d));
 }
 
-/// Where polynomials are read: two vectors, the variables of the basis, and without axial
-/// symmetry their squares.
+/// Evaluation point: two vectors, the variables of the basis and, without axial symmetry, their
+/// squares.
 struct LanePlace {
     PairVec f, q;
     Pair x[5], square[5];
 };
 
-inline constexpr int kLastAxial = 3, kLastFree = 4;  // variable
+inline constexpr int kLastAxial = 3, kLastFree = 4;  // index of the last variable
 
-/// A node of a scheme and all below it, `kCount` functions side by side.
+/// Evaluates a node of a Horner scheme and its subtree, for `kCount` functions at once.
 template <int kVariable, int kLast, int kCount>
 HWY_INLINE void horner(const int*& node, const float*& c, const LanePlace& at,
                        Pair (&out)[kCount]) {
@@ -100,8 +98,7 @@ HWY_INLINE void functions(const FitHorner& h, const LanePlace& at, Pair (&out)[k
     horner<0, kLast>(node, c, at, out);
 }
 
-// Not inlined, and from memory to memory: of all that is under way around a call nothing
-// has to be saved.
+// Not inlined, and with arguments in memory, so that callers need not save registers.
 
 HWY_NOINLINE void number(const FitHorner& h, bool axial, const LanePlace& at, Pair& out) {
     Pair one[1];
@@ -112,7 +109,7 @@ HWY_NOINLINE void number(const FitHorner& h, bool axial, const LanePlace& at, Pa
     out = one[0];
 }
 
-/// f A + q B, or x and y apart.
+/// Vector f A + q B, or separate polynomials for x and y.
 HWY_NOINLINE void vector(const FitVectorTables& v, bool axial, const LanePlace& at,
                          PairVec& out) {
     if (!axial) {
@@ -136,7 +133,7 @@ HWY_INLINE Pair number(const FitHorner& h, bool axial, const LanePlace& at) {
     return one[0];
 }
 
-/// f A + q B, or x and y apart.
+/// Vector f A + q B, or separate polynomials for x and y.
 HWY_INLINE PairVec vector(const FitVectorTables& v, bool axial, const LanePlace& at,
                           const PairVec& f, const PairVec& q) {
     if (!axial) return {number(v.x, false, at), number(v.y, false, at)};
@@ -145,7 +142,7 @@ HWY_INLINE PairVec vector(const FitVectorTables& v, bool axial, const LanePlace&
     return {mul_add(f.x, ab[0], mul(q.x, ab[1])), mul_add(f.y, ab[0], mul(q.y, ab[1]))};
 }
 
-/// Sets all of a place; u as the basis has it.
+/// Initializes an evaluation point; u is the mapped variable U of the basis.
 HWY_INLINE void set_place(bool axial, const PairVec& f, const PairVec& q, Pair u, Pair l,
                           LanePlace& at) {
     at.f = f, at.q = q;
@@ -183,7 +180,7 @@ HWY_INLINE Pair wavelength_variable(const WavelengthScale& scale, Pair nm) {
         nm);
 }
 
-/// (-1)^n / (2n + first)!.
+/// Coefficients (-1)^n / (2n + first)!.
 struct AngleCoefficients {
     float c[kMostAngleTerms];
     explicit constexpr AngleCoefficients(int first) : c{} {
@@ -195,7 +192,7 @@ struct AngleCoefficients {
     }
 };
 
-/// sin(x) / x (first 1) and (1 - cos(x)) / x^2 (first 2) of t = x^2.
+/// sin(x) / x (kFirst 1) or (1 - cos(x)) / x^2 (kFirst 2) as a series in t = x^2.
 template <int kFirst>
 HWY_INLINE Pair angle_series(int terms, Pair t) {
     static constexpr AngleCoefficients k(kFirst);
@@ -208,7 +205,7 @@ struct PairRay {
     Pair x, y, z, dx, dy, dz;
 };
 
-/// LensFit::scene_ray(): z from the first vertex.
+/// LensFit::scene_ray() in lanes; z is relative to the first vertex.
 HWY_INLINE PairRay scene_ray(const FitTables& fit, const PairVec& v, const PairVec& e) {
     const Pair t = dot(v, v);
     const Pair sine = angle_series<1>(fit.angle_terms, t),
@@ -233,7 +230,7 @@ HWY_INLINE PairRay scene_ray(const FitTables& fit, const PairVec& v, const PairV
     return r;
 }
 
-/// Lanes of a fit for film rays, in units of film and pupil.
+/// Evaluated fit for film rays in unit coordinates of film and pupil.
 struct FitLanes {
     PairVec direction, offset, iris;
     PairVec mounts[kMostMounts];
@@ -252,7 +249,7 @@ HWY_INLINE void choose(const PairMask& m, const PairVec& from, PairVec& to) {
     to.y = {choose(m.a, from.y.a, to.y.a), choose(m.b, from.y.b, to.y.b)};
 }
 
-/// Evaluates the rays of one segment, whatever segment they belong to.
+/// Evaluates all rays with the polynomials of one segment, including rays outside of it.
 HWY_INLINE void evaluate_segment(const FitTables& fit, const FitSegmentTables& s,
                                  const PairVec& f, const PairVec& q, Pair u, Pair l,
                                  bool all, FitLanes& out) {
@@ -272,8 +269,8 @@ HWY_INLINE void evaluate_segment(const FitTables& fit, const FitSegmentTables& s
     vector(s.direction, fit.axial, bent, out.direction);
 }
 
-/// The segment of each ray; or that of all, if it is known. `all`: iris, mounts and light
-/// too.
+/// Evaluates each ray with its segment, or all with the `known` segment. `all`: computes iris,
+/// mounts and transmittance too.
 HWY_INLINE void evaluate_fit(const FitTables& fit, const FitSegmentTables* known,
                              const PairVec& f, const PairVec& q, Pair l, bool all,
                              FitLanes& out) {

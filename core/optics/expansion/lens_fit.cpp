@@ -9,18 +9,18 @@ namespace {
 
 constexpr int kNewtonSteps = 12;
 
-/// sin(t) / t, (1 - cos(t)) / t^2 and tan(t / 2) / t, also where t is 0.
+/// sin(t) / t, (1 - cos(t)) / t^2 and tan(t / 2) / t, with their limits at t = 0.
 struct AngleRatios {
     double sine, versine, half_tangent;
     explicit AngleRatios(double t) {
-        const double h = t / 2, s = t > 1e-6 ? std::sin(h) / h : 1;  // of the half angle
+        const double h = t / 2, s = t > 1e-6 ? std::sin(h) / h : 1;  // sine ratio of the half angle
         sine = t > 1e-6 ? std::sin(t) / t : 1;
         versine = s * s / 2;
         half_tangent = t > 1e-6 ? std::tan(h) / t : 0.5;
     }
 };
 
-/// Solves a x = b by elimination with pivots. False if it is singular.
+/// Solves a x = b by Gaussian elimination with pivoting. Returns false for a singular matrix.
 bool solve4(std::array<std::array<double, 5>, 4>& a, std::array<double, 4>& x) {
     for (int k = 0; k < 4; ++k) {
         int pivot = k;
@@ -49,7 +49,7 @@ Four scene_of(const LensFit& fit, const Four& z, double l) {
     return {d.direction.x, d.direction.y, d.offset.x, d.offset.y};
 }
 
-/// Central differences: the reference needs no speed.
+/// Newton step with derivatives by central differences; the reference need not be fast.
 bool newton_step(const LensFit& fit, const Four& target, double l, Four& z) {
     constexpr double h = 1e-5;
     const Four now = scene_of(fit, z, l);
@@ -86,7 +86,7 @@ FitDirection describe_ray(const LensRay& scene, double pupil_z) {
     const Vec2d v = Vec2d{d.x, d.y} * (1 / ratio.sine);
     const Vec3d from = scene.origin - Vec3d{0, 0, pupil_z};
     const Vec3d p = from - d * dot(from, d);
-    // The turn back: e = p - (p.a)(a + d) / (1 + a.d), a = (0, 0, -1).
+    // Inverse of the rotation: e = p - (p.a)(a + d) / (1 + a.d), a = (0, 0, -1).
     return {v, Vec2d{p.x, p.y} + v * (p.z * ratio.half_tangent)};
 }
 
@@ -158,7 +158,7 @@ LensRay LensFit::scene_ray(Vec2d v, Vec2d e) const {
     const double along = dot(e, v);
     const Vec2d across = e - v * (along * ratio.versine);
     const Vec3d foot{across.x, across.y, entrance_pupil_z - front_z + along * ratio.sine};
-    // c |p + t d|^2 = 2 (p + t d).z about the vertex, the root that is stable for planes.
+    // c |p + t d|^2 = 2 (p + t d).z about the vertex; this form of the root is stable for planes.
     const double c = front_curvature, b = c * dot(foot, d) - d.z,
                  k = c * dot(foot, foot) - 2 * foot.z;
     const double root = b * b - c * k;

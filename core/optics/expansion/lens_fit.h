@@ -1,17 +1,17 @@
-// lens_fit.h -- a lens as polynomials: film ray in, scene ray, iris point, mounts and
-// transmittance out.
+// lens_fit.h -- lens as polynomials that map a film ray to a scene ray, iris point, mount points
+// and transmittance.
 //
-// Source: Hanika and Dachsbacher 2014, Efficient Monte Carlo Rendering with Realistic
-// Lenses, CGF 33(2), with the complete symmetric basis (fit_basis.h). Lens frame, mm; the
-// film ray is the film point f and the slope m = (dx/dz, dy/dz). The slope enters through
-// q = by_film f + by_slope m + shift, a linear change of the film ray under which the
-// clear pupil fills the unit disc, and then a bend of low degree. A lens is never fitted
-// from a film point and an iris point: those polynomials only aim (pupil.h).
+// Source: Hanika and Dachsbacher 2014, Efficient Monte Carlo Rendering with Realistic Lenses, CGF
+// 33(2), with the complete symmetric basis (fit_basis.h). Lens frame, mm. A film ray is the film
+// point f and the slope m = (dx/dz, dy/dz). The slope enters through q = by_film f + by_slope m +
+// shift, a linear coordinate in which the clear pupil fills the unit disc, followed by a bend of
+// low degree. Fits never use the iris point as input: polynomials in film and iris points only
+// serve aiming (pupil.h).
 //
-// The scene ray: its direction as v = theta (dx, dy) / sin(theta), theta the angle to the
-// axis, which has no limit at 90 degrees; and its offset e from the middle of the
-// entrance pupil, across the ray, in the frame that the smallest turn from the axis to
-// the ray carries along.
+// The direction of the scene ray is v = theta (dx, dy) / sin(theta), where theta is the angle to
+// the axis; it is smooth at and beyond 90 degrees. The offset e is the perpendicular from the
+// centre of the entrance pupil to the ray, in the frame that the smallest rotation takes from the
+// axis to the ray.
 #pragma once
 #include <optional>
 #include <string>
@@ -24,30 +24,28 @@
 
 namespace dg {
 
-/// A clear aperture that stops rays which the iris lets through.
+/// Clear aperture that clips rays inside the iris.
 struct FitMount {
     int surface = 0;
     double radius = 0, inner = 0;  // mm
 };
 
-/// Functions over one set of terms. Axial lenses: A and B in turn for each vector, or the
-/// scalars, all in x. Others: the x of each vector in x, the y in y; scalars in x.
+/// Functions over common terms. Axial lenses: A and B interleaved per vector, or scalars; all in x.
+/// Others: x components of the vectors in x, y components in y; scalars in x.
 struct FitBlock {
     FitFunctions x, y;
 };
 
-/// The fit over a range of film radii: segments own [u_low, u_high) of u = |f|^2.
+/// Polynomials for a range of film radii: u = |f|^2 in [u_low, u_high).
 struct FitSegment {
     double u_low = 0, u_high = 1;
-    FitBlock bend;       // one vector, added to q before the direction reads it
-                         // (fit_bend.h); may be empty
-    FitBlock direction;  // one vector (rad)
-    FitBlock points;     // offset, iris point, then where each mount is met, in the
-                         // mount's own frame (mm)
-    FitBlock light;      // transmittance
+    FitBlock bend;       // one vector, added to q for the direction (fit_bend.h); may be empty
+    FitBlock direction;  // one vector, rad
+    FitBlock points;     // vectors in mm: offset, iris point, and the hit on each mount in the mount's frame
+    FitBlock light;      // one scalar, transmittance
 };
 
-/// q = by_film f + by_slope m + shift, f in units of the film.
+/// Pupil coordinate q = by_film f + by_slope m + shift, with f in unit film coordinates.
 struct FitPupil {
     Vec2d by_film{}, by_slope{1, 1}, shift{};
     Vec2d q(Vec2d f, Vec2d m) const {
@@ -60,8 +58,8 @@ struct FitPupil {
     }
 };
 
-/// Scene ray to film ray, where Newton's search begins: g = v / direction, h = by_film g
-/// + by_slope e + shift take the places of f and q.
+/// Approximate map from scene ray to film ray, the start of Newton's method. g = v / direction and
+/// h = by_film g + by_slope e + shift take the roles of f and q.
 struct FitInverse {
     double direction = 1;  // rad
     FitPupil pupil;
@@ -75,12 +73,12 @@ struct FitRay {
 
 struct FitValue {
     Vec2d direction, offset, iris;
-    double transmittance = 0;     // of the glass
+    double transmittance = 0;     // of the lens, without the iris
     std::vector<Vec2d> mounts{};  // mm
-    bool within = false;  // of film, pupil and mounts; the iris shape is not asked
+    bool within = false;  // inside film, pupil and mounts; ignores the iris
 };
 
-/// v and e of a scene ray, about a pupil's middle on the axis.
+/// Direction v and offset e of a scene ray, relative to the pupil's centre on the axis.
 struct FitDirection {
     Vec2d direction, offset;
 };
@@ -93,65 +91,64 @@ struct LensFit {
     FilmPlane film;  // lens frame
     Vec2d film_center{},
         film_half{1,
-                  1};  // mm: f = (film point - centre) / half; axial: half is the radius
+                  1};  // mm: f = (film point - centre) / half; axial lenses: half is the film radius
     FitPupil pupil;
     double entrance_pupil_z = 0;              // mm
-    double front_z = 0, front_curvature = 0;  // of the sphere on which scene rays start
+    double front_z = 0, front_curvature = 0;  // vertex and curvature of the sphere on which scene rays start
     double iris_radius = 0,
-           iris_outer = 0;  // mm: of the circle of equal area, around the shape
+           iris_outer = 0;  // mm: radii of the circle of equal area and of the bounding circle
     std::vector<FitMount> mounts;
     std::vector<FitSegment> segments;
     FitInverse inverse;
     FitError error;
 
     Vec2d unit_film(Vec2d film_mm) const;
-    /// q with a segment's bend.
+    /// q plus the bend of a segment.
     Vec2d bent(const FitSegment& segment, Vec2d f, Vec2d q, double l) const;
     FitVariables variables(Vec2d f, Vec2d q, double l, const FitSegment& segment) const;
-    /// Which segment owns a film point (unit coordinates); the last one beyond the film.
+    /// Segment that contains a film point (unit coordinates); the last segment beyond the film.
     const FitSegment& segment_at(Vec2d f) const;
     Vec2d direction(const FitSegment& segment, Vec2d f, Vec2d q, double l) const;
     FitDirection scene_vectors(const FitSegment& segment, Vec2d f, Vec2d q,
                                double l) const;
     FitValue evaluate(const FitRay& ray) const;
-    /// From the sphere at the front, or where it is missed from the point nearest the
-    /// pupil's middle.
+    /// Scene ray that starts on the front sphere, or at its point nearest to the pupil's centre if
+    /// it misses the sphere.
     LensRay scene_ray(Vec2d direction, Vec2d offset) const;
     LensRay film_ray(const FitRay& ray) const;
-    /// Film ray of a scene ray (toward the scene): the fitted inverse, then Newton with
-    /// evaluate()'s derivatives. Nothing if the search leaves the fit's domain.
+    /// Film ray of a scene ray (directed toward the scene): the fitted inverse, refined by Newton's
+    /// method. Empty if the iteration leaves the domain of the fit.
     std::optional<FitRay> to_film(const LensRay& scene, double wavelength_nm) const;
 };
 
-/// The vectors of a block: f A + q B, or x and y apart.
+/// Vectors of a block: f A + q B, or separate polynomials for x and y.
 void block_vectors(const FitBlock& block, const FitVariables& at, bool axial, Vec2d f,
                    Vec2d q, Vec2d* out);
 
 FitDirection describe_ray(const LensRay& scene, double pupil_z);
 
-/// Error if a part has not the functions that the others ask for, or powers that are not
-/// kept.
+/// Throws Error if a part lacks functions that other parts require, or contains unsupported powers.
 void check_lens_fit(const LensFit& fit);
 
 struct LensFitRequest {
     double film_z = 0;       // mm, lens frame
-    double film_radius = 0;  // mm, the farthest film point
+    double film_radius = 0;  // mm, farthest film point from the axis
     Iris iris;
-    double iris_radius = 0;             // mm, of the circle of equal area
-    std::optional<FilmPlane> tilted{};  // instead of film_z
-    FilmRectangle film{};  // its part that is asked for; half 0: all within film_radius
+    double iris_radius = 0;             // mm, circle of equal area
+    std::optional<FilmPlane> tilted{};  // replaces film_z
+    FilmRectangle film{};  // used part of the tilted film; half 0: all within film_radius
     int degree = 7;        // odd, 1 to 13
-    int segments = 1;  // of the film's radius, the worst halved until there are as many
-    int terms = 0;  // for each vector, chosen one after the other; 0: the complete basis
+    int segments = 1;  // number of radial segments; the segment with the largest error is halved repeatedly
+    int terms = 0;  // number of terms per vector by matching pursuit; 0: the complete basis
 };
 
-/// Fits exact rays in double: the same bits on every machine. Error if the degree is not
-/// one of those, or if no light reaches the film.
+/// Fits exact rays in double; bitwise reproducible on all machines. Throws Error for an unsupported
+/// degree, or if no light reaches the film.
 LensFit make_lens_fit(const Tracer& tracer, const LensFitRequest& request);
 
-/// The fit with other scene rays: least squares of given ones in the same basis, and
-/// their inverse; iris, mounts and light stay, and its error is no longer known. For maps
-/// from elsewhere, such as Taylor's.
+/// Replaces the scene rays of a fit by a least-squares fit of the given ones in the same basis, and
+/// updates the inverse. Keeps iris, mounts and transmittance; clears the error. For maps from other
+/// sources, like Taylor expansions.
 LensFit refit_rays(const LensFit& fit, const std::vector<FitRay>& rays,
                    const std::vector<FitDirection>& scene);
 

@@ -16,30 +16,28 @@ namespace {
 constexpr int kMinDegree = 1, kMaxDegree = 13, kMostSegments = 16;
 constexpr int kMinRays = 400;
 constexpr int kRaysPerTerm = 8;
-// A direction is fitted to a third of its rays and, once more, to those that it missed
-// most among the rest, an eighth as many: so its worst ray is not far from its mean one.
+// The direction is fitted to a third of its rays; a second fit adds the rays with the largest
+// errors among the others (an eighth as many), which lowers the maximal error.
 constexpr int kWatched = 3, kMissed = 8;
 constexpr int kMountRays = 2000, kErrorRays = 2000;
-// Rays and light are fitted to what passes and very little beyond; iris and mounts to
-// more, since they say what does not pass.
+// Margins: direction and transmittance are fitted little beyond the passing rays; iris and mount
+// points farther, since they decide about clipping.
 constexpr double kClearWidened = 1.015, kPointsWidened = 1.15;
-// More powers of l are worth their time if they lower the error to this part of what it
-// was.
+// Accept more powers of l only if they lower the error to this fraction.
 constexpr double kWorthIt = 2.0 / 3;
-// Quantities that need not be as good as the direction are fitted as well as they must be, no better.
-// The offset, in the lowest degree in which it shifts points by no more than the
-// direction does at the distance of focus or, if that is farther, of kFar, and by no more
-// than kOffset (mm);
+// Tolerance of the offset, fitted at the lowest degree that meets it: its displacement is at most
+// the displacement from the direction's error at the focus distance (at least kFar), and at most
+// kOffset (mm).
 constexpr double kFar = 3000, kOffset = 1.5e-3;
-// iris and mounts, which decide who passes: two degrees less than the direction at most,
-// with the fewest terms that place edges so well in parts of their radius;
+// Tolerance of iris and mount points, relative to the radius of the edge. They use the fewest terms
+// that meet it, and at least two ray degrees less than the direction.
 constexpr double kEdge = 5e-4;
 constexpr int kPointsBelow = 2, kLeastDegree = 3;
-// the transmittance, with the fewest terms that leave so much, or hardly more than all of
-// them leave.
+// Tolerance of the transmittance: the fewest terms with an error of kLight, or of kNearlyAll times
+// the error of the complete basis.
 constexpr double kLight = 5e-4, kNearlyAll = 1.2;
 
-/// Where the polynomials of a segment read a sample: its bent q, or q as it is.
+/// Evaluation point of a sample, with or without the segment's bend of q.
 struct Place {
     const LensFit& fit;
     const FitSegment& segment;
@@ -51,7 +49,7 @@ struct Place {
     }
 };
 
-/// One vector of the samples.
+/// Fit of a vector over the samples.
 template <typename Vector>
 struct VectorFit {
     Place place;
@@ -68,13 +66,13 @@ struct VectorFit {
         block_vectors(block, at.variables, place.fit.symmetry.axial, at.f, at.q, &found);
         return length(found - vector(s));
     }
-    /// Root of the mean squared error.
+    /// Root mean square error.
     double residual(const FitBlock& block) const {
         double sum = 0;
         for (const FitSample& s : samples) sum += std::pow(error(block, s), 2);
         return samples.empty() ? 0 : std::sqrt(sum / double(samples.size()));
     }
-    /// The lowest degree whose error is at most `enough`; if none is, the highest.
+    /// Lowest degree with an error of at most `enough`, or else the highest.
     FitBasis least_basis(const FitBasis& most, double enough) const {
         FitBasis basis = most;
         for (basis.degree = std::min(kLeastDegree, most.degree);
@@ -91,7 +89,7 @@ std::vector<FitSample> part(const std::vector<FitSample>& all, std::size_t first
     return {all.begin() + std::ptrdiff_t(first), all.begin() + std::ptrdiff_t(last)};
 }
 
-/// The samples with those of `watched` that the block misses most.
+/// Samples plus the `watched` samples with the largest errors of the block.
 template <typename Vector>
 std::vector<FitSample> with_missed(const VectorFit<Vector>& fit, const FitBlock& block,
                                    const std::vector<FitSample>& watched) {
@@ -127,8 +125,8 @@ DirectionFit fit_direction(const Place& place, const std::vector<FitSample>& bas
     return {VectorFit{place, all, to_direction}.of(basis), basis, left, all};
 }
 
-/// Fits the offset as well as it must be; in wide fields and without axial symmetry, where the film feels
-/// it, in the direction's own basis, so that both err alike.
+/// Fits the offset to its tolerance. In wide fields and without axial symmetry, where it matters
+/// for the film position, it uses the basis of the direction.
 FitBlock fit_offset(const Place& place, const std::vector<FitSample>& base,
                     const DirectionFit& direction, const FitEffort& effort) {
     const auto to_offset = [](const FitSample& s) { return s.offset; };
@@ -140,7 +138,7 @@ FitBlock fit_offset(const Place& place, const std::vector<FitSample>& base,
     return offset.of(offset.least_basis(direction.basis, enough));
 }
 
-/// A point that decides who passes, for edges at `radius`.
+/// Fits a point on the iris or a mount with its edge at `radius`.
 template <typename Vector>
 FitBlock fit_point(const Place& place, const std::vector<FitSample>& wide, Vector vector,
                    double radius, int terms) {
@@ -149,7 +147,7 @@ FitBlock fit_point(const Place& place, const std::vector<FitSample>& wide, Vecto
                         0, terms};
     const VectorFit point{place, wide, vector};
     FitBasis basis = point.least_basis(most, kEdge * radius);
-    if (place.fit.symmetry.axial) basis.enough = kEdge * radius;  // else it takes seconds
+    if (place.fit.symmetry.axial) basis.enough = kEdge * radius;  // otherwise takes seconds
     return point.of(basis);
 }
 
@@ -207,7 +205,7 @@ void check(const LensFitRequest& r) {
                           std::to_string(r.terms));
 }
 
-/// One range of film radii, and how well it is fitted.
+/// Segment with its error.
 struct Piece {
     FitSegment segment;
     double residual = 0;
@@ -230,13 +228,13 @@ Piece fit_piece(const FitRays& rays, const LensFit& fit, const FitEffort& effort
     return piece;
 }
 
-/// mm before the front focus: what is sharp on a film there.
+/// Distance in mm from the front focus to the plane in focus.
 double focused_at(const Tracer& tracer, double film_z) {
     const FirstOrder order = first_order(tracer.prescription());
     return std::abs(order.efl / magnification(order, film_z));
 }
 
-/// Halves the worst piece until there are as many as asked for.
+/// Halves the segment with the largest error until the requested number is reached.
 std::vector<FitSegment> fit_segments(const FitRays& rays, const LensFit& fit,
                                      const LensFitRequest& request) {
     const FitEffort effort{request.terms, focused_at(rays.tracer(), fit.film.center.z)};
@@ -291,8 +289,7 @@ FitInverse fit_inverse(const LensFit& fit, const std::vector<FitSample>& clear) 
     double direction = 0;
     for (const FitSample& s : clear) direction = std::max(direction, length(s.direction));
     inverse.direction = direction;
-    // The offset that goes with a direction in the mean: the pupil wanders over the
-    // field.
+    // Mean offset per direction: the pupil moves over the field.
     double dd = 0, de = 0, reach = 0;
     for (const FitSample& s : clear)
         dd += dot(s.direction, s.direction), de += dot(s.direction, s.offset);

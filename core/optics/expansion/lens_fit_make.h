@@ -4,29 +4,29 @@
 
 namespace dg {
 
-/// Where in the sequence of rays those begin that the fit has not seen.
+/// First index, in the sequence of rays, of rays that are not used in fits.
 inline constexpr int kFreshRays = 1 << 20;
-/// Rays that are stopped are compared as well: the exact lens, with its mounts widened by
-/// this factor.
+/// Error estimates include clipped rays: they trace the exact lens with mounts widened by this
+/// factor.
 inline constexpr double kErrorWidened = 1.3;
 
-/// The mounts that stop rays which iris and other mounts let through, the busiest first.
+/// Mounts that clip rays inside the iris and all other mounts, ordered by number of clipped rays.
 std::vector<FitMount> limiting_mounts(const Tracer& tracer,
                                       const std::vector<FitSample>& samples);
 
-/// How far a fit goes.
+/// Effort of a fit.
 struct FitEffort {
-    int terms = 0;       // for each vector; 0: the complete basis where it is worth it
-    double focus = 1e9;  // mm, the distance at which points should be sharp
+    int terms = 0;       // per vector; 0: complete bases, reduced where the tolerance allows
+    double focus = 1e9;  // mm, distance in focus
 };
 
-/// Least squares over the samples of one segment, of which `domain` gives range and bend:
-/// `clear` for direction, offset and light (a third, and of the rest what it misses
-/// most), `wide` (with the mounts met) for iris and mounts.
+/// Least-squares fit over the samples of a segment; `domain` gives the range and the bend.
+/// Direction, offset and transmittance use `clear` (a third of the samples, plus those with the
+/// largest errors among the rest); iris and mounts use `wide` (with `met`).
 FitSegment fit_segment(const LensFit& fit, const std::vector<FitSample>& clear,
                        const std::vector<FitSample>& wide, const FitSegment& domain,
                        const FitEffort& effort = {});
-/// Root of the mean squared error in direction over samples.
+/// Root mean square error of the direction.
 double direction_residual(const LensFit& fit, const FitSegment& segment,
                           const std::vector<FitSample>& samples);
 FitInverse fit_inverse(const LensFit& fit, const std::vector<FitSample>& clear);

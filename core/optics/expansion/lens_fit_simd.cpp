@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
 
-/// Rounds of the inverse at most; each gains two digits or more.
+/// Maximal iterations of the inverse; each gains at least two digits.
 constexpr int kInverseRounds = 4;
 
 HWY_INLINE PairVec load(const float* x, const float* y) {
@@ -36,7 +36,7 @@ HWY_INLINE V open(const FitTables& fit, V fx, V fy, V qx, V qy) {
     return hn::IfThenElseZero(ok, one);
 }
 
-/// Transmittance, iris, mounts and domain.
+/// Transmittance including iris, mounts and domain.
 HWY_INLINE Pair passed(const FitTables& fit, const PairVec& f, const PairVec& q,
                        const FitLanes& v) {
     const V zero = hn::Zero(D());
@@ -76,10 +76,10 @@ void FitToScene(const FitTables& fit, const FitSegmentTables& segment, const Fil
 }
 
 struct LaneDescription {
-    V vx, vy, ex, ey;   // direction and offset
+    V vx, vy, ex, ey;   // direction v and offset e
 };
 
-/// describe_ray() of rays toward the scene, z from the first vertex.
+/// describe_ray() in lanes for rays toward the scene, z relative to the first vertex.
 HWY_INLINE LaneDescription describe_lanes(const FitTables& fit, const LaneVec& from,
                                           const LaneVec& along_ray) {
     const auto& [x, y, z] = from;
@@ -102,7 +102,7 @@ HWY_INLINE LaneDescription describe_lanes(const FitTables& fit, const LaneVec& f
     return {vx, vy, hn::MulAdd(vx, turn, px), hn::MulAdd(vy, turn, py)};
 }
 
-/// The fitted inverse: f and q of v and e.
+/// Approximate inverse: f and q from v and e.
 HWY_INLINE void guess(const FitTables& fit, const PairVec& v, const PairVec& e, Pair l,
                       PairVec (&fq)[2]) {
     const Pair unit = both(fit.inverse_direction);
@@ -121,9 +121,8 @@ HWY_INLINE PairVec difference(const PairVec& p, const PairVec& q) {
     return {sub(p.x, q.x), sub(p.y, q.y)};
 }
 
-/// With G the fitted inverse and F the fit: z <- z + G(target) - G(F(z)). Its fixed point
-/// is F(z) = target whatever G's error, which is what is left of the distance in each
-/// round.
+/// With the fitted inverse G and the fit F: z <- z + G(target) - G(F(z)). The fixed point is F(z) =
+/// target for any G; the error of G determines only the rate of convergence.
 HWY_INLINE void invert(const FitTables& fit, const PairVec& v, const PairVec& e, Pair l,
                        PairVec (&z)[2], FitLanes& there) {
     const FitSegmentTables* known = fit.segments.size() == 1 ? &fit.segments[0] : nullptr;
@@ -139,7 +138,7 @@ HWY_INLINE void invert(const FitTables& fit, const PairVec& v, const PairVec& e,
     evaluate_fit(fit, known, z[0], z[1], l, true, there);
 }
 
-/// Whether the search arrived: direction (rad) and offset (mm) are those asked for.
+/// Whether the iteration converged: direction (rad) and offset (mm) match the target.
 HWY_INLINE Pair arrived(const PairVec& v, const PairVec& e, const FitLanes& there,
                         Pair pass) {
     const PairVec dv = difference(there.direction, v), de = difference(there.offset, e);
@@ -183,8 +182,8 @@ namespace {
 HWY_EXPORT(FitToScene);
 HWY_EXPORT(FitToFilm);
 
-/// Rays picked from a batch. The rest of the arrays repeats the last one, so that kernels
-/// see no ray of chance.
+/// Gathers rays of a batch. Fills the rest of the arrays with the last ray, so that kernels read no
+/// uninitialized rays.
 int pick(const FilmRays& from, const std::vector<int>& at, FilmRays& to) {
     for (int i = 0; i < kLensBatch; ++i) {
         const int k = at[std::min<std::size_t>(i, at.size() - 1)];
@@ -205,7 +204,7 @@ void put_back(const SceneRays& from, const std::vector<int>& at, SceneRays& to) 
     }
 }
 
-/// Which rays of a batch each segment owns.
+/// Indices of a batch's rays by segment.
 std::vector<std::vector<int>> by_segment(const FitTables& fit, const FilmRays& in,
                                          int count) {
     std::vector<std::vector<int>> at(fit.segments.size());

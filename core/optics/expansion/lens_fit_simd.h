@@ -1,6 +1,6 @@
-// lens_fit_simd.h -- a fitted lens on batches of rays: float, SIMD with run-time
-// dispatch. The reference is lens_fit.h; tests hold them equal on every target. The
-// signatures are those of trace_simd.h.
+// lens_fit_simd.h -- fitted lens on batches of rays: float, SIMD with run-time dispatch, with the
+// signatures of trace_simd.h. Tests compare it with the reference (lens_fit.h) on every instruction
+// set.
 #pragma once
 #include <vector>
 
@@ -9,20 +9,19 @@
 
 namespace dg {
 
-/// Added to a node's number: its powers are all even, or all odd.
+/// Flags on a node's count: all powers are even, or all are odd.
 inline constexpr int kFitEven = 1 << 8, kFitOdd = 1 << 9;
 
-/// One or two functions over the same terms as a nested Horner scheme, variable within
-/// variable, the highest powers first: for each node the number of powers of its
-/// variable, then those powers' nodes, coefficients where the last variable is. Powers
-/// that are missed have coefficients of 0, unless all those of the other parity are
-/// (kFitEven, kFitOdd).
+/// Nested Horner scheme of one or two functions over common terms, with one level per variable,
+/// highest powers first. A node stores the number of powers of its variable, followed by the child
+/// nodes; the last variable's nodes have coefficients. Missing powers are stored as zeros, unless a
+/// whole parity is missing (kFitEven, kFitOdd).
 struct FitHorner {
     int count = 1;
     std::vector<int> nodes;
-    std::vector<float> coefficients;  // the functions' by turns
+    std::vector<float> coefficients;  // interleaved by function
 };
-/// A vector: A and B in one scheme, or x and y in one each.
+/// Vector as one scheme for A and B, or as two for x and y.
 struct FitVectorTables {
     FitHorner x, y;
 };
@@ -42,15 +41,15 @@ struct FitPupilTables {
 
 inline constexpr int kMostAngleTerms = 12;
 
-/// Tables of a fit that the kernels read.
+/// Tables of a fit for the kernels.
 struct FitTables {
     bool axial = true;
     WavelengthScale scale = WavelengthScale::visible();
     float center_x = 0, center_y = 0, half_x = 1, half_y = 1;  // film, mm
     FitPupilTables pupil;
-    float pupil_z = 0;  // middle of the entrance pupil from the first vertex, mm
+    float pupil_z = 0;  // mm, centre of the entrance pupil from the first vertex
     float front_curvature = 0;
-    int angle_terms = kMostAngleTerms;  // of the series of sin and cos
+    int angle_terms = kMostAngleTerms;  // of the series for sin and cos
     IrisTables iris;
     std::vector<float> outer2, inner2;  // mounts, mm^2
     std::vector<FitSegmentTables> segments;
@@ -61,11 +60,9 @@ struct FitTables {
 
 FitTables make_fit_tables(const LensFit& fit, const IrisTables& iris);
 
-/// Film -> scene, as trace_to_scene(). Rays outside of the fit's film or pupil are
-/// stopped.
+/// Film -> scene, like trace_to_scene(). Rays outside of the fit's film or pupil are clipped.
 void fit_to_scene(const FitTables& fit, const FilmRays& in, SceneRays& out, int count);
-/// Scene -> film, as trace_to_film(): the film ray that fit_to_scene() sends there, to
-/// float precision.
+/// Scene -> film, like trace_to_film(): inverts fit_to_scene() to float precision.
 void fit_to_film(const FitTables& fit, SceneRays& in, FilmRays& out, int count);
 
 }  // namespace dg

@@ -32,7 +32,7 @@ struct Subject {
             fit, make_lens_tables(tracer, r.film_z, true, &round, r.iris_radius).iris);
     }
 
-    /// Rays all over film and pupil, and a little beyond.
+    /// Random rays over film and pupil, and slightly beyond.
     void fill(FilmRays& rays) const {
         for (int i = 0; i < kLensBatch; ++i) {
             const auto u = quasi_random<5>(i);
@@ -53,7 +53,7 @@ std::vector<Subject> subjects() {
             Subject(test::fisheye(), 20, 9, 3), Subject(test::sonnar(), 20, 1)};
 }
 
-/// How far a ray is from the nearest edge that stops it, in parts of the edge's size.
+/// Distance of a ray from the nearest clipping edge, relative to the size of the edge.
 double margin(const LensFit& fit, const FitRay& ray, const FitValue& v) {
     const Vec2d f = fit.unit_film(ray.film), q = fit.pupil.q(f, ray.slope);
     double least = std::min(std::abs(1 - length(f)), std::abs(1 - length(q)));

@@ -27,7 +27,7 @@ LensFitRequest request(const Prescription& lens, double film_radius, int degree,
     return r;
 }
 
-/// Film rays all over the fit's film and pupil.
+/// Random film rays over the fit's film and pupil.
 FitRay any_ray(const LensFit& fit, int n) {
     const auto u = quasi_random<5>(n);
     const double a = 2 * kPiD * u[0], b = 2 * kPiD * u[1];
@@ -155,7 +155,7 @@ TEST_CASE("a lens that is a polynomial is found exactly") {
         const FitValue a = truth.evaluate(ray), b = found.evaluate(ray);
         CHECK(length(a.direction - b.direction) < 1e-11);
         CHECK(length(a.offset - b.offset) < 1e-10);
-        // Few terms are enough for these.
+        // The tolerance allows few terms for these.
         CHECK(length(a.iris - b.iris) < 2e-3 * truth.iris_radius);
         CHECK(std::abs(a.transmittance - b.transmittance) < 3e-3);
     }
@@ -169,7 +169,7 @@ TEST_CASE("the pursuit finds the columns of a sparse truth") {
         const auto u = quasi_random<5>(i);
         double sum = 0;
         for (int j = 0; j < kColumns; ++j) {
-            // A part that all columns share makes any of them look like the sum.
+            // A common component makes every column resemble the sum.
             const double v =
                 std::cos((j + 1) * 3.1 * u[0] + j * u[1]) + 0.3 * u[2] + 1 + u[3];
             e.matrix.push_back(v);

@@ -6,7 +6,7 @@
 namespace dg {
 namespace {
 
-/// Where the ray meets the stop's surface, in the frame of that surface.
+/// Intersection of the ray with the surface of the stop, in its frame.
 std::array<Series, 4> at_stop(const SurfaceForm& form, const PathStep& step,
                               const std::string& where, const SeriesRay& ray) {
     SeriesRay there = ray;

@@ -1,4 +1,5 @@
-// The expansion of a lens against everything else that is known of it.
+// Taylor expansion of a lens against the exact trace, first-order optics, Seidel sums and
+// symplecticity.
 #include "optics/expansion/lens_map.h"
 
 #include <doctest/doctest.h>
@@ -27,7 +28,7 @@ RayMap expansion(const Tracer& tracer, const LensWay& way, int degree) {
     return lens_map(tracer, tracer.at(kDesignWavelength), way, degree);
 }
 
-/// The exact ray on the same planes; clear apertures do not count.
+/// Exact ray on the same planes, without clipping.
 RayNumbers exact(const Tracer& tracer, const LensWay& way, const RayNumbers& r) {
     const double dz = std::sqrt(1 - r[2] * r[2] - r[3] * r[3]);
     TracedRay traced{{{r[0], r[1], way.start_z}, {r[2], r[3], way.path[0].sign * dz}}};
@@ -37,8 +38,8 @@ RayNumbers exact(const Tracer& tracer, const LensWay& way, const RayNumbers& r) 
     return {p.x, p.y, d.x, d.y};
 }
 
-/// Coefficients of t^0 .. t^7 of f on [-1, 1], by Chebyshev's polynomials up to degree 17
-/// on 40 nodes: higher ones hold nothing but rounding errors, and would add them.
+/// Coefficients of t^0 .. t^7 of f on [-1, 1], from Chebyshev polynomials up to degree 17 on 40
+/// nodes. Higher degrees contain only rounding errors.
 std::vector<RayNumbers> along_line(const std::function<RayNumbers(double)>& f) {
     constexpr int kNodes = 40, kTerms = 18, kWanted = 8;
     std::vector<RayNumbers> chebyshev(kTerms), power(kWanted);
@@ -50,7 +51,7 @@ std::vector<RayNumbers> along_line(const std::function<RayNumbers(double)>& f) {
                 chebyshev[j][o] +=
                     (j ? 2.0 : 1.0) / kNodes * value[o] * std::cos(j * angle);
     }
-    std::vector<double> t(kTerms), next(kTerms);  // T_j and the one after it, in powers
+    std::vector<double> t(kTerms), next(kTerms);  // T_j and T_{j+1} as power series
     t[0] = next[1] = 1;
     for (int j = 0; j < kTerms; ++j) {
         for (int g = 0; g < kWanted; ++g)
@@ -67,9 +68,8 @@ double power_product(const RayNumbers& v, const std::array<int, 4>& e) {
            std::pow(v[3], e[3]);
 }
 
-/// The worst difference between the map's coefficients of degree g and the derivatives of
-/// the exact trace, relative to the largest of its output. `unit`: a step for each
-/// number.
+/// Largest difference between the map's coefficients of degree g and derivatives of the exact
+/// trace, relative to the largest coefficient of the output. `unit`: step per coordinate.
 double derivative_error(const Tracer& tracer, const LensWay& way, const RayMap& map,
                         int g, const RayNumbers& unit) {
     const Monomials& m = *map.out[0].monomials();
@@ -106,7 +106,7 @@ double derivative_error(const Tracer& tracer, const LensWay& way, const RayMap& 
     return worst;
 }
 
-/// Largest difference of two maps up to a degree, each coefficient in units of a step.
+/// Largest difference of two maps up to a degree, with coefficients scaled by the steps.
 double difference(const RayMap& a, const RayMap& b, int degree, const RayNumbers& unit) {
     const Monomials& m = Monomials::of(degree);
     double worst = 0;
@@ -117,7 +117,7 @@ double difference(const RayMap& a, const RayMap& b, int degree, const RayNumbers
     return worst;
 }
 
-/// The same lens put together from elements, expanded about what the base ray becomes.
+/// The lens composed of elements, each expanded about the base ray at its place.
 RayMap assembled(const Tracer& tracer, const LensWay& way, int degree) {
     const LensIndices n = tracer.at(kDesignWavelength);
     RayMap all = propagation(0, degree, way.about);
@@ -142,7 +142,7 @@ RayMap assembled(const Tracer& tracer, const LensWay& way, int degree) {
     return all;
 }
 
-/// Largest entry of J^T O J - (n / n') O, with O the symplectic form of (x, y, dx, dy).
+/// Largest entry of J^T O J - (n / n') O, where O is the symplectic form of (x, y, dx, dy).
 double symplectic_error(const RayMap& map, const RayNumbers& ray) {
     const Matrix4x4 j = map.jacobian(ray);
     double worst = 0;
@@ -157,7 +157,7 @@ double symplectic_error(const RayMap& map, const RayNumbers& ray) {
     return worst;
 }
 
-/// A double Gauss with a conic, an asphere and, if asked for, what has no symmetry.
+/// Double Gauss with a conic and an asphere, and optionally surfaces without symmetry.
 Prescription general_lens(bool symmetric) {
     Prescription lens = test::check_lens(true, 0.5);
     lens.name = symmetric ? "aspheric" : "general";
@@ -168,7 +168,7 @@ Prescription general_lens(bool symmetric) {
     biconic.shape = Shape::biconic, biconic.curvature_x = 1.1 * biconic.curvature;
     biconic.conic = 0.2, biconic.conic_x = -0.3;
     toroid.shape = Shape::toroid, toroid.curvature_x = 0.9 * toroid.curvature;
-    lens.surfaces[9].shape = Shape::biconic;  // a cylinder
+    lens.surfaces[9].shape = Shape::biconic;  // cylinder
     lens.surfaces[9].curvature_x = 0;
     lens.surfaces[6].decenter = {0.4, -0.3, 0.05};
     lens.surfaces[7].tilt = {0.7, -1.1, 3};
@@ -186,7 +186,7 @@ LensWay film_way(const Tracer& tracer) {
     return to_film(tracer, f.entrance_pupil_z, f.back_focal_z);
 }
 
-/// Steps within which the Taylor series of a lens converges well.
+/// Steps for which the Taylor series of a lens converges well.
 RayNumbers units(const Tracer& tracer) {
     const FirstOrder f = first_order(tracer.prescription());
     const double r = 0.1 * f.entrance_pupil_diameter, slope = std::min(0.15, 7.5 / f.efl);
@@ -257,8 +257,8 @@ TEST_CASE("degree 3 is the Seidel sums of the prescription") {
         const RayMap map = expansion(tracer, film_way(tracer), 3);
         const Seidel sums = seidel(lens, kDesignWavelength, {1, 1});
         const double k = 1 / sums.image_convergence;
-        // x' by pupil point (x, y) and slope (tx, ty); d = t - t |t|^2 / 2 adds to the
-        // distortion. W as in seidel.h, transverse aberration k grad W.
+        // x' as a function of pupil point (x, y) and slope (tx, ty); d = t - t |t|^2 / 2
+        // contributes to the distortion. W as in seidel.h, transverse aberration k grad W.
         const auto at = [&](std::array<int, 4> e) {
             const Monomials& m = Monomials::of(3);
             for (int i = 0; i < m.count(); ++i)
@@ -335,7 +335,7 @@ TEST_CASE("the inverse composes to the identity, and is the lens from behind") {
                          unit) < 1e-10);
         RayMap there = propagation(0, 5, map.image());
         CHECK(difference(compose(map, undone), there, 5, unit) < 1e-10);
-        // Light the other way has the cosines reversed: (x, -d) in and out.
+        // The reversed path has reversed cosines: (x, -d) at input and output.
         LensWay back = way;
         back.path = straight_path(int(lens.surfaces.size()), false);
         std::swap(back.start_z, back.end_z);
@@ -388,7 +388,7 @@ TEST_CASE("ghosts: derivatives of the exact two-reflection trace, both ways") {
             for (double& u : unit) u *= small;
             for (const int g : {1, 3})
                 CHECK(derivative_error(tracer, way, map, g, unit) < 1e-6);
-            // A ghost has its own ABCD matrix: determinant 1 in each section.
+            // The ABCD matrix of a ghost has determinant 1 in each section.
             const Matrix4x4 j = map.jacobian({});
             CHECK(j[0][0] * j[2][2] - j[0][2] * j[2][0] == doctest::Approx(1));
         }
@@ -420,7 +420,7 @@ TEST_CASE(
         CHECK(iris[1] == doctest::Approx(traced.iris.y).epsilon(1e-7));
         const SurfaceFrame& place = tracer.form(4).place;
         const Vec3d d =
-            place.turn_in(traced.ray.direction);  // nothing is refracted there
+            place.turn_in(traced.ray.direction);  // no refraction at the stop
         CHECK(iris[2] == doctest::Approx(d.x).epsilon(1e-7));
         CHECK(iris[3] == doctest::Approx(d.y).epsilon(1e-7));
     }

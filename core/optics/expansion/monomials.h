@@ -1,5 +1,4 @@
-// monomials.h -- the monomials of a ray's four numbers, x^a y^b dx^c dy^d, up to a
-// degree.
+// monomials.h -- monomials x^a y^b dx^c dy^d in the four coordinates of a ray, up to a degree.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,27 +8,27 @@ namespace dg {
 
 inline constexpr int kMaxSeriesDegree = 15;
 
-/// By degree, within a degree by the power of x, then y, then dx: 1, x, y, dx, dy, x^2, x
-/// y ... The exponents are also the digits of a number, the code, so that a product adds
-/// codes.
+/// Ordered by degree, then by the power of x, then y, then dx: 1, x, y, dx, dy, x^2, x y ... The
+/// code of a monomial is a number with the exponents as digits; the code of a product is the sum of
+/// the codes.
 class Monomials {
   public:
-    static const Monomials& of(int degree);  // made once; 0 .. kMaxSeriesDegree
+    static const Monomials& of(int degree);  // cached; degree 0 .. kMaxSeriesDegree
 
     int degree() const { return degree_; }
     int count() const { return int(exponents_.size()); }
-    /// How many there are of degree g and less: those of degree g end here.
+    /// Number of monomials of degree g or less.
     int count_to(int g) const { return end_[g]; }
     int degree_of(int i) const { return degree_of_[i]; }
     const std::array<int, 4>& exponents(int i) const { return exponents_[i]; }
 
-    /// Index of a product of degree() at most.
+    /// Index of a product; its degree must be at most degree().
     int product(int i, int j) const { return at_code_[code_[i] + code_[j]]; }
-    /// Index of monomial i divided by variable v, of which it must hold a power.
+    /// Index of monomial i divided by variable v, which it must contain.
     int divided(int i, int v) const { return at_code_[code_[i] - place_[v]]; }
-    /// Index of a variable alone. Degree 1 at least.
+    /// Index of the monomial of a single variable; degree() must be at least 1.
     int variable(int v) const { return at_code_[place_[v]]; }
-    /// A variable that monomial i > 0 holds: the first one.
+    /// First variable contained in monomial i > 0.
     int first_variable(int i) const;
 
   private:

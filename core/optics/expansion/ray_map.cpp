@@ -16,7 +16,7 @@ std::string text(const RayNumbers& ray) {
     return s.str();
 }
 
-/// All monomials at a deviation from the origin.
+/// Values of all monomials at a deviation from the origin.
 std::vector<double> monomial_values(const Monomials& m, const RayNumbers& deviation) {
     std::vector<double> value(m.count());
     value[0] = 1;
@@ -31,7 +31,7 @@ RayNumbers minus(const RayNumbers& a, const RayNumbers& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]};
 }
 
-/// The first map's outputs as deviations from the second's origin.
+/// Outputs of the first map as deviations from the origin of the second.
 std::array<Series, 4> joined(const RayMap& second, const RayMap& first) {
     constexpr double kNear = 1e-9;  // mm, radians
     const RayNumbers end = first.image(), gap = minus(end, second.origin);
@@ -47,8 +47,8 @@ std::array<Series, 4> joined(const RayMap& second, const RayMap& first) {
     return deviation;
 }
 
-/// Each of `outer` at the series `inner`, which have no constants. Monomials of no use to
-/// any are not made.
+/// Substitutes the series `inner`, which have no constant terms, into each series of `outer`. Skips
+/// unused monomials.
 std::array<Series, 4> substitute(const std::array<Series, 4>& outer,
                                  const std::array<Series, 4>& inner) {
     const Monomials& m = *outer[0].monomials();
@@ -72,7 +72,7 @@ std::array<Series, 4> substitute(const std::array<Series, 4>& outer,
     return sum;
 }
 
-/// Inverse of the linear part, rows in turn.
+/// Inverse of the linear part, row-major.
 std::vector<double> linear_inverse(const RayMap& map) {
     const Matrix4x4 a = map.jacobian(map.origin);
     std::vector<double> matrix, unit(16);
@@ -147,8 +147,8 @@ RayMap compose(const RayMap& second, const RayMap& first) {
             substitute(truncated(second, degree).out, joined(second, inner))};
 }
 
-// With out - image = A d + N(d), d solves d = A^-1 (out - image - N(d)); each round makes
-// one more degree right.
+// With out - image = A d + N(d), iterates d = A^-1 (out - image - N(d)); each round makes one more
+// degree exact.
 RayMap inverse(const RayMap& map) {
     const int degree = map.degree();
     const RayNumbers image = map.image();

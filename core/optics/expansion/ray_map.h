@@ -1,10 +1,10 @@
-// ray_map.h -- a polynomial from rays to rays at one wavelength: the Taylor expansion of
-// an optical system about one ray, its base.
+// ray_map.h -- polynomial map from rays to rays at one wavelength: Taylor expansion of an optical
+// system about a base ray.
 //
-// A ray is (x, y, dx, dy) on a plane: a point in mm, and x and y of its unit direction
-// (its cosines). In a medium of index n the cosines times n are the momenta that belong
-// to x and y, so that systems are symplectic; slopes would have made propagation linear
-// instead. z runs the way that light goes: a mirror turns z, not x and y.
+// A ray is (x, y, dx, dy) on a plane: a point in mm, and the x and y components of its unit
+// direction (direction cosines). In a medium of index n, n times the cosines are the momenta
+// conjugate to x and y, so maps are symplectic; slopes would make propagation linear instead. z
+// points in the direction of travel: a mirror flips z, not x and y.
 #pragma once
 #include <array>
 
@@ -15,10 +15,10 @@ namespace dg {
 using RayNumbers = std::array<double, 4>;
 using Matrix4x4 = std::array<RayNumbers, 4>;  // rows are outputs
 
-/// `out` are series in the deviation from `origin`. Their constants are where the base
-/// ray ends, so that none arise where a map of that origin follows: what is cut from both
-/// at degree n is then cut from their composition as well. Source: Hullin, Hanika and
-/// Heidrich 2012, Polynomial Optics, CGF 31(4).
+/// `out` are series in the deviation from `origin`. Their constant terms are the end of the base
+/// ray, where the following map must have its origin: then truncating both maps to degree n
+/// truncates their composition exactly. Source: Hullin, Hanika and Heidrich 2012, Polynomial
+/// Optics, CGF 31(4).
 struct RayMap {
     RayNumbers origin{};
     std::array<Series, 4> out;
@@ -29,16 +29,16 @@ struct RayMap {
     Matrix4x4 jacobian(const RayNumbers& ray) const;
 };
 
-/// The variables themselves, about a ray: where all expansions start.
+/// Coordinates of a ray as series about `about`: the input of all expansions.
 std::array<Series, 4> ray_series(int degree, const RayNumbers& about);
 
 RayMap truncated(const RayMap& map, int degree);
 
-/// First `first`, then `second`, to the lower degree of both. Error unless the second is
-/// expanded about the ray on which the first ends.
+/// Composition second(first(ray)), to the lower of both degrees. Throws Error unless the origin of
+/// `second` is the image of the base ray of `first`.
 RayMap compose(const RayMap& second, const RayMap& first);
 
-/// From the image to the origin: composed with the map, the identity up to its degree.
+/// Inverse map; its composition with `map` is the identity up to the degree.
 RayMap inverse(const RayMap& map);
 
 }  // namespace dg

@@ -8,7 +8,7 @@
 namespace dg {
 namespace {
 
-/// Terms of an operand that are not zero, by degree. Symmetry leaves few.
+/// Nonzero terms of an operand, by degree. Symmetry leaves few.
 struct Terms {
     std::vector<int> index;
     std::array<int, kMaxSeriesDegree + 1> end{};
@@ -21,11 +21,11 @@ struct Terms {
             end[g] = int(index.size());
         }
     }
-    /// Those of degree g at most.
+    /// Terms of degree g or less.
     std::span<const int> to(int g) const { return {index.data(), std::size_t(end[g])}; }
 };
 
-/// A non-constant operand's monomials; both must agree.
+/// Monomials of the non-constant operands, which must agree.
 const Monomials* shared(const Series& a, const Series& b) {
     if (a.monomials() && b.monomials()) DG_CHECK(a.degree(), ==, b.degree());
     return a.monomials() ? a.monomials() : b.monomials();
@@ -68,8 +68,8 @@ Series operator*(const Series& a, const Series& b) {
     return {*m, std::move(c)};
 }
 
-// r b = a, solved from low degrees to high ones: a term of r, once known, is subtracted
-// from all terms above it that it has a share in.
+// Solves r b = a from low to high degrees: subtracts the contribution of each known term of r from
+// all higher terms.
 Series operator/(const Series& a, const Series& b) {
     const Monomials* m = shared(a, b);
     if (!b.monomials_) return a.scaled(1 / b.value());
@@ -85,7 +85,7 @@ Series operator/(const Series& a, const Series& b) {
     return {*m, std::move(r)};
 }
 
-// s s = a, in the same way: each pair of terms of s, once both are known.
+// Solves s s = a in the same order: subtracts products of pairs of known terms of s.
 Series sqrt(const Series& a) {
     if (!(a.value() > 0))
         throw Error("no power series: the root of a number that is not positive");
@@ -93,7 +93,7 @@ Series sqrt(const Series& a) {
     if (!a.monomials_) return root;
     const Monomials& m = *a.monomials_;
     std::vector<double> s(a.c_);
-    std::vector<int> known;  // not zero, beyond the constant
+    std::vector<int> known;  // nonzero terms beyond the constant
     s[0] = root;
     for (int i = 1; i < m.count(); ++i) {
         if (s[i] == 0) continue;

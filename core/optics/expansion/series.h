@@ -1,6 +1,6 @@
-// series.h -- a truncated power series in the four numbers of a ray: a number type like
-// math/dual.h, on which the tracer's own templates run. What comes out is the Taylor
-// expansion of what they compute, to any degree, without tables of formulas.
+// series.h -- truncated power series in the four coordinates of a ray: a number type like
+// math/dual.h. The tracer's templates run on it and give Taylor expansions of any degree, without
+// formulas per surface.
 #pragma once
 #include <vector>
 
@@ -8,19 +8,18 @@
 
 namespace dg {
 
-/// The sum over monomials of coefficient x monomial; higher degrees are dropped wherever
-/// they arise. A constant knows no degree and goes with any series; series meet only
-/// their like.
+/// Sum of coefficient x monomial; all operations truncate to the degree. A constant has no degree
+/// and combines with any series; two series must have the same degree.
 class Series {
   public:
-    Series(double constant = 0) : c_{constant} {}  // NOLINT: constants mix with series
+    Series(double constant = 0) : c_{constant} {}  // NOLINT: constants convert implicitly
     Series(const Monomials& monomials, std::vector<double> coefficients)
         : monomials_(&monomials), c_(std::move(coefficients)) {}
     /// value + variable v.
     static Series input(const Monomials& monomials, double value, int v);
 
     double value() const { return c_[0]; }
-    /// Null: a constant.
+    /// Null for a constant.
     const Monomials* monomials() const { return monomials_; }
     double operator[](int i) const { return i < int(c_.size()) ? c_[i] : 0; }
     int degree() const { return monomials_ ? monomials_->degree() : 0; }
@@ -30,7 +29,7 @@ class Series {
     friend Series operator-(const Series& a) { return a.scaled(-1); }
     friend Series operator*(const Series& a, const Series& b);
     friend Series operator/(const Series& a, const Series& b);
-    /// The constant term must be positive: elsewhere a root has no expansion.
+    /// The constant term must be positive, since sqrt has no expansion elsewhere.
     friend Series sqrt(const Series& a);
 
   private:
@@ -45,7 +44,7 @@ inline double value_of(const Series& x) {
     return x.value();
 }
 
-/// Each step of Newton's doubles the degree that is right, from the value alone.
+/// Newton steps needed from an exact value: each step doubles the exact degree.
 inline int newton_steps(const Series& x) {
     int steps = 0;
     for (int right = 0; right < x.degree(); right = 2 * right + 1) ++steps;

@@ -89,7 +89,7 @@ TEST_CASE("series: what is cut before a product is what is cut after it") {
     const auto cut = [&](const Series& s) {
         std::vector<double> c(low.count());
         for (int i = 0; i < low.count(); ++i) {
-            // Monomials of one degree stand in the same order in both.
+            // Monomials of equal degree have the same order in both.
             REQUIRE(low.exponents(i) == high.exponents(i));
             c[i] = s[i];
         }

@@ -19,7 +19,7 @@ std::string listed(const std::vector<double>& nm) {
     return nm.empty() ? "none" : s.str() + " nm";
 }
 
-/// Lagrange's weights of the nodes.
+/// Lagrange weights of the nodes.
 std::vector<double> weights(const std::vector<double>& nodes, double nm) {
     std::vector<double> w(nodes.size(), 1);
     const double x = inverse_square(nm);

@@ -1,9 +1,8 @@
-// system.h -- an optical system as a polynomial in a ray's four numbers and the
-// wavelength.
+// system.h -- optical system as a polynomial in the coordinates of a ray and in wavelength.
 //
-// The wavelength enters through expansions at a few nodes: between them the coefficients
-// are the polynomial in 1/wavelength^2 through the nodes. So composition is exact at the
-// nodes, and no degree in the wavelength has to be cut on the way.
+// The dependence on wavelength is stored as expansions at a few nodes; coefficients are
+// interpolated by the polynomial in 1/wavelength^2 through the nodes. Composition is thus exact at
+// the nodes, without truncation in wavelength.
 #pragma once
 #include <span>
 #include <vector>
@@ -12,28 +11,28 @@
 
 namespace dg {
 
-/// One map for each node. Without nodes: one map, the same at any wavelength.
+/// A map per node, or a single map without nodes for all wavelengths.
 struct PolynomialSystem {
     std::vector<double> nm;  // nodes, ascending
     std::vector<RayMap> maps;
 
     int degree() const { return maps.front().degree(); }
-    /// Throws Error unless the nodes ascend and the wavelength lies between them.
+    /// Throws Error unless the wavelength is within the nodes.
     RayMap at(double wavelength_nm) const;
 };
 
 void check(const PolynomialSystem& system);
 
-/// `count` nodes that keep the interpolation between two wavelengths near the best: those
-/// of Chebyshev, in 1/wavelength^2, ends included.
+/// `count` Chebyshev nodes in 1/wavelength^2 between two wavelengths, ends included: close to the
+/// best nodes for interpolation.
 std::vector<double> wavelength_nodes(double from_nm, double to_nm, int count);
 
-/// First `first`. Both have the same nodes, or one of them none.
+/// Composition second(first). Both must have the same nodes, unless one has none.
 PolynomialSystem compose(const PolynomialSystem& second, const PolynomialSystem& first);
 PolynomialSystem inverse(const PolynomialSystem& system);
 PolynomialSystem truncated(const PolynomialSystem& system, int degree);
 
-/// At each of the wavelengths as a node.
+/// Expansion of the lens with the wavelengths as nodes.
 PolynomialSystem lens_system(const Tracer& tracer, const LensWay& way,
                              const std::vector<double>& nm, int degree);
 

@@ -10,29 +10,29 @@ namespace {
 
 constexpr int kRings = 64, kAzimuths = 16, kBisections = 30;
 
-/// Where a ray meets the plane of reference, and its slope there.
+/// Intersection of a ray with the reference plane, and its slope.
 struct Landing {
     Vec2d at, slope;
     double weight;
 };
 
-/// A point on the axis that looks at the entrance pupil.
+/// Point on the axis that emits rays into the entrance pupil.
 struct Source {
     const Tracer& tracer;
     LensIndices index;
     Clip clip;
-    double z, pupil_z;  // z: -infinity for a distant point
+    double z, pupil_z;  // z of the point, -infinity if distant
 
     std::optional<TracedRay> ray(double radius, double azimuth) const {
         const Vec3d pupil{radius * std::cos(azimuth), radius * std::sin(azimuth), pupil_z};
         const Vec3d direction =
             std::isinf(z) ? Vec3d{0, 0, 1} : normalize(pupil - Vec3d{0, 0, z});
-        // A start in front of the lens, whatever lies between it and the pupil.
+        // Start in front of the lens, even if the pupil is behind the first surface.
         const double back = (pupil.z + 1e3) / direction.z;
         return tracer.to_film({pupil - back * direction, direction}, index, clip);
     }
 
-    /// The radius, as seen in the pupil, at which light ends; 0 if none passes.
+    /// Radius in the pupil at which rays start to be clipped; 0 if none passes.
     double edge(double guess, double azimuth) const {
         const double step = 1.6 * guess / kRings;
         int k = kRings;
@@ -57,7 +57,7 @@ void land(const Source& source, double guess, double azimuth, double weight, dou
     }
 }
 
-/// The smallest spot: sum w |at + t slope - centre|^2 is a parabola in t.
+/// Smallest spot: sum w |at + t slope - centre|^2 is quadratic in t.
 BestFocus smallest(const std::vector<Landing>& rays, double film_z, bool centred) {
     double weight = 0, aa = 0, as = 0, ss = 0;
     Vec2d at{}, slope{};
@@ -85,7 +85,7 @@ BestFocus best_focus(const Prescription& lens, double f_stop, double distance_m,
     const double radius = iris_radius(lens, f, f_stop);
     const bool symmetric = is_axially_symmetric(lens);
     BestFocus best{film_position(lens, f, distance_m, from), 0};
-    // Measured from the film, the point moves with it: a few rounds settle both.
+    // A distance measured from the film moves the object with the film; a few iterations converge.
     for (int round_trip = 0; round_trip < (from == FocusFrom::sensor ? 4 : 1); ++round_trip) {
         const double origin = from == FocusFrom::sensor ? best.film_z : f.entrance_pupil_z;
         const double guess = radius * std::abs(f.entrance_magnification);

@@ -1,4 +1,4 @@
-// best_focus.h -- where the film sees the smallest spot, as against the paraxial focus.
+// best_focus.h -- film position with the smallest spot, as opposed to the paraxial focus.
 #pragma once
 #include <vector>
 
@@ -10,19 +10,19 @@ struct WeightedWavelength {
     double nm, weight;
 };
 
-/// F, d and C by what the eye makes of them (CIE 1924 V).
+/// F, d and C lines, weighted by the eye's sensitivity (CIE 1924 V).
 inline const std::vector<WeightedWavelength> kEyeWavelengths = {
     {486.1327, 0.181}, {587.5618, 0.783}, {656.2725, 0.072}};
 
 struct BestFocus {
     double film_z;  // mm, lens frame
-    double rms;     // mm, of the spot there: root of the mean square distance to its centre
+    double rms;     // mm, radius of the spot: root mean square distance from its centre
 };
 
-/// The film's place for the smallest RMS spot of a point on the axis at a distance (m,
-/// infinity allowed): by exact rays, equal areas of the entrance pupil, clipped by the iris of
-/// the f-stop and every clear aperture. Spots grow as a parabola in z, so that place is exact.
-/// Error if no ray passes.
+/// Film position with the smallest RMS spot of a point on the axis at a distance in m (may be
+/// infinite). Traces exact rays through equal areas of the entrance pupil, clipped by the iris and
+/// all clear apertures. The mean square is quadratic in z, so the minimum is exact. Throws Error if
+/// no ray passes.
 BestFocus best_focus(const Prescription& lens, double f_stop, double distance_m,
                      FocusFrom from = FocusFrom::pupil,
                      const std::vector<WeightedWavelength>& wavelengths = kEyeWavelengths);

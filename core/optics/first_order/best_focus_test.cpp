@@ -10,7 +10,7 @@ using namespace dg;
 
 namespace {
 
-/// doctest's Approx forgives an absolute error, too.
+/// Relative comparison; doctest's Approx also accepts an absolute error.
 bool close(double got, double wanted, double relative) {
     return std::abs(got - wanted) <= relative * std::abs(wanted);
 }
@@ -33,9 +33,9 @@ TEST_CASE("stopped down, the best focus is the paraxial one") {
 }
 
 TEST_CASE("third-order spherical aberration: two thirds of the marginal ray's, spot a third") {
-    // W = a r^4 - d r^2 / 2: transverse error 4 a r^3 - d r; least squares over the disc gives
-    // d = 8/3 a, and the marginal ray's focus is at d = 4 a. RMS there is 1/3 of the one at
-    // the paraxial focus.
+    // W = a r^4 - d r^2 / 2 has the transverse error 4 a r^3 - d r. Least squares over the disc
+    // gives d = 8/3 a; the marginal ray's focus is at d = 4 a. The RMS radius there is 1/3 of the
+    // RMS radius at the paraxial focus.
     const Prescription lens = test::check_lens(true, 0.5);
     const FirstOrder f = first_order(lens);
     const double f_stop = 30;
@@ -54,7 +54,7 @@ TEST_CASE("the place found is the smallest of its neighbours, whatever the lens"
     const BestFocus best = best_focus(toric, 4, 2);
     const BestFocus round = best_focus(test::tessar(), 4, 2);
     CHECK(best.rms > 1.4 * round.rms);
-    // Between the two sections' focuses.
+    // The best focus is between the foci of the two sections.
     const double y = film_position(toric, first_order(toric), 2);
     const double x = film_position(toric, first_order(toric, kDesignWavelength, Section::x), 2);
     CHECK(x < y - 0.02);

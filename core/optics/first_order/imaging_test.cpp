@@ -1,5 +1,4 @@
-// Surfaces that are known to image without error, and the astigmatism of those that
-// cannot.
+// Surfaces known to image without aberration, and the astigmatism of others.
 #include <doctest/doctest.h>
 
 #include "math/linear_solve.h"
@@ -12,7 +11,7 @@ using namespace dg;
 
 namespace {
 
-/// One surface between two media, the stop being itself.
+/// Single surface between two media, which is also the stop.
 Prescription boundary(const Surface& surface, double before, double after) {
     Prescription lens;
     lens.name = "boundary";
@@ -24,8 +23,8 @@ Prescription boundary(const Surface& surface, double before, double after) {
     return lens;
 }
 
-/// Largest distance from the focus, mm, at which rays parallel to the axis pass it, and
-/// the spread of their optical paths up to it.
+/// Largest distance in mm between the focus and rays that arrive parallel to the axis, and the
+/// spread of their optical paths up to it.
 struct Focus {
     double miss = 0, path_spread = 0;
     int rays = 0;
@@ -53,8 +52,8 @@ Focus from_infinity(const Prescription& lens, double focus_z, double height) {
     return f;
 }
 
-/// Where rays close to the chief ray cross it: distances along it from the plane z, by
-/// the Jacobian between that plane and the ray's start, for a ray tilted in y.
+/// Foci of rays close to a chief ray tilted in y: distances along it from the plane z, from the
+/// Jacobian between that plane and the ray's start.
 struct Foci {
     double tangential, sagittal;
 };
@@ -68,8 +67,8 @@ Foci foci(const Prescription& lens, double field, double z) {
     REQUIRE(j);
     const auto out = t.to_film(chief, n, {false, nullptr, 0});
     const double c = out->ray.direction.z;
-    // A parallel bundle: dx at the start alone. dL at the end moves x by t / c (and y by
-    // t / c^3, as dN follows dM).
+    // Parallel bundle: only dx at the start varies. dL at the end moves x by t / c, and y by t /
+    // c^3, since dN follows dM.
     const auto& m = *j;
     return {-m[1][1] / m[3][1] * c * c, -m[0][0] / m[2][0]};
 }
@@ -89,14 +88,14 @@ TEST_CASE("an ellipsoid and a hyperboloid focus parallel light without error") {
     CHECK(out.rays == 60);
     CHECK(out.miss < 1e-10);
     CHECK(out.path_spread < 1e-10);
-    // Planted: the conic constant 0.1 % off, or the index of the path forgotten.
+    // Planted faults: a conic constant off by 0.1 %; a path without the index.
     s.conic *= 1.001;
     CHECK(from_infinity(boundary(s, n, 1), r / (n - 1), 25).miss > 1e-3);
 }
 
 TEST_CASE("a Cartesian oval as an asphere images a point onto a point") {
-    // n1 |P - A| + n2 |B - P| is that of the axis; solved by bisection, and fitted by
-    // even powers. A 60 mm before the vertex, B 80 mm behind it.
+    // n1 |P - A| + n2 |B - P| equals its value on the axis; solved by bisection and fitted by even
+    // powers. A is 60 mm in front of the vertex, B 80 mm behind it.
     const double n1 = 1, n2 = 1.5, a = 60, b = 80, reach = 8;
     const auto height = [&](double r) {
         double low = -1, high = 5;
@@ -150,8 +149,8 @@ TEST_CASE("a cylinder and a toroid have foci of their own in both sections") {
 }
 
 TEST_CASE("Coddington: a symmetric lens shows astigmatism off axis, and none on it") {
-    // Thin lens at its stop: tangential and sagittal foci differ as (3 + 1/n) to
-    // (1 + 1/n) times the square of the field. Source: Kingslake and Johnson, Lens Design
+    // Thin lens at its stop: the tangential and sagittal field curvatures are in the ratio (3 + 1/n)
+    // to (1 + 1/n), and both foci move with the square of the field angle. Source: Kingslake and Johnson, Lens Design
     // Fundamentals, 2nd ed., 11.2.
     const double n = 1.5, f = 100, r = 2 * f * (n - 1);
     Surface front, back;

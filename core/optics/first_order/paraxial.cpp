@@ -8,7 +8,7 @@
 namespace dg {
 namespace {
 
-/// (height, n x slope) -> (height, n x slope).
+/// Ray transfer matrix on (height, n x slope).
 struct Matrix {
     double a = 1, b = 0, c = 0, d = 1;
     friend Matrix operator*(const Matrix& l, const Matrix& r) {
@@ -17,8 +17,7 @@ struct Matrix {
     }
 };
 
-/// From just before surface `first` to surface `last`, with or without the refraction
-/// there.
+/// Matrix from just before surface `first` to surface `last`, with or without the last refraction.
 Matrix system(const Prescription& lens, double nm, Section section, int first, int last,
               bool refract_last) {
     const auto curvature = [&](const Surface& s) {
@@ -65,8 +64,8 @@ FirstOrder first_order(const Prescription& lens, double nm, Section section) {
     f.back_principal_z = f.back_focal_z - n1 / power;
     f.front_nodal_z = f.ffl + n1 / power;
     f.back_nodal_z = f.back_focal_z - n0 / power;
-    // Pupils: images of the stop's centre through the halves before and after its
-    // aperture.
+    // Pupils: images of the stop's centre through the parts of the lens in front of it and behind
+    // it.
     const Matrix front = system(lens, nm, section, 0, stop, false);
     const Matrix rear = system(lens, nm, section, stop, last, true);
     f.entrance_pupil_z = n0 * front.b / front.a;
@@ -119,7 +118,8 @@ void check_converging(const Prescription& lens, const FirstOrder& f) {
 
 double closest_focus_m(const Prescription& lens, const FirstOrder& f, FocusFrom from) {
     check_converging(lens, f);
-    // From object to front focus, and from rear focus to image, lies one focal length each.
+    // The object is one focal length in front of the front focus, the image one behind the rear
+    // focus.
     const double focal = std::sqrt(f.efl * (f.front_principal_z - f.front_focal_z));
     const double mm = from == FocusFrom::pupil ? focal + f.entrance_pupil_z - f.front_focal_z
                                                : 2 * focal + f.back_focal_z - f.front_focal_z;
@@ -133,8 +133,7 @@ double film_position(const Prescription& lens, const FirstOrder& f, double dista
         throw input_error(lens.name, "focus distance", "a positive number of metres",
                           std::to_string(distance_m));
     if (std::isinf(distance_m)) return f.back_focal_z;
-    // x: from the object to the front focus. x = f is 1:1, the closest that a moved lens
-    // is meant for.
+    // x: distance from object to front focus. x = f is 1:1, the closest focus for unit focusing.
     const double focal2 = f.efl * (f.front_principal_z - f.front_focal_z);
     const double x_min = std::sqrt(focal2);
     const double mm = 1e3 * distance_m;
@@ -142,7 +141,7 @@ double film_position(const Prescription& lens, const FirstOrder& f, double dista
     if (from == FocusFrom::pupil) {
         x = mm - (f.entrance_pupil_z - f.front_focal_z);
     } else {
-        // Object to film is x + f^2/x + (rear focus - front focus).
+        // Distance from object to film: x + f^2/x + (rear focus - front focus).
         const double t = mm - (f.back_focal_z - f.front_focal_z);
         x = t >= 2 * x_min ? 0.5 * (t + std::sqrt(t * t - 4 * focal2)) : 0;
     }

@@ -12,8 +12,7 @@ using namespace dg;
 
 namespace {
 
-/// Where the ray from the axis at z_object under a small angle crosses the axis behind
-/// the lens.
+/// z at which a ray from the axis at z_object, at a small angle, crosses the axis behind the lens.
 double image_of(const Prescription& lens, double z_object) {
     const Tracer tracer(lens);
     const auto ray =
@@ -33,7 +32,7 @@ TEST_CASE("the check lens has its published focal lengths") {
     const FirstOrder patent = first_order(test::check_lens(true));
     CHECK(patent.efl == doctest::Approx(100.015).epsilon(5e-6));
     CHECK(patent.bfl == doctest::Approx(71.445).epsilon(7e-6));
-    // Scaled lenses scale.
+    // Lengths scale with the lens.
     CHECK(first_order(test::check_lens(true, 0.5)).efl ==
           doctest::Approx(0.5 * patent.efl));
 }
@@ -55,8 +54,8 @@ TEST_CASE("cardinal points and pupils against exact rays close to the axis") {
         const double out = back->ray.direction.x / back->ray.direction.z;
         CHECK(back->ray.origin.z - back->ray.origin.x / out ==
               doctest::Approx(f.front_focal_z).epsilon(1e-7));
-        // A ray aimed at the entrance pupil's centre crosses the middle of the stop, and
-        // leaves as if from the exit pupil's.
+        // A ray toward the centre of the entrance pupil crosses the centre of the stop, and leaves
+        // along a line through the centre of the exit pupil.
         const auto chief = tracer.to_film(
             {{-1e-4 * (f.entrance_pupil_z + 10), 0, -10}, normalize(Vec3d{1e-4, 0, 1})},
             n, {});
@@ -167,7 +166,7 @@ TEST_CASE("in water the nodal points leave the principal points") {
           doctest::Approx(f.efl - 1.333 * f.efl).epsilon(1e-9));
     CHECK(f.front_nodal_z - f.front_principal_z ==
           doctest::Approx(f.back_nodal_z - f.back_principal_z));
-    // A ray aimed at the front nodal point leaves with the same slope from the rear one.
+    // A ray toward the front nodal point leaves from the rear nodal point with the same slope.
     const Tracer tracer(lens);
     const auto ray = tracer.to_film({{0, 0, f.front_nodal_z}, normalize(Vec3d{1e-5, 0, 1})},
                                     tracer.at(kDesignWavelength), {false, nullptr, 0});
@@ -179,8 +178,8 @@ TEST_CASE("in water the nodal points leave the principal points") {
 }
 
 TEST_CASE("a stop inside glass: pupils seen through the media on its own sides") {
-    // A ball of glass with the stop in its middle: rays to the middle are not bent, so both
-    // pupils lie there, n times larger.
+    // Ball of glass with the stop at its centre: central rays are not refracted, so both pupils are
+    // at the stop, magnified n times.
     Prescription ball = test::lens_from_rows(
         "ball", {{10, 10, 1.5, 0, 9.9}, {0, 10, 1.5, 0, 2, true}, {-10, 0, 1, 0, 9.9}});
     const FirstOrder f = first_order(ball);
@@ -197,7 +196,7 @@ TEST_CASE("the working f-number is that of the marginal ray") {
         const double film = film_position(lens, f, 0.8), m = magnification(f, film);
         const double z = f.entrance_pupil_z - 800;
         const Tracer tracer(lens);
-        const double h = 1e-4;  // in the entrance pupil, of a lens at f / (2 h)
+        const double h = 1e-4;  // height in the entrance pupil, for a lens at f / (2 h)
         const auto ray = tracer.to_film({{0, 0, z}, normalize(Vec3d{h / 800, 0, 1})},
                                         tracer.at(kDesignWavelength), {false, nullptr, 0});
         REQUIRE(ray);

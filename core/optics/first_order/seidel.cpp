@@ -8,12 +8,12 @@
 namespace dg {
 namespace {
 
-/// A paraxial ray at a surface: height and slope before it.
+/// Paraxial ray at a surface: height, and slope before refraction.
 struct Ray {
     double h, u;
 };
 
-/// Depth of the sag beyond the sphere of the vertex's curvature: coefficient of r^4.
+/// Coefficient of r^4 of the sag, relative to the sphere with the curvature at the vertex.
 double fourth_order_depth(const Surface& s) {
     const auto cube = [](double c) { return c * c * c; };
     double depth = ((1 + s.conic) * cube(s.curvature) - cube(vertex_curvature_y(s))) / 8;
@@ -28,12 +28,12 @@ SeidelSums& operator+=(SeidelSums& a, const SeidelSums& b) {
     return a;
 }
 
-/// Index of a medium, and how far it falls from the short to the long wavelength.
+/// Index of a medium, and its decrease from the short to the long wavelength.
 struct Medium {
     double n, dn;
 };
 
-/// u2: slope of the marginal ray behind the surface.
+/// Contributions of a surface; u2 is the slope of the marginal ray behind it.
 SeidelSums sums_at(const Surface& s, Ray marginal, Ray chief, double u2, double invariant,
                    Medium before, Medium behind) {
     const auto [n, dn] = before;
@@ -45,8 +45,7 @@ SeidelSums sums_at(const Surface& s, Ray marginal, Ray chief, double u2, double 
                    .s2 = -a * ac * h * bend,
                    .s3 = -ac * ac * h * bend,
                    .s4 = -invariant * invariant * petzval};
-    // The form without a division by a, which vanishes where the marginal ray meets a surface
-    // at a right angle.
+    // This form has no division by a, which vanishes where the marginal ray has normal incidence.
     out.s5 = -ac * (ac * ac * h * (1 / (n2 * n2) - 1 / (n * n)) +
                     (invariant - ac * h) * hc * petzval);
     const double asphere = 8 * (n2 - n) * fourth_order_depth(s) * h;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kSlope = 0.2;
 
-/// Transverse aberration (y, and x) of an exact ray at the Gaussian image plane, against the
-/// Gaussian image point; pupil coordinates and field in units of `rays`.
+/// Transverse aberration of an exact ray at the Gaussian image plane, relative to the Gaussian
+/// image point; pupil coordinates and field in units of `rays`.
 Vec2d traced(const Prescription& lens, const SeidelRays& rays, Vec2d pupil, double field) {
     const FirstOrder f = first_order(lens);
     const Tracer tracer(lens);
@@ -26,7 +26,7 @@ Vec2d traced(const Prescription& lens, const SeidelRays& rays, Vec2d pupil, doub
     return {at.x, at.y - f.efl * slope};
 }
 
-/// grad W / (n'u') of the third-order wavefront.
+/// Third-order transverse aberration, grad W / (n'u').
 Vec2d third_order(const Seidel& sums, Vec2d p, double h) {
     const SeidelSums& s = sums.total;
     const double r2 = dot(p, p), k = 1 / sums.image_convergence;
@@ -62,14 +62,15 @@ TEST_CASE("Seidel sums are the third-order aberration of exact rays") {
              {std::pair{Vec2d{0, 1}, 0.0}, {{0, 0}, 1.0}, {{0.6, 0.8}, 1.0}, {{1, 0}, 0.7},
               {{0, -1}, 1.0}, {{-0.5, 0.3}, -0.8}}) {
             const Vec2d expected = third_order(sums, pupil, field);
-            // Pupil and field shrunk by t: aberration / t^3 tends to the sum with an error t^2.
+            // With pupil and field scaled by t, aberration / t^3 tends to the third-order value
+            // with an error of order t^2.
             const auto scaled = [&](double t) {
                 return traced(lens, rays, t * pupil, t * field) * (1 / (t * t * t));
             };
             const Vec2d coarse = scaled(0.04), fine = scaled(0.02);
             const Vec2d limit = (1 / 3.0) * (4.0 * fine - coarse);
             CHECK(length(limit - expected) < 1e-4 * size);
-            // log-log slope 3 of the aberration itself.
+            // The aberration has a log-log slope of 3.
             if (length(expected) > 0.1 * size) {
                 const double slope =
                     3 + std::log(length(coarse) / length(fine)) / std::log(2.0);
@@ -82,7 +83,7 @@ TEST_CASE("Seidel sums are the third-order aberration of exact rays") {
 TEST_CASE("chromatic sums are the first-order step between two wavelengths") {
     const Prescription lens = test::tessar();
     const FirstOrder f = first_order(lens);
-    // Two wavelengths close together, for which a step in index is a differential.
+    // Two close wavelengths: the difference of the indices approximates the differential.
     const double shorter = kDesignWavelength - 0.05, longer = kDesignWavelength + 0.05;
     const SeidelRays rays{0.5 * f.entrance_pupil_diameter, kSlope};
     const Seidel sums = seidel(lens, kDesignWavelength, rays, shorter, longer);
@@ -91,10 +92,10 @@ TEST_CASE("chromatic sums are the first-order step between two wavelengths") {
     // W = C1/2 r^2 moves the focus by -C1 / (n'u'^2).
     const double axial = blue.back_focal_z - red.back_focal_z;
     CHECK(std::abs(axial + sums.total.c1 / (u * u)) < 1e-4 * std::abs(axial));
-    // The chief ray of each colour passes the middle of the same stop: at the film it moves by
-    // C2 / (n'u').
+    // The chief rays of both wavelengths pass the centre of the stop; at the film they are C2 /
+    // (n'u') apart.
     const auto chief = [&](const FirstOrder& order) {
-        // Height at the film of a ray of slope kSlope through the entrance pupil's middle.
+        // Height at the film of a ray of slope kSlope through the centre of the entrance pupil.
         return kSlope / order.exit_magnification * order.entrance_magnification *
                (f.back_focal_z - order.exit_pupil_z);
     };
@@ -103,10 +104,11 @@ TEST_CASE("chromatic sums are the first-order step between two wavelengths") {
 }
 
 TEST_CASE("a finite object: spherical aberration of a ball's aplanatic point is zero") {
-    // Rays toward a point r n behind the centre of a sphere n meet again in r / n.
+    // Aplanatic points: rays toward the distance r n behind the centre of a sphere of index n
+    // converge at r / n.
     Prescription ball = test::lens_from_rows("ball", {{0, 0, 1, 0, 5, true}, {10, 40, 1.5, 0, 5}});
     ball.surfaces.back().glass.formula = ConstantIndex{1.5};
-    // Object (virtual) at z = 10 + 15 from the vertex: a negative distance from the pupil.
+    // Virtual object at z = 10 + 15 from the vertex: a negative distance from the pupil.
     const Seidel sums = seidel(ball, kDesignWavelength, {3, 0.1, -25});
     CHECK(std::abs(sums.total.s1) < 1e-14);
     CHECK(std::abs(sums.total.s2) < 1e-14);

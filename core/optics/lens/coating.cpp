@@ -9,12 +9,12 @@
 namespace dg {
 namespace {
 
-/// Gases, vacuum and water lie below, every optical solid above.
+/// Index between fluids (gases, vacuum, water), which get no coating, and optical solids.
 constexpr double kDensestFluid = 1.36;
 
-// Films as they are evaporated. MgF2: the 1.38 of every textbook. Ta2O5: fit to Gao,
-// Lemarchand and Lequime 2012, Opt. Express 20(14), 380-780 nm, within 0.007. Al2O3: fit to
-// Boidin et al. 2016, Ceramics International 42, within 0.0004.
+// Dispersion of film materials as evaporated. MgF2: the textbook value 1.38. Ta2O5: fit to Gao,
+// Lemarchand and Lequime 2012, Opt. Express 20(14), 380-780 nm, within 0.007. Al2O3: fit to Boidin
+// et al. 2016, Ceramics International 42, within 0.0004.
 CoatingLayer mgf2(double nm) {
     return {1.38, 0, nm};
 }
@@ -29,10 +29,10 @@ std::vector<CoatingLayer> quarter_wave() {
     return {mgf2(kFilmWavelength / (4 * 1.38))};
 }
 
-// Two films of given indices whose thicknesses make the amplitudes cancel at one
-// wavelength: Macleod, Thin-Film Optical Filters, "two-layer antireflection coatings"
-// (tan^2 of both phases). The low film is the thicker one: its phase lies beyond a quarter
-// wave. From n = 1.38^2 on, one quarter wave is better than any pair of these.
+// Two-film antireflection coating: thicknesses at which the amplitudes cancel at kFilmWavelength
+// (Macleod, Thin-Film Optical Filters, "two-layer antireflection coatings": tan^2 of both phases).
+// The low-index film is the thicker, with a phase above a quarter wave. For glass of n >= 1.38^2, a
+// single quarter wave reflects less than any such pair.
 std::vector<CoatingLayer> v_coat(double glass) {
     const double low = mgf2(0).index(kFilmWavelength),
                  high = ta2o5(0).index(kFilmWavelength);
@@ -47,10 +47,10 @@ std::vector<CoatingLayer> v_coat(double glass) {
     return {mgf2(phase_low * per_phase / low), ta2o5(phase_high * per_phase / high)};
 }
 
-// Own designs, by least mean reflectance over 400-700 nm at normal incidence; thicknesses
-// follow the glass. Up to 1.75 a quarter wave, nearly a half and two thin films of MgF2 and
-// Ta2O5: 0.17 to 0.42 %. Above, where glass is itself a film of high index, three films of
-// rising index: 0.32 to 0.42 % up to 2.0.
+// Our designs, by least mean reflectance over 400-700 nm at normal incidence; thicknesses depend on
+// the index of the glass. Up to 1.75: a quarter wave, nearly a half wave and two thin films of MgF2
+// and Ta2O5, which reflect 0.17 to 0.42 %. Above 1.75, where the glass itself acts as a high-index
+// film: three films of rising index, 0.32 to 0.42 % up to n = 2.0.
 std::vector<CoatingLayer> broadband(double glass) {
     if (glass < 1.75) {
         const double g = glass - 1.43;
@@ -61,8 +61,8 @@ std::vector<CoatingLayer> broadband(double glass) {
     return {mgf2(73.7 - 22 * g), al2o3(29.3 + 40 * g), ta2o5(108.6 - 4 * g)};
 }
 
-/// Characteristic matrix [[a, i b], [i c, d]] of films, one polarization. All films of one
-/// ray share n sin(theta). Source: Born and Wolf, Principles of Optics, section 1.6.
+/// Characteristic matrix [[a, i b], [i c, d]] of a film stack for one polarization. n sin(theta) is
+/// the same in all films. Source: Born and Wolf, Principles of Optics, section 1.6.
 struct Characteristic {
     double a = 1, b = 0, c = 0, d = 1;
 
@@ -71,7 +71,7 @@ struct Characteristic {
         *this = {a * cosine - b * c2, a * b2 + b * cosine, c * cosine + d * c2,
                  d * cosine - c * b2};
     }
-    /// 4 p q / |p B + C|^2 with (B, C) = M (1, q); p and q are the media's admittances.
+    /// 4 p q / |p B + C|^2 with (B, C) = M (1, q), where p and q are the admittances of the media.
     double transmittance(double p, double q) const {
         const double real = p * a + q * d, imaginary = p * q * b + c;
         return 4 * p * q / (real * real + imaginary * imaginary);
@@ -90,7 +90,7 @@ double films_transmittance(const std::vector<CoatingLayer>& films, double n1, do
         s.add(cosine, sine, normal);
         p.add(cosine, sine, n * n / normal);
     }
-    // Grazing rays have no admittance n / cos; they pass nothing.
+    // The p admittance n / cos diverges at grazing incidence, where T = 0.
     if (!(cos1 > 0 && cos2 > 0)) return 0;
     return 0.5 * (s.transmittance(n1 * cos1, n2 * cos2) +
                   p.transmittance(n1 / cos1, n2 / cos2));

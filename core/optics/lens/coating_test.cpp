@@ -25,8 +25,8 @@ double mean_loss(Coating coating, double n) {
     return sum / 61;
 }
 
-/// R and T of films by the sum of all reflections (Rouard's recursion from the glass
-/// outward, complex amplitudes), which shares nothing with the characteristic matrices.
+/// R and T of a film stack by Rouard's recursion (the sum of all internal reflections, from the
+/// glass outward, in complex amplitudes): independent of the characteristic matrices.
 struct Rouard {
     double r = 0, t = 0;
 };
@@ -64,7 +64,8 @@ TEST_CASE("published losses at normal incidence") {
     CHECK(normal_loss(Coating::uncoated, 1.52, 550) == doctest::Approx(0.0426).epsilon(2e-3));
     CHECK(normal_loss(Coating::mgf2, 1.52, 550) == doctest::Approx(0.0126).epsilon(4e-3));
     CHECK(normal_loss(Coating::perfect, 1.52, 550) == 0);
-    // A V coat is black at its wavelength, and worse than a single film far from it.
+    // A V coat has no reflectance at its design wavelength, and more than a single film far from
+    // it.
     for (const double n : {1.43, 1.5, 1.6, 1.7, 1.85})
         CHECK(normal_loss(Coating::v_coat, n, 550) < 1e-12);
     CHECK(normal_loss(Coating::v_coat, 2.0, 550) < 1e-3);
@@ -101,7 +102,7 @@ TEST_CASE("what is coated: glass against fluids, not cement; grazing rays pass n
     CHECK(coat(Coating::mgf2, 1, 1.333).films.empty());
     CHECK(coat(Coating::uncoated, 1, 1.6).films.empty());
     CHECK(surface_transmittance(coat(Coating::mgf2, 1, 1.5), 1, 0, 1.5, 0.75, 500) == 0);
-    // A film of the glass's own index is no film.
+    // A film with the index of the glass has no effect.
     const SurfaceCoating nothing{true, {{1.6, 0, 77}}};
     CHECK(surface_transmittance(nothing, 1, 0.7, 1.6, std::sqrt(1 - 0.51 / 2.56), 470) ==
           doctest::Approx(surface_transmittance({}, 1, 0.7, 1.6,

@@ -1,10 +1,11 @@
-// film_plane.h -- where the film lies behind a lens: across the axis, or tilted and shifted against it.
+// film_plane.h -- position and orientation of the film behind a lens; it may be tilted and shifted.
 #pragma once
 #include "math/vec.h"
 
 namespace dg {
 
-/// Lens frame, mm. x and y are unit vectors at right angles; the normal points away from the lens.
+/// Film plane in the lens frame, mm. x and y are orthogonal unit vectors; the normal points away
+/// from the lens.
 struct FilmPlane {
     Vec3d center{}, x{1, 0, 0}, y{0, 1, 0};
 
@@ -12,9 +13,9 @@ struct FilmPlane {
     Vec3d at(Vec2d film) const { return center + film.x * x + film.y * y; }
 };
 
-/// Tables for the kernels, besides the distance of its centre (LensTables::film_gap).
+/// Film plane in float for the kernels. The distance of the centre is in LensTables::film_gap.
 struct FilmTables {
-    bool across = true;   // as a default FilmPlane on the axis
+    bool across = true;   // perpendicular to the axis and centred on it
     float center_x = 0, center_y = 0;
     float x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, normal[3] = {0, 0, 1};
 

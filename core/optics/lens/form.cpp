@@ -5,8 +5,8 @@
 namespace dg {
 namespace {
 
-/// Columns of Rx Ry Rz: turned about x, then about the y that has turned with it, then
-/// about that z, as lens design programs do. Right-handed, degrees.
+/// Sets the axes to the columns of Rx Ry Rz: rotations about x, then about the rotated y, then
+/// about the rotated z, as in lens design programs. Right-handed, degrees.
 void turn(SurfaceFrame& p, Vec3d degrees) {
     const double rad = kPiD / 180;
     const double ca = std::cos(degrees.x * rad), sa = std::sin(degrees.x * rad);
@@ -41,11 +41,11 @@ void set_quadric(SurfaceForm& f) {
     f.sphere = f.quadric && f.shape == Shape::conic && f.ky == 0;
 }
 
-/// The largest |sag| and slope over a fine grid of the clear disc, with a margin for what
-/// lies between its nodes; where the sag is not defined the bounds are infinite.
+/// Sets bounds of |sag| and slope: maxima over a fine grid of the clear disc, with a margin for
+/// points between its nodes. The bounds are infinite if the sag is undefined anywhere on the grid.
 void set_bounds(SurfaceForm& f) {
     constexpr int kRings = 96;
-    const int spokes = f.shape == Shape::conic ? 1 : 17;  // a quarter: both are even
+    const int spokes = f.shape == Shape::conic ? 1 : 17;  // one quadrant: sections are even in x and y
     const double infinity = std::numeric_limits<double>::infinity();
     f.height = f.slope = infinity;
     if (!std::isfinite(f.clear)) return;
@@ -54,7 +54,7 @@ void set_bounds(SurfaceForm& f) {
         const double angle = 0.5 * kPiD * spoke / std::max(1, spokes - 1);
         for (int ring = 0; ring <= kRings; ++ring) {
             const double r =
-                (1 - 1e-6) * f.clear * ring / kRings;  // rims may be vertical
+                (1 - 1e-6) * f.clear * ring / kRings;  // the slope may be infinite at the rim
             const Sag<double> s = sag(f, r * std::cos(angle), r * std::sin(angle));
             if (!s.defined) return;
             height = std::max(height, std::abs(s.z));

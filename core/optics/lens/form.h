@@ -1,4 +1,4 @@
-// form.h -- a surface prepared for tracing: its sag as a function, and where it stands.
+// form.h -- a surface prepared for tracing: its sag function and its frame.
 #pragma once
 #include <cmath>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace dg {
 
-/// The frame of a surface in the lens: local z is its own axis.
+/// Local frame of a surface in the lens frame; local z is the surface's axis.
 struct SurfaceFrame {
-    Vec3d origin{};  // of the vertex, mm
+    Vec3d origin{};  // vertex, mm
     bool turned = false;
     Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  // local axes in the lens frame
 
@@ -36,9 +36,8 @@ struct SurfaceFrame {
     }
 };
 
-/// Sag over a point and its slopes. Beyond the domain (the root of the base form would be
-/// that of a negative number) z goes on smoothly, to steer searches, and `defined` is
-/// false.
+/// Sag and slopes at a point. Outside the domain (where the root of the base form has a negative
+/// argument) `defined` is false, and z continues smoothly to guide root finding.
 template <typename T>
 struct Sag {
     T z, slope_x, slope_y;
@@ -47,14 +46,14 @@ struct Sag {
 
 struct SurfaceForm {
     Shape shape = Shape::conic;
-    double cx = 0, cy = 0, kx = 0, ky = 0;  // curvature and conic of both sections
-    /// The asphere: sum even[j] r^(2j+2) + sum odd[j] r^(2j+1).
+    double cx = 0, cy = 0, kx = 0, ky = 0;  // curvature and conic constant of both sections
+    /// Coefficients of the asphere: sum even[j] r^(2j+2) + sum odd[j] r^(2j+1).
     std::vector<double> even, odd;
-    /// A quadric c (wx x^2 + wy y^2 + (1+k) z^2) = 2 z, met in closed form: conics,
-    /// cylinders and planes without an asphere.
+    /// `quadric`: the surface is c (wx x^2 + wy y^2 + (1+k) z^2) = 2 z and is intersected in closed
+    /// form (conics, cylinders and planes without an asphere).
     bool quadric = false, sphere = false;
     double c = 0, k = 0, wx = 1, wy = 1;
-    /// Within the clear radius: bounds of |sag| and of its slope. Infinite: not known.
+    /// Clear radius, and bounds of |sag| and slope within it; an infinite bound means unknown.
     double clear = 0, height = 0, slope = 0;
     SurfaceFrame place;
     RippleSlope ripple;
@@ -64,9 +63,9 @@ struct SurfaceForm {
 
 namespace form_detail {
 
-constexpr double kEdge = 1e-6;  // of 1 - (1+k) c^2 r^2: closer to the rim is beyond it
+constexpr double kEdge = 1e-6;  // least 1 - (1+k) c^2 r^2 at which a sag counts as defined
 
-/// sqrt(v), carried on with its tangent's slope below kEdge so that it stays positive.
+/// sqrt(v), continued below kEdge by a smooth positive function with the tangent's slope.
 template <typename T>
 T domed_root(const T& v, bool& defined) {
     using std::sqrt;
@@ -85,7 +84,7 @@ Sag<T> conic(double c, double k, const T& x, const T& y) {
     return s;
 }
 
-// z = Q / (1 + sqrt(1 - P)) with Q = cx x^2 + cy y^2, P = (1+kx) cx^2 x^2 + ...
+// Biconic sag: z = Q / (1 + sqrt(1 - P)) with Q = cx x^2 + cy y^2, P = (1+kx) cx^2 x^2 + ...
 template <typename T>
 Sag<T> biconic(const SurfaceForm& f, const T& x, const T& y) {
     Sag<T> s;
@@ -99,9 +98,8 @@ Sag<T> biconic(const SurfaceForm& f, const T& x, const T& y) {
     return s;
 }
 
-// The section g(y) turned about an axis parallel to y at z = 1/cx:
-// (1/cx - z)^2 + x^2 = (1/cx - g)^2, or z = H / (1 + sqrt(1 - cx H)) with
-// H = 2g - cx g^2 + cx x^2.
+// Toroid sag: the section g(y) is revolved about an axis parallel to y at z = 1/cx: (1/cx - z)^2 +
+// x^2 = (1/cx - g)^2, or z = H / (1 + sqrt(1 - cx H)) with H = 2g - cx g^2 + cx x^2.
 template <typename T>
 Sag<T> toroid(const SurfaceForm& f, const T& x, const T& y) {
     const Sag<T> g = conic(f.cy, f.ky, T(0), y);
@@ -119,13 +117,13 @@ template <typename T>
 void add_asphere(const SurfaceForm& f, const T& x, const T& y, Sag<T>& s) {
     using std::sqrt;
     const T u = x * x + y * y;
-    T sum = 0, slope = 0;  // of the even part, and its derivative by u
+    T sum = 0, slope = 0;  // even terms, and their derivative by u
     for (std::size_t j = f.even.size(); j-- > 0;) {
         sum = (sum + f.even[j]) * u;
         slope = slope * u + double(j + 1) * f.even[j];
     }
     s.z = s.z + sum;
-    T pull = 2.0 * slope;  // slopes are (x, y) times that
+    T pull = 2.0 * slope;  // slopes are pull * (x, y)
     if (!f.odd.empty()) {
         const T r = sqrt(u);
         T odd = 0, odd_slope = 0;
@@ -141,7 +139,7 @@ void add_asphere(const SurfaceForm& f, const T& x, const T& y, Sag<T>& s) {
 
 }  // namespace form_detail
 
-/// Height of the surface over a point of its own frame.
+/// Sag of the surface at (x, y) in its local frame.
 template <typename T>
 Sag<T> sag(const SurfaceForm& f, const T& x, const T& y) {
     Sag<T> s = f.shape == Shape::conic     ? form_detail::conic(f.cy, f.ky, x, y)

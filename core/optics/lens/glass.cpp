@@ -18,31 +18,30 @@ double index_of(const ConstantIndex& glass, double) {
     return glass.n;
 }
 
-// n = A + B x + C x^2, x = 1/lambda^2, through nd, through nF - nC = (nd-1)/Vd and
-// through ng - nF = P_gF (nF - nC).
+// Three-term Cauchy n = A + B x + C x^2, x = 1/lambda^2, that matches nd, nF - nC = (nd-1)/Vd and
+// ng - nF = P_gF (nF - nC).
 double index_of(const PartialGlass& glass, double nm) {
     const double x = inverse_square(nm), xd = inverse_square(kDesignWavelength);
     const double xf = inverse_square(kLineF), xc = inverse_square(kLineC);
     const double xg = inverse_square(kLineG);
     const double principal = (glass.nd - 1) / glass.vd;
     const double blue = glass.p_gf * principal;
-    // Slopes of the two chords: B + C (sum of their ends).
+    // Slopes of the chords F-C and g-F; each equals B + C (sum of the chord's ends).
     const double slope_fc = principal / (xf - xc), slope_gf = blue / (xg - xf);
     const double c = (slope_gf - slope_fc) / (xg - xc);
     const double b = slope_fc - c * (xf + xc);
     return glass.nd + b * (x - xd) + c * (x * x - xd * xd);
 }
 
-// P_gF of Schott's normal line (Schott TIE-29, eq. for P_g,F).
+// P_gF on Schott's normal line (Schott TIE-29, eq. for P_g,F).
 double index_of(const AbbeGlass& glass, double nm) {
     return index_of(PartialGlass{glass.nd, glass.vd, 0.6438 - 0.001682 * glass.vd}, nm);
 }
 
-// Lagrange through the (up to) four nodes around the wavelength, in x = 1/lambda^2, where
-// glass is nearly a parabola: exact at every node, continuous, and a plain parabola for
-// three nodes.
+// Lagrange interpolation through up to four nodes around the wavelength, in x = 1/lambda^2, where
+// dispersion is nearly quadratic: exact at every node and continuous; a parabola for three nodes.
 double index_of(const TableGlass& glass, double nm) {
-    const int count = int(std::min(glass.nm.size(), glass.n.size()));  // equal in a checked one
+    const int count = int(std::min(glass.nm.size(), glass.n.size()));  // equal after check_glass()
     const auto above = std::upper_bound(glass.nm.begin(), glass.nm.begin() + count, nm);
     const int first =
         std::clamp(int(above - glass.nm.begin()) - 2, 0, std::max(0, count - 4));
@@ -142,8 +141,8 @@ void check_absorption(const Absorption& a, const std::string& where) {
 
 }  // namespace
 
-// Standard air of 15 C: Ciddor 1996, Refractive index of air, Appl. Opt. 35(9), eq. 1 (its
-// terms of 450 ppm CO2). The density's change to 20 C: Schott TIE-29, eq. for n_air.
+// Standard air of 15 C with 450 ppm CO2: Ciddor 1996, Refractive index of air, Appl. Opt. 35(9),
+// eq. 1. Change of density to 20 C: Schott TIE-29, eq. for n_air.
 double air_index(double wavelength_nm) {
     const double s2 = inverse_square(wavelength_nm);
     const double at_15 = 0.05792105 / (238.0185 - s2) + 0.00167917 / (57.362 - s2);
@@ -185,8 +184,8 @@ MatchedGlass matched(const Glass& like, double nd, double vd, const std::string&
     return found;
 }
 
-// Daimon and Masumura 2007, Measurement of the refractive index of distilled water, Appl.
-// Opt. 46(18), at 20 C; 1.33335 at 589.3 nm, against vacuum.
+// Water at 20 C: Daimon and Masumura 2007, Measurement of the refractive index of distilled water,
+// Appl. Opt. 46(18); n = 1.33335 against vacuum at 589.3 nm.
 Glass water() {
     return {
         SellmeierGlass{{5.684027565e-1, 1.726177391e-1, 2.086189578e-2, 1.130748688e-1},

@@ -54,7 +54,7 @@ TEST_CASE("Sellmeier: N-BK7 of the Schott catalogue") {
                   "N-BK7"};
     CHECK(refractive_index(g, 587.5618) == doctest::Approx(1.51680).epsilon(1e-6));
     CHECK(refractive_index(g, 435.8343) == doctest::Approx(1.52668).epsilon(3e-6));
-    // Predictions by nd and Vd alone stay within the error quoted for the normal line.
+    // The Cauchy formula from nd and Vd stays within the error quoted for the normal line.
     const Glass abbe{AbbeGlass{1.5168, 64.17}, ""};
     for (double nm = 400; nm <= 700; nm += 10)
         CHECK(std::abs(refractive_index(g, nm) - refractive_index(abbe, nm)) < 1e-3);
@@ -98,7 +98,8 @@ TEST_CASE("Schott's polynomial, and Sellmeier's series of any length") {
     CHECK(nd == doctest::Approx(1.5168).epsilon(1e-7));
     CHECK((nd - 1) / (refractive_index(bk7, 486.1327) - refractive_index(bk7, 656.2725)) ==
           doctest::Approx(64.12995).epsilon(1e-5));
-    // Powers by hand, and a series with its constant: fused silica of Malitson 1965.
+    // Powers checked by hand, and a Sellmeier series with a constant: fused silica of Malitson
+    // 1965.
     const Glass square{PolynomialGlass{{2, 0.01}, {0, -2}}, ""};
     CHECK(refractive_index(square, 500) == doctest::Approx(std::sqrt(2.04)).epsilon(1e-14));
     const Glass silica{

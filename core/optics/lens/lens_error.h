@@ -1,5 +1,5 @@
-// lens_error.h -- a lens that cannot be used: a code that programs can ask for, and the
-// surface.
+// lens_error.h -- error for an unusable lens: an error code for programs, and the index of the
+// faulty surface.
 #pragma once
 #include <string>
 #include <utility>
@@ -8,7 +8,7 @@
 
 namespace dg {
 
-/// what() is the message with " [code]" behind it, for people; programs read the fields.
+/// what() is the message followed by " [code]", for people; programs read the fields.
 struct LensError : Error {
     LensError(std::string text, std::string error_code, int surface_index = -1)
         : Error(text + " [" + error_code + "]"),
@@ -17,7 +17,7 @@ struct LensError : Error {
           surface(surface_index) {}
 
     std::string message, code;
-    int surface;  // -1: the lens as a whole
+    int surface;  // index; -1: the whole lens
 };
 
 inline LensError lens_error(const std::string& code, int surface,

@@ -1,4 +1,4 @@
-// prescription.h -- a lens as a list of surfaces, the way a patent prints it.
+// prescription.h -- a lens as a list of surfaces, as patents print it.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,31 +12,32 @@ struct Prescription {
     std::string name;
     Glass object_medium;  // before the first surface
     std::vector<Surface> surfaces;
-    /// On every surface between air and glass. Old lenses were bare until about 1940,
-    /// single-coated until about 1970; one layer of MgF2 lies between bare glass and
-    /// modern multilayers.
+    /// Coating of every surface between air and glass. Lenses were bare until about 1940 and
+    /// single-coated until about 1970; one layer of MgF2 reflects less than bare glass and more
+    /// than modern multilayers.
     Coating coating = Coating::mgf2;
     double nominal_f_number = 0;  // 0: unknown
 
-    int stop_index() const;                // of the surface at which the iris lies
+    int stop_index() const;                // index of the surface with the iris
     double last_vertex() const;            // z of the last surface, mm
     std::vector<double> vertices() const;  // z of each surface, mm
 };
 
-/// Nothing changes when the lens is turned about its axis.
+/// Whether the lens is unchanged by any rotation about its axis.
 bool is_axially_symmetric(const Prescription& lens);
 
-/// Throws LensError naming lens, surface and value: no or two stops, a clear diameter
-/// beyond the form, NaN, negative gaps, absurd sizes and indices.
+/// Throws LensError with lens, surface and value for a missing or second stop, a clear diameter
+/// larger than the surface's domain, NaN, negative gaps, and implausible sizes or indices.
 void validate(const Prescription& lens);
 
-/// Coating of a surface: its own or the lens's, made for its glass.
+/// Films of a surface, designed for its glass; the surface's coating replaces the coating of the
+/// lens.
 SurfaceCoating coating_at(const Prescription& lens, int surface);
 
-/// Whether any of its media swallows light.
+/// Whether any medium of the lens absorbs light.
 bool absorbs(const Prescription& lens);
 
-/// "name: surface 3", the place in messages.
+/// Surface name in messages: "name: surface 3".
 std::string surface_name(const Prescription& lens, int surface);
 
 }  // namespace dg

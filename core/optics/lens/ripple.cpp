@@ -7,8 +7,8 @@
 
 namespace dg {
 
-// Waves of equal height at places spread over an octave: N of amplitude a have the root
-// mean square a sqrt(N / 2).
+// Waves of equal amplitude a at frequencies spread over an octave: the sum of N has the root mean
+// square a sqrt(N / 2).
 RippleSlope::RippleSlope(const Ripple& ripple, double semi_diameter) {
     if (!(ripple.rms_nm > 0 && ripple.period_um > 0)) return;
     constexpr int kWaves = 8, kStepsPerWave = 16;

@@ -1,8 +1,7 @@
-// ripple.h -- grooves that grinding leaves in a surface: rings around its vertex, a few
-// nanometres high, that show as onion rings in discs of blur. The normal follows the slope
-// of a band-limited height; the height itself is nothing. Source: Joo, Kwon, Lee,
-// Eisemann, Lee 2016, Efficient Ray Tracing Through Aspheric Lenses and Imperfect Bokeh
-// Synthesis, CGF 35(4).
+// ripple.h -- grinding marks: rings of grooves around a surface's vertex, a few nanometres high,
+// which show as onion rings in discs of blur. The normal follows the slope of a band-limited height
+// profile; the displacement is neglected. Source: Joo, Kwon, Lee, Eisemann, Lee 2016, Efficient Ray
+// Tracing Through Aspheric Lenses and Imperfect Bokeh Synthesis, CGF 35(4).
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -10,14 +9,14 @@
 namespace dg {
 
 struct Ripple {
-    double rms_nm = 0;     // of the height; 0: polished
-    double period_um = 0;  // of the grooves: waves of within half an octave around it
-    unsigned seed = 0;     // which grooves; the same ones for the same seed
+    double rms_nm = 0;     // height, root mean square; 0: polished
+    double period_um = 0;  // mean period of the grooves; waves spread over half an octave to both sides
+    unsigned seed = 0;     // random seed of the profile
 };
 
-/// dh/dr by radius, between steps linear.
+/// Slope dh/dr over the radius, linear between equal steps.
 struct RippleSlope {
-    std::vector<float> slope;  // empty: none
+    std::vector<float> slope;  // empty: polished
     double steps_per_mm = 0;
 
     RippleSlope() = default;

@@ -1,4 +1,4 @@
-// Grooves: their height and band, and that both tracers lean rays by them alike.
+// Ripple: height and band of the profile, and equal normals in both tracers.
 #include "optics/lens/ripple.h"
 
 #include <doctest/doctest.h>
@@ -35,7 +35,8 @@ TEST_CASE("grooves have the height and the period that are asked for") {
         before = slope;
     }
     for (const double h : heights) squares += (h - mean) * (h - mean) / kSteps;
-    CHECK(std::abs(std::sqrt(squares) / 30e-6 - 1) < 0.1);   // Approx would add 1 to what it scales
+    CHECK(std::abs(std::sqrt(squares) / 30e-6 - 1) < 0.1);   // doctest::Approx adds 1 to its scale, hence the
+                                                             // explicit bound
     CHECK(std::abs(19.9 / (crossings / 2) / 0.1 - 1) < 0.15);   // mm per wave
     CHECK(r.at(3.3) == RippleSlope({30, 100, 7}, 20).at(3.3));
     CHECK(r.at(3.3) != RippleSlope({30, 100, 8}, 20).at(3.3));
@@ -65,7 +66,7 @@ TEST_CASE("a ray leans by (n - 1) times the slope, the same in double and in lan
         largest = std::max(largest, length(p - q));
         worst = std::max(worst, std::hypot(p.x - film->x[i], p.y - film->y[i]));
     }
-    CHECK(largest > 2e-3);   // mm: there is something to see
+    CHECK(largest > 2e-3);   // mm: the ripple displaces rays measurably
     CHECK(worst < 0.05 * largest);
 }
 

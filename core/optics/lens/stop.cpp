@@ -16,7 +16,7 @@ Vec2d unit(double angle) {
     return {std::cos(angle), std::sin(angle)};
 }
 
-/// The point at parameter t in [0,1] along blade 0's edge, rotated so that its middle is
+/// Point at parameter t in [0,1] on the edge of blade 0, rotated so that the middle of the edge is
 /// on +x.
 Vec2d edge_point(const Iris::Blades& b, double half_chord, double t) {
     if (b.bend == 0) return {b.apothem, half_chord * (2 * t - 1)};
@@ -26,8 +26,8 @@ Vec2d edge_point(const Iris::Blades& b, double half_chord, double t) {
             b.arc_radius * std::sin(angle)};
 }
 
-/// Parameter of the next corner so that the triangle (origin, from, next) has the area; 2
-/// if none.
+/// Parameter of the next corner, such that the triangle (origin, from, next) has the given area; 2
+/// if the edge ends first.
 double next_corner(const Iris::Blades& b, double half_chord, double from, double area) {
     const Vec2d p = edge_point(b, half_chord, from);
     if (0.5 * cross(p, edge_point(b, half_chord, 1)) < area) return 2;
@@ -39,7 +39,7 @@ double next_corner(const Iris::Blades& b, double half_chord, double from, double
     return 0.5 * (low + high);
 }
 
-/// Parameters that cut the edge into pieces whose triangles have equal areas.
+/// Edge parameters at the corners of triangles with equal areas.
 std::vector<double> equal_area_corners(const Iris::Blades& b, double half_chord,
                                        int pieces) {
     double low = 0, high = 4;
@@ -60,7 +60,7 @@ std::vector<double> equal_area_corners(const Iris::Blades& b, double half_chord,
     return corners;
 }
 
-/// How much the fan must grow so that its chords cover an outward arc.
+/// Factor by which the fan must grow so that its chords enclose an outward arc.
 double cover_factor(const Iris::Blades& b, double half_chord,
                     const std::vector<double>& corners) {
     double factor = 1;
@@ -101,7 +101,7 @@ Iris Iris::polygon(int blades, double rotation_deg, double curvature) {
     Blades& b = iris.blades_;
     b.bend = curvature > 1e-6 ? 1 : curvature < -1e-6 ? -1 : 0;
     const double half = kPiD / blades;
-    // Area for corners on the unit circle: the polygon, and a circular segment per blade.
+    // Area with corners on the unit circle: the polygon, and one circular segment per blade.
     double area = blades * std::sin(half) * std::cos(half), arc = 0;
     if (b.bend) {
         arc = 1 / std::abs(curvature);
@@ -147,7 +147,7 @@ Iris Iris::image(int width, int height, std::vector<float> values) {
     m.width = width, m.height = height;
     m.pixel = std::sqrt(kPiD / sum);
     m.values = std::move(values);
-    // Sampled pixels: the open ones and a border of 1.5 % of the half diagonal, for the
+    // Sampling support: open pixels, dilated by a border of 1.5 % of the half diagonal for the
     // enlarged iris.
     const int border = 1 + int(0.015 * 0.5 * hypot(width, height));
     std::vector<char> rows(m.values.size());
@@ -251,7 +251,7 @@ double Iris::inner_radius() const {
 RadialOpening::RadialOpening(const Iris& iris) : outer_(iris.outer_radius()) {
     if (iris.kind() == Iris::Kind::round) return;
     constexpr int kRadii = 1024;
-    // Blades are alike: one shows what all do.
+    // All blades are alike, so the mean over one blade suffices.
     const int turns = iris.kind() == Iris::Kind::blades ? int(iris.blades().edge.size()) : 1;
     const int azimuths = 720 / turns;
     for (int i = 0; i <= kRadii; ++i) {

@@ -34,8 +34,8 @@ std::vector<Iris> shapes() {
             Iris::image(64, 64, heart(64))};
 }
 
-/// p-value that samples of u fall evenly over the shape's sampling region; `skew` plants
-/// a fault: that part of the samples is drawn with u.x squeezed to its lower half.
+/// p-value of a chi-square test that samples are uniform over the shape's sampling region. `skew`
+/// plants a fault: it is the fraction of samples drawn with u.x squeezed to its lower half.
 double evenness(const Iris& iris, double enlargement, double skew) {
     constexpr int kCells = 14, kSamples = 500000, kFine = 50;
     const double r = 1.0001 * enlargement * iris.outer_radius(), cell = 2 * r / kCells;
@@ -47,7 +47,7 @@ double evenness(const Iris& iris, double enlargement, double skew) {
                       -r + cell * (c / kCells + (f / kFine + 0.5) / kFine)};
         if (iris.in_sampling_region(p, enlargement)) expected[c] += 1, total += 1;
     }
-    // The region's area against the count of the fine grid.
+    // Area of the region by counting cells of a fine grid.
     CHECK(total * cell * cell / (kFine * kFine) ==
           doctest::Approx(iris.sampling_area(enlargement)).epsilon(3e-3));
     std::mt19937 random(7);
@@ -61,8 +61,8 @@ double evenness(const Iris& iris, double enlargement, double skew) {
         seen[y * kCells + x] += 1;
     }
     for (double& e : expected) e *= kSamples / total;
-    // Cells that the boundary cuts know their area to the fine grid only: both go into
-    // one cell.
+    // Cells on the boundary have areas known only to the fine grid's accuracy; the test merges them
+    // into one cell.
     double rest_seen = 0, rest_expected = 0;
     for (int c = 0; c < kCells * kCells; ++c) {
         const double full = double(kSamples) * kFine * kFine / total;

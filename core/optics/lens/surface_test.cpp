@@ -1,4 +1,4 @@
-// Every form of surface: what is met lies on it, both ways, and light keeps its etendue.
+// All forms of surface: hits are on the surface in both directions, and tracing preserves etendue.
 #include "optics/lens/surface.h"
 
 #include <doctest/doctest.h>
@@ -65,7 +65,7 @@ TEST_CASE("what is met lies on the surface within 1e-9 mm, with the sag's normal
             CHECK(length(n) == doctest::Approx(1).epsilon(1e-12));
             CHECK(length(cross(p - ray.origin, ray.direction)) < 1e-10);
             CHECK(hit->cosine == doctest::Approx(sign * dot(n, ray.direction)));
-            const double h = 1e-5;  // the normal by differences of the sag
+            const double h = 1e-5;  // expected normal, by finite differences of the sag
             const double sx = (sag(f, p.x + h, p.y).z - sag(f, p.x - h, p.y).z) / (2 * h);
             const double sy = (sag(f, p.x, p.y + h).z - sag(f, p.x, p.y - h).z) / (2 * h);
             CHECK(std::abs(n.x / n.z + sx) < 1e-8);
@@ -79,7 +79,7 @@ TEST_CASE("forms that are the same surface are met at the same point") {
     test::Random u(4);
     for (int round = 0; round < 500; ++round) {
         Surface conic = test::surface_of_form(1, u);
-        Surface searched = conic;  // an asphere of no height is searched for
+        Surface searched = conic;  // a vanishing asphere forces the iterative search
         searched.asphere = {{4, 1e-300}};
         Surface biconic = conic;
         biconic.shape = Shape::biconic;
@@ -108,7 +108,7 @@ TEST_CASE("a sphere written as an asphere of r^2, r^4 ... is that sphere") {
     const double r = 40;
     Surface sphere, series;
     sphere.curvature = 1 / r, sphere.semi_diameter = series.semi_diameter = 8;
-    double coefficient = r;  // of (r^2/R^2)^j in R (1 - sqrt(1 - x)), by binomials
+    double coefficient = r;  // binomial coefficient of (r^2/R^2)^j in R (1 - sqrt(1 - x))
     for (int j = 1; j <= 12; ++j) {
         coefficient *= j == 1 ? 0.5 : (2 * j - 3) / (2.0 * j);
         series.asphere.push_back({2 * j, coefficient / std::pow(r, 2 * j)});
@@ -190,7 +190,7 @@ TEST_CASE("on the axis the Jacobian is the ABCD matrix") {
         const auto j = t.jacobian({{0, 0, f.front_focal_z}, {0, 0, 1}},
                                   t.at(f.wavelength_nm), f.back_focal_z);
         REQUIRE(j);
-        // Between the focal planes: A = D = 0, B = f, C = -1/f.
+        // Ray matrix between the focal planes: A = D = 0, B = f, C = -1/f.
         for (int axis = 0; axis < 2; ++axis) {
             CHECK(std::abs((*j)[axis][axis]) < 1e-9);
             CHECK(std::abs((*j)[axis + 2][axis + 2]) < 1e-9);
@@ -315,7 +315,7 @@ TEST_CASE("the first crossing of wavy aspheres is that of a dense search") {
             const Vec3d p = m + t * d;
             return sign * (p.z - sag(f, p.x, p.y).z);
         };
-        // Within the clear cylinder only.
+        // Skip rays outside the clear cylinder.
         const double a = d.x * d.x + d.y * d.y, b = m.x * d.x + m.y * d.y;
         const double root =
             std::sqrt(std::max(0., b * b - a * (m.x * m.x + m.y * m.y - 100)));

@@ -1,5 +1,5 @@
-// test_lenses.h -- prescriptions for the tests of optics and camera: radius (0 plane),
-// thickness, nd, Vd (0 none), semi- diameter, stop. Facts from the patents named.
+// test_lenses.h -- prescriptions for tests of optics and camera, from the cited patents. Columns:
+// radius (0: plane), thickness, nd, Vd (0: none), semi-diameter, stop.
 #pragma once
 #include "optics/lens/prescription.h"
 
@@ -27,8 +27,8 @@ inline Prescription lens_from_rows(const char* name, const std::vector<Row>& row
     return lens;
 }
 
-/// US 2,673,491 (Tronnier) as printed in Smith, Modern Lens Design, p. 312; f = 100,
-/// clear diameters halved. patent: with the patent's indices instead of the rounded ones.
+/// US 2,673,491 (Tronnier) as printed in Smith, Modern Lens Design, p. 312; f = 100, clear
+/// diameters halved. `patent` selects the patent's indices instead of the rounded ones in the book.
 inline Prescription check_lens(bool patent = false, double scale = 1) {
     const double n[5] = {patent ? 1.67125 : 1.670, patent ? 1.69842 : 1.699,
                          patent ? 1.60266 : 1.603, patent ? 1.65953 : 1.658,

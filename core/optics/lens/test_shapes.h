@@ -1,4 +1,4 @@
-// test_shapes.h -- surfaces of every form, and lenses made of them, for tests.
+// test_shapes.h -- surfaces of every form and singlets made of them, for tests.
 #pragma once
 #include <random>
 #include <string>
@@ -10,7 +10,7 @@ namespace dg::test {
 class Random {
   public:
     explicit Random(unsigned seed) : engine_(seed) {}
-    double operator()() { return uniform_(engine_); }  // -1 to 1
+    double operator()() { return uniform_(engine_); }  // uniform in [-1, 1]
     double between(double a, double b) { return a + (b - a) * 0.5 * (1 + (*this)()); }
     int below(int n) { return int(engine_() % unsigned(n)); }
 
@@ -27,7 +27,7 @@ inline const char* form_name(int form) {
     return names[form];
 }
 
-/// Radius 30-90 mm, clear radius 10 mm, gentle enough that most rays pass.
+/// Surface with a radius of 30-90 mm and a clear radius of 10 mm; most rays pass.
 inline Surface surface_of_form(int form, Random& u) {
     Surface s;
     const auto bend = [&] { return (u() < 0 ? -1 : 1) / u.between(30, 90); };
@@ -36,7 +36,7 @@ inline Surface surface_of_form(int form, Random& u) {
     const char* kinds[] = {"aspheric", "aspheric", "aspheric", "aspheric", "cyl-x",
                            "cyl-y",    "toroid",   "biconic",  "biconic",  "aspheric"};
     if (form != 0) s.conic = u.between(-3, 1);
-    if (form == 9) {  // slopes up to 45 degrees, as in the cameras of phones
+    if (form == 9) {  // slopes up to 45 degrees, as in phone cameras
         s.curvature = (u() < 0 ? -1 : 1) / u.between(15, 40);
         s.asphere = {
             {4, 1.5e-4 * u()}, {6, 1e-6 * u()}, {8, 4e-9 * u()}, {10, 2e-11 * u()}};
@@ -52,8 +52,8 @@ inline Surface surface_of_form(int form, Random& u) {
     return s;
 }
 
-/// A singlet whose two faces are of that form, with its stop behind; `placed`: moved and
-/// turned a little.
+/// Singlet with two faces of the given form and the stop behind it. `placed` adds small
+/// displacements and rotations.
 inline Prescription singlet_of_form(int form, Random& u, bool placed) {
     Prescription lens;
     lens.name = form_name(form);
@@ -69,8 +69,8 @@ inline Prescription singlet_of_form(int form, Random& u, bool placed) {
     }
     Surface stop;
     stop.thickness = 40, stop.stop = true, stop.semi_diameter = 9;
-    if (form == 1) stop.curvature = 1.0 / 50;                // stops may be round
-    if (form == 3) stop.glass.formula = AbbeGlass{1.5, 60};  // or the face of a prism
+    if (form == 1) stop.curvature = 1.0 / 50;                // stop on a curved surface
+    if (form == 3) stop.glass.formula = AbbeGlass{1.5, 60};  // stop on the face of a prism
     lens.surfaces.push_back(stop);
     return lens;
 }

@@ -14,7 +14,7 @@ std::string number(double value) {
     return s.str();
 }
 
-/// A surface under examination.
+/// Surface under validation.
 struct Place {
     const Surface& s;
     int index;
@@ -68,8 +68,8 @@ void check_apertures(const Place& at) {
                   number(s.inner_semi_diameter));
 }
 
-/// The form must have a sag all over the clear disc: at most the radius of curvature of a
-/// sphere.
+/// Checks that the sag is defined on the whole clear disc; for a sphere, that the clear radius is
+/// at most the radius of curvature.
 void check_domain(const Place& at) {
     const double r = clear_radius(at.s);
     if (!std::isfinite(r)) return;

@@ -9,7 +9,7 @@
 namespace dg {
 namespace {
 
-/// A disc on the plane of the last vertex.
+/// Disc in the plane of the last vertex.
 struct Disc {
     Vec2d middle;
     double radius;
@@ -17,14 +17,15 @@ struct Disc {
     double density(Vec2d p) const { return length(p - middle) < radius ? 1 / (kPiD * radius * radius) : 0; }
 };
 
-/// All rays from a spot to the last surface pass it: as much wider than the rim as that is deep.
+/// Disc that contains all rays from a spot of film to the last surface: the rim, enlarged for its
+/// distance from the vertex plane.
 Disc whole_surface(const ScatterLens& lens, const FilmSpot& spot, double last) {
     const ScatterLens::Rim rim = lens.rims().back();
     const double reach = (length(spot.point) + spot.radius + rim.radius) / (lens.ghosts().film().center.z - last);
     return {{}, rim.radius + std::abs(rim.z - last) * reach};
 }
 
-/// The exit pupil, with a margin, as a film point sees it through the plane.
+/// Exit pupil as seen from a film point, projected on the plane of the last vertex, with a margin.
 Disc pupil(const FirstOrder& order, const Vec3d& from, double last) {
     constexpr double kMargin = 1.25;
     if (!std::isfinite(order.exit_pupil_z))
@@ -35,9 +36,10 @@ Disc pupil(const FirstOrder& order, const Vec3d& from, double last) {
 
 }  // namespace
 
-/// Half of the walks start toward the exit pupil, half toward the whole last surface, which may be a glass right before
-/// the film: its share of the light comes from all over the hemisphere, the picture's through the pupil alone. Weights
-/// are those of the balance heuristic (Veach and Guibas 1995).
+/// Mixture sampling with the balance heuristic (Veach and Guibas 1995): half of the walks start
+/// toward the exit pupil, which carries the image, half toward the whole last surface. The last
+/// surface may be a cover glass right in front of the film, which scatters light from the whole
+/// hemisphere.
 std::vector<FilmWalk> film_walks(const ScatterLens& lens, const FilmSpot& spot) {
     const FilmPlane& film = lens.ghosts().film();
     const Tracer& tracer = lens.ghosts().tracer();

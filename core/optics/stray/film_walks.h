@@ -1,5 +1,6 @@
-// film_walks.h -- what a spot of film sees of the world when the parts of the lens scatter: walks that start
-// there, go backward and leave by the front.
+// film_walks.h -- directions from which a spot of film receives light through a lens with
+// scattering parts: random walks from the film backward through the lens that leave by the front
+// surface.
 #pragma once
 #include <vector>
 
@@ -8,7 +9,7 @@
 namespace dg {
 
 struct FilmSpot {
-    Vec2d point{};       // mm, middle of a disc of the film
+    Vec2d point{};       // mm, centre of the disc
     double radius = 0;   // mm
     double wavelength_nm = 550;
     int walks = 1;
@@ -17,11 +18,11 @@ struct FilmSpot {
 
 struct FilmWalk {
     Vec3d direction;   // lens frame, toward the scene
-    double weight;     // sr: their sum is the irradiance that a white world of radiance 1 brings
-    int events;        // how often it was scattered; 0: the picture, or a ghost
+    double weight;     // sr; the sum of all weights is the irradiance on the film under uniform radiance 1
+    int events;        // number of scattering events; 0: image light or a ghost
 };
 
-/// Those of all walks that leave by the front.
+/// The walks that leave by the front surface.
 std::vector<FilmWalk> film_walks(const ScatterLens& lens, const FilmSpot& spot);
 
 }  // namespace dg

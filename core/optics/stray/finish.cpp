@@ -9,21 +9,21 @@
 namespace dg {
 namespace {
 
-constexpr int kSteps = 64;               // of the albedo over the cosine
-constexpr int kAround = 16, kOut = 24;   // points of its integral: half the way around, and outward
+constexpr int kSteps = 64;               // albedo table, over the cosine
+constexpr int kAround = 16, kOut = 24;   // quadrature points of the albedo: over half of the azimuth, and radial
 
-/// Reflectance of a binder of index 1.5 over that of straight light, 0.04.
+/// Schlick's reflectance for a binder of index 1.5, relative to 0.04 at normal incidence.
 double growth(double cosine) {
     const double m = 1 - cosine;
     return 1 + 24 * m * m * m * m * m;
 }
 
-/// Cosine of incidence on the facet that mirrors one direction into the other.
+/// Cosine of incidence on the microfacet that mirrors `in` to `out`.
 double facet_cosine(const Vec3d& in, const Vec3d& out) {
     return std::sqrt(std::clamp(0.5 * (1 + dot(in, out)), 0.0, 1.0));
 }
 
-/// Where the mirror image of light from there lies, in direction cosines.
+/// Direction cosines of the mirror direction.
 Vec2d mirrored(const Vec3d& in) {
     return {-in.x, -in.y};
 }
@@ -51,7 +51,8 @@ FinishScatter::FinishScatter(const Finish& finish, const char* where) : finish_(
                           std::to_string(most) + " of it at one angle");
 }
 
-/// Evenly around the middle of the lobe, of which one half is as the other, and outward by equal shares of it.
+/// Integrates the lobe: uniformly in azimuth over one half (the other is its mirror image), and
+/// radially by equal shares of the lobe.
 double FinishScatter::glossy_albedo(double cosine) const {
     if (finish_.gloss == 0) return 0;
     const Vec3d in{std::sqrt(1 - cosine * cosine), 0, cosine};
@@ -68,7 +69,7 @@ double FinishScatter::glossy_albedo(double cosine) const {
 }
 
 double FinishScatter::albedo(double cosine) const {
-    const double x = cosine > 0 ? std::min(cosine, 1.0) * kSteps : 0;   // NaN is none
+    const double x = cosine > 0 ? std::min(cosine, 1.0) * kSteps : 0;   // NaN gives 0
     const int i = std::min(int(x), kSteps - 1);
     return albedo_[i] + (x - i) * (albedo_[i + 1] - albedo_[i]);
 }

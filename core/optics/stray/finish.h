@@ -1,10 +1,11 @@
-// finish.h -- how blackened metal sends light back: the barrel, the edges of the glass, the blades of the iris.
+// finish.h -- BRDF of blackened metal: barrel, edges of the glass, iris blades.
 //
-// A part goes to all sides alike (Lambert), a part into a lobe about the mirror image (harvey_shack.h) which
-// grows toward grazing light as the reflectance of a binder of index 1.5 does (Schlick 1994, An Inexpensive
-// BRDF Model). Both are the same when light goes the other way. The default is a matte black paint: 3 to 5 %
-// over all directions and a gloss at grazing angles, as is measured of Aeroglaze (Chemglaze) Z306. Source:
-// Pompea and Breault 2010, Black Surfaces for Optical Systems, in Handbook of Optics, 3rd ed., vol. IV, ch. 6.
+// Lambertian term plus a glossy lobe about the mirror direction (harvey_shack.h), which grows
+// toward grazing incidence like the reflectance of a binder of index 1.5 (Schlick 1994, An
+// Inexpensive BRDF Model). Both terms are reciprocal. The default is a matte black paint with an
+// albedo of 3 to 5 % under uniform illumination and a gloss at grazing angles, as measured on
+// Aeroglaze (Chemglaze) Z306. Source: Pompea and Breault 2010, Black Surfaces for Optical Systems,
+// in Handbook of Optics, 3rd ed., vol. IV, ch. 6.
 #pragma once
 #include <vector>
 
@@ -13,27 +14,27 @@
 namespace dg {
 
 struct Finish {
-    double diffuse = 0.03;   // share of light that is sent to all sides
-    double gloss = 0.005;    // and into the lobe, straight on; near grazing it grows to many times that
+    double diffuse = 0.03;   // Lambertian albedo
+    double gloss = 0.005;    // albedo of the lobe at normal incidence; many times higher near grazing
     HarveyShack lobe{0.1, -2.5};
 };
 
-/// A finish ready to be used. Directions are unit vectors in a frame whose z is the normal; both point away from
-/// the surface.
+/// Finish prepared for evaluation and sampling. Directions are unit vectors away from the surface,
+/// in a frame with the normal along z.
 class FinishScatter {
   public:
     FinishScatter() = default;
-    /// Throws Error that names `where`: values out of range, or more light sent back than arrives.
+    /// Throws an Error with `where` for values out of range, or for an albedo above 1.
     FinishScatter(const Finish& finish, const char* where);
 
-    /// Reflected radiance over irradiance, per sr; 0 from or to below.
+    /// BRDF, per sr; 0 for directions below the surface.
     double value(const Vec3d& in, const Vec3d& out) const;
-    /// Share of light that is sent back.
+    /// Albedo for light from a direction with this cosine.
     double albedo(double cosine) const;
     const HarveyShack& lobe() const { return finish_.lobe; }
     bool is_black() const { return finish_.diffuse == 0 && finish_.gloss == 0; }
 
-    /// `u_lobe` chooses the part.
+    /// Samples the BRDF; `u_lobe` selects the diffuse or the glossy term.
     Vec3d sample(const Vec3d& in, double u_lobe, Vec2d u) const;
     /// Density of sample(), per sr.
     double pdf(const Vec3d& in, const Vec3d& out) const;
@@ -43,8 +44,8 @@ class FinishScatter {
     double glossy_albedo(double cosine) const;
 
     Finish finish_;
-    double scale_ = 0;   // gloss over the lobe's integral
-    std::vector<double> albedo_;   // at even steps of the cosine
+    double scale_ = 0;   // gloss / integral of the lobe
+    std::vector<double> albedo_;   // at equal steps of the cosine
 };
 
 }  // namespace dg

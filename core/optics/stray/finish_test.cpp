@@ -38,7 +38,7 @@ TEST_CASE("what a finish sends back is the integral of its values") {
             const FinishScatter scatter(f, "barrel");
             const Vec3d in = direction(cosine, 0);
             double sum = 0;
-            constexpr int kN = 700;   // of the projected hemisphere, by radius squared and angle
+            constexpr int kN = 700;   // steps of the projected hemisphere, by radius squared and by angle
             for (int i = 0; i < kN; ++i)
                 for (int j = 0; j < kN; ++j) {
                     const double r2 = (i + 0.5) / kN;
@@ -82,7 +82,7 @@ TEST_CASE("black paint is black, and shines when light grazes it") {
     CHECK(paint.albedo(1) == doctest::Approx(0.035).epsilon(0.02));
     CHECK(paint.albedo(0.05) - 0.03 > 2 * (paint.albedo(1) - 0.03));
     CHECK(paint.value(direction(0.05, 0), direction(0.05, kPiD)) > 10 * paint.value({0, 0, 1}, {0, 0, 1}));
-    double all = 0;   // over all directions of light: 3 to 5 % (Z306)
+    double all = 0;   // albedo under uniform illumination: 3 to 5 % (Z306)
     for (int i = 0; i < 1000; ++i) all += paint.albedo(std::sqrt((i + 0.5) / 1000)) / 1000;
     CHECK(all > 0.03);
     CHECK(all < 0.05);

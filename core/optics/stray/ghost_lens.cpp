@@ -12,7 +12,7 @@ namespace {
     throw input_error("sensor stack", what, wanted, std::to_string(got));
 }
 
-/// How far the glass before the sensor moves the focus.
+/// Shift of the focus by the cover glass in front of the sensor.
 double focus_shift(const SensorStack& stack) {
     return stack.cover_thickness > 0 ? stack.cover_thickness * (1 - 1 / stack.cover_index) : 0;
 }
@@ -32,7 +32,7 @@ const char* name_of(Coating coating) {
     }
 }
 
-/// The stop's own clear diameter does not count: the iris stands in its place.
+/// Appends cover glass and sensor to a lens. The iris replaces the clear diameter of the stop.
 Prescription with_stack(Prescription lens, const SensorStack& stack, double film_z, double half_diagonal) {
     Surface& stop = lens.surfaces[lens.stop_index()];
     stop.semi_diameter = std::numeric_limits<double>::infinity();

@@ -1,9 +1,9 @@
-// ghost_lens.h -- a lens with all of its ghosts, ready to be traced: which surfaces reflect, the ways by two
-// of them, and the tables that the kernels read.
+// ghost_lens.h -- a lens prepared for tracing its ghosts: reflecting surfaces, ghost paths, and
+// tables for the kernels.
 //
-// The sensor and the glass before it belong to the body. They reflect, too, where it declares them; the
-// picture itself is drawn as if they were not there, since every lens is made for them. So the film of ghosts
-// lies behind by what the glass shifts the focus, d (1 - 1/n).
+// Cover glass and sensor belong to the camera body. They reflect if the body declares them, but the
+// image itself is rendered without them, since lenses are designed for their cover glass. The film
+// of ghosts is therefore displaced by the focus shift of the cover glass, d (1 - 1/n).
 #pragma once
 #include <array>
 #include <memory>
@@ -16,25 +16,25 @@
 
 namespace dg {
 
-/// Parts before the film, and how much light the film sends back. Nothing by default.
+/// Reflecting parts of the body at the film. Default: none.
 struct SensorStack {
     double cover_thickness = 0;  // mm; 0: no cover glass
     double cover_index = 1.5168;
-    double cover_gap = 1;        // mm of air between the cover glass and the sensor
+    double cover_gap = 1;        // mm of air between cover glass and sensor
     Coating cover_coating = Coating::broadband;
-    double reflectance = 0;      // of the sensor, at all angles and wavelengths; 0: it swallows all
+    double reflectance = 0;      // of the sensor, at all angles and wavelengths; 0: black
 
     bool empty() const { return !(cover_thickness > 0 || reflectance > 0); }
     friend bool operator==(const SensorStack&, const SensorStack&) = default;
 };
 
-/// Throws Error that names the value.
+/// Throws an Error with the name of the faulty value.
 void check_stack(const SensorStack& stack);
 
-/// A way by mirrors, in the order in which light meets them: far, near, or far, near, far, near.
+/// Mirrors of a ghost in the order in which light hits them: far, near, or far, near, far, near.
 using Mirrors = std::vector<int>;
 
-/// One step of a path for the kernels; gap: mm from the vertex before.
+/// Step of a ghost path for the kernels; gap: mm from the previous vertex.
 struct GhostStep {
     int surface;
     int sign;
@@ -42,7 +42,8 @@ struct GhostStep {
     float gap;
 };
 
-/// A surface as a mirror: the films on it (coating.h), or none; n = a + b / um^2.
+/// Reflectance of a surface: bare, with films (coating.h), or constant. Index of a film: n = a + b
+/// / um^2.
 struct MirrorTables {
     enum class Kind { none, bare, films, constant };
     struct Layer {
@@ -56,36 +57,37 @@ struct MirrorTables {
 
 class GhostLens {
   public:
-    /// `lens` with the gaps of its focus; film and iris as of its rays. Error for a stack that cannot be, or
-    /// before a film that is tilted against the lens.
+    /// `lens` must have its gaps set for focus; film and iris match the image rays. Throws Error
+    /// for an invalid stack, or for a stack with a tilted film.
     GhostLens(const Prescription& lens, const FilmPlane& film, const Iris& iris, double iris_radius,
               const SensorStack& stack, double half_diagonal);
 
-    /// Surfaces of the lens, then of the body.
+    /// Tracer of the surfaces of the lens, followed by the surfaces of the body.
     const Tracer& tracer() const { return tracer_; }
     const LensTables& tables() const { return tables_; }
     const std::vector<MirrorTables>& mirrors() const { return mirrors_; }
     const FilmPlane& film() const { return film_; }
     const Iris& iris() const { return iris_; }
     double iris_radius() const { return iris_radius_; }
-    /// Those that reflect anything, in order.
+    /// Surfaces with a reflectance above zero, in order.
     const std::vector<int>& reflecting() const { return reflecting_; }
-    /// How many surfaces light passes on its straight way to the film: all but a sensor.
+    /// Number of surfaces that transmitted light passes to the film: all but the sensor.
     int passed() const { return passed_; }
 
-    /// All pairs of reflecting surfaces, n (n - 1) / 2.
+    /// Pairs of reflecting surfaces, n (n - 1) / 2.
     std::vector<Mirrors> two_bounces() const;
-    /// Those by four reflections; of all of them the brightest, by what their surfaces reflect straight on: so
-    /// many at most, as their number grows with the fourth power of the surfaces'.
+    /// Ghosts of four reflections. Their number grows with the fourth power of the number of
+    /// surfaces; returns at most the `most` brightest by reflectance at normal incidence.
     std::vector<Mirrors> four_bounces(std::size_t most) const;
-    /// Reflectance of a surface straight on, mean over blue, green and red; above 0 where it reflects at all.
+    /// Reflectance at normal incidence, mean over blue, green and red; positive if the surface
+    /// reflects at any of them.
     double reflectance(int surface) const;
     LensPath path(const Mirrors& mirrors) const {
         return ghost_path(passed_, mirrors, true);
     }
     std::vector<GhostStep> steps(const Mirrors& mirrors) const;
 
-    /// The iris and all clear apertures.
+    /// Clips at the iris and all clear apertures.
     Clip clip() const { return {true, &iris_, iris_radius_}; }
 
   private:
@@ -100,8 +102,8 @@ class GhostLens {
     std::vector<int> reflecting_;
 };
 
-/// The exact trace of one ghost in lanes, scene -> film, as trace_to_film (trace_simd.h). iris_opening: of its
-/// radius, by ray; null: fully open at all times.
+/// Traces a ghost exactly in SIMD lanes from the scene to the film, like trace_to_film
+/// (trace_simd.h). iris_opening: fraction of the iris radius per ray; null: fully open.
 void trace_ghost(const GhostLens& lens, const std::vector<GhostStep>& steps, SceneRays& in, FilmRays& out,
                  const float* iris_opening, int count);
 

@@ -23,14 +23,14 @@ GhostLens ghosts_of(const Prescription& lens, const SensorStack& stack = {}, con
     return {lens, {{0, 0, film}}, iris, open * order.stop_semi_diameter, stack, 21.6};
 }
 
-/// A biconvex lens, its stop close behind.
+/// Biconvex lens with the stop close behind it.
 Prescription singlet(double semi_diameter = 5) {
     return test::lens_from_rows("singlet", {{50, 6, 1.5168, 0, semi_diameter},
                                             {-80, 1, 1, 0, semi_diameter},
                                             {0, 0, 1, 0, semi_diameter, true}});
 }
 
-/// Rays toward the lens from about one direction, over a disc at the first vertex.
+/// Ray in roughly one direction, over a disc at the first vertex.
 LensRay random_ray(std::mt19937& rng, double radius, double slope) {
     std::uniform_real_distribution<double> u(-1, 1);
     return {{radius * u(rng), radius * u(rng), 0},
@@ -54,7 +54,7 @@ struct Batch {
     }
 };
 
-/// The scalar trace of a ghost to the film; transmittance 0 where it is stopped.
+/// Ghost ray at the film from the scalar tracer; transmittance 0 if it is clipped.
 struct Landing {
     Vec2d at{};
     double pass = 0;
@@ -79,7 +79,7 @@ double normal_reflectance(double n1, double n2) {
 
 TEST_CASE("n reflecting surfaces have n (n - 1) / 2 ghosts") {
     for (const Prescription& lens : test::all_lenses()) {
-        const std::size_t n = lens.surfaces.size() - 1;   // all but the stop
+        const std::size_t n = lens.surfaces.size() - 1;   // all surfaces but the stop
         INFO(lens.name);
         CHECK(ghosts_of(lens).two_bounces().size() == n * (n - 1) / 2);
         const SensorStack stack{.cover_thickness = 2, .cover_gap = 1, .reflectance = 0.1};
@@ -107,7 +107,7 @@ TEST_CASE("a path by mirrors turns at each of them and leaves through all surfac
 TEST_CASE("ghosts by four reflections are all sequences that turn each time, brightest first") {
     const GhostLens ghosts = ghosts_of(test::tessar());
     const std::size_t n = ghosts.reflecting().size();
-    std::size_t count = 0;   // far, near, far, near
+    std::size_t count = 0;   // order: far, near, far, near
     for (std::size_t a = 0; a < n; ++a)
         for (std::size_t b = 0; b < a; ++b)
             for (std::size_t c = b + 1; c < n; ++c) count += c;
@@ -124,9 +124,9 @@ TEST_CASE("ghosts by four reflections are all sequences that turn each time, bri
 }
 
 TEST_CASE("the ghost of a single lens is where matrices have it, as large, and as bright") {
-    // First order, as the pupil is small. y: height; v: its change along the way of the light. A surface of
-    // curvature c bends light along +z by n' v' = n v - (n' - n) c y, and mirrors it to v + 2 c y; light along
-    // -z is mirrored to v - 2 c y.
+    // First-order trace, as the pupil is small. y: height; v: dy along the path. A surface of
+    // curvature c refracts light along +z by n' v' = n v - (n' - n) c y, and reflects it to v + 2 c
+    // y; it reflects light along -z to v - 2 c y.
     const Prescription lens = singlet(0.3);
     const GhostLens ghosts = ghosts_of(lens);
     REQUIRE(ghosts.two_bounces() == std::vector<Mirrors>{{1, 0}});
@@ -140,7 +140,7 @@ TEST_CASE("the ghost of a single lens is where matrices have it, as large, and a
     const Landing got = land(ghosts, {1, 0}, {{0, 0.25, 0}, {0, 0, 1}}, 587.56);
     REQUIRE(got.pass > 0);
     CHECK(got.at.y == doctest::Approx(want).epsilon(0.01));
-    // Where the ghost's light crosses the axis.
+    // Focus of the ghost: where its light crosses the axis.
     TracedRay ray{{{0, 0.25, 0}, {0, 0, 1}}};
     REQUIRE(ghosts.tracer().follow(ray, ghosts.path({1, 0}), ghosts.tracer().at(587.56), ghosts.clip()) < 0);
     const double focus = ray.ray.origin.z - ray.ray.origin.y * ray.ray.direction.z / ray.ray.direction.y;
@@ -155,13 +155,13 @@ TEST_CASE("on the axis the light of a ghost is the product of its surfaces by th
     const GhostLens bare = ghosts_of(lens);
     CHECK(land(bare, {1, 0}, {{}, {0, 0, 1}}, 550).pass / ((1 - r) * r * r * (1 - r)) ==
           doctest::Approx(1).epsilon(1e-6));
-    lens.coating = Coating::mgf2;   // a quarter wave at 550 nm: ((n1^2 - n) / (n1^2 + n))^2
+    lens.coating = Coating::mgf2;   // quarter wave at 550 nm: R = ((n1^2 - n) / (n1^2 + n))^2
     const double amplitude = (1.38 * 1.38 - 1.5168) / (1.38 * 1.38 + 1.5168), q = amplitude * amplitude;
     CHECK(q == doctest::Approx(0.0128).epsilon(0.0002));
     const GhostLens coated = ghosts_of(lens);
     CHECK(land(coated, {1, 0}, {{}, {0, 0, 1}}, 550).pass / ((1 - q) * q * q * (1 - q)) ==
           doctest::Approx(1).epsilon(1e-6));
-    // The sensor with its glass: sensor and last surface of the lens.
+    // Sensor with cover glass: ghost between the sensor and the last surface of the lens.
     const GhostLens stack = ghosts_of(lens, {.cover_thickness = 2, .cover_index = 1.5,
                                              .cover_coating = Coating::uncoated, .reflectance = 0.1});
     const double g = normal_reflectance(1, 1.5), t = (1 - g) * (1 - g);
@@ -175,7 +175,7 @@ TEST_CASE("lanes trace ghosts as the reference does, on every target") {
     lenses[1].coating = Coating::broadband, lenses[2].coating = Coating::v_coat;
     lenses[3].coating = Coating::uncoated;
     lenses.push_back(singlet());
-    lenses[4].surfaces[1].thickness = 0.02;   // the iris stands within the glass, where that bulges
+    lenses[4].surfaces[1].thickness = 0.02;   // iris within the bulge of the glass
     lenses[4].surfaces[1].curvature = 1.0 / 80;
     const auto batch = std::make_unique<Batch>();
     test::for_each_target([&] {
@@ -193,7 +193,8 @@ TEST_CASE("lanes trace ghosts as the reference does, on every target") {
                     ++rays;
                     const double nm = batch->film.nm[i], got = batch->scene.pass[i];
                     const Landing want = land(ghosts, mirrors, batch->ray(i), nm);
-                    if ((want.pass > 0) != (got > 0)) {   // close to an edge, wide and narrow differ
+                    if ((want.pass > 0) != (got > 0)) {   // near an edge, slightly larger and smaller apertures
+                                                          // disagree
                         const double wide = land(ghosts, mirrors, batch->ray(i), nm, 1 + 1e-4).pass,
                                      narrow = land(ghosts, mirrors, batch->ray(i), nm, 1 - 1e-4).pass;
                         differ += (wide > 0) == (narrow > 0);
@@ -228,7 +229,7 @@ TEST_CASE("a leaf shutter in the iris stops ghosts at each crossing") {
         set(0.4f);
         trace_ghost(ghosts, ghosts.steps(mirrors), batch->scene, batch->film, batch->opening, kLensBatch);
         std::vector<float> leaf(batch->scene.pass, batch->scene.pass + kLensBatch);
-        // The same as an iris that is set to 0.4 of the radius.
+        // Equal to an iris set to 0.4 of the radius.
         const GhostLens small = ghosts_of(test::tessar(), {}, {}, 0.4);
         set(1);
         trace_ghost(small, small.steps(mirrors), batch->scene, batch->film, batch->opening, kLensBatch);
@@ -242,8 +243,9 @@ TEST_CASE("a leaf shutter in the iris stops ghosts at each crossing") {
 }
 
 TEST_CASE("light that enters a lens is imaged, mirrored twice or more, sent back, swallowed or stopped") {
-    // A walk that chooses at each surface by chance, with R: where it ends, and after how many mirrors. The
-    // share that it finds with two must be that of all ghosts together, and the shares must be one.
+    // Reference: a random walk that reflects with probability R at each surface. Its share of light
+    // at the film after two reflections must equal the sum of all ghosts, and all shares must sum
+    // to one.
     Prescription lens = test::tessar();
     lens.coating = Coating::uncoated;
     const GhostLens ghosts = ghosts_of(lens);

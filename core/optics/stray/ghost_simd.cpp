@@ -1,4 +1,4 @@
-// ghost_simd.cpp -- light on its way by mirrors, in lanes: trace_ghost (ghost_lens.h).
+// ghost_simd.cpp -- traces ghosts in SIMD lanes: trace_ghost (ghost_lens.h).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "optics/stray/ghost_simd.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
@@ -10,7 +10,7 @@ HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
 
-/// Tracer::cross of a step that reflects, after the meeting.
+/// Reflection in Tracer::cross, after the intersection.
 template <int kSign>
 HWY_INLINE void reflect_at(const GhostLens& ghosts, int i, const LaneHit& hit, LaneRays& r) {
     const M ok = stop_at_surface<kSign>(ghosts.tables(), i, hit, r);
@@ -38,7 +38,7 @@ HWY_INLINE void take_step(const GhostLens& ghosts, const GhostStep& step, bool m
         leave_frame(lens.shape[i], a), leave_frame(lens.shape[i], b);
 }
 
-/// A leaf shutter stands in the iris: nothing passes outside of what it leaves.
+/// Applies a leaf shutter in the plane of the iris: the iris, scaled by the opening.
 HWY_INLINE void pass_leaf(const LensTables& lens, V opening, LaneRays& r) {
     const V wide = hn::Div(constant(1), hn::Max(opening, constant(1e-6f)));
     const V open = iris_transmission(lens.iris, hn::Mul(r.iris_x, wide), hn::Mul(r.iris_y, wide));
@@ -46,7 +46,7 @@ HWY_INLINE void pass_leaf(const LensTables& lens, V opening, LaneRays& r) {
     r.alive = hn::And(r.alive, hn::Gt(r.transmittance, hn::Zero(D())));
 }
 
-/// False as soon as nothing is left.
+/// Traces a ghost path; returns false as soon as no ray is alive.
 HWY_INLINE bool lanes_by_mirrors(const GhostLens& ghosts, const std::vector<GhostStep>& steps,
                                  const float* opening, LaneRays& a, LaneRays& b) {
     const LensTables& lens = ghosts.tables();

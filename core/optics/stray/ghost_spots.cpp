@@ -19,7 +19,7 @@ double front_radius(const Prescription& lens) {
     return 2 * r;
 }
 
-/// The wavelength of ray i: of n, as many of each as its share.
+/// Wavelength for a uniform number u, distributed by the weights.
 double wavelength_of(const GhostLight& light, double u) {
     double sum = 0;
     for (std::size_t k = 0; k + 1 < light.nm.size(); ++k) {
@@ -29,13 +29,13 @@ double wavelength_of(const GhostLight& light, double u) {
     return light.nm.back();
 }
 
-/// A part of the square that holds the front, [0, 1)^2.
+/// Sub-rectangle of the unit square over the front of the lens.
 struct Window {
     Vec2d low{0, 0}, size{1, 1};
     double area() const { return size.x * size.y; }
 };
 
-/// Where rays entered that came through.
+/// Bounds and number of the entry points of rays that reach the film.
 struct Entries {
     Vec2d low{1, 1}, high{0, 0};
     int count = 0;
@@ -49,7 +49,7 @@ struct Entries {
         add(other.low), add(other.high);
         count += other.count - 2;
     }
-    /// With as much around it as rays a step apart may have missed.
+    /// Bounding window with a margin for rays missed between samples a step apart.
     Window window(const Window& in, int side) const {
         const double more = 0.05 + 2.0 / count;
         const Vec2d size = high - low, step{2 * in.size.x / side, 2 * in.size.y / side};
@@ -59,24 +59,24 @@ struct Entries {
     }
 };
 
-constexpr int kEnough = 256;    // rays through: what they show needs no closer look
-constexpr int kFew = 8;         // and so many at least to say where a ghost lets light in
-constexpr int kMostLooks = 5;
+constexpr int kEnoughRays = 256;    // rays at the film that suffice to locate a ghost
+constexpr int kLeastRays = 8;         // least rays at the film that locate an entry window
+constexpr int kMostZooms = 5;
 constexpr int kMostRays = 1 << 24;
-constexpr int kWideSide = 256;  // rays across, where almost none come through
+constexpr int kWideSide = 256;  // rays per side in windows that hardly any ray passes
 
 class Bench {
   public:
     Bench(const GhostLens& lens, const GhostLight& light) : lens_(lens), light_(light) {
         half_ = front_radius(lens.tracer().prescription());
-        const double sag_half = lens.tracer().form(0).height;   // infinite: not known
+        const double sag_half = lens.tracer().form(0).height;   // infinite if unknown
         if (std::isfinite(sag_half)) half_ = hypot(half_, sag_half);
         side_ = std::max(1, int(std::lround(std::sqrt(double(light.rays)))));
     }
 
-    /// Rays along one direction, evenly over a window of the square that holds the front of the lens as it is
-    /// seen from there: calls use(x, y, transmittance) for all that come to the film's plane; what share of the
-    /// light one ray is.
+    /// Traces rays of one direction, on a regular grid over a window of the projected front
+    /// surface. Calls use(x, y, transmittance) for each ray that reaches the film's plane; returns
+    /// the share of the light per ray.
     template <typename Trace, typename Use>
     double follow(double angle, const Window& window, int side, Entries& entries, const Trace& trace,
                   const Use& use) const {
@@ -107,8 +107,8 @@ class Bench {
         return window.area() / rays;
     }
 
-    /// Where rays of a ghost enter that come through.
-    Entries look(const Mirrors& mirrors, const Window& window, int side) const {
+    /// Entry points of a ghost's rays that reach the film's plane.
+    Entries find_entries(const Mirrors& mirrors, const Window& window, int side) const {
         Entries entries;
         const auto steps = lens_.steps(mirrors);
         follow(light_.angle, window, side, entries,
@@ -117,32 +117,33 @@ class Bench {
         return entries;
     }
 
-    /// Windows that hold what enters for each ghost. The front of a fisheye is a thousand times its pupil:
-    /// where all ghosts together let light in is looked at more and more closely, then where each does.
+    /// Entry windows of all ghosts. The front of a fisheye is a thousand times larger than its
+    /// pupil, so the search zooms in: first on the entries of all ghosts together, then on the
+    /// entries of each ghost.
     std::vector<Window> windows(const std::vector<Mirrors>& ghosts) const {
         Window all;
         std::vector<Entries> of(ghosts.size());
         int side = side_;
-        for (int i = 0; i < kMostLooks; ++i) {
+        for (int i = 0; i < kMostZooms; ++i) {
             Entries together;
             for (std::size_t g = 0; g < ghosts.size(); ++g)
-                if (of[g].count < kEnough) of[g] = look(ghosts[g], all, side);
+                if (of[g].count < kEnoughRays) of[g] = find_entries(ghosts[g], all, side);
             for (const Entries& e : of) together.add(e);
-            if (together.count < kEnough && side < kWideSide) {
+            if (together.count < kEnoughRays && side < kWideSide) {
                 side = kWideSide;
                 continue;
             }
-            if (together.count < kFew) break;
+            if (together.count < kLeastRays) break;
             const Window closer = together.window(all, side);
             if (closer.area() > 0.5 * all.area()) break;
             all = closer, side = side_;
         }
         std::vector<Window> windows;
-        for (const Entries& e : of) windows.push_back(e.count < kFew ? all : e.window(all, side));
+        for (const Entries& e : of) windows.push_back(e.count < kLeastRays ? all : e.window(all, side));
         return windows;
     }
 
-    GhostSpot spot(const Mirrors& mirrors, const Window& window, double straight, bool with_points) const {
+    GhostSpot spot(const Mirrors& mirrors, const Window& window, double light_on_axis, bool with_points) const {
         GhostSpot spot{.mirrors = mirrors};
         double xx = 0;
         const auto steps = lens_.steps(mirrors);
@@ -166,18 +167,19 @@ class Bench {
             spot.radius = std::sqrt(std::max(0.0, xx / spot.light - c.x * c.x - c.y * c.y));
             for (auto& p : spot.points) p[2] = float(p[2] / spot.light);
         }
-        spot.light *= each / straight, spot.all *= each / straight;
+        spot.light *= each / light_on_axis, spot.all *= each / light_on_axis;
         return spot;
     }
 
-    /// Light that comes to the film's plane from a source straight ahead, which enters in the middle.
-    double straight() const {
+    /// Light that reaches the film's plane from a source on the axis, which enters around the
+    /// centre.
+    double light_on_axis() const {
         for (double size = 1;; size /= 2) {
             double sum = 0;
             Entries entries;
             const double each = follow(
                 0, {{0.5 - size / 2, 0.5 - size / 2}, {size, size}}, side_, entries,
-                [&](SceneRays& in, FilmRays& out) { trace_straight(in, out); },
+                [&](SceneRays& in, FilmRays& out) { trace_direct(in, out); },
                 [&](double, double, double pass) { sum += pass; });
             if (entries.count >= side_ * side_ / 16 || size < 1e-3) return sum * each;
         }
@@ -189,8 +191,8 @@ class Bench {
         FilmRays film;
     };
     static double fraction(double x) { return x - std::floor(x); }
-    /// By no mirrors: through all surfaces but the sensor's.
-    void trace_straight(SceneRays& in, FilmRays& out) const {
+    /// Traces without reflections through all surfaces except the sensor.
+    void trace_direct(SceneRays& in, FilmRays& out) const {
         trace_ghost(lens_, lens_.steps({}), in, out, nullptr, kLensBatch);
     }
 
@@ -209,14 +211,14 @@ std::vector<GhostSpot> ghost_spots(const GhostLens& lens, const GhostLight& ligh
     if (light.rays < 1 || light.rays > kMostRays)
         throw input_error("ghosts", "rays", "1 to " + std::to_string(kMostRays), std::to_string(light.rays));
     const Bench bench(lens, light);
-    const double straight = bench.straight();
-    if (!(straight > 0))
+    const double light_on_axis = bench.light_on_axis();
+    if (!(light_on_axis > 0))
         throw Error(lens.tracer().prescription().name + ": flare: no light passes the lens");
     std::vector<GhostSpot> spots;
     const std::vector<Mirrors> ghosts = lens.two_bounces();
     const std::vector<Window> windows = bench.windows(ghosts);
     for (std::size_t i = 0; i < ghosts.size(); ++i)
-        spots.push_back(bench.spot(ghosts[i], windows[i], straight, with_points));
+        spots.push_back(bench.spot(ghosts[i], windows[i], light_on_axis, with_points));
     std::ranges::stable_sort(spots, std::ranges::greater{}, &GhostSpot::light);
     return spots;
 }

@@ -1,5 +1,5 @@
-// ghost_step-inl.h -- what rays by mirrors do at a surface, in SIMD lanes: meet it, and turn back. Included once per
-// instruction set.
+// ghost_step-inl.h -- steps of ghost rays in SIMD lanes: intersection with a surface, and
+// reflection. Included once per instruction set.
 #if defined(DG_OPTICS_GHOST_STEP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DG_OPTICS_GHOST_STEP_INL_H_
 #undef DG_OPTICS_GHOST_STEP_INL_H_
@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
 
-/// Turns rays at a mirror that they have met.
+/// Reflects rays at a surface that they have hit.
 template <int kSign>
 HWY_INLINE void turn_back(const GhostLens& ghosts, int i, const LaneHit& hit, LaneRays& r) {
     const LensTables& lens = ghosts.tables();
@@ -33,7 +33,7 @@ HWY_INLINE void turn_back(const GhostLens& ghosts, int i, const LaneHit& hit, La
     r.dz = hn::NegMulAdd(turn, hit.axial, r.dz);
 }
 
-/// Where both vectors of rays meet a surface; rays are in its own frame then.
+/// Intersects two vectors of rays with a surface; leaves the rays in the surface's frame.
 template <int kSign>
 HWY_INLINE void meet_any(const LensTables& lens, int i, LaneRays& a, LaneRays& b, LaneHit (&hit)[2]) {
     const LaneVec pa{a.x, a.y, a.z}, da{a.dx, a.dy, a.dz}, pb{b.x, b.y, b.z}, db{b.dx, b.dy, b.dz};
@@ -50,9 +50,10 @@ HWY_INLINE void meet_any(const LensTables& lens, int i, LaneRays& a, LaneRays& b
     }
 }
 
-constexpr float kOverlap = 0.01f;  // mm, as of Tracer::follow
+constexpr float kOverlap = 0.01f;  // mm, as in Tracer::follow
 
-/// A mirror may be so steep that light never comes to the surface that is next.
+/// Whether rays move forward to their hit: a steep mirror may send light away from the next
+/// surface.
 HWY_INLINE M onward(const LaneRays& r, const LaneHit& hit) {
     const V way = hn::MulAdd(hn::Sub(hit.point.x, r.x), r.dx,
                              hn::MulAdd(hn::Sub(hit.point.y, r.y), r.dy,

@@ -17,19 +17,19 @@ double square(double x) {
     return x * x;
 }
 
-/// Ways out of a middle, over half the way around.
+/// Unit vectors over half of the azimuth.
 template <int kCount>
-std::array<Vec2d, kCount> ways_out() {
-    std::array<Vec2d, kCount> ways;
+std::array<Vec2d, kCount> half_circle() {
+    std::array<Vec2d, kCount> directions;
     for (int k = 0; k < kCount; ++k) {
         const double phi = kPiD * (k + 0.5) / kCount;
-        ways[k] = {std::cos(phi), std::sin(phi)};
+        directions[k] = {std::cos(phi), std::sin(phi)};
     }
-    return ways;
+    return directions;
 }
 
-/// From a point of a disc of radius n to its edge, along a direction (unit): the positive root of
-/// |p + t d| = n.
+/// Distance from a point in a disc of radius n to its edge along a unit vector: the positive root
+/// of |p + t d| = n.
 double to_edge(Vec2d p, Vec2d d, double n) {
     const double along = dot(p, d);
     return std::sqrt(std::max(0.0, n * n - dot(p, p) + along * along)) - along;
@@ -55,15 +55,15 @@ double HarveyShack::radius(double u, double most) const {
     return knee * std::sqrt(std::max(0.0, std::expm1(log)));
 }
 
-/// The mean over all ways out of the middle: smooth, and the same after a turn, so the error falls as
-/// (offset / n)^(2 ways).
+/// Mean of within() over all azimuths about the lobe's centre. The integrand is smooth and
+/// periodic, so the error falls as (offset / n)^(2 azimuths).
 double HarveyShack::over_directions(double offset, double n) const {
-    static const std::array few = ways_out<8>();
-    static const std::array many = ways_out<32>();
-    const std::span<const Vec2d> ways = offset < 0.5 * n ? std::span<const Vec2d>(few) : many;
+    static const std::array coarse = half_circle<8>();
+    static const std::array fine = half_circle<32>();
+    const std::span<const Vec2d> directions = offset < 0.5 * n ? std::span<const Vec2d>(coarse) : fine;
     double sum = 0;
-    for (const Vec2d way : ways) sum += within(to_edge({offset, 0}, way, n));
-    return sum / double(ways.size());
+    for (const Vec2d way : directions) sum += within(to_edge({offset, 0}, way, n));
+    return sum / double(directions.size());
 }
 
 Vec2d HarveyShack::sample(Vec2d middle, double n, Vec2d u) const {

@@ -15,7 +15,8 @@ namespace {
 
 const HarveyShack kLobes[] = {{0.01, -1.5}, {0.1, -2}, {0.3, -2.5}, {0.02, -3.5}};
 
-/// By rings about the middle and the part of each that lies in the disc: shares nothing with the class.
+/// Integral of the lobe by rings about its centre, each weighted by its part inside the disc;
+/// independent of the class.
 double by_rings(const HarveyShack& lobe, double offset, double n) {
     double sum = 0;
     constexpr int kRings = 400000;
@@ -76,11 +77,12 @@ TEST_CASE("shares of a lobe and the distances that hold them are inverse") {
 }
 
 TEST_CASE("total integrated scatter is that of Davies for mirrors, and less by (n - 1)^2 / 4 for glass") {
-    // (4 pi 1 nm / 633 nm)^2 = 3.94e-4 of a mirror (Bennett and Mattsson 1999, Surface Roughness and Scattering).
+    // (4 pi 1 nm / 633 nm)^2 = 3.94e-4 for a mirror (Bennett and Mattsson 1999, Surface Roughness
+    // and Scattering).
     CHECK(total_integrated_scatter(1, 2, 633) == doctest::Approx(3.94e-4).epsilon(2e-3));
     CHECK(total_integrated_scatter(1, 0.5, 633) == doctest::Approx(3.94e-4 / 16).epsilon(2e-3));
     CHECK(total_integrated_scatter(2, 2, 633) == doctest::Approx(4 * 3.94e-4).epsilon(2e-3));
-    CHECK(total_integrated_scatter(1000, 2, 500) == doctest::Approx(1));   // ground glass: all of it
+    CHECK(total_integrated_scatter(1000, 2, 500) == doctest::Approx(1));   // ground glass: all light is scattered
 }
 
 TEST_CASE("lobes that cannot be are refused") {

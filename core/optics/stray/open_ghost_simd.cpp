@@ -1,4 +1,5 @@
-// open_ghost_simd.cpp -- rays by mirrors that nothing stops, in lanes: trace_open_ghost (open_ghost.h).
+// open_ghost_simd.cpp -- traces unclipped ghost rays in SIMD lanes: trace_open_ghost
+// (open_ghost.h).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "optics/stray/open_ghost_simd.cpp"
 #include <cmath>
@@ -14,20 +15,20 @@ HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
 
-constexpr float kLost = 0.05f;   // least that a ray without a landing is beyond an edge
+constexpr float kLost = 0.05f;   // least `beyond` of a lost ray
 
 struct OpenLanes {
     LaneRays r;
-    V beyond, ways, lost_after;   // ways: steps that are done
+    V beyond, ways, lost_after;   // ways: steps done
     V iris_x[kMostCrossings], iris_y[kMostCrossings];
 };
 
-/// Notes how far beyond an edge the sound rays are.
-HWY_INLINE void note(OpenLanes& o, V beyond) {
+/// Updates the maximal distance beyond an aperture for rays that are not lost.
+HWY_INLINE void record(OpenLanes& o, V beyond) {
     o.beyond = hn::IfThenElse(o.r.alive, hn::Max(o.beyond, beyond), o.beyond);
 }
 
-/// Loses the rays that fail; `by`: how far.
+/// Marks rays that fail `ok` as lost; `by`: their distance beyond.
 HWY_INLINE void lose(OpenLanes& o, M ok, V by) {
     const M lost = hn::AndNot(ok, o.r.alive);
     o.beyond = hn::IfThenElse(lost, hn::Max(o.beyond, hn::Max(by, constant(kLost))), o.beyond);
@@ -35,7 +36,7 @@ HWY_INLINE void lose(OpenLanes& o, M ok, V by) {
     o.r.alive = hn::And(o.r.alive, ok);
 }
 
-/// Snell's law; what is reflected totally is lost.
+/// Refracts rays by Snell's law; total reflection loses them.
 template <int kSign>
 HWY_INLINE void bend(const LensTables& lens, int i, const LaneHit& hit, OpenLanes& o) {
     LaneRays& r = o.r;
@@ -57,7 +58,8 @@ HWY_INLINE void bend(const LensTables& lens, int i, const LaneHit& hit, OpenLane
     r.n = n2;
 }
 
-/// One surface: the meeting, its edges, and the way on. `crossing`: which one of the iris this would be.
+/// Intersects a surface, records its apertures, and refracts or reflects. `crossing`: index of the
+/// iris crossing, should this surface be the stop.
 template <int kSign>
 HWY_INLINE void open_step(const GhostLens& ghosts, const GhostStep& step, bool mirrored, int crossing,
                           const LaneHit& hit, OpenLanes& o) {
@@ -68,8 +70,8 @@ HWY_INLINE void open_step(const GhostLens& ghosts, const GhostStep& step, bool m
     swallow(lens, kSign > 0 ? i : i + 1, hit.point, o.r);
     o.r.x = hit.point.x, o.r.y = hit.point.y, o.r.z = hit.point.z;
     const V r2 = hn::MulAdd(o.r.x, o.r.x, hn::Mul(o.r.y, o.r.y));
-    if (std::isfinite(lens.semi2[i])) note(o, hn::MulSub(r2, constant(1 / lens.semi2[i]), constant(1)));
-    if (lens.inner2[i] > 0) note(o, hn::NegMulAdd(r2, constant(1 / lens.inner2[i]), constant(1)));
+    if (std::isfinite(lens.semi2[i])) record(o, hn::MulSub(r2, constant(1 / lens.semi2[i]), constant(1)));
+    if (lens.inner2[i] > 0) record(o, hn::NegMulAdd(r2, constant(1 / lens.inner2[i]), constant(1)));
     if (i == lens.stop) o.iris_x[crossing] = o.r.x, o.iris_y[crossing] = o.r.y;
     step.reflects ? turn_back<kSign>(ghosts, i, hit, o.r) : bend<kSign>(lens, i, hit, o);
 }

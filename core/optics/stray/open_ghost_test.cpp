@@ -20,7 +20,7 @@ GhostLens ghosts_of(const Prescription& lens) {
     return {lens, {{0, 0, film}}, Iris::polygon(6, 10, 0.3), 0.7 * order.stop_semi_diameter, {}, 21.6};
 }
 
-/// Rays toward the front from about one direction, wider than the glass.
+/// Rays toward the front in roughly one direction, over more than the glass.
 struct Rays {
     SceneRays in;
     FilmRays film;
@@ -35,7 +35,7 @@ struct Rays {
     }
 };
 
-/// Whether the iris lets the ray pass at each crossing.
+/// Whether the iris transmits the ray at all crossings.
 bool through_iris(const GhostLens& ghosts, const OpenLandings& o, int crossings, int i, double widened) {
     for (int k = 0; k < crossings; ++k) {
         const Vec2d at{o.iris_x[k][i], o.iris_y[k][i]};

@@ -1,5 +1,5 @@
-// reflection-inl.h -- how much light a surface sends back, in SIMD lanes: films exactly, since a ghost is the
-// product of two small reflectances. Included once per instruction set.
+// reflection-inl.h -- reflectance of surfaces in SIMD lanes. Coatings are evaluated exactly, since
+// a ghost is the product of two small reflectances. Included once per instruction set.
 #if defined(DG_OPTICS_REFLECTION_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DG_OPTICS_REFLECTION_INL_H_
 #undef DG_OPTICS_REFLECTION_INL_H_
@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
 
-/// Characteristic matrix [[a, i b], [i c, d]] of films, one polarization (coating.cpp).
+/// Characteristic matrix [[a, i b], [i c, d]] of a film stack for one polarization (coating.cpp).
 struct LaneFilms {
     V a, b, c, d;
 
@@ -30,7 +30,8 @@ struct LaneFilms {
         c = hn::MulAdd(c1, cosine, hn::Mul(d1, c2));
         d = hn::NegMulAdd(c1, b2, hn::Mul(d1, cosine));
     }
-    /// |p B - C|^2 / |p B + C|^2 with (B, C) = M (1, q); p and q are the media's admittances.
+    /// Reflectance |p B - C|^2 / |p B + C|^2 with (B, C) = M (1, q), where p and q are the
+    /// admittances of the media.
     HWY_INLINE V reflectance(V p, V q) const {
         const V pa = hn::Mul(p, a), qd = hn::Mul(q, d), pqb = hn::Mul(hn::Mul(p, q), b);
         const V r0 = hn::Sub(pa, qd), i0 = hn::Sub(pqb, c), r1 = hn::Add(pa, qd), i1 = hn::Add(pqb, c);
@@ -38,7 +39,8 @@ struct LaneFilms {
     }
 };
 
-/// Films lie from the rarer medium (n1, cos1) to the denser one. Inlined, its sines took half of the time to compile.
+/// Reflectance of films ordered from the rarer medium (n1, cos1) to the denser. Not inlined: the
+/// inlined sines doubled compile time.
 static HWY_NOINLINE V films_reflectance(const MirrorTables& mirror, V n1, V cos1, V n2, V cos2, V inv_um2) {
     const D d;
     const V one = constant(1);
@@ -60,14 +62,14 @@ static HWY_NOINLINE V films_reflectance(const MirrorTables& mirror, V n1, V cos1
     return hn::Mul(constant(0.5f), both);
 }
 
-/// Fresnel's rs^2 + rp^2 over 2.
+/// Fresnel reflectance (rs^2 + rp^2) / 2.
 HWY_INLINE V bare_reflectance(V n1, V cos1, V n2, V cos2) {
     const V p1 = hn::Mul(n1, cos1), q2 = hn::Mul(n2, cos2), p2 = hn::Mul(n2, cos1), q1 = hn::Mul(n1, cos2);
     const V rs = hn::Div(hn::Sub(p1, q2), hn::Add(p1, q2)), rp = hn::Div(hn::Sub(p2, q1), hn::Add(p2, q1));
     return hn::Mul(constant(0.5f), hn::MulAdd(rs, rs, hn::Mul(rp, rp)));
 }
 
-/// 1 - surface_transmittance(); cos2_squared < 0 is total reflection.
+/// Reflectance 1 - surface_transmittance(); cos2_squared < 0 means total reflection.
 HWY_INLINE V reflectance_lanes(const LensTables& lens, const MirrorTables& mirror, const LaneCrossing& at,
                                V cos2_squared, bool rarer_first) {
     using Kind = MirrorTables::Kind;

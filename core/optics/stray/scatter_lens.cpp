@@ -8,15 +8,17 @@
 namespace dg {
 namespace {
 
-constexpr double kRimShare = 0.1, kImageShare = 0.5;   // of what metal scatters; the rest by its finish
-constexpr double kFlat = 1e-7;                           // mm
-constexpr double kFarthest = 1e4;                        // mm: images beyond are no targets
+constexpr double kRimShare = 0.1, kImageShare = 0.5;   // probabilities of aiming a scatter off metal at a rim or at
+                                                       // an image of the iris
+constexpr double kFlat = 1e-7;                           // mm, tolerated overlap
+constexpr double kFarthest = 1e4;                        // mm: images farther away are not targets
 
 double height(const SurfaceForm& form, double radius) {
     return form.place.origin.z + sag(form, radius, 0.0).z;
 }
 
-/// Up to which radius a surface stays on its side of a plane: an iris may stand in the hollow of a lens.
+/// Radius up to which a surface stays on its side of a plane; smaller than `radius` if the iris is
+/// inside the hollow of a lens.
 double radius_within(const SurfaceForm& form, double plane, int side, double radius) {
     const auto beyond = [&](double r) { return side * (height(form, r) - plane) > 0; };
     if (!beyond(radius)) return std::numeric_limits<double>::infinity();
@@ -63,7 +65,8 @@ ScatterLens::ScatterLens(const Prescription& lens, const FilmPlane& film, const 
         forced_ = 1 - std::pow(0.5, 1 / double(std::max<std::size_t>(lens.surfaces.size(), 2)));
 }
 
-/// The stop is as wide as it opens, and as wide as its neighbours make the barrel, but no glass reaches through.
+/// Rims of the surfaces. The stop's rim spans its open diameter and the barrel between its
+/// neighbours, but must not intersect their glass.
 void ScatterLens::set_rims(const Prescription& lens) {
     const Tracer& tracer = ghosts_.tracer();
     const int count = int(lens.surfaces.size()), stop = tracer.stop();
@@ -89,12 +92,12 @@ void ScatterLens::set_walls() {
         Wall& w = walls_[g];
         w = {a.radius, a.z, b.z - a.z, 0, b.radius};
         if (w.length > 0) w.slope = (b.radius - a.radius) / w.length;
-        w.none = w.length < -kFlat;   // the surfaces meet within their rims
+        w.none = w.length < -kFlat;   // the surfaces intersect within their rims
     }
 }
 
-/// Metal's light goes to the film by way of the iris, or, behind it, straight. What is seen there through the
-/// glass is about where paraxial optics has its image.
+/// Targets in each gap for light scattered by metal: the rim at the end of the gap, and the
+/// paraxial image of the iris, or of the film in gaps behind the iris.
 void ScatterLens::set_targets(double half_diagonal) {
     const int stop = ghosts_.tracer().stop(), count = int(rims_.size());
     targets_.resize(rims_.size());
@@ -107,7 +110,7 @@ void ScatterLens::set_targets(double half_diagonal) {
     }
 }
 
-/// The image in a gap of a disc farther on: n / s - n' / s' = (n' - n) c, surface by surface.
+/// Paraxial image, in a gap, of a disc behind it: n / s - n' / s' = (n' - n) c, surface by surface.
 std::optional<ScatterLens::Target> ScatterLens::image_in(int gap, int from_gap, double z, double radius) const {
     const Tracer& tracer = ghosts_.tracer();
     const LensIndices n = tracer.at(kDesignWavelength);

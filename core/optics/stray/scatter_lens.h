@@ -1,12 +1,14 @@
-// scatter_lens.h -- a lens as a closed box: its surfaces, and between their rims the walls of the barrel; where
-// the iris stands, its blades. Light is followed through it by chance, whatever it meets.
+// scatter_lens.h -- a lens as a closed box of scattering parts: polished surfaces, barrel walls
+// between their rims, and iris blades. Random walks trace light through it.
 //
-// A gap is the space before a surface (gap i lies before surface i). Its wall is the cone that joins the rims of
-// the clear apertures on both sides of it: mounts hold the glass there, and the edge of a lens is as black as
-// they are. At the iris the wall is as wide as the stop when it is open, or as the straight line between its
-// neighbours. Nothing stands before the first surface, and nothing between the last one and the film.
+// Gap i is the space in front of surface i. Its wall is the cone between the rims of the clear
+// apertures on both sides: mounts hold the glass there, and the edges of the glass are painted like
+// them. At the iris, the wall is as wide as the open stop, or as the straight line between its
+// neighbours. There are no walls in front of the first surface or between the last surface and the
+// film.
 //
-// What scatters is counted once: light that no wall, blade or roughness has turned is the picture's and its
+// Only scattered light is recorded: light without an event at a wall, a blade or a rough surface
+// belongs to the image and its ghosts.
 // ghosts' own.
 #pragma once
 #include <array>
@@ -19,50 +21,50 @@
 
 namespace dg {
 
-/// Scatter of the parts of a lens, which send light to where they should not.
+/// Scattering properties of the parts of a lens.
 struct LensScatter {
     Finish barrel{}, blades{};
-    double surface_rms_nm = 1;   // roughness of every polished surface; 0: none
+    double surface_rms_nm = 1;   // RMS roughness of all polished surfaces; 0: perfectly smooth
     HarveyShack surface_lobe{};
 
-    /// Anything at all.
+    /// Whether any part scatters.
     bool scatters() const {
         const auto shines = [](const Finish& f) { return f.diffuse > 0 || f.gloss > 0; };
         return shines(barrel) || shines(blades) || surface_rms_nm > 0;
     }
 };
 
-/// Throws Error that names the value.
+/// Throws an Error with the name of the faulty value.
 void check_scatter(const LensScatter& scatter);
 
-/// Light that came to the film.
+/// Result of a walk that reached the film.
 struct ScatteredLight {
-    Vec2d film{};        // mm, in the film plane's coordinates
-    Vec2d iris{};        // mm, where it last crossed the stop
-    double weight = 0;   // of it, of the light that entered
-    int events = 0;      // how often it was scattered; 0: the picture's or a ghost's (ScatterDraw::all)
-    double blur2 = 0;    // mm2: how far around there such light is spread evenly, squared (scatter_blur.h)
+    Vec2d film{};        // mm, in coordinates of the film plane
+    Vec2d iris{};        // mm, last crossing of the stop
+    double weight = 0;   // relative to the light that entered
+    int events = 0;      // number of scattering events; 0: image or ghost (ScatterDraw::all)
+    double blur2 = 0;    // mm2, squared radius of the footprint on the film (scatter_blur.h)
 };
 
-/// Where light ends. `lost`: between surfaces of a prescription that run into each other. `chance`: what a walk
-/// gained or lost by the way in which it was drawn; 0 in the mean.
+/// Final states of the light. `lost`: between overlapping surfaces of a prescription. `chance`:
+/// weight gained or lost by random sampling; 0 in expectation.
 enum class LightEnd { film, front, metal, glass, rear, truncated, lost, chance };
 inline constexpr int kLightEnds = 8;
 using LightEnds = std::array<double, kLightEnds>;
 
-/// How walks are drawn; the mean does not depend on it.
+/// Sampling strategies of walks; all are unbiased.
 struct ScatterDraw {
-    bool toward_film = true;   // else from the film to the front: the same light, gone backward
-    bool aimed = true;         // some of what metal scatters goes where the film is
-    bool forced = true;        // half of the walks are made to scatter at some polished surface
-    bool dice = true;          // dim walks are ended by chance
-    bool all = false;          // what nothing scattered counts, too
+    bool toward_film = true;   // false: the adjoint walk, from the film to the front
+    bool aimed = true;         // part of the scattering off metal is aimed at the film
+    bool forced = true;        // half of the walks are forced to scatter at a polished surface
+    bool roulette = true;          // Russian roulette for walks of low weight
+    bool all = false;          // also returns walks without scattering
 };
 
 class ScatterLens {
   public:
-    /// Sets up like GhostLens. Error for a lens that is not the same all around its axis, or whose clear diameters
-    /// are not known, and for a finish that cannot be.
+    /// Arguments as in GhostLens. Throws Error for a lens without axial symmetry or with unknown
+    /// clear diameters, and for an invalid finish.
     ScatterLens(const Prescription& lens, const FilmPlane& film, const Iris& iris, double iris_radius,
                 const SensorStack& stack, double half_diagonal, const LensScatter& scatter);
 
@@ -70,29 +72,31 @@ class ScatterLens {
     const LensScatter& scatter() const { return scatter_; }
     LensIndices at(double wavelength_nm) const { return ghosts_.tracer().at(wavelength_nm); }
 
-    /// One walk of light that enters at the ray, which has yet to meet the first surface (drawn backward: the
-    /// last). What came to the film (backward: what left the front, see `left`) after something scattered it.
-    /// The same `seed` draws the same walk, but for what another wavelength changes. iris_opening: of its
-    /// radius. `ends` gains the walk's light, 1 in all.
+    /// Traces one walk from the ray, which must start before the first surface (adjoint: the last).
+    /// Returns the light that reaches the film (adjoint: the light that leaves the front, with its
+    /// ray in `left`) after at least one scattering event. A seed gives the same walk at all
+    /// wavelengths, up to dispersion. iris_opening: fraction of the iris radius. `ends` receives
+    /// the walk's light by final state, 1 in total.
     std::optional<ScatteredLight> walk(const LensRay& ray, const LensIndices& n, double iris_opening,
                                        std::uint64_t seed, const ScatterDraw& draw, LightEnds* ends = nullptr,
                                        LensRay* left = nullptr) const;
 
-    /// A rim or a wall, for drawings and tests: radius and z, mm.
+    /// End of a wall, for drawings and tests: radius and z, mm.
     struct Rim {
         double radius, z;
     };
-    const std::vector<Rim>& rims() const { return rims_; }   // of the lens's own surfaces
+    const std::vector<Rim>& rims() const { return rims_; }   // of the surfaces of the lens
 
   private:
     class Walk;
-    /// Between the rims of surfaces gap - 1 and gap.
+    /// Cone between the rims of surfaces gap - 1 and gap.
     struct Wall {
-        double radius = 0, z = 0, length = 0, slope = 0;   // at its front end; radius per length
+        double radius = 0, z = 0, length = 0, slope = 0;   // at the front end; slope: radius per length
         double end_radius = 0;
         bool none = false;
     };
-    /// A disc across the axis. Light is aimed at it, or away from it where it is an image that lies behind.
+    /// Disc perpendicular to the axis. Light is aimed toward it, or away from a virtual image
+    /// behind.
     struct Target {
         double z, radius, share;
     };
@@ -105,11 +109,11 @@ class ScatterLens {
     LensScatter scatter_;
     FinishScatter barrel_, blades_;
     std::vector<SurfaceCoating> coatings_;
-    std::vector<double> clear_;      // mm, by surface; of the stop the wall's radius there
+    std::vector<double> clear_;      // mm, by surface; at the stop: radius of the wall
     std::vector<Rim> rims_;
     std::vector<Wall> walls_;        // by gap
     std::vector<std::vector<Target>> targets_;   // by gap
-    double forced_ = 0;              // chance of a polished surface to scatter a walk that nothing has yet
+    double forced_ = 0;              // probability of a forced scatter at a polished surface, for unscattered walks
 };
 
 }  // namespace dg

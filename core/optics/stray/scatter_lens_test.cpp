@@ -29,7 +29,7 @@ TEST_CASE("walls run between the rims of the glass, and at the iris stay within 
         CAPTURE(i);
         const Surface& s = lens.surfaces[std::size_t(i)];
         if (i != stop) CHECK(rims[i].radius == doctest::Approx(clear_radius(s)));
-        const double c = s.curvature, r = rims[i].radius;   // spheres and planes all
+        const double c = s.curvature, r = rims[i].radius;   // all surfaces are spheres or planes
         CHECK(rims[i].z == doctest::Approx(vertices[i] + c * r * r / (1 + std::sqrt(1 - c * c * r * r))));
         if (i > 0) CHECK(rims[i].z >= rims[i - 1].z);
     }

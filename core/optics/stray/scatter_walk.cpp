@@ -1,4 +1,4 @@
-// scatter_walk.cpp -- one walk through a lens with walls.
+// scatter_walk.cpp -- random walk through a lens with walls (scatter_lens.h).
 #include <algorithm>
 #include <cmath>
 
@@ -10,16 +10,19 @@ namespace dg {
 namespace {
 
 constexpr int kMostEvents = 256;
-constexpr double kBackOff = 1e-2;    // mm, before the first surface
-constexpr double kClear = 1e-7;      // mm: nearer than that is where the ray starts
-constexpr double kTurned = 0.15;     // least chance of a mirror to turn scattered light that goes from the film
-/// The ends of a narrow lobe hold little of its light, and reach all of the frame.
+constexpr double kBackOff = 1e-2;    // mm, offset of the origin in front of the first surface
+constexpr double kClear = 1e-7;      // mm, minimal distance of a hit, against self-intersection
+constexpr double kLeastMirror = 0.15;     // least probability that a surface reflects scattered light that travels away
+                                     // from the film
+/// Defensive lobe: the tails of a narrow lobe carry little light but reach the whole frame.
 constexpr HarveyShack kWide{0.25, -3};
 constexpr double kWideShare = 0.5;
-constexpr double kEntry = 0.25;      // of the iris's radius: how evenly light fills the front, whatever edges it meets
-constexpr double kKept = 4;          // walks that metal dims to less than 1 / kKept are ended by chance
+constexpr double kEntry = 0.25;      // relative to the iris radius: standard deviation of entry points over the
+                                     // front, clipped or not
+constexpr double kRoulette = 4;          // Russian roulette after a scatter off metal with a weight below 1 / kRoulette
 
-/// Numbers of one walk by event, so that wavelengths whose ways part for a moment stay alike.
+/// Random numbers of a walk, indexed by event, so that wavelengths stay correlated after a
+/// different number of draws.
 class WalkRandom {
   public:
     explicit WalkRandom(std::uint64_t seed) : seed_(seed) {}
@@ -34,7 +37,7 @@ class WalkRandom {
     std::uint64_t seed_, at_ = 0;
 };
 
-/// Unit vectors across a normal. Source: Duff et al. 2017, as in vec.h.
+/// Orthonormal basis about a normal. Source: Duff et al. 2017, as in vec.h.
 struct TangentFrame {
     Vec3d x, y, z;
     explicit TangentFrame(Vec3d n) : z(n) {
@@ -64,7 +67,7 @@ class ScatterLens::Walk {
         Kind kind = Kind::nothing;
         double distance = 1e30;
         int surface = -1, sign = 1;
-        LensHit<double> hit{};   // of a wall: the normal points into the gap
+        LensHit<double> hit{};   // at a wall, the normal points into the gap
     };
 
     Meeting next() const;
@@ -90,7 +93,7 @@ class ScatterLens::Walk {
     void deposit(LightEnd where, double light) const {
         if (ends_) (*ends_)[int(where)] += light;
     }
-    /// The walk's light becomes so much: in the mean what it was, less what was absorbed.
+    /// Changes the weight by random sampling; `absorbed` is the part lost to absorption.
     void reweigh(double weight, double absorbed = 0) {
         deposit(LightEnd::chance, weight_ - absorbed - weight);
         weight_ = weight;
@@ -147,7 +150,7 @@ std::optional<ScatteredLight> ScatterLens::Walk::follow(const LensRay& ray, Lens
     return std::nullopt;
 }
 
-/// Nearest meeting of the ray: the surfaces on either side of its gap, each from the gap's side, or the wall.
+/// Nearest hit of the ray: the surfaces on either side of the current gap, or its wall.
 ScatterLens::Walk::Meeting ScatterLens::Walk::next() const {
     Meeting nearest;
     const int passed = lens_.ghosts_.passed();
@@ -170,7 +173,8 @@ void ScatterLens::Walk::try_surface(int i, int sign, Meeting& nearest) const {
     nearest.hit.point = form.place.out_of(hit->point);
 }
 
-/// Where the ray leaves the cone x^2 + y^2 = (radius + slope (z - z0))^2, or a flat ring where it has no length.
+/// Intersection with the inside of the cone x^2 + y^2 = (radius + slope (z - z0))^2, or with a flat
+/// ring if its length is zero.
 void ScatterLens::Walk::try_wall(Meeting& nearest) const {
     const Wall& w = lens_.walls_[gap_];
     const Vec3d o = ray_.origin - Vec3d{0, 0, w.z}, d = ray_.direction;
@@ -217,7 +221,7 @@ void ScatterLens::Walk::travel(const Meeting& at) {
     weight_ *= passed;
 }
 
-/// A surface, or the plane of the iris. False: the walk is over.
+/// Crosses a surface or the plane of the iris. Returns false if the walk ends.
 bool ScatterLens::Walk::cross(const Meeting& at) {
     const int i = at.surface;
     const Surface& surface = tracer_.prescription().surfaces[i];
@@ -234,7 +238,8 @@ bool ScatterLens::Walk::cross(const Meeting& at) {
     return weight_ > 0;
 }
 
-/// Passes the iris: a picture that lets light through in part meets the blades with the rest of its chance.
+/// Passes the iris with a probability equal to its transmittance (partial for image shapes);
+/// otherwise the walk hits a blade.
 bool ScatterLens::Walk::pass_iris(const Meeting& at) {
     const GhostLens& g = lens_.ghosts_;
     const Vec2d p = Vec2d{at.hit.point.x, at.hit.point.y} * (1 / g.iris_radius());
@@ -245,7 +250,7 @@ bool ScatterLens::Walk::pass_iris(const Meeting& at) {
     return true;
 }
 
-/// Mirrored or refracted, or scattered about either, all by their shares.
+/// Selects reflection, refraction, or scattering about either, by their shares.
 void ScatterLens::Walk::interface(const Meeting& at) {
     const PathStep step{at.surface, at.sign};
     const double n1 = n_.index[step.before()], n2 = n_.index[step.behind()];
@@ -262,10 +267,10 @@ void ScatterLens::Walk::interface(const Meeting& at) {
     if (u >= chance) {
         const double natural = (back - rough_back) / (1 - rough);
         const bool away = draw_.forced && draw_.toward_film && scattered_ > 0 && at.sign < 0;
-        const double mirror = away ? std::max(natural, std::min(kTurned, 1e3 * natural)) : natural;
+        const double mirror = away ? std::max(natural, std::min(kLeastMirror, 1e3 * natural)) : natural;
         const bool goes_on = u_.next() >= mirror;
-        const double kept = goes_on ? (1 - natural) / (1 - mirror) : natural / mirror;
-        reweigh(weight_ * kept * (1 - rough) / (1 - chance));
+        const double factor = goes_on ? (1 - natural) / (1 - mirror) : natural / mirror;
+        reweigh(weight_ * factor * (1 - rough) / (1 - chance));
         ray_.direction = goes_on ? *bent : reflect(d, at.hit, at.sign);
         bend(at, n1, goes_on ? n2 : -n1);
         gap_ += goes_on ? at.sign : 0;
@@ -294,16 +299,17 @@ void ScatterLens::Walk::interface(const Meeting& at) {
     gap_ += goes_on ? at.sign : 0;
 }
 
-/// The paraxial bundle at a surface; n_on < 0: it is mirrored.
+/// Propagates the footprint at a surface; n_on < 0 for reflection.
 void ScatterLens::Walk::bend(const Meeting& at, double n, double n_on) {
     blur_.bend((n_on - n) * at.sign * vertex_curvature_y(tracer_.prescription().surfaces[at.surface]));
 }
 
-/// Scattered light per unit of direction cosines, of light from one direction of a medium to one of a medium.
+/// Scattered radiance per unit of direction cosines, from direction `from` in the medium n_from to
+/// `to` in n_to.
 double ScatterLens::Walk::kernel(Vec2d from, double n_from, Vec2d to, double n_to, const Meeting& at) const {
     const PathStep step{at.surface, at.sign};
     const double near = n_.index[step.before()], far = n_.index[step.behind()];
-    const double n_other = n_from == near ? far : near;   // of the medium that it does not come from
+    const double n_other = n_from == near ? far : near;   // medium on the other side
     const double b2 = dot(from, from);
     const auto cosine = [&](double n) { return std::sqrt(std::max(0.0, 1 - b2 / (n * n))); };
     const double cos1 = cosine(n_from), cos2 = cosine(n_other);
@@ -317,38 +323,39 @@ double ScatterLens::Walk::kernel(Vec2d from, double n_from, Vec2d to, double n_t
     return share > 0 ? share * lobe.at(length(to - from)) / lobe.over_directions(std::sqrt(b2), n_to) : 0;
 }
 
-/// By the finish, or at where the film is. False: the walk is over.
+/// Scatters by the finish or toward a target. Returns false if the walk ends.
 bool ScatterLens::Walk::off_metal(const FinishScatter& finish, const LensHit<double>& hit) {
     if (finish.is_black()) return end(LightEnd::metal);
     const TangentFrame frame(hit.normal);
     const Vec3d in = frame.into(-ray_.direction);
     const double albedo = finish.albedo(in.z), absorbed = weight_ * (1 - albedo);
     deposit(LightEnd::metal, absorbed);
-    // A point that faces the scene has nothing to aim at.
+    // Walls that face the scene have no target.
     static const std::vector<Target> kNone;
     const bool aims = draw_.aimed && draw_.toward_film && hit.normal.z > -0.999 &&
                       std::size_t(gap_) < lens_.targets_.size();
     const auto& targets = aims ? lens_.targets_[gap_] : kNone;
-    // No more is aimed than keeps walks from gaining light: off white metal they would, again and again.
-    double all = 0;
-    for (const Target& t : targets) all += t.share;
-    const double aim = all > 0 ? std::min(1.0, (1 - albedo) / all) : 0, own = 1 - aim * all;
+    // Limits the aimed share so that weights stay bounded; at white walls they would otherwise grow
+    // with each bounce.
+    double total = 0;
+    for (const Target& t : targets) total += t.share;
+    const double aim = total > 0 ? std::min(1.0, (1 - albedo) / total) : 0, finish_share = 1 - aim * total;
     const double choice = u_.next(), lobe = u_.next();
     const Vec2d u = u_.next_2d();
-    const Vec3d way = choice < own ? finish.sample(in, lobe, u) : frame.into(aimed(targets, (choice - own) / aim, u));
-    const double pdf = own * finish.pdf(in, way) + aim * aimed_pdf(targets, frame.out_of(way));
-    const double kept = pdf > 0 ? finish.value(in, way) * way.z / pdf : 0;
+    const Vec3d direction = choice < finish_share ? finish.sample(in, lobe, u) : frame.into(aimed(targets, (choice - finish_share) / aim, u));
+    const double pdf = finish_share * finish.pdf(in, direction) + aim * aimed_pdf(targets, frame.out_of(direction));
+    const double factor = pdf > 0 ? finish.value(in, direction) * direction.z / pdf : 0;
     ++scattered_;
-    const Vec2d off{way.x + in.x, way.y + in.y};   // from the mirror image
+    const Vec2d off{direction.x + in.x, direction.y + in.y};   // offset from the mirror direction
     blur_.scatter(finish.lobe().knee * finish.lobe().knee + dot(off, off));
-    reweigh(weight_ * kept, absorbed);
-    const double survives = draw_.dice && off_metal_++ > 0 ? std::min(1.0, kKept * kept) : 1;
-    if (survives < 1) reweigh(u_.next() < survives ? weight_ / survives : 0);
-    ray_.direction = frame.out_of(way);
+    reweigh(weight_ * factor, absorbed);
+    const double survival = draw_.roulette && off_metal_++ > 0 ? std::min(1.0, kRoulette * factor) : 1;
+    if (survival < 1) reweigh(u_.next() < survival ? weight_ / survival : 0);
+    ray_.direction = frame.out_of(direction);
     return weight_ > 0;
 }
 
-/// Toward a point of one of the discs, always on toward the film.
+/// Direction through a random point of a target disc, always toward the film.
 Vec3d ScatterLens::Walk::aimed(const std::vector<Target>& targets, double choice, Vec2d u) const {
     std::size_t k = 0;
     while (k + 1 < targets.size() && choice >= targets[k].share) choice -= targets[k++].share;
@@ -369,7 +376,7 @@ double ScatterLens::Walk::aimed_pdf(const std::vector<Target>& targets, const Ve
     return pdf;
 }
 
-/// True: the sensor sends it back.
+/// Returns true if the sensor reflects the walk.
 bool ScatterLens::Walk::land(const Meeting& at) {
     const FilmPlane& film = lens_.ghosts_.film();
     const Vec3d p = at.hit.point - film.center;

@@ -30,7 +30,7 @@ ScatterLens make(const Prescription& lens, double film_z, double iris_radius, co
     return {lens, {{0, 0, film_z}}, Iris::polygon(6, 10, 0), iris_radius, stack, kFilmRadius, scatter};
 }
 
-/// The film at the thickness that follows the last surface.
+/// Lens with the film at the thickness of the last surface.
 ScatterLens make(const Prescription& lens, double iris_radius, const LensScatter& scatter) {
     return make(lens, lens.last_vertex() + lens.surfaces.back().thickness, iris_radius, scatter);
 }
@@ -42,14 +42,14 @@ struct Uniform {
     double operator()() { return uniform(rng); }
 };
 
-/// Cosine-distributed about a normal.
+/// Cosine-weighted direction about a normal.
 Vec3d diffuse_about(Vec3d n, Uniform& u) {
     const Vec2d p = concentric_disc({u(), u()});
     const Vec3d x = normalize(cross(std::abs(n.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0}, n)), y = cross(n, x);
     return p.x * x + p.y * y + std::sqrt(std::max(0.0, 1 - dot(p, p))) * n;
 }
 
-/// Light that a white sky brings to the front surface, a cap or a disc: from all sides alike.
+/// Uniform sky over the front surface, a cap or a disc.
 struct Sky {
     double radius, curvature, area;
     explicit Sky(const Prescription& lens)
@@ -61,7 +61,7 @@ struct Sky {
         const double phi = 2 * kPiD * u();
         double r = radius * std::sqrt(u()), z = 0;
         Vec3d normal{0, 0, 1};
-        if (curvature > 0) {   // evenly in height, after Archimedes
+        if (curvature > 0) {   // uniform in height (Archimedes)
             z = u() * (1 - std::sqrt(1 - curvature * curvature * radius * radius)) / curvature;
             r = std::sqrt(z * (2 / curvature - z));
             normal = {-curvature * r * std::cos(phi), -curvature * r * std::sin(phi), 1 - curvature * z};
@@ -70,7 +70,8 @@ struct Sky {
     }
 };
 
-/// Scattered light from a white sky of radiance 1 / pi to a disc of the film, in batches; kinds by what counts.
+/// Scattered light from a uniform sky of radiance 1 / pi on a disc of the film, in batches;
+/// `counts` filters the walks.
 using Counts = std::function<bool(const ScatteredLight&)>;
 std::vector<double> from_sky(const ScatterLens& lens, const Prescription& as_given, const ScatterDraw& draw,
                              int batches, int walks, unsigned seed, const Counts& counts = nullptr) {
@@ -87,16 +88,16 @@ std::vector<double> from_sky(const ScatterLens& lens, const Prescription& as_giv
     return out;
 }
 
-/// The same the other way round: from the disc, all sides alike, to wherever it leaves the front.
+/// Adjoint of from_sky: light from the disc, uniform over all directions, that leaves the front.
 std::vector<double> from_film(const ScatterLens& lens, int batches, int walks, unsigned seed) {
     Uniform u(seed);
     const ScatterDraw draw{.toward_film = false};
     const Prescription& whole = lens.ghosts().tracer().prescription();
     const double reflectance = whole.surfaces.back().reflectance;
-    // All that meets the last surface passes a disc at its vertex that is a little wider.
+    // All rays to the last surface pass a slightly larger disc at its vertex.
     const double last = lens.ghosts().tracer().vertices()[lens.rims().size() - 1];
     const double rear = lens.rims().back().radius + 2;
-    const double area = kPiD * kFilmRadius * kFilmRadius * rear * rear;   // of both, times the sky's 1 / pi
+    const double area = kPiD * kFilmRadius * kFilmRadius * rear * rear;   // both areas, times the sky's 1 / pi
     const LensIndices n = lens.at(550);
     const double z = lens.ghosts().film().center.z;
     std::vector<double> out(batches);
@@ -106,13 +107,13 @@ std::vector<double> from_film(const ScatterLens& lens, int batches, int walks, u
             const Vec3d way = Vec3d{q.x, q.y, last} - Vec3d{p.x, p.y, z};
             const double cosine = -way.z / length(way), etendue = area * std::pow(cosine, 4) / (way.z * way.z);
             const auto light = lens.walk({{p.x, p.y, z}, normalize(way)}, n, 1, seed + u.rng(), draw);
-            // A sensor records what it does not send back.
+            // The sensor records the part that it does not reflect.
             if (light) sum += etendue * light->weight * (1 - reflectance) / walks;
         }
     return out;
 }
 
-/// Three planes that are nothing but openings of a tube: air on all sides, a stop as wide as the tube.
+/// Open tube: three planes between air and air, with a stop as wide as the tube.
 constexpr double kTube = 10, kLength = 30;
 Prescription tube() {
     Prescription lens = test::lens_from_rows("tube", {{0, 12, 1, 0, kTube},
@@ -121,20 +122,21 @@ Prescription tube() {
     return lens;
 }
 
-/// Between two discs of radius a at a distance h. Source: Howell, A Catalog of Radiation Heat Transfer
-/// Configuration Factors, C-41.
+/// View factor between two discs of radius a at distance h. Source: Howell, A Catalog of Radiation
+/// Heat Transfer Configuration Factors, C-41.
 double disc_to_disc(double a, double h) {
     const double x = 2 + h * h / (a * a);
     return 0.5 * (x - std::sqrt(x * x - 4));
 }
 
-/// From an element of the inside of a tube of radius a to the disc that ends it, x away: C-79 of the catalogue.
+/// View factor from an element inside a tube of radius a to the disc at its end, x away: C-79 of
+/// the catalogue.
 double tube_to_disc(double a, double x) {
     const double z = x / (2 * a);
     return (z * z + 0.5) / std::sqrt(z * z + 1) - z;
 }
 
-const ScatterDraw kPlain{.aimed = false, .forced = false, .dice = false};
+const ScatterDraw kPlain{.aimed = false, .forced = false, .roulette = false};
 
 }  // namespace
 
@@ -143,7 +145,7 @@ TEST_CASE("all of a walk's light ends somewhere, and drawing it adds none in the
     lenses[0].coating = Coating::uncoated;
     for (const Prescription& lens : lenses)
         for (const ScatterDraw& draw :
-             {kPlain, ScatterDraw{}, ScatterDraw{.aimed = false, .dice = false}, ScatterDraw{.toward_film = false}}) {
+             {kPlain, ScatterDraw{}, ScatterDraw{.aimed = false, .roulette = false}, ScatterDraw{.toward_film = false}}) {
             const ScatterLens scatter = make(lens, lens.surfaces[lens.stop_index()].semi_diameter * 0.5,
                                              parts(0.4, 0.7, 40));
             Uniform u(4);
@@ -170,7 +172,8 @@ TEST_CASE("all of a walk's light ends somewhere, and drawing it adds none in the
                            << m.mean << " +- " << std::sqrt(m.variance / m.count));
             CHECK(std::abs(m.mean) <= 4 * std::sqrt(m.variance / m.count));
             CHECK(all[int(LightEnd::truncated)] < 1e-3);
-            CHECK(all[int(LightEnd::lost)] < (lens.name == "sonnar" ? 0.03 : 1e-4));   // its iris lies in a hollow
+            CHECK(all[int(LightEnd::lost)] < (lens.name == "sonnar" ? 0.03 : 1e-4));   // its iris is inside a
+                                                                                       // hollow
             CHECK(all[int(LightEnd::metal)] > 0.01);
         }
 }
@@ -238,7 +241,7 @@ TEST_CASE("once off the wall of a tube: form factors") {
     const double albedo = 0.6;
     const LensScatter walls{.barrel = {albedo, 0}, .blades = kBlack, .surface_rms_nm = 0};
     const ScatterLens lens{tube(), {{0, 0, kLength + 1e-3}}, Iris(), kTube, {}, kFilmRadius, walls};
-    double wanted = 0;   // of what enters the disc, from all sides alike
+    double wanted = 0;   // expected share of light that enters through the disc uniformly over all directions
     constexpr int kSteps = 2000;
     for (int i = 0; i < kSteps; ++i) {
         const double x = (i + 0.5) / kSteps * kLength;
@@ -264,7 +267,7 @@ TEST_CASE("closed blades send back what form factors say, and nothing comes to t
     for (int i = 0; i < kWalks; ++i)
         CHECK_FALSE(lens.walk(Sky(tube()).ray(u), lens.at(550), 0, u.rng(), {}, &all).has_value());
     const double there = disc_to_disc(kTube, 12), wanted = there * there * albedo;
-    // Light through the tube's front goes to the blades first: they are the only thing that is not black.
+    // Light through the front hits the blades first, the only parts that are not black.
     CHECK(all[int(LightEnd::front)] / kWalks == doctest::Approx(wanted).epsilon(0.03));
     CHECK(all[int(LightEnd::film)] == 0);
 }
@@ -287,12 +290,13 @@ TEST_CASE("polished surfaces scatter the sum of their shares") {
     const double sigma = std::sqrt(m.variance / m.count);
     INFO("wanted " << wanted << ", found " << m.mean << " +- " << sigma);
     CHECK(sigma < 0.02 * wanted);
-    CHECK(std::abs(m.mean - wanted) < 4 * sigma + 0.01 * wanted);   // the lobes' ends miss the film
+    CHECK(std::abs(m.mean - wanted) < 4 * sigma + 0.01 * wanted);   // the tails of the lobe miss the film
 }
 
 TEST_CASE("the halo of a rough last surface has the lobe's shape") {
-    // A plate: light along the axis is scattered by one of its faces, inside the glass or after it; either way
-    // it leaves at b = n sin(theta), and lands z tan(theta) away.
+    // Plate with light along the axis, scattered by one of the faces. It leaves at b = n
+    // sin(theta), whether scattered inside the glass or behind it, and is displaced by z tan(theta)
+    // on the film.
     Prescription lens = test::lens_from_rows("plate", {{0, 1e-3, 1, 0, 40, true}, {0, 1e-3, 1.7, 0, 40}, {0, 50, 1, 0, 40}});
     const LensScatter rough{.barrel = kBlack, .blades = kBlack, .surface_rms_nm = 2, .surface_lobe = {0.2, -2}};
     const ScatterLens scatter{lens, {{0, 0, 50}}, Iris(), 40, {}, 1000, rough};

@@ -1,5 +1,5 @@
-// film_landing-inl.h -- rays of the scene into lanes, and where they meet the film behind the last surface.
-// Included once per instruction set.
+// film_landing-inl.h -- loads rays of the scene into SIMD lanes and intersects them with the film
+// behind the last surface. Included once per instruction set.
 #if defined(DG_OPTICS_FILM_LANDING_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DG_OPTICS_FILM_LANDING_INL_H_
 #undef DG_OPTICS_FILM_LANDING_INL_H_
@@ -20,8 +20,8 @@ HWY_INLINE V dot3(const float (&a)[3], V x, V y, V z) {
                       hn::MulAdd(constant(a[1]), y, hn::Mul(constant(a[2]), z)));
 }
 
-/// Where a ray with slopes (mx, my) meets a tilted film, in the film's coordinates; z of the ray from
-/// the last vertex. `toward`: whether it is on its way there.
+/// Intersects rays of slopes (mx, my) with a tilted film. r.z is relative to the last vertex; (x,
+/// y) are film coordinates; `toward` is true for rays that approach the film.
 HWY_INLINE void lens_to_film(const LensTables& lens, const LaneRays& r, V mx, V my, V& x, V& y,
                              M& toward) {
     const FilmTables& f = lens.film;
@@ -34,7 +34,8 @@ HWY_INLINE void lens_to_film(const LensTables& lens, const LaneRays& r, V mx, V 
     toward = hn::Gt(along, hn::Zero(D()));
 }
 
-/// Directions of `in` point to the scene; wavelengths are those of `out`.
+/// Loads rays of the scene into lanes. Directions of `in` point to the scene; wavelengths are in
+/// `out`.
 HWY_INLINE void start_in_scene(const LensTables& lens, const SceneRays& in, const FilmRays& out, int at,
                                LaneRays& r) {
     const D d;
@@ -47,7 +48,8 @@ HWY_INLINE void start_in_scene(const LensTables& lens, const SceneRays& in, cons
     set_wavelength(lens, hn::Load(d, out.nm + at), r);
 }
 
-/// From the last surface to the film; what was stopped, or goes elsewhere, passes nothing.
+/// Propagates rays from the last surface to the film; clipped rays and rays that miss it get
+/// transmittance 0.
 HWY_INLINE void land_on_film(const LensTables& lens, const LaneRays& r, SceneRays& in, FilmRays& out, int at) {
     const D d;
     const V inv = hn::Div(constant(1), r.dz);

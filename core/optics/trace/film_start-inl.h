@@ -1,5 +1,5 @@
-// film_start-inl.h -- rays that leave the film into lanes, and rays of the scene out of them. Included once per
-// instruction set.
+// film_start-inl.h -- loads film rays into SIMD lanes and stores scene rays from them. Included
+// once per instruction set.
 #if defined(DG_OPTICS_FILM_START_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DG_OPTICS_FILM_START_INL_H_
 #undef DG_OPTICS_FILM_START_INL_H_
@@ -15,14 +15,14 @@ HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
 
-/// A point of a tilted film in the lens frame, z from the film's centre.
+/// Points of a tilted film in the lens frame; z is relative to the centre of the film.
 HWY_INLINE void film_to_lens(const FilmTables& f, V x, V y, LaneRays& r) {
     r.x = hn::MulAdd(x, constant(f.x[0]), hn::MulAdd(y, constant(f.y[0]), constant(f.center_x)));
     r.y = hn::MulAdd(x, constant(f.x[1]), hn::MulAdd(y, constant(f.y[1]), constant(f.center_y)));
     r.z = hn::MulAdd(x, constant(f.x[2]), hn::Mul(y, constant(f.y[2])));
 }
 
-/// Film rays into lanes: unit directions toward the scene.
+/// Loads film rays into lanes, with unit directions toward the scene.
 HWY_INLINE void start_on_film(const LensTables& lens, V x, V y, V mx, V my, V nm,
                               LaneRays& r) {
     const V one = constant(1);

@@ -19,7 +19,7 @@ double node(int i, int count) {
     return std::cos(kPiD * (i + 0.5) / count);
 }
 
-/// Values at Chebyshev points to Chebyshev coefficients, along one axis.
+/// Transforms values at Chebyshev points to Chebyshev coefficients, along one axis.
 void to_chebyshev(double* v, int count, int stride) {
     std::vector<double> in(count), cosine(4 * count);
     for (int i = 0; i < count; ++i) in[i] = v[i * stride];
@@ -31,7 +31,7 @@ void to_chebyshev(double* v, int count, int stride) {
     }
 }
 
-/// Chebyshev series to powers, along one axis (Clenshaw's recurrence, expanded).
+/// Converts a Chebyshev series to a power series, along one axis (Clenshaw's recurrence, expanded).
 void to_powers(double* v, int count, int stride) {
     std::vector<double> a(count + 1), b(count + 1), next(count + 1);
     for (int k = count - 1; k >= 0; --k) {  // next = 2 t a - b + v_k, at last t a - b + v_0
@@ -43,9 +43,9 @@ void to_powers(double* v, int count, int stride) {
     for (int i = 0; i < count; ++i) v[i * stride] = a[i];
 }
 
-/// How many terms each row keeps: corners are cut off, smallest first, as long as all that
-/// is cut off stays below the tolerance together. Rows never grow longer, as the powers of
-/// a row's Chebyshev polynomial lie in the rows before it.
+/// Number of coefficients kept per row. Drops coefficients from the ends of rows, smallest first,
+/// while the sum of the dropped magnitudes is below the tolerance. A row is never longer than the
+/// row before: the conversion to powers adds coefficients of a row to the rows before it.
 std::vector<int> kept_terms(Grid& c, double tolerance) {
     std::vector<int> kept(c.rows, c.columns);
     for (double left = tolerance;;) {
@@ -68,8 +68,8 @@ std::vector<int> kept_terms(Grid& c, double tolerance) {
 FilmTable fit_film_table(const std::function<std::function<double(double)>(double)>& at,
                          double n, double phase, double tolerance) {
     const double pole = std::sqrt(1 + n * n);
-    // cos(phase l) needs as many terms as its argument, and some for the decay; media that
-    // hardly differ bend the curve near grazing.
+    // cos(phase l) needs a degree of about its argument, plus a margin for the coefficients' decay.
+    // Nearly equal indices bend the curve close to grazing incidence.
     Grid c{n > 1.2 ? 14 : 18, int(13 + 2.2 * phase)};
     for (int m = 0; m < c.columns; ++m) {
         const auto transmittance = at(node(m, c.columns));
@@ -81,7 +81,7 @@ FilmTable fit_film_table(const std::function<std::function<double(double)>(doubl
     }
     for (int m = 0; m < c.columns; ++m) to_chebyshev(&c.at(0, m), c.rows, c.columns);
     for (int j = 0; j < c.rows; ++j) to_chebyshev(&c.at(j, 0), c.columns, 1);
-    // c / (1 + pole c)^2 is at most 1 / (4 pole): an error of P counts that much less.
+    // c / (1 + pole c)^2 <= 1 / (4 pole), so errors of P are scaled down by that factor.
     const std::vector<int> kept = kept_terms(c, tolerance * 4 * pole);
     for (int j = 0; j < c.rows; ++j)
         for (int m = j < int(kept.size()) ? kept[j] : 0; m < c.columns; ++m) c.at(j, m) = 0;

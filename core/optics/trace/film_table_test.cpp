@@ -11,7 +11,7 @@ using namespace dg;
 
 namespace {
 
-/// The kernel's evaluation, in its order and its precision.
+/// The table's value, computed in the kernel's order of operations and in float.
 float table_value(const FilmTable& t, float cosine, float l) {
     const float x = 2 * cosine - 1, root = 1 + t.pole * cosine;
     float sum = 0;
@@ -25,7 +25,7 @@ float table_value(const FilmTable& t, float cosine, float l) {
     return cosine * sum / (root * root);
 }
 
-/// Largest error over a grid of cosines and wavelengths.
+/// Largest error of a table over a grid of cosines and wavelengths.
 double worst_error(const FilmTable& t, const SurfaceCoating& coating, const Glass& rarer,
                    const Glass& denser) {
     const WavelengthScale scale = WavelengthScale::visible();
@@ -58,7 +58,8 @@ TEST_CASE("tables of films stay within 1e-4 at all angles and wavelengths") {
              {Coating::mgf2, Coating::v_coat, Coating::broadband})
             for (const Glass& glass : glasses) {
                 const double n = refractive_index(glass, 587.56);
-                if (n < 1.43 && refractive_index(air, 587.56) > 1.3) continue;  // no lens
+                if (n < 1.43 && refractive_index(air, 587.56) > 1.3) continue;  // such a pair of media does not
+                                                                                // occur in lenses
                 const SurfaceCoating coating =
                     coat(preset, refractive_index(air, kFilmWavelength),
                          refractive_index(glass, kFilmWavelength));

@@ -6,15 +6,15 @@ namespace dg {
 namespace {
 
 constexpr double kResidual = 1e-9;  // mm
-constexpr int kPieces = 32;         // of a span that is searched for a change of side
+constexpr int kPieces = 32;         // intervals of a span in the scan for a sign change
 
-/// How far past the surface the ray is: negative before it, and how fast that grows.
+/// Signed distance (in z) past the surface, negative before it, and its derivative by t.
 struct Side {
     double past, speed;
     bool defined;
 };
 
-/// A ray and the surface that it looks for.
+/// Ray and surface of a root search.
 struct Search {
     const SurfaceForm& form;
     Vec3d origin, direction;
@@ -37,8 +37,7 @@ struct Span {
     double low, high;
 };
 
-/// The part of the ray within a cylinder about the axis and a slab about the vertex
-/// plane.
+/// Interval of the ray within a cylinder about the axis and a slab about the vertex plane.
 std::optional<Span> inside(const Search& s, double radius, double height) {
     const Vec3d o = s.origin, d = s.direction;
     Span span{-1e9, 1e9};
@@ -63,9 +62,9 @@ std::optional<Span> inside(const Search& s, double radius, double height) {
     return span;
 }
 
-/// Newton's steps within a bracket whose ends lie on both sides; halves it when a step
-/// would leave it or is not half as long as the one before (Dekker 1969, Finding a
-/// zero by means of successive linear interpolation).
+/// Newton's method within a bracket with opposite signs at its ends. Bisects when a step would
+/// leave the bracket or is more than half as long as the step before (Dekker 1969, Finding a zero
+/// by means of successive linear interpolation).
 std::optional<double> bracketed(const Search& s, Span span, double start) {
     double t = std::clamp(start, span.low, span.high), previous = span.high - span.low;
     for (int i = 0; i < 120; ++i) {
@@ -84,7 +83,7 @@ std::optional<double> bracketed(const Search& s, Span span, double start) {
     return std::nullopt;
 }
 
-/// Free steps, for where no bracket is known.
+/// Newton's method without a bracket.
 std::optional<double> newton(const Search& s, double t) {
     for (int i = 0; i < 16; ++i) {
         const Side side = s.at(t);
@@ -97,7 +96,8 @@ std::optional<double> newton(const Search& s, double t) {
     return std::nullopt;
 }
 
-/// Where the ray comes closest to the far side in a piece whose ends lie before it.
+/// Bisects for the largest `past` between two points before the surface; returns early at a point
+/// behind it.
 double turning_point(const Search& s, Span span) {
     for (int i = 0; i < 50; ++i) {
         const double middle = 0.5 * (span.low + span.high);
@@ -108,7 +108,7 @@ double turning_point(const Search& s, Span span) {
     return span.low;
 }
 
-/// The first piece of the span whose ends lie on the right sides, or that touches.
+/// Root in the first interval of the span with a sign change or a touching point.
 std::optional<double> scanned(const Search& s, Span span) {
     double t0 = span.low;
     Side before = s.at(t0);
@@ -127,7 +127,7 @@ std::optional<double> scanned(const Search& s, Span span) {
     return std::nullopt;
 }
 
-/// Distance to the form without its asphere, or to the vertex plane: where steps start.
+/// Start of the search: distance to the form without its asphere, or to the vertex plane.
 double first_guess(const Search& s) {
     const Vec3d &m = s.origin, &d = s.direction;
     const double c = s.form.shape == Shape::conic ? s.form.cy : 0, wz = 1 + s.form.ky;
@@ -138,7 +138,7 @@ double first_guess(const Search& s) {
     return std::isfinite(t) ? t : 0;
 }
 
-/// Beyond the clear radius, or where there is none: as far as the base form reaches.
+/// Search beyond the clear radius; without a clear radius, as far as the base form reaches.
 std::optional<double> outside(const Search& s, double guess) {
     if (const auto t = newton(s, guess)) return t;
     const double reach = std::isfinite(s.form.clear) ? 2 * s.form.clear : 1e3;
@@ -156,7 +156,7 @@ std::optional<double> first_crossing(const SurfaceForm& form, const Vec3d& origi
     const auto span = inside(s, form.clear, form.height);
     if (span && s.at(span->low).past < 0 && s.at(span->high).past >= 0) {
         const double across = hypot(direction.x, direction.y);
-        if (form.slope * across < sign * direction.z)  // it is never left again
+        if (form.slope * across < sign * direction.z)  // monotonic: the ray crosses the surface once
             return bracketed(s, *span, guess);
     }
     if (span)

@@ -1,8 +1,8 @@
-// intersect.h -- where a ray meets a surface, in the surface's own frame, and how it
-// leaves. Templates on the scalar: double, or Dual for derivatives.
+// intersect.h -- intersection of a ray with a surface in the surface's frame, and refraction.
+// Templates on the scalar: double, or Dual for derivatives.
 //
-// A surface is crossed with the ray: `sign` +1 toward +z, -1 back. A crossing from the
-// wrong side (out of the back of a ball) is none.
+// The ray crosses the surface in the direction of travel: `sign` is +1 toward +z, -1 toward -z.
+// Crossings in the opposite sense (out of the back of a ball) are ignored.
 #pragma once
 #include <optional>
 
@@ -12,21 +12,21 @@ namespace dg {
 
 template <typename T>
 struct LensHit {
-    Vec3<T> point, normal;  // normal: unit, toward +z
+    Vec3<T> point, normal;  // normal: unit vector toward +z
     T cosine;               // of incidence, positive
 };
 
-/// Ray parameter at which the surface, a form that is no quadric, is first crossed in the
-/// direction of travel: |sag - z| < 1e-9 mm there. The ray starts nearest to the vertex.
-/// Within the clear radius a change of side is always found; searches are bounded.
+/// Ray parameter of the first crossing, in the direction of travel, with a surface that is no
+/// quadric: |sag - z| < 1e-9 mm there. The ray's origin must be its point nearest to the vertex.
+/// Finds every sign change within the clear radius; the number of iterations is bounded.
 std::optional<double> first_crossing(const SurfaceForm& form, const Vec3d& origin,
                                      const Vec3d& direction, int sign);
 
-// Feder's curvature form, with a conic constant and, for cylinders, one direction left
-// out: the same arithmetic for planes and curved surfaces. With the ray m + t d from its
-// point nearest to the vertex, A t^2 - 2 B t + C = 0. Source: Feder 1951, Optical
-// Calculations with Automatic Computing Machinery, JOSA 41(9), eqs. 1-9; also valid for
-// rays at and beyond 90 degrees.
+// Feder's curvature form, extended by a conic constant and, for cylinders, by weights that drop one
+// axis: the same arithmetic for planes and curved surfaces. With the ray m + t d from its point
+// nearest to the vertex, A t^2 - 2 B t + C = 0. Source: Feder 1951, Optical Calculations with
+// Automatic Computing Machinery, JOSA 41(9), eqs. 1-9; also valid for rays at and beyond 90
+// degrees.
 template <typename T>
 std::optional<LensHit<T>> meet_quadric(const SurfaceForm& f, const Vec3<T>& m,
                                        const Vec3<T>& d, int sign) {
@@ -42,7 +42,7 @@ std::optional<LensHit<T>> meet_quadric(const SurfaceForm& f, const Vec3<T>& m,
     LensHit<T> hit;
     hit.point = m + t * d;
     const T toward_axis = T(1) - c * wz * hit.point.z;
-    if (!(value_of(toward_axis) > 0)) return std::nullopt;  // the far half
+    if (!(value_of(toward_axis) > 0)) return std::nullopt;  // far half of the quadric
     hit.normal = {(-c * f.wx) * hit.point.x, (-c * f.wy) * hit.point.y, toward_axis};
     hit.cosine = root * double(sign);
     if (!f.sphere) {
@@ -53,7 +53,8 @@ std::optional<LensHit<T>> meet_quadric(const SurfaceForm& f, const Vec3<T>& m,
     return hit;
 }
 
-/// The derivatives of the crossing are those of Newton's steps from it.
+/// Intersection with a searched surface. One Newton step on dual numbers from the root gives the
+/// derivatives of the crossing.
 template <typename T>
 std::optional<LensHit<T>> meet_sag(const SurfaceForm& f, const Vec3<T>& m,
                                    const Vec3<T>& d, int sign) {
@@ -89,8 +90,8 @@ std::optional<LensHit<T>> meet(const SurfaceForm& f, const Vec3<T>& origin,
                      : meet_sag(f, m, direction, sign);
 }
 
-/// Snell's law for n1 / n2 = mu; nothing after total reflection. `cosine` becomes that of
-/// the refracted ray.
+/// Snell's law for n1 / n2 = mu; empty after total reflection. `cosine` returns the cosine of the
+/// refracted ray.
 template <typename T>
 std::optional<Vec3<T>> refract(const Vec3<T>& direction, const LensHit<T>& hit, int sign,
                                double mu, T& cosine) {

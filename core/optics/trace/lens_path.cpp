@@ -8,7 +8,7 @@
 namespace dg {
 namespace {
 
-/// The same way, gone from its other end: a mirror is met from the same side.
+/// The path in reverse. A mirror keeps its sign, as light hits the same side of it.
 LensPath turned(LensPath path) {
     std::ranges::reverse(path);
     for (PathStep& step : path)

@@ -1,5 +1,5 @@
-// lens_path.h -- the surfaces that light meets, in order: straight through the lens, or by way
-// of two reflections, a ghost.
+// lens_path.h -- sequence of surfaces along a path of light: straight through the lens, or a ghost
+// with two or more reflections.
 #pragma once
 #include <span>
 #include <vector>
@@ -8,33 +8,33 @@
 
 namespace dg {
 
-/// `sign`: of the way along z on which the light arrives. What is reflected goes on
-/// against it.
+/// Interaction with one surface. `sign` is the direction along z of the incident light; reflected
+/// light continues in the opposite direction.
 struct PathStep {
     int surface;
     int sign = 1;
     bool reflects = false;
 
-    /// Index of the medium before and behind the surface, as the light meets it.
+    /// Indices of the media in front of and behind the surface, in the direction of travel.
     int before() const { return sign > 0 ? surface : surface + 1; }
     int behind() const { return sign > 0 ? surface + 1 : surface; }
 };
 
 using LensPath = std::vector<PathStep>;
 
-/// Through all surfaces.
+/// Path through all surfaces without reflection.
 LensPath straight_path(int surfaces, bool toward_film);
 
-/// Light from the scene is reflected at `far`, then back at `near` (near < far), and
-/// leaves as it came: to the film, or on the same way from the film to the scene.
+/// Ghost path: light from the scene is reflected at `far`, then at `near` (near < far), and
+/// continues to the film. With toward_film false, the same path from the film to the scene.
 LensPath ghost_path(int surfaces, int near, int far, bool toward_film);
 
-/// The same by any even number of mirrors, in the order in which light from the scene meets them: the first
-/// lies farther along than the second, that nearer than the third, and so on. The first may lie behind all
-/// surfaces that light leaves by: a sensor.
+/// Ghost path with any even number of mirrors, in the order in which light from the scene hits
+/// them: the first is behind the second, the second in front of the third, and so on. The first may
+/// be behind all surfaces that the light leaves through: a sensor.
 LensPath ghost_path(int surfaces, std::span<const int> mirrors, bool toward_film);
 
-/// Mirrored in the surface's frame.
+/// Mirror reflection in the surface's frame.
 template <typename T>
 Vec3<T> reflect(const Vec3<T>& direction, const LensHit<T>& hit, int sign) {
     return direction - (2.0 * sign * hit.cosine) * hit.normal;
@@ -45,8 +45,8 @@ struct RayOf {
     Vec3<T> origin, direction;
 };
 
-/// Past one surface, for whose form the step is; mu = n before / n behind. False: a miss
-/// or total reflection, with the ray as it was.
+/// Refracts or reflects a ray at the surface of the step; mu = n before / n behind. Returns false
+/// after a miss or total reflection and leaves the ray unchanged.
 template <typename T>
 bool pass(const SurfaceForm& form, const PathStep& step, double mu, RayOf<T>& ray) {
     const Vec3<T> d = form.place.turn_in(ray.direction);

@@ -8,7 +8,7 @@ namespace dg {
 namespace {
 
 constexpr double kShortest = 380, kLongest = 780;  // nm
-constexpr double kFilmTolerance = 1.5e-4;  // bound for a table of films; its error is half
+constexpr double kFilmTolerance = 1.5e-4;  // bound for film tables; the actual error is about half
 
 /// Coefficients (powers of l) of the polynomial through n at Chebyshev points of [-1, 1].
 std::vector<double> interpolate_index(const Glass& glass, const WavelengthScale& scale,
@@ -31,7 +31,8 @@ std::vector<double> interpolate_index(const Glass& glass, const WavelengthScale&
     return power;
 }
 
-/// The lowest degree that follows all glasses within 1e-7: 2 for Cauchy, more for tables.
+/// Lowest degree that interpolates the indices of all glasses within 1e-7: 2 for Cauchy glass, more
+/// for tables.
 int index_degree(const Prescription& lens, const WavelengthScale& scale) {
     for (int degree = 0; degree < 8; ++degree) {
         double worst = 0;
@@ -89,14 +90,14 @@ void fill_asphere(ShapeTables& t, const SurfaceForm& f, double scale) {
 ShapeTables shape_tables(const Surface& s, const SurfaceForm& f) {
     ShapeTables t;
     t.shape = f.shape, t.quadric = f.quadric, t.placed = is_placed(s);
-    const bool start = f.quadric || f.shape == Shape::conic;  // others: from the plane
+    const bool start = f.quadric || f.shape == Shape::conic;  // else the search starts from the plane
     t.c = start ? float(f.c) : 0, t.wz = float(1 + f.k);
     t.wx = float(f.wx), t.wy = float(f.wy);
     t.cx = float(f.cx), t.cy = float(f.cy);
     t.px = float((1 + f.kx) * f.cx * f.cx), t.py = float((1 + f.ky) * f.cy * f.cy);
     const double scale = std::isfinite(f.clear) ? f.clear : 10;
     fill_asphere(t, f, scale);
-    double terms = scale;  // what rounding acts on
+    double terms = scale;  // magnitude of the terms subject to rounding
     for (const float a : t.even) terms += std::abs(double(a));
     for (const float a : t.odd) terms += std::abs(double(a));
     t.tolerance = float(5e-7 * terms), t.stride = float(scale);

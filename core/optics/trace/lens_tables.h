@@ -12,7 +12,7 @@ namespace dg {
 
 struct IrisTables {
     Iris::Kind kind = Iris::Kind::round;
-    float radius = 0;  // mm, of the circle of equal area; 0: no iris (all passes)
+    float radius = 0;  // mm, radius of the circle of equal area; 0: no iris
     // Blades, mm.
     std::vector<float> edge_x, edge_y;
     float apothem = 0, center = 0, arc_radius2 = 0;
@@ -24,8 +24,7 @@ struct IrisTables {
     std::vector<float> values, support_x, support_y;
 };
 
-/// 1/lambda^2 mapped to [-1, 1] over the visible range: the variable of every fit in the
-/// wavelength.
+/// Wavelength variable of all polynomial fits: 1/lambda^2 mapped to [-1, 1] over the visible range.
 struct WavelengthScale {
     float offset, scale;  // l = offset + scale / um^2
     static WavelengthScale visible();
@@ -33,32 +32,32 @@ struct WavelengthScale {
     double wavelength(double l) const { return 1e3 / std::sqrt((l - offset) / scale); }
 };
 
-/// How a surface treats light in the kernel: lets all pass, by Fresnel's formulas, by the
-/// table of its films.
+/// Transmittance of a surface in the kernel: none: 1. bare: Fresnel's formulas. film: the table of
+/// its films.
 enum class SurfaceLight : int { none, bare, film };
 
-/// By which formula rays meet a surface.
+/// Intersection routine of a surface.
 enum class MetAs : int { plane, sphere, other };
 
-/// A form that is no centred plane or sphere (form.h), in float. The asphere is a
-/// polynomial in (r / scale)^2, so that its coefficients are lengths.
+/// Form of a surface other than a centred plane or sphere (form.h), in float. The asphere is a
+/// polynomial in (r / scale)^2, so its coefficients are lengths.
 struct ShapeTables {
     Shape shape = Shape::conic;
     bool quadric = true, has_asphere = false, placed = false;
     float c = 0, wx = 1, wy = 1, wz = 1;  // c (wx x^2 + wy y^2 + wz z^2) = 2 z
-    float cx = 0, cy = 0;                 // both sections
-    float px = 0, py = 0;                 // (1 + k) c^2 of both
+    float cx = 0, cy = 0;                 // curvatures of the sections
+    float px = 0, py = 0;                 // (1 + k) c^2 of the sections
     float inverse_scale2 = 1;             // 1/mm^2
     std::vector<float> even, even_slope, odd, odd_slope;
-    float tolerance = 0, stride = 0;  // mm: of the last step of a search, of any
+    float tolerance = 0, stride = 0;  // mm, of a search: step at convergence, and longest step
     float shift[3] = {0, 0, 0};
     float axis[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     std::vector<float> ripple;  // RippleSlope
     float ripple_steps_per_mm = 0;
 };
 
-/// Absorption of the media: coefficients (1/mm, base e) at equal steps of l from -1 to 1,
-/// [medium][node]; empty if all are clear.
+/// Absorption coefficients of the media (1/mm, base e) at equal steps of l from -1 to 1,
+/// [medium][node]; empty if all media are clear.
 struct AbsorptionTables {
     static constexpr int kNodes = 257;  // 0.6 nm apart at 380 nm, 5 nm at 780 nm
     std::vector<float> per_mm;
@@ -67,15 +66,15 @@ struct AbsorptionTables {
 
 struct LensTables {
     int surfaces = 0, stop = 0;
-    float film_gap = 0;  // last vertex to film, mm; to its centre if it is tilted
+    float film_gap = 0;  // mm, last vertex to film (to the centre of a tilted film)
     FilmTables film;
     std::vector<float> curvature, semi2, inner2, gap;
     std::vector<MetAs> met;
-    std::vector<char> refracts;      // or rays go straight on
-    std::vector<ShapeTables> shape;  // of those met as other
+    std::vector<char> refracts;      // false: no change of index
+    std::vector<ShapeTables> shape;  // for surfaces with MetAs::other
     std::vector<SurfaceLight> light;
-    std::vector<FilmTable> films;      // of coated surfaces
-    std::vector<char> rarer_in_front;  // for the cosine of those
+    std::vector<FilmTable> films;      // for coated surfaces
+    std::vector<char> rarer_in_front;  // for coated surfaces: which cosine the table takes
     int index_degree = 0;
     std::vector<float> index;  // [medium][power of l]
     AbsorptionTables absorption;
@@ -84,13 +83,13 @@ struct LensTables {
     WavelengthScale scale = WavelengthScale::visible();
 };
 
-/// The table of one coated surface; empty if there are no films on it.
+/// Transmittance table of a coated surface; empty if it has no films.
 FilmTable film_table(const SurfaceCoating& coating, const Glass& before,
                      const Glass& after, const WavelengthScale& scale);
 
 LensTables make_lens_tables(const Tracer& tracer, double film_z, bool clear_apertures,
                             const Iris* iris, double iris_radius);
-/// The same with the film in any place.
+/// Tables with a shifted or tilted film.
 LensTables make_lens_tables(const Tracer& tracer, const FilmPlane& film, bool clear_apertures,
                             const Iris* iris, double iris_radius);
 

@@ -1,4 +1,4 @@
-// meet-inl.h -- where rays meet a surface, in SIMD lanes (intersect.h in float). Included
+// meet-inl.h -- intersection of rays with a surface in SIMD lanes (intersect.h in float). Included
 // once per instruction set.
 #if defined(DG_OPTICS_MEET_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DG_OPTICS_MEET_INL_H_
@@ -27,7 +27,8 @@ HWY_INLINE LaneVec along(const LaneVec& p, V t, const LaneVec& d) {
     return {hn::MulAdd(t, d.x, p.x), hn::MulAdd(t, d.y, p.y), hn::MulAdd(t, d.z, p.z)};
 }
 
-/// The unit normal is (-bend_x x, -bend_y y, axial); the cosine of incidence is positive.
+/// Intersection. The unit normal is (-bend_x x, -bend_y y, axial); the cosine of incidence is
+/// positive.
 struct LaneHit {
     LaneVec point;
     V bend_x, bend_y, axial;
@@ -52,7 +53,7 @@ HWY_INLINE LaneHit meet_plane(const LaneVec& p, const LaneVec& d) {
     return h;
 }
 
-/// From the point of the ray nearest to the vertex.
+/// Intersection with a centred sphere, computed from the ray's point nearest to the vertex.
 template <int kSign>
 HWY_INLINE LaneHit meet_sphere(float curvature, const LaneVec& p, const LaneVec& d) {
     const V c = constant(curvature), zero = hn::Zero(D());
@@ -68,7 +69,7 @@ HWY_INLINE LaneHit meet_sphere(float curvature, const LaneVec& p, const LaneVec&
     return h;
 }
 
-/// Makes the normal one of unit length; `speed` is its product with the direction.
+/// Normalizes the normal; `speed` is the dot product of the unnormalized normal and the direction.
 template <int kSign>
 HWY_INLINE void normalize_hit(V speed, LaneHit& h) {
     const V nx = hn::Mul(h.bend_x, h.point.x), ny = hn::Mul(h.bend_y, h.point.y);
@@ -80,7 +81,7 @@ HWY_INLINE void normalize_hit(V speed, LaneHit& h) {
     h.cos1_squared = hn::Mul(h.cos1, h.cos1);
 }
 
-/// The crossing with c (wx x^2 + wy y^2 + wz z^2) = 2 z: ray parameter from m, and the
+/// Ray parameter from m of the crossing with c (wx x^2 + wy y^2 + wz z^2) = 2 z; also returns the
 /// discriminant.
 template <int kSign>
 HWY_INLINE V quadric_crossing(const ShapeTables& s, const LaneVec& m, const LaneVec& d,
@@ -112,10 +113,10 @@ HWY_INLINE LaneHit meet_quadric(const ShapeTables& s, const LaneVec& p,
     return h;
 }
 
-/// The asphere at r^2 = u: its height, and its slope by x over x.
+/// Asphere at r^2 = u: its height, and its slope in x divided by x.
 HWY_INLINE void asphere_lanes(const ShapeTables& s, V u, V& height, V& pull) {
     const V zero = hn::Zero(D()), v = hn::Mul(u, constant(s.inverse_scale2));
-    V even = zero, even_slope = zero;  // by v
+    V even = zero, even_slope = zero;  // derivatives by v
     for (std::size_t j = s.even.size(); j-- > 0;) {
         even = hn::Mul(hn::Add(even, constant(s.even[j])), v);
         even_slope = hn::MulAdd(even_slope, v, constant(s.even_slope[j]));
@@ -134,15 +135,15 @@ HWY_INLINE void asphere_lanes(const ShapeTables& s, V u, V& height, V& pull) {
     pull = hn::Mul(pull, constant(s.inverse_scale2));
 }
 
-/// sqrt(v) where a form is defined; what lies beyond its rim is not met.
+/// sqrt(v), clamped where the form is undefined; clears `defined` there.
 HWY_INLINE V domed_root(V v, M& defined) {
     defined = hn::And(defined, hn::Gt(v, hn::Zero(D())));
     return hn::Sqrt(hn::Max(v, constant(1e-6f)));
 }
 
-/// How far past the surface a point lies, in z, and the gradient of that in LaneHit's
-/// form, times a common factor that is positive on the near side. The base form stands
-/// below the asphere, so what is left of z after it obeys its equation. Sections: form.h.
+/// Signed distance past the surface along z, and its gradient in the form of LaneHit's normal; both
+/// are scaled by a common factor that is positive on the near side. z minus the asphere satisfies
+/// the equation of the base form (sections: form.h).
 HWY_INLINE V past_surface(const ShapeTables& s, LaneHit& h) {
     const V one = constant(1), x = h.point.x, y = h.point.y;
     const V x2 = hn::Mul(x, x), y2 = hn::Mul(y, y);
@@ -152,7 +153,7 @@ HWY_INLINE V past_surface(const ShapeTables& s, LaneHit& h) {
         asphere_lanes(s, hn::Add(x2, y2), height, pull);
         z = hn::Sub(z, height);
     }
-    if (s.shape == Shape::conic) {  // c (r^2 + (1+k) z^2) = 2 z: no root is needed
+    if (s.shape == Shape::conic) {  // implicit form c (r^2 + (1+k) z^2) = 2 z: no square root
         const V c = constant(s.c), half = constant(0.5f * s.c), cz = constant(s.c * s.wz);
         h.axial = hn::NegMulAdd(cz, z, one);
         h.bend_x = h.bend_y = hn::MulAdd(h.axial, pull, c);
@@ -194,9 +195,9 @@ HWY_INLINE void keep_lanes(M which, const LaneHit& from, LaneHit& to) {
     to.ok = hn::Or(hn::And(which, from.ok), hn::AndNot(which, to.ok));
 }
 
-/// Newton's steps for two vectors of rays from the base form; what has not come to rest
-/// after the last counts as missed. A lane at rest stays as it is while others move: its
-/// bits must not depend on its neighbours.
+/// Newton's method for two vectors of rays, started at the base form. Lanes that have not converged
+/// after the last step count as misses. Converged lanes stay frozen while others iterate, so that a
+/// ray's bits do not depend on its neighbours.
 template <int kSign>
 HWY_INLINE void meet_searched(const ShapeTables& s, const LaneVec (&p)[2],
                               const LaneVec (&d)[2], const M (&alive)[2],

@@ -1,5 +1,5 @@
-// Prescriptions that nobody would design: each is refused or traced, in bounded time, and
-// nothing that comes out is NaN. script/test-all asks for more by DG_RANDOM_LENSES.
+// Random prescriptions, mostly absurd: each is refused or traced in bounded time, and no result is
+// NaN. script/test-all raises their number by DG_RANDOM_LENSES.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using namespace dg;
 
 namespace {
 
-/// Mostly sane; sometimes huge, tiny, or no number at all.
+/// Random number of about the given scale; sometimes huge, tiny, or NaN.
 double number(test::Random& u, double scale) {
     switch (u.below(200)) {
         case 0:
@@ -71,7 +71,7 @@ bool finite(const LensRay& r) {
     return std::isfinite(p.x + p.y + p.z) && std::abs(length(d) - 1) < 1e-9;
 }
 
-/// Rays that passed.
+/// Traces random rays and returns the number that pass.
 int trace_some(const Prescription& lens, test::Random& u) {
     const Tracer t(lens);
     const LensIndices n = t.at(550);
@@ -126,13 +126,13 @@ double thread_seconds() {
     return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-/// Times as slow as a processor this one is: an emulator's tests set it (script/check-arm64).
+/// Slowdown against a real processor, for tests under emulation (script/check-arm64).
 double slowdown() {
     const char* times = std::getenv("DG_SLOWDOWN");
     return times ? std::atof(times) : 1;
 }
 
-/// Number of rays that pass a lens; nothing: it is refused.
+/// Number of rays that pass a lens; empty if the lens is refused.
 std::optional<int> rays_through(const Prescription& lens, test::Random u, FilmRays& film, SceneRays& scene) {
     try {
         const int passed = trace_some(lens, u);
@@ -165,7 +165,8 @@ TEST_CASE("random prescriptions are refused or traced, without NaN and without d
             return thread_seconds() - before;
         };
         double seconds = timed();
-        // A virtual machine's stall counts as the thread's time, but does not come three times in a row.
+        // Retry slow lenses: a virtual machine's stall counts as the thread's time, but rarely
+        // three times in a row.
         for (int again = 0; seconds >= longest_wanted && again < 2; ++again) seconds = std::min(seconds, timed());
         longest = std::max(longest, seconds);
         ++(through ? traced : refused);

@@ -1,4 +1,4 @@
-// test_targets.h -- tests of kernels on every instruction set.
+// test_targets.h -- runs tests of kernels on every instruction set.
 #pragma once
 #include <doctest/doctest.h>
 #include <hwy/targets.h>
@@ -9,7 +9,7 @@
 
 namespace dg::test {
 
-/// Runs the body once for every instruction set that was built and that this machine has.
+/// Runs the body for each instruction set that is compiled in and supported by this machine.
 template <typename Body>
 void for_each_target(Body body) {
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {

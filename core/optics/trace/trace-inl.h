@@ -1,5 +1,5 @@
-// trace-inl.h -- one surface after the other, in SIMD lanes. Included once per
-// instruction set.
+// trace-inl.h -- sequential ray tracing through a lens in SIMD lanes. Included once per instruction
+// set.
 #if defined(DG_OPTICS_TRACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DG_OPTICS_TRACE_INL_H_
 #undef DG_OPTICS_TRACE_INL_H_
@@ -15,13 +15,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace dg {
 namespace HWY_NAMESPACE {
-/// Rays on their way; z is measured from the vertex of the surface at hand.
+/// State of rays inside the lens; z is relative to the vertex of the current surface.
 struct LaneRays {
     V x, y, z, dx, dy, dz;
     V l;  // wavelength variable
-    V n;  // index of the medium that they are in
+    V n;  // index of the current medium
     V transmittance;
-    V depth;  // optical, of the absorbing glass passed
+    V depth;  // optical depth in absorbing glass so far
     V iris_x, iris_y;
     M alive;
 };
@@ -39,7 +39,7 @@ HWY_INLINE void set_wavelength(const LensTables& lens, V nm, LaneRays& r) {
                      constant(lens.scale.offset));
 }
 
-/// Iris transmission at a point, mm (stop.h). All shapes are loops over uniform tables.
+/// Iris transmittance at a point in mm (stop.h). All shapes are loops over uniform tables.
 HWY_INLINE V iris_transmission(const IrisTables& iris, V x, V y) {
     const D d;
     if (iris.kind == Iris::Kind::round) {
@@ -77,7 +77,7 @@ HWY_INLINE V iris_transmission(const IrisTables& iris, V x, V y) {
     return hn::IfThenElseZero(inside, constant(1));
 }
 
-/// Absorbs light in a medium on the way to a point; costs nothing in a lens of clear glass.
+/// Accumulates absorption in a medium from the ray's position to a point; free for clear glass.
 HWY_INLINE void swallow(const LensTables& lens, int medium, const LaneVec& to, LaneRays& r) {
     if (lens.absorption.absorbs.empty() || !lens.absorption.absorbs[medium]) return;
     const V path = hn::MulAdd(
@@ -96,7 +96,7 @@ HWY_INLINE void finish_transmittance(const LensTables& lens, LaneRays& r) {
     r.transmittance = hn::Mul(r.transmittance, hn::Exp(D(), hn::Neg(r.depth)));
 }
 
-/// Stops rays where they meet a surface, and absorbs light on the way there.
+/// Moves rays to their hits, adds the absorption on the way, and clips them at apertures.
 template <int kSign>
 HWY_INLINE M stop_at_surface(const LensTables& lens, int i, const LaneHit& hit, LaneRays& r) {
     const V x = hit.point.x, y = hit.point.y;
@@ -116,7 +116,7 @@ HWY_INLINE M stop_at_surface(const LensTables& lens, int i, const LaneHit& hit, 
     return ok;
 }
 
-/// Finishes Tracer::cross after the meeting: stops, and Snell's law.
+/// Finishes Tracer::cross after the intersection: clipping and refraction.
 template <int kSign>
 HWY_INLINE void pass_surface(const LensTables& lens, int i, const LaneHit& hit,
                              LaneRays& r) {
@@ -143,7 +143,7 @@ HWY_INLINE void pass_surface(const LensTables& lens, int i, const LaneHit& hit,
     r.alive = hn::And(r.alive, ok);
 }
 
-/// Rays into the frame of a surface that is moved or turned, and back.
+/// Transforms rays into the frame of a displaced or rotated surface, and back.
 HWY_INLINE void enter_frame(const ShapeTables& s, LaneRays& r) {
     const auto turn = [&](V& x, V& y, V& z) {
         const auto row = [&](const float* a) {
@@ -173,7 +173,7 @@ HWY_INLINE void leave_frame(const ShapeTables& s, LaneRays& r) {
     r.z = hn::Add(r.z, constant(s.shift[2]));
 }
 
-/// The normal leans with the slope of the grooves (ripple.h).
+/// Tilts the normal by the slope of the ripple (ripple.h).
 template <int kSign>
 HWY_INLINE void lean_lanes(const ShapeTables& s, const LaneVec& d, LaneHit& h) {
     const VI last = hn::Set(DI(), int(s.ripple.size()) - 2);
@@ -191,8 +191,8 @@ HWY_INLINE void lean_lanes(const ShapeTables& s, const LaneVec& d, LaneHit& h) {
     normalize_hit<kSign>(speed, h);
 }
 
-/// Where rays meet forms other than centred planes and spheres, in the surface's own frame, in which they are
-/// left.
+/// Intersects rays with forms other than centred planes and spheres. Leaves the rays in the
+/// surface's frame.
 template <int kSign>
 HWY_INLINE void meet_other(const LensTables& lens, int i, LaneRays& a, LaneRays& b, LaneHit (&hit)[2]) {
     const ShapeTables& s = lens.shape[i];
@@ -209,7 +209,7 @@ HWY_INLINE void meet_other(const LensTables& lens, int i, LaneRays& a, LaneRays&
         for (int v = 0; v < 2; ++v) lean_lanes<kSign>(s, d[v], hit[v]);
 }
 
-/// Apart from those, so that they keep their speed.
+/// Crosses other forms, out of line so that planes and spheres stay fast.
 template <int kSign>
 HWY_NOINLINE void cross_other(const LensTables& lens, int i, LaneRays& a, LaneRays& b) {
     const ShapeTables& s = lens.shape[i];
@@ -240,8 +240,8 @@ HWY_INLINE void cross_surface(const LensTables& lens, int i, LaneRays& a, LaneRa
     }
 }
 
-/// Two vectors of rays at once, so that one's long chains of dependent operations hide
-/// behind the other's. The rays start on the film, z = 0 there.
+/// Traces two vectors of rays to the scene, interleaved so that the latency of dependent operations
+/// is hidden. Rays start on the film at z = 0.
 HWY_INLINE void lanes_to_scene(const LensTables& lens, LaneRays& a, LaneRays& b) {
     const int last = lens.surfaces - 1;
     a.n = index_of(lens, lens.surfaces, a.l);
@@ -259,8 +259,8 @@ HWY_INLINE void lanes_to_scene(const LensTables& lens, LaneRays& a, LaneRays& b)
     finish_transmittance(lens, a), finish_transmittance(lens, b);
 }
 
-/// Rays that travel toward the film; z from the first vertex. At the end z is from the
-/// last vertex.
+/// Traces rays toward the film. z is relative to the first vertex at the start and to the last
+/// vertex at the end.
 HWY_INLINE void lanes_to_film(const LensTables& lens, LaneRays& a, LaneRays& b) {
     a.n = index_of(lens, 0, a.l);
     b.n = index_of(lens, 0, b.l);

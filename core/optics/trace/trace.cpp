@@ -36,9 +36,10 @@ bool within_apertures(const Surface& s, const Vec3d& p, const Clip& clip, bool i
     return (iris_here || r2 <= edge * edge) && r2 >= hole * hole;
 }
 
-constexpr double kOverlap = 0.01;  // mm by which the rims of real prescriptions may run into each other
+constexpr double kOverlap = 0.01;  // mm, tolerated overlap of neighbouring surfaces at their rims in real
+                                   // prescriptions
 
-/// The normal leans with the slope of the grooves.
+/// Tilts the normal by the slope of the ripple.
 void lean(const RippleSlope& ripple, const Vec3d& direction, int sign, LensHit<double>& hit) {
     const double r = hypot(hit.point.x, hit.point.y);
     if (!(r > 0)) return;
@@ -102,8 +103,9 @@ int Tracer::follow(TracedRay& ray, const LensPath& path, const LensIndices& n,
     for (std::size_t k = 0; k < path.size(); ++k) {
         const LensRay from = ray.ray;
         if (!cross(path[k], n, clip, ray)) return int(k);
-        // A mirror may be so steep that the light never comes to the surface that is next. Elsewhere the
-        // iris of a real prescription may lie within the bulge of its neighbour.
+        // A steep mirror may send light away from the next surface. The test is limited to mirrors:
+        // at refracting surfaces, the iris of a real prescription may be within the bulge of its
+        // neighbour.
         if (k > 0 && path[k - 1].reflects &&
             dot(ray.ray.origin - from.origin, from.direction) < -kOverlap)
             return int(k);

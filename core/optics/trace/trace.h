@@ -1,5 +1,4 @@
-// trace.h -- exact tracing through every surface, in double: the reference. Both
-// directions.
+// trace.h -- exact sequential ray tracing in double, in both directions: the reference.
 #pragma once
 #include <array>
 #include <optional>
@@ -18,26 +17,26 @@ struct LensRay {
 };
 
 struct TracedRay {
-    LensRay ray;               // from the last surface that was met, refracted
-    Vec2d iris{};              // mm, where the ray crossed the stop
-    double transmittance = 1;  // product over surfaces and glasses, and the iris's
-    double optical_path = 0;   // mm: sum of n x distance, from the origin to there
+    LensRay ray;               // refracted ray at the last surface
+    Vec2d iris{};              // mm, intersection with the plane of the stop
+    double transmittance = 1;  // product over surfaces, glasses and the iris
+    double optical_path = 0;   // mm, sum of n x distance from the origin to the last surface
 };
 
-/// Stops of rays besides a miss or total reflection. The iris replaces the stop's clear
-/// diameter.
+/// Apertures that clip rays. An iris replaces the clear diameter of the stop.
 struct Clip {
     bool clear_apertures = true;
     const Iris* iris = nullptr;
-    double iris_radius = 0;  // mm, of the circle of equal area
+    double iris_radius = 0;  // mm, radius of the circle of equal area
     double widened = 1;      // factor on the clear diameters
 };
 
-/// d(x, y, n L, n M) out / in: rows are outputs. L and M are the direction's x and y.
+/// Jacobian d(x, y, n L, n M) out / in, where L and M are the x and y components of the direction;
+/// rows are outputs.
 using RayJacobian = std::array<std::array<double, 4>, 4>;
 
-/// The indices of all media at one wavelength: index[i] before surface i; and what they
-/// swallow, 1/mm (empty: all are clear).
+/// Media at one wavelength: index[i] before surface i, and absorption coefficients in 1/mm (empty:
+/// all media are clear).
 struct LensIndices {
     double wavelength_nm;
     std::vector<double> index;
@@ -49,32 +48,32 @@ class Tracer {
     explicit Tracer(const Prescription& lens);  // validates
 
     LensIndices at(double wavelength_nm) const;
-    /// From the object side through the last surface; direction.z > -1 and the ray meets
-    /// surface 0 first.
+    /// Traces from the object side through the last surface. direction.z must be > -1, and the
+    /// first hit must be surface 0.
     std::optional<TracedRay> to_film(LensRay ray, const LensIndices& n,
                                      const Clip& clip) const;
-    /// From the film side through the first surface.
+    /// Traces from the film side through the first surface.
     std::optional<TracedRay> to_scene(LensRay ray, const LensIndices& n,
                                       const Clip& clip) const;
-    /// The same, either way, with what is known of a ray that is stopped: the surface
-    /// that stopped it, or -1; `ray` is left at the last surface that it met.
+    /// Traces in either direction. Returns the index of the surface that clips the ray, or -1;
+    /// `ray` is left at the last surface that it hit.
     int follow(TracedRay& ray, bool toward_film, const LensIndices& n,
                const Clip& clip) const;
-    /// Along any path, ghosts too: the step that stopped the ray, or -1. The iris point is that
-    /// of the last crossing; the iris clips at each.
+    /// Traces along any path, including ghosts. Returns the index of the step that stops the ray,
+    /// or -1. The iris clips at each crossing; the iris point is from the last crossing.
     int follow(TracedRay& ray, const LensPath& path, const LensIndices& n,
                const Clip& clip) const;
-    /// From the film side to the stop: the iris point, mm. Clear apertures are widened by
-    /// the factor.
+    /// Traces from the film side to the stop; returns the iris point in mm. `widened` scales the
+    /// clear apertures.
     std::optional<Vec2d> to_iris(LensRay ray, const LensIndices& n, double widened) const;
 
-    /// Points where the ray met the surfaces, object side first, for drawings; empty if
-    /// stopped.
+    /// Intersections with all surfaces, object side first, for drawings; empty if the ray is
+    /// clipped.
     std::vector<Vec3d> path_to_film(LensRay ray, const LensIndices& n,
                                     const Clip& clip) const;
 
-    /// Between the plane of the ray's origin and the plane image_z, through the whole
-    /// lens toward the film, whatever the clear apertures. Analytic.
+    /// Analytic Jacobian from the plane of the ray's origin to the plane image_z, toward the film
+    /// through the whole lens, ignoring clear apertures.
     std::optional<RayJacobian> jacobian(const LensRay& ray, const LensIndices& n,
                                         double image_z) const;
 
@@ -94,7 +93,7 @@ class Tracer {
     int stop_;
 };
 
-/// Where a ray meets the plane z, mm.
+/// Intersection of a ray with the plane z, mm.
 inline Vec3d at_plane(const LensRay& ray, double z) {
     return ray.origin + ray.direction * ((z - ray.origin.z) / ray.direction.z);
 }

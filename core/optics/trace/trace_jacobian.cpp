@@ -1,4 +1,4 @@
-// trace_jacobian.cpp -- derivatives of a trace, by the same functions on dual numbers.
+// trace_jacobian.cpp -- derivatives of the trace by automatic differentiation on dual numbers.
 #include "optics/trace/lens_path.h"
 #include "optics/trace/trace.h"
 
@@ -7,7 +7,7 @@ namespace {
 
 using Number = Dual<4>;
 
-/// With x, y, n L, n M as the inputs.
+/// Ray with x, y, n L, n M as the independent variables.
 RayOf<Number> dual_ray(const LensRay& ray, double n) {
     const Vec3d p = ray.origin, d = ray.direction;
     const Number l = Number::input(n * d.x, 2) / n, m = Number::input(n * d.y, 3) / n;

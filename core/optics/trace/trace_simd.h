@@ -1,5 +1,5 @@
-// trace_simd.h -- the exact trace on batches of rays: float, structure of arrays, SIMD
-// with run-time dispatch. What it does is trace.h; tests hold them equal on every target.
+// trace_simd.h -- Tracer (trace.h) on batches of rays: float, structure of arrays, SIMD with
+// run-time dispatch. Tests compare both on every instruction set.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace dg {
 
-/// Rays at a time; arrays are that long and aligned, so that kernels never see a tail.
+/// Length of the aligned arrays of rays, so that kernels need no tail loop.
 inline constexpr int kLensBatch = 256;
 
 struct alignas(64) FilmRays {
@@ -20,18 +20,18 @@ struct alignas(64) FilmRays {
 struct alignas(64) SceneRays {
     float x[kLensBatch], y[kLensBatch], z[kLensBatch];     // mm, on the first surface
     float dx[kLensBatch], dy[kLensBatch], dz[kLensBatch];  // unit, toward the scene
-    float pass[kLensBatch];  // transmittance, iris included; 0: stopped
+    float pass[kLensBatch];  // transmittance including the iris; 0: clipped
     float iris_x[kLensBatch], iris_y[kLensBatch];  // mm
 };
 
-/// Film -> scene.
+/// Traces from the film to the scene.
 void trace_to_scene(const LensTables& lens, const FilmRays& in, SceneRays& out,
                     int count);
-/// Scene -> film: in.pass is ignored, direction still points to the scene. Fills
-/// out.x..my, and pass and iris of `in`.
+/// Traces from the scene to the film. Input directions point to the scene; in.pass is ignored.
+/// Fills out.x to out.my, and pass and iris of `in`.
 void trace_to_film(const LensTables& lens, SceneRays& in, FilmRays& out, int count);
 
-/// Name of the instruction set in use.
+/// Name of the active instruction set.
 const char* simd_target_name();
 
 }  // namespace dg

@@ -26,8 +26,8 @@ struct Bench {
     std::unique_ptr<LensSamples> samples = std::make_unique<LensSamples>();
 };
 
-/// Whether scalar and lanes may disagree on passing: the ray grazes an edge (float sees
-/// 1e-5 mm).
+/// Whether a ray grazes an edge (within 1e-5 mm in float), so that the scalar and the SIMD tracer
+/// may disagree on clipping.
 bool grazes(const Tracer& t, const LensRay& ray, const LensIndices& n, const Iris& iris,
             double r) {
     const double step = 3e-5 * r;
@@ -46,10 +46,10 @@ bool grazes(const Tracer& t, const LensRay& ray, const LensIndices& n, const Iri
 
 namespace {
 
-/// A lens with its film, to be traced both ways.
+/// Lens with the film's position, for traces in both directions.
 struct Case {
     Prescription lens;
-    double film_z, size, iris_radius;  // size: focal length, or what stands for it
+    double film_z, size, iris_radius;  // size: focal length, or a comparable length
 };
 
 std::vector<Case> patent_lenses() {
@@ -62,7 +62,7 @@ std::vector<Case> patent_lenses() {
     return cases;
 }
 
-/// Every other glass swallows, mostly blue; all presets of coating in turn.
+/// Lenses in which every other glass absorbs, mostly blue; they cycle through the coating presets.
 std::vector<Case> lenses_of_dark_glass() {
     constexpr Coating presets[] = {Coating::broadband, Coating::v_coat, Coating::uncoated};
     std::vector<Case> cases = patent_lenses();
@@ -98,7 +98,8 @@ void aim_at_the_rear(const Case& c, test::Random& u, FilmRays& film) {
     }
 }
 
-/// Traces film -> scene -> film in lanes, and film -> scene exactly; number that passed.
+/// Traces film -> scene -> film in lanes, and film -> scene with the reference. Returns the number
+/// of rays that pass.
 int compare_lanes(const Case& c, const Iris& iris, test::Random& u) {
     Bench b;
     const Tracer t(c.lens);
@@ -125,7 +126,7 @@ int compare_lanes(const Case& c, const Iris& iris, test::Random& u) {
         CHECK(length(o - exact->ray.origin) < 2e-6 * c.size + 2e-5);
         CHECK(out.pass[i] == doctest::Approx(exact->transmittance).epsilon(3e-4));
         CHECK(length(Vec2d{out.iris_x[i], out.iris_y[i]} - exact->iris) < 1e-4);
-        // And back to the same film point, unless an edge is grazed.
+        // The round trip ends at the same film point, unless the ray grazes an edge.
         if (b.scene->pass[i] > 0) {
             CHECK(std::abs(b.film->x[i] - start.x[i]) < 2e-5 * c.size + 2e-4);
             CHECK(std::abs(b.film->mx[i] - start.mx[i]) < 2e-5);
@@ -210,7 +211,7 @@ TEST_CASE(
                 const double expected =
                     aim.tables.shape_area * std::abs(v.jacobian) / (one_m2 * one_m2);
                 CHECK(weight[i] == doctest::Approx(expected).epsilon(2e-5));
-                // The result that reprojection finds from the traced ray alone.
+                // Weight that reprojection finds from the traced ray alone.
                 if (b.scene->pass[i] > 0)
                     CHECK(again[i] == doctest::Approx(weight[i]).epsilon(2e-4));
             }

@@ -15,7 +15,7 @@ namespace {
 
 using Phase = std::array<double, 4>;  // x, y, n dx, n dy on a plane
 
-/// From the plane z0 before the lens to the plane z1 behind it.
+/// Transfer from the plane z0 before the lens to the plane z1 behind it.
 std::optional<Phase> transfer(const Tracer& t, const LensIndices& n, Phase p, double z0,
                               double z1) {
     const double l = p[2] / n.index.front(), m = p[3] / n.index.front();
@@ -26,8 +26,7 @@ std::optional<Phase> transfer(const Tracer& t, const LensIndices& n, Phase p, do
     return Phase{at.x, at.y, n.index.back() * d.x, n.index.back() * d.y};
 }
 
-/// Largest |J^T Omega J - Omega| by central differences; `fault` scales the outgoing
-/// momenta.
+/// Largest |J^T Omega J - Omega| by central differences. `fault` scales the outgoing momenta.
 double symplectic_error(const Tracer& t, const LensIndices& n, Phase p, double z0,
                         double z1, double fault = 1) {
     double jacobian[4][4];
@@ -70,7 +69,7 @@ TEST_CASE("film -> scene -> film comes back within 1e-9 mm") {
             const auto out = t.to_scene({from, normalize(to - from)}, n, {});
             if (!out) continue;
             ++passed;
-            // Start in front of the lens, where rays can.
+            // Move the origin in front of the lens, where rays may start.
             LensRay reverse{out->ray.origin, -out->ray.direction};
             if (reverse.direction.z > 0.2)
                 reverse.origin = reverse.origin - 30 * reverse.direction;
@@ -99,7 +98,7 @@ TEST_CASE("the transfer is symplectic: etendue is kept") {
                           0.1 * u(random)};
             CHECK(symplectic_error(t, n, p, -1, f.back_focal_z) < 1e-6);
         }
-        // Planted: momenta 2 % too large, as a wrong refraction would leave them.
+        // Planted fault: momenta 2 % too large, like a wrong refraction.
         CHECK(symplectic_error(t, n, {0, 0, 0, 0}, -1, f.back_focal_z, 1.02) > 0.01);
     }
 }

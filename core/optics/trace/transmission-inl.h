@@ -1,5 +1,5 @@
-// transmission-inl.h -- how much light a surface lets through, in SIMD lanes. Included
-// once per instruction set.
+// transmission-inl.h -- transmittance of surfaces and glass in SIMD lanes. Included once per
+// instruction set.
 #if defined(DG_OPTICS_TRANSMISSION_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DG_OPTICS_TRANSMISSION_INL_H_
 #undef DG_OPTICS_TRANSMISSION_INL_H_
@@ -26,15 +26,15 @@ HWY_INLINE V constant(float value) {
     return hn::Set(D(), value);
 }
 
-/// Rays at a surface: indices and cosines of the side that they come from (1) and of the
-/// side that they go to (2), and their wavelength.
+/// Refraction at a surface: index and cosine on the incident side (1) and on the other side (2),
+/// and the wavelength variable.
 struct LaneCrossing {
     V n1, cos1;
     V n2, cos2;
     V l;
 };
 
-/// T of a coated surface, by its table (film_table.h).
+/// Transmittance of a coated surface from its table (film_table.h).
 HWY_INLINE V film_lanes(const FilmTable& table, V cosine, V l) {
     const V x = hn::MulAdd(cosine, constant(2), constant(-1));
     const V root = hn::MulAdd(cosine, constant(table.pole), constant(1));
@@ -49,7 +49,7 @@ HWY_INLINE V film_lanes(const FilmTable& table, V cosine, V l) {
     return hn::Div(hn::Mul(cosine, sum), hn::Mul(root, root));
 }
 
-/// Ts + Tp over 2 of bare glass: T = 4pr / (p+r)^2 with admittances p, r.
+/// Transmittance (Ts + Tp) / 2 of bare glass: T = 4pr / (p+r)^2 with admittances p, r.
 HWY_INLINE V bare_lanes(V n1, V cos1, V n2, V cos2) {
     const V s = hn::MulAdd(n1, cos1, hn::Mul(n2, cos2));
     const V p = hn::MulAdd(n2, cos1, hn::Mul(n1, cos2));
@@ -69,7 +69,7 @@ HWY_INLINE V transmission_lanes(const LensTables& lens, int i, const LaneCrossin
     return bare_lanes(at.n1, at.cos1, at.n2, at.cos2);
 }
 
-/// absorption_per_mm() (glass.h) of a medium, linear between the nodes of its table.
+/// absorption_per_mm() (glass.h) of a medium, interpolated linearly in its table.
 HWY_INLINE V absorption_lanes(const AbsorptionTables& t, int medium, V l) {
     const D d;
     const V last = constant(float(t.kNodes - 1));
