@@ -7,7 +7,7 @@
 namespace dg {
 namespace {
 
-/// The largest s in [0, 0.999] up to which all is inside.
+/// Bisects for the largest s in [0, 0.999] such that `inside` holds up to s.
 template <typename Inside>
 double edge(const Inside& inside, int steps) {
     double low = 0, high = 0.999;
@@ -18,14 +18,15 @@ double edge(const Inside& inside, int steps) {
     return low;
 }
 
-// Chebyshev's points: a smooth function is known from few of them. Source: Berrut and Trefethen 2004.
+// Chebyshev points: few suffice to interpolate a smooth function. Source: Berrut and Trefethen
+// 2004.
 constexpr int kNodes = 16;
 
 double node(int j) {
     return 0.5 - 0.5 * std::cos(kPiD * (2 * j + 1) / (2 * kNodes));
 }
 
-/// Both values of the polynomial through `at` the nodes, x in [0, 1].
+/// Barycentric interpolation of both components of the values `at` the nodes, x in [0, 1].
 Vec2d interpolate(const std::array<Vec2d, kNodes>& at, double x) {
     Vec2d sum{};
     double weights = 0;
@@ -41,9 +42,9 @@ Vec2d interpolate(const std::array<Vec2d, kNodes>& at, double x) {
 
 }  // namespace
 
-// E = integral L cos dw = pi * integral L d(sin^2 theta): the lens is round, so one
-// meridional ray per angle and the iris's open fraction on its circle. Midpoints in sin^2
-// up to the widest ray that passes; where they meet the iris, and T, are smooth: few are traced.
+// E = integral L cos dw = pi * integral L d(sin^2 theta). Rotational symmetry leaves one meridional
+// ray per angle, weighted by the open fraction of the iris on its circle. Midpoint rule in sin^2 up
+// to the widest passing ray; the iris radius and T are smooth in it, so few rays are traced.
 double axial_irradiance(const Tracer& tracer, double film_z, const RadialOpening& opening,
                         double iris_radius, double wavelength_nm, bool perfect) {
     const LensIndices n = tracer.at(wavelength_nm);
@@ -58,7 +59,7 @@ double axial_irradiance(const Tracer& tracer, double film_z, const RadialOpening
             return ray && std::abs(ray->iris.x) <= outer;
         },
         40);
-    std::array<Vec2d, kNodes> traced;  // (iris radius / sine)^2 is smooth on the axis as well
+    std::array<Vec2d, kNodes> traced;  // (iris radius / sine)^2 is smooth even on the axis
     for (int j = 0; j < kNodes; ++j) {
         const double s2 = widest * node(j);
         const auto ray = ray_at(s2);
@@ -75,8 +76,9 @@ double axial_irradiance(const Tracer& tracer, double film_z, const RadialOpening
     return kPiD * widest * sum / kSteps;
 }
 
-// dw = du dphi / (2 cos alpha), u = sin^2 of the angle alpha to the chief ray: midpoints in u up to the
-// edge, found for each azimuth; pictures have edges inside, and want many.
+// dw = du dphi / (2 cos alpha), u = sin^2 of the angle alpha to the chief ray: midpoint rule in u
+// up to the edge, which is searched for each azimuth. Image-shaped irises have edges inside and
+// need many steps.
 double axial_irradiance(const Tracer& tracer, double film_z, const Iris& iris, double iris_radius,
                         Vec2d chief, double wavelength_nm, bool perfect) {
     const bool picture = iris.kind() == Iris::Kind::image;

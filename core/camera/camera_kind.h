@@ -1,5 +1,5 @@
-// camera_kind.h -- what a kind of camera can do by itself; camera.h asserts it of each. What the scene sees of it is
-// inverse/inverse_kind.h: that follows for kinds that have film_point() and opening().
+// camera_kind.h -- interface of a kind of camera as concepts, which camera.h asserts for each kind.
+// inverse/inverse_kind.h covers the inverse direction; it follows from film_point() and opening().
 #pragma once
 #include <concepts>
 #include <optional>
@@ -13,13 +13,13 @@ namespace dg {
 
 using NumberGroups = std::vector<std::vector<double>>;
 
-/// Fills rays[i] for samples[i]; weight 0: stopped.
+/// Generates rays[i] for samples[i]; weight 0: clipped.
 template <typename L>
 concept Generates = requires(const L& lens, std::span<const CameraSample> samples, std::span<CameraRay> rays) {
     lens.generate(samples, rays);
 };
 
-/// Says where scene rays meet the film; a kind that disperses light asks for their wavelengths, nm.
+/// Traces scene rays to the film; dispersive kinds also take their wavelengths in nm.
 template <typename L>
 concept ReprojectsByWavelength = requires(const L& lens, std::span<const CameraRay> rays,
                                           std::span<const float> nm, std::span<Reprojection> out) {
@@ -31,27 +31,29 @@ concept Reprojects = ReprojectsByWavelength<L> ||
                          lens.reproject(rays, out);
                      };
 
-/// The view direction of a film point (mm, upright): unit, camera frame; nothing where the kind sees nothing.
+/// View direction of a film point (mm, upright): unit vector in the camera frame; empty outside the
+/// field of view.
 template <typename L>
 concept HasChief = requires(const L& lens, Vec2d film_mm) {
     { lens.chief_direction(film_mm) } -> std::convertible_to<std::optional<Vec3d>>;
 };
 
-/// The film point that sees a point (p, 1), m, or a direction (p, 0), of the camera frame; nothing if none does. All chief
-/// rays go through one point: the origin, or (0, 0, pupil_offset_m()).
+/// Film point that sees a point (p, 1) in m, or a direction (p, 0), in the camera frame; empty if
+/// none does. All chief rays pass through one point: the origin, or (0, 0, pupil_offset_m()).
 template <typename L>
 concept HasFilmPoint = requires(const L& lens, Vec3d p, double w) {
     { lens.film_point(p, w) } -> std::same_as<std::optional<Vec2d>>;
 };
 
-/// The opening is a point or an iris; of an iris the kind has its shape, `iris` or iris().
+/// Opening of the lens, a point or an iris; a kind with an iris also provides its shape, as `iris`
+/// or iris().
 template <typename L>
 concept HasOpening = requires(const L& lens) {
     { lens.opening() } -> std::same_as<Opening>;
 };
 
-/// Changes while the shutter is open are numbers, which lie between those of the neighbouring keys. groups() has them
-/// for who chooses the keys: numbers of one unit together.
+/// The lens changes over time by linear interpolation of numbers between keys. groups() lists the
+/// numbers by common unit, for the placement of keys.
 template <typename L>
 concept ChangesEvenly = HasFilmPoint<L> && HasOpening<L> &&
                         requires(L lens, const typename L::Numbers& now, std::span<const CameraSample> samples,
@@ -65,7 +67,8 @@ concept ChangesEvenly = HasFilmPoint<L> && HasOpening<L> &&
                             { lens.opening(now) } -> std::same_as<Opening>;
                         };
 
-/// Changes are set up as states, each in the frame of the middle one; a sample takes the nearest in time.
+/// The lens changes over time by precomputed states in the frame of the middle state; a sample uses
+/// the nearest.
 template <typename L>
 concept ChangesInSteps = requires(const L& lens) {
     { lens.in_the_body_of(lens) } -> std::same_as<L>;

@@ -8,7 +8,7 @@
 namespace dg {
 namespace {
 
-/// All that a kind needs, and nothing of the glass.
+/// Smallest complete kind, without optics.
 struct Complete {
     struct Numbers {
         double focal_mm;
@@ -33,10 +33,10 @@ struct OneWay : Complete {
 struct Blind : Complete {
     void chief_direction() const {}
 };
-struct Hidden : Complete {   // from the scene
+struct Hidden : Complete {   // lacks the inverse
     void opening() const {}
 };
-struct Still : Complete {   // neither numbers that blend nor states
+struct Still : Complete {   // neither interpolated numbers nor states
     struct Numbers {};
 };
 struct Both : Complete {
@@ -50,7 +50,7 @@ static_assert(!CameraKind<Hidden>);
 static_assert(!CameraKind<Still>);
 static_assert(!CameraKind<Both>);
 static_assert(!kCameraKinds<std::variant<Pinhole, OneWay>>);
-static_assert(InverseKind<Complete>);   // film_point() and opening() say how the scene sees it
+static_assert(InverseKind<Complete>);   // film_point() and opening() suffice
 static_assert(!InverseKind<Hidden>);
 static_assert(ReprojectsByWavelength<ExactLens> && !ReprojectsByWavelength<Pinhole>);
 static_assert(ChangesEvenly<Pinhole> && ChangesEvenly<ThinLens> && ChangesEvenly<Projection>);
@@ -81,7 +81,7 @@ TEST_CASE("a film that is shifted is undone at each ray's own time") {
     undo_film_shift(camera, rays, landings);
     CHECK(landings[0].film_mm == Vec2f{0, 3});
     CHECK(landings[1].film_mm == Vec2f{-3, 9});
-    camera.setting = {{0}, {{1, {2, 2}}}};   // one that never changes
+    camera.setting = {{0}, {{1, {2, 2}}}};   // constant setting
     undo_film_shift(camera, rays, landings);
     CHECK(landings[0].film_mm == Vec2f{-2, 1});
 }

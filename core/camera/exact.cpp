@@ -17,12 +17,12 @@
 namespace dg {
 namespace {
 
-constexpr double kMetre = 1e-3;  // per mm
-constexpr float kPerMm2 = 1e6f;  // mm2 in 1 m2
-// A little more than the frame is aimed at: pixel filters reach beyond its corners.
+constexpr double kMetre = 1e-3;  // m per mm
+constexpr float kPerMm2 = 1e6f;  // mm2 per m2
+// The aim covers slightly more than the frame, since pixel filters extend beyond its corners.
 constexpr double kFilmMargin = 1.02;
 
-/// The stop's own clear diameter must not count: the iris stands in its place.
+/// Removes the clear diameter of the stop, which the iris replaces.
 Prescription without_stop_aperture(const Prescription& lens) {
     Prescription open = lens;
     open.surfaces[lens.stop_index()].semi_diameter =
@@ -31,18 +31,19 @@ Prescription without_stop_aperture(const Prescription& lens) {
     return open;
 }
 
-/// Without the marks of grinding: their waves would lead every fit and every derivative astray.
+/// Removes ripple, which would disturb fits and derivatives.
 Prescription polished(Prescription lens) {
     for (Surface& s : lens.surfaces) s.ripple = {};
     return lens;
 }
 
 constexpr double kMaxTilt = 45;  // degrees
-constexpr double kSharp = 2;     // um on the film: no fit needs to be better
+constexpr double kSharp = 2;     // um on the film: sufficient accuracy of a fit
 constexpr int kMostSegments = 8;
 
-/// Where the chief ray from straight ahead (camera frame: -z) meets the plane at `depth` behind the middle
-/// of the entrance pupil, camera frame, mm: a tilted lens does not move the middle of the picture.
+/// Intersection of the chief ray of the camera's -z axis with the plane at `depth` behind the
+/// centre of the entrance pupil; camera frame, mm. Tilting the lens does not move the centre of the
+/// image.
 Vec2d straight_ahead(const Tracer& tracer, const Affine3d& turn, double pupil_z, double depth) {
     const Vec3d d = inverse(turn).vector({0, 0, 1});
     const LensRay chief{Vec3d{0, 0, pupil_z} - d * ((pupil_z + 1) / d.z), d};
@@ -61,13 +62,13 @@ Vec2d straight_ahead(const Tracer& tracer, const Affine3d& turn, double pupil_z,
 
 struct ExactLens::State {
     ExactLensSettings settings;
-    Prescription lens;   // as it was given
+    Prescription lens;   // original prescription
     Tracer tracer;
     FirstOrder order;
     double iris_radius, film_z;
     bool tilted;
-    Affine3d turn;   // camera from lens, about the middle of the entrance pupil
-    Vec2d ahead{};   // camera frame, mm: the middle of the film
+    Affine3d turn;   // camera from lens, about the centre of the entrance pupil
+    Vec2d ahead{};   // camera frame, mm: centre of the film
     LensTables tables;
     std::optional<LensFit> fit;
     FitTables fit_tables;
@@ -106,7 +107,7 @@ struct ExactLens::State {
         AimRequest request{film_z, kFilmMargin * s.half_diagonal_mm, s.iris, iris_radius,
                            s.draw};
         if (tilted) request.tilted = film_plane();
-        // The image is upside down on the film.
+        // The image is inverted on the film.
         request.film = {-1.0 * s.film_center_mm, kFilmMargin * s.film_half_mm};
         tables = make_lens_tables(Tracer(without_stop_aperture(lens)), film_plane(), true,
                                   &settings.iris, iris_radius);
@@ -124,12 +125,12 @@ struct ExactLens::State {
         settings.cache.clear();
     }
 
-    /// From the middle of the entrance pupil along the camera's axis: the lens's own axis meets the film at
-    /// film_z.
+    /// Depth of the film along the camera's axis, from the centre of the entrance pupil; the lens's
+    /// axis meets the film at film_z.
     double film_depth() const { return (film_z - order.entrance_pupil_z) * turn.z.z; }
 
-    /// In the lens's frame. The camera's own stays as it is while the lens turns about the middle of its
-    /// entrance pupil.
+    /// Film plane in the lens frame. The film is fixed in the camera frame; the lens rotates about
+    /// the centre of its entrance pupil.
     FilmPlane film_plane() const {
         if (!tilted) return {{0, 0, film_z}};
         const Affine3d back = inverse(turn);
@@ -137,7 +138,8 @@ struct ExactLens::State {
         return {center + Vec3d{0, 0, order.entrance_pupil_z}, back.x, back.y};
     }
 
-    /// Fit of the degree that is asked for; the film is divided by radius where that must be and helps.
+    /// Fits the lens at the requested degree; subdivides the film radius while the error is too
+    /// large and decreases.
     LensFit fitted(const AimRequest& aim) const {
         LensFitRequest request{aim.film_z, aim.film_radius, aim.iris, aim.iris_radius, aim.tilted, aim.film};
         request.degree = settings.fitted->degree;
@@ -150,8 +152,8 @@ struct ExactLens::State {
         return best;
     }
 
-    /// H0 and T by quadrature over the wavelengths, every 20 nm: both vary slowly. On the lens's own axis,
-    /// whatever its tilt.
+    /// Computes H0 and T by quadrature over wavelength in steps of 20 nm; both vary slowly.
+    /// Evaluated on the axis of the lens, for any tilt.
     void set_exposure() {
         const bool symmetric = is_axially_symmetric(tracer.prescription());
         const RadialOpening opening(settings.iris);
@@ -201,7 +203,7 @@ ExactLens ExactLens::in_the_body_of(const ExactLens& middle) const {
     return lens;
 }
 
-/// Arrays of one batch: structure of arrays for the lanes.
+/// Batch of rays as structure of arrays for the SIMD kernels.
 struct ExactLens::Buffers {
     LensSamples samples;
     SceneRays scene;
@@ -247,7 +249,7 @@ void ExactLens::generate(std::span<const CameraSample> samples,
         for (int i = 0; i < count; ++i) {
             const CameraSample& s = samples[begin + i];
             b.samples.x[i] = shift.x - s.film_mm.x,
-            b.samples.y[i] = shift.y - s.film_mm.y;  // the image is upside down
+            b.samples.y[i] = shift.y - s.film_mm.y;  // inverted image
             b.samples.u[i] = s.u_lens.x, b.samples.v[i] = s.u_lens.y;
             b.samples.nm[i] = s.wavelength_nm;
         }
@@ -342,7 +344,7 @@ void ExactLens::reproject(std::span<const CameraRay> rays,
             Reprojection& o = out[begin + i];
             o = {{shift.x - b.film.x[i], shift.y - b.film.y[i]}};
             if (!(pass > 0)) continue;
-            // Light that the aim misses reaches the film nevertheless.
+            // Rays outside the sampling domain of the aim still reach the film.
             o.transmittance = pass;
             o.response = pass * inv_h0 * kPerMm2;
             if (!(aim > 0) || !std::isfinite(aim)) continue;
@@ -403,7 +405,7 @@ ExactLens::Scattered ExactLens::reproject(const CameraRay& ray, const LensIndice
                                           std::uint64_t seed) const {
     const Affine3d back = inverse(state_->turn);
     const Vec3d pupil{0, 0, state_->order.entrance_pupil_z}, offset{0, 0, advance_};
-    // From the scene on: the camera's rays go the other way.
+    // Light travels opposite to the camera ray.
     const Vec3d start = back.vector(to_double(ray.ray.origin) / kMetre - offset) + pupil;
     const Vec3d direction = normalize(back.vector(-to_double(ray.ray.direction)));
     const auto light = lens.walk({start, direction}, n, ray.iris_opening, seed, {});
@@ -419,13 +421,13 @@ ExactLens::Scattered ExactLens::reproject(const CameraRay& ray, const LensIndice
 ExactLens::Ball ExactLens::front_ball() const {
     const Prescription& lens = state_->lens;
     double r = clear_radius(lens.surfaces.front());
-    if (!std::isfinite(r)) {   // nobody knows: wider than all that is known of the lens
+    if (!std::isfinite(r)) {   // unknown clear radius: use a radius larger than all known ones
         r = 0.5 * state_->order.entrance_pupil_diameter;
         for (const Surface& s : lens.surfaces)
             if (std::isfinite(clear_radius(s))) r = std::max(r, clear_radius(s));
         r *= 2;
     }
-    double low = 0, high = 0;   // of the sag: all heights, since aspheres need not end highest
+    double low = 0, high = 0;   // range of the sag at all radii, since aspheres need not be monotonic
     const SurfaceForm& front = state_->tracer.form(0);
     for (int i = 0; i <= 64; ++i)
         for (const Vec2d way : {Vec2d{1, 0}, Vec2d{0, 1}, Vec2d{-1, 0}, Vec2d{0, -1}}) {
@@ -450,8 +452,7 @@ std::optional<Vec3d> ExactLens::start(Vec3d point, Vec3d direction) const {
 }
 
 Vec3d ExactLens::chief_direction(Vec2d film_mm) const {
-    // The mean direction over a coarse grid of lens samples, weighted as they expose the
-    // film.
+    // Mean direction over a coarse grid of lens samples, weighted by exposure.
     const std::vector<CameraSample> samples =
         lens_cells({float(film_mm.x), float(film_mm.y)}, 12);
     std::vector<CameraRay> rays(samples.size());

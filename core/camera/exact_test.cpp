@@ -15,11 +15,11 @@ using namespace dg;
 namespace {
 
 struct Estimate {
-    double mean = 0, variance = 0;  // of the mean
+    double mean = 0, variance = 0;  // variance of the mean
     double pass = 0;
 };
 
-/// E / L at a film point from the lens's own sampler, with T.
+/// E / L at a film point, including T, by the lens's sampler.
 Estimate drawn(const ExactLens& lens, double radius, double nm, int count,
                unsigned seed, float opening = 1) {
     std::mt19937 random(seed);
@@ -42,8 +42,8 @@ Estimate drawn(const ExactLens& lens, double radius, double nm, int count,
     return {mean, (squares / count - mean * mean) / (count - 1), pass / count};
 }
 
-/// The same without any aim: points uniform on a disc behind the lens's rear. `power` of
-/// 1 / (1+m^2): 2 is right, 1.5 drops the cosine.
+/// E / L without importance sampling: points uniform on a disc behind the last surface. `power` of
+/// 1 / (1+m^2): 2 is right, 1.5 omits the cosine.
 Estimate rear_disc(const ExactLens& lens, double radius, double nm, int count,
                    unsigned seed, double power = 2) {
     std::mt19937 random(seed);
@@ -84,8 +84,7 @@ ExactLensSettings at(double f_stop, const Iris& iris = {}, double focus_m = 3) {
     return {f_stop, iris, focus_m, FocusFrom::pupil, 21.64};
 }
 
-/// Worst p-value of a family of z scores, and that of their sum of squares, both against
-/// `alpha`.
+/// Tests the largest z score of a family and the sum of squares, each at significance `alpha`.
 bool accepted(const std::vector<double>& scores, double alpha) {
     double squares = 0, worst = 0;
     for (const double z : scores) squares += z * z, worst = std::max(worst, std::abs(z));
@@ -106,7 +105,7 @@ TEST_CASE(
     const double e =
         axial_irradiance(t, film, RadialOpening(Iris()), 17.1, kDesignWavelength, true);
     CHECK(e == doctest::Approx(0.19247).epsilon(3e-5));
-    // The guided estimator at the same film position and iris.
+    // Guided estimator with the same film position and iris.
     const AimRequest request{film, 22, Iris(), 17.1};
     const Aim aim = make_aim(t, request);
     const LensTables tables = make_lens_tables(t, film, true, &request.iris, 17.1);
@@ -141,7 +140,7 @@ TEST_CASE("the exposure of the axis from few rays is that from many, coatings an
                 const LensIndices n = t.at(450);
                 const double e =
                     axial_irradiance(t, lens.film_z_mm(), opening, radius, 450);
-                // All directions out to beyond what passes.
+                // Brute force over all directions, beyond the passing cone.
                 constexpr int kMany = 8000;
                 const double outer = 4 * e / kPiD;
                 double sum = 0;
@@ -174,7 +173,7 @@ TEST_CASE(
                 const Estimate reference = rear_disc(lens, radius, nm, 1 << 16, ++seed);
                 const Estimate g = drawn(lens, radius, nm, 1 << 14, ++seed);
                 const Estimate b = drawn(box, radius, nm, 1 << 14, ++seed);
-                // Where the reference saw light, so must we; the rest is dark for all.
+                // The guided estimator must see light exactly where the reference does.
                 CHECK((g.mean > 0) == (reference.mean > 0));
                 if (reference.mean == 0) continue;
                 guided.push_back(z_score(g, reference));
@@ -266,7 +265,7 @@ TEST_CASE("wavelengths are stopped by the leaf on their way back, too") {
     lens.reproject(rays, same, back);
     int passed = 0;
     for (int i = 0; i < 400; ++i) passed += rays[i].weight > 0 && back[i].aim_weight > 0;
-    CHECK(passed > 120);   // 0.36 of those that are drawn
+    CHECK(passed > 120);   // 0.36 of the sampled rays
     for (CameraRay& r : rays) r.iris_opening = 0.4f;
     lens.reproject(rays, same, back);
     int fewer = 0;
@@ -281,7 +280,7 @@ TEST_CASE("uncoated, coated and perfect lenses differ by their transmittance") {
         return ExactLens(lens, at(4)).transmittance();
     };
     CHECK(transmittance(Coating::perfect) == 1);
-    // Eight air-glass surfaces of n = 1.60 to 1.72 and two cemented ones.
+    // Eight air-glass surfaces of n = 1.60 to 1.72 and two cemented surfaces.
     CHECK(transmittance(Coating::uncoated) == doctest::Approx(0.585).epsilon(0.02));
     CHECK(transmittance(Coating::mgf2) > 0.93);
 }
@@ -296,7 +295,7 @@ TEST_CASE("the picture is upright and sharp where it is focused") {
         for (CameraSample& s : samples) s.u_lens = {u(random), u(random)};
         std::vector<CameraRay> rays(samples.size());
         lens.generate(samples, rays);
-        // On the focal plane, 2 m before the pupil, the rays meet: paraxially at -film /
+        // On the focal plane, 2 m in front of the pupil, the rays meet: paraxially at -film /
         // magnification.
         const double scale = 2e3 / lens.film_distance_mm();
         for (const CameraRay& r : rays) {

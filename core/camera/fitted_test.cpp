@@ -1,4 +1,4 @@
-// fitted_test.cpp -- exact lenses that draw from polynomials, against themselves surface by surface.
+// fitted_test.cpp -- fitted exact lenses against tracing of their surfaces.
 #include <doctest/doctest.h>
 
 #include <cmath>

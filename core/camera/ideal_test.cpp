@@ -1,4 +1,4 @@
-// The ideal cameras: directions, focus, sampling of the iris, and where pixels lie.
+// Ideal cameras: directions, focus, sampling of the iris, and pixel coordinates.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ std::vector<CameraRay> draw(const LensKind& lens, Vec2f film_mm, int n) {
     return rays;
 }
 
-/// Origins on the lens in polar cells of equal area, against even filling.
+/// p-value of a chi-square test that origins are uniform on the iris, in polar cells of equal area.
 double iris_p_value(const ThinLens& lens, double swap) {
     std::vector<double> observed(64), expected;
     const int n = 100000;
@@ -69,7 +69,7 @@ TEST_CASE("all rays of a thin lens meet in the plane of focus") {
 TEST_CASE("the iris of a thin lens is filled evenly") {
     const ThinLens lens{50, 12.5, 2, {}, false};
     CHECK(iris_p_value(lens, 1.0) > 1e-3);
-    CHECK(iris_p_value(lens, 0.97) < 1e-6);   // rings of slightly unequal areas are told apart
+    CHECK(iris_p_value(lens, 0.97) < 1e-6);   // the test detects rings of slightly unequal areas
 }
 
 TEST_CASE("the mean weight does not depend on the shape of the iris") {

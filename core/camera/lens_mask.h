@@ -1,4 +1,4 @@
-// lens_mask.h -- dust and scratches: a picture of what a plane of the lens lets through.
+// lens_mask.h -- dust and scratches: transmittance image on a plane of the lens.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 namespace dg {
 
-/// Transmittances in [0, 1] over a square of the given half side around the axis, seen along the view: row 0
-/// is the top. Between pixels' centres linear; outside all light passes.
+/// Transmittances in [0, 1] over a square of the given half side around the axis, as seen along the
+/// view; row 0 is the top. Bilinear between pixel centres; 1 outside.
 struct LensMask {
     int width = 0, height = 0;
     std::vector<float> values;   // empty: clean
@@ -35,7 +35,7 @@ inline void check_mask(const LensMask& mask, const char* what) {
             throw input_error("exact lens", what, "values of 0 to 1", std::to_string(value));
 }
 
-/// Dirt on the front and at the iris; both as wide as the glass and the stop are clear.
+/// Masks on the front surface and at the iris, scaled to the clear diameters of front and stop.
 struct LensDirt {
     LensMask front, iris;
 };

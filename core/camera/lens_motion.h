@@ -1,4 +1,4 @@
-// lens_motion.h -- the lens as it is at the time of each ray: for the functions of camera.h.
+// lens_motion.h -- lens at the time of each ray, for the functions of camera.h.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace dg {
 
-/// Calls each(lens, indices of what takes it) for the states that are taken, so that a lens sees full batches.
+/// Groups samples by the nearest state, so that lenses get full batches: calls each(lens, indices).
 template <typename Each>
 void by_state(const LensMotion& motion, std::size_t count, const auto& time_of, const Each& each) {
     thread_local std::vector<std::uint32_t> state, members;
@@ -34,8 +34,9 @@ std::vector<T> taken(std::span<const T> from, std::span<const std::uint32_t> mem
     return some;
 }
 
-/// Calls use(lens, numbers) with the numbers of a time, between those of the neighbouring keys; what is no number (an
-/// iris) is that of the nearer key. Exposure follows the light: `middle` is the lens that H0 is measured with.
+/// Calls use(lens, numbers) with the numbers interpolated at a time; other parameters (the iris)
+/// are from the nearer key. Exposure scales with the light cone relative to `middle`, the lens of
+/// H0.
 template <ChangesEvenly Lens, typename Use>
 void with_numbers(const LensMotion& motion, const Lens& middle, float time, const Use& use) {
     const KeyPlace p = place_among(motion.times, time);

@@ -1,4 +1,4 @@
-// Lenses that change while the shutter is open: at each time the rays of the lens as it is then.
+// Lenses that change during the exposure: rays match the lens at their time.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -106,7 +106,8 @@ TEST_CASE("an exact lens takes the nearest of its states, and the film stays whe
         if (mixed[i].time == 0.5f) continue;
         CHECK(length(rays[i].ray.direction - alone.ray.direction) < 1e-7f);
         CHECK(rays[i].weight == doctest::Approx(alone.weight * lens.h0() / middle.h0()).epsilon(1e-5));
-        // From the film to the front vertex: the same in both, from where the film is in the middle.
+        // Distance from film to front vertex: equal in both, measured from the film of the middle
+        // state.
         const double film = (middle.film_z_mm() - middle.first_order().entrance_pupil_z) * 1e-3;
         const double own = (lens.film_z_mm() - lens.first_order().entrance_pupil_z) * 1e-3;
         CHECK(film - rays[i].ray.origin.z == doctest::Approx(own - alone.ray.origin.z).epsilon(1e-6));

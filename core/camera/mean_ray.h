@@ -1,4 +1,4 @@
-// mean_ray.h -- the mean of the rays that a lens draws, for the chief rays of film points.
+// mean_ray.h -- mean of a lens's rays, for the chief rays of film points.
 #pragma once
 #include <span>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace dg {
 
-/// Samples of one film point at the design wavelength: side x side cells of the lens.
+/// Samples for a film point at the design wavelength: side x side cells of the lens.
 inline std::vector<CameraSample> lens_cells(Vec2f film_mm, int side) {
     std::vector<CameraSample> samples;
     for (int i = 0; i < side * side; ++i)
@@ -20,7 +20,7 @@ inline std::vector<CameraSample> lens_cells(Vec2f film_mm, int side) {
     return samples;
 }
 
-/// Sum of the directions as they expose the film; 0 if nothing passes.
+/// Sum of directions weighted by exposure; 0 if no ray passes.
 inline Vec3d summed_direction(std::span<const CameraRay> rays) {
     Vec3d sum{};
     for (const CameraRay& r : rays)
@@ -29,14 +29,13 @@ inline Vec3d summed_direction(std::span<const CameraRay> rays) {
 }
 
 struct RayMeans {
-    Vec3d crossing;  // of the plane through the origin
-    Vec3d slope;     // of any length
+    Vec3d crossing;  // mean intersection with the plane through the origin
+    Vec3d slope;     // unnormalized
     double start;    // along the axis
 };
 
-/// Means over the planes across a unit axis: of where rays cross them, and of their
-/// slopes. Rays that meet in one point have a mean ray through it, whatever their
-/// weights. Some ray must pass.
+/// Means over planes across a unit axis: intersection points and slopes of the rays. If all rays
+/// meet in a point, the mean ray passes through it for any weights. At least one ray must pass.
 inline RayMeans means_across(Vec3d axis, std::span<const CameraRay> rays) {
     Vec3d crossing{}, slope{};
     double start = 0, sum = 0;

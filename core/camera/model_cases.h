@@ -1,4 +1,4 @@
-// model_cases.h -- for tests only: a model of every kind.
+// model_cases.h -- for tests only: projection models of every kind.
 #pragma once
 #include <vector>
 
@@ -9,7 +9,7 @@ namespace dg::test {
 struct ModelCase {
     const char* name;
     ProjectionModel model;
-    double far;   // of directions from the axis, radians
+    double far;   // largest tested angle from the axis, radians
 };
 
 inline std::vector<ModelCase> model_cases() {

@@ -1,5 +1,5 @@
-// near_clip.h -- the near clipping plane of a camera: what lies nearer is not in its view, neither sharp nor blurred.
-// Light is none of its affair: what is clipped still casts shadows and is seen in mirrors. Camera frame, m.
+// near_clip.h -- near clipping of the camera's view. Clipped geometry still casts shadows and
+// appears in reflections. Camera frame, m.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -9,21 +9,21 @@
 namespace dg {
 
 struct NearClip {
-    double distance_m = 0;   // of the plane across the axis, from the origin; 0: nothing is clipped
-    bool round = false;      // a ball of that radius instead, for lenses that see to the side and behind
+    double distance_m = 0;   // distance of the clipping plane from the origin; 0: no clipping
+    bool round = false;      // clips a ball of this radius instead, for fields of 180 degrees and more
 
-    /// Where a ray (unit direction) comes out of what is clipped, m from its start; 0 where it starts outside. A ray
-    /// that goes sideways or back never leaves a plane behind.
+    /// Distance along a ray (unit direction) at which it leaves the clipped region; 0 if it starts
+    /// outside. Infinite for a plane that the ray does not cross.
     double end(Vec3d from, Vec3d direction) const {
         if (!(distance_m > 0)) return 0;
         return round ? end_of_ball(from, direction) : end_of_slab(from, direction);
     }
 
   private:
-    static constexpr double kNever = 1e18;   // as is_traceable() bears it
+    static constexpr double kNever = 1e18;   // within the limits of is_traceable()
 
     double end_of_slab(Vec3d from, Vec3d direction) const {
-        const double left = distance_m + from.z;   // along the axis
+        const double left = distance_m + from.z;   // distance to the plane along the axis
         if (!(left > 0)) return 0;
         return direction.z < 0 ? std::min(left / -direction.z, kNever) : kNever;
     }

@@ -1,4 +1,4 @@
-// Where rays leave what a camera clips, against the plane and the ball by themselves.
+// Exit distances of rays from the clipped region, against plane and ball.
 #include "camera/near_clip.h"
 
 #include <doctest/doctest.h>
@@ -8,7 +8,7 @@
 namespace dg {
 namespace {
 
-/// Random rays from about the pupil.
+/// Random rays from around the pupil.
 template <typename Use>
 void for_rays(const Use& use) {
     for (int i = 0; i < 2000; ++i) {
@@ -36,7 +36,7 @@ TEST_CASE("a ray leaves the plane where it lies that far ahead, and never if it 
         else
             CHECK((from + t * way).z == doctest::Approx(-0.5));
     });
-    CHECK(clip.end({0, 0, -0.6}, {0, 0, -1}) == 0);   // the front of a long lens stands before it
+    CHECK(clip.end({0, 0, -0.6}, {0, 0, -1}) == 0);   // the front of a long lens is beyond the plane
     CHECK(clip.end({0, 0, -0.6}, {0, 1, 0}) == 0);
 }
 

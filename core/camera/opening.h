@@ -1,5 +1,5 @@
-// opening.h -- the opening of a lens as a point of the scene sees it, where no glass changes it from place to place:
-// a point, or an iris. Camera frame, m.
+// opening.h -- opening of a lens as seen from a point of the scene, for kinds without vignetting
+// glass: a point or an iris. Camera frame, m.
 #pragma once
 #include <variant>
 
@@ -7,21 +7,21 @@
 
 namespace dg {
 
-/// All light goes through the origin.
+/// Pinhole at the origin.
 struct Hole {
-    bool all_around = false;   // what lies beside it and behind is seen, too
+    bool all_around = false;   // field of view includes the side and the back
 };
 
-/// An iris that faces each chief ray, within a ball about the origin.
+/// Iris that faces each chief ray, centred on the origin.
 struct TurningIris {
     double radius;
     bool all_around;
 };
 
-/// A flat iris. Rays start on the plane z = start of its frame.
+/// Plane iris. Rays start on the plane z = start of its frame.
 struct FlatIris {
     Affine3d frame;   // camera from iris
-    double radius;    // unit of its shape; negative: an image turned by 180 degrees
+    double radius;    // unit of its shape; negative: an image rotated by 180 degrees
     double start;
 };
 

@@ -1,4 +1,5 @@
-// pinhole.h -- everything is sharp: all rays pass one point. Of a leaf shutter it has the area only.
+// pinhole.h -- pinhole camera: everything is in focus. A leaf shutter only scales the exposure by
+// its area.
 #pragma once
 #include <optional>
 #include <span>
@@ -10,12 +11,12 @@
 
 namespace dg {
 
-/// film_distance_mm fixes the field of view: tan(half angle) = half film / film_distance.
+/// film_distance_mm sets the field of view: tan(half angle) = half film / film_distance.
 struct Pinhole {
     double film_distance_mm = 50;
     bool natural_vignetting = false;   // darken by cos^4 of the field angle
 
-    /// Numbers that change evenly while it is on its way.
+    /// Parameters that can be interpolated over time.
     struct Numbers {
         double film_distance_mm;
 
@@ -27,10 +28,10 @@ struct Pinhole {
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
         generate(numbers(), samples, rays);
     }
-    /// With other numbers than its own.
+    /// Uses `numbers` instead of the lens's parameters.
     void generate(const Numbers& numbers, std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
 
-    /// Reprojects rays through the hole, whose measure across the ray is 1: etendue is in sr.
+    /// Reprojects rays through the hole, which has measure 1 across the ray: etendue is in sr.
     void reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const {
         reproject(numbers(), rays, out);
     }

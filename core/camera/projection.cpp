@@ -8,7 +8,7 @@
 namespace dg {
 namespace {
 
-/// Between the camera's frame and the model's, whose y is down and whose z is ahead.
+/// Converts between the camera frame and the model's frame (y down, z ahead).
 Vec3d turned(Vec3d v) {
     return {v.x, -v.y, -v.z};
 }
@@ -61,7 +61,7 @@ void Projection::generate(const Numbers& now, std::span<const CameraSample> samp
         rays[i].ray.direction = {0, 0, -1};
         const auto chief = chief_direction(now, {s.film_mm.x, s.film_mm.y});
         if (!chief) continue;
-        rays[i].weight = float(now.exposure) * s.iris_opening * s.iris_opening;   // the area that is open
+        rays[i].weight = float(now.exposure) * s.iris_opening * s.iris_opening;   // open area
         Vec3d origin{0, 0, 0}, direction = *chief;
         if (now.aperture_radius_mm > 0) {
             Vec2d q;
@@ -75,7 +75,7 @@ void Projection::generate(const Numbers& now, std::span<const CameraSample> samp
             const Across across(*chief);
             const double radius = 1e-3 * now.aperture_radius_mm * s.iris_opening;
             origin = radius * (q.x * across.x + q.y * across.y);
-            const double ahead = model.is_wide() ? 1 : -chief->z;   // the plane is 1 / cos further off
+            const double ahead = model.is_wide() ? 1 : -chief->z;   // distance to the plane is 1 / cos
             direction = normalize(*chief - origin * (now.inverse_focus * ahead));
         }
         rays[i].ray.origin = to_float(origin);
@@ -89,7 +89,7 @@ void Projection::reproject(const Numbers& now, std::span<const CameraRay> rays,
         out[i] = now.aperture_radius_mm > 0 ? reproject_iris(now, rays[i]) : reproject_hole(now, rays[i]);
 }
 
-/// The measure across the ray is 1: etendue is in sr.
+/// The hole has measure 1 across the ray: etendue is in sr.
 Reprojection Projection::reproject_hole(const Numbers& now, const CameraRay& ray) const {
     const auto film = film_point(now, to_double(ray.ray.direction));
     if (!film || !(ray.iris_opening > 0)) return {};
@@ -99,7 +99,7 @@ Reprojection Projection::reproject_hole(const Numbers& now, const CameraRay& ray
     return {{float(film->x), float(film->y)}, 1, float(weight), float(etendue), float(weight / etendue)};
 }
 
-/// Where a ray meets what is in focus; a direction, if that is infinitely far.
+/// Intersection of a ray with the surface in focus; the direction, if that is at infinity.
 std::optional<Vec3d> Projection::in_focus(const Numbers& now, Vec3d from, Vec3d direction) const {
     if (now.inverse_focus == 0) return direction;
     const double distance = 1 / now.inverse_focus;
@@ -113,11 +113,11 @@ std::optional<Vec3d> Projection::in_focus(const Numbers& now, Vec3d from, Vec3d 
     return from + direction * (std::sqrt(inside) - along);
 }
 
-// The point P that is in focus and lies on the ray names its chief ray c = P / |P|, and with it the film point and
-// the plane of the iris. With c held, an area dA of the iris and one of the surface in focus, whose normal is n
-// and which c sees under the solid angle dw, make
+// The point P of the ray on the surface in focus determines its chief ray c = P / |P|, and with it
+// the film point and the plane of the iris. For constant c, an area dA of the iris and the patch of
+// the focus surface with normal n and solid angle dw around c have the etendue
 //   dA cos(d, c) . (|P|^2 dw / cos(c, n)) cos(d, n) / (|P|^2 + |o|^2),
-// o the point of the iris; cos(c, n) = 1 on a sphere, where n = c.
+// where o is the point on the iris; on a sphere, n = c and cos(c, n) = 1.
 Reprojection Projection::reproject_iris(const Numbers& now, const CameraRay& ray) const {
     const Vec3d from = to_double(ray.ray.origin), d = to_double(ray.ray.direction);
     const double opening = ray.iris_opening, radius = 1e-3 * now.aperture_radius_mm * opening;

@@ -1,9 +1,10 @@
-// projection.h -- a camera that is known by its calibration, or by the formula of its picture, and not by its
-// glass: every ray is drawn through the model, none is bent afterwards.
+// projection.h -- camera defined by a calibration or a projection formula instead of a lens: the
+// model gives the direction of every ray.
 //
-// With an iris it has depth of field. The iris faces each chief ray, as the entrance pupils of fisheyes turn
-// toward the side; so a field beyond 90 degrees has one, too. What is in focus lies on the plane across the
-// axis at focus_distance_m, or, of models that see to the side and behind, on the sphere of that radius.
+// With an iris it has depth of field. The iris faces each chief ray, as entrance pupils of fisheyes
+// turn toward the side, so fields beyond 90 degrees work. The surface in focus is the plane across
+// the axis at focus_distance_m, or, for models with fields of 180 degrees and more, the sphere of
+// that radius.
 #pragma once
 #include <optional>
 #include <span>
@@ -18,19 +19,19 @@ namespace dg {
 
 struct Projection {
     ProjectionModel model{};
-    Vec2d focal_mm{50, 50};            // across and up
-    Vec2d principal_mm{0, 0};          // where the axis meets the film, upright
-    double aperture_radius_mm = 0;     // of the round iris; 0: all is sharp
-    double focus_distance_m = 1;       // infinity is allowed
+    Vec2d focal_mm{50, 50};            // horizontal and vertical
+    Vec2d principal_mm{0, 0};          // principal point on the film, upright
+    double aperture_radius_mm = 0;     // round iris; 0: everything in focus
+    double focus_distance_m = 1;       // may be infinite
     Iris iris = {};                    // shape of unit radius
 
-    /// Numbers that change evenly while it is on its way; the model's parameters change in steps.
+    /// Parameters that can be interpolated over time; the model's parameters use the nearest key.
     struct Numbers {
         Vec2d focal_mm, principal_mm;
-        double aperture_radius_mm, inverse_focus;   // 1/m: 0 at infinity
+        double aperture_radius_mm, inverse_focus;   // 1/m, 0 at infinity
         double exposure = 1;                        // factor on weights
 
-        /// Square of iris over image distance, like ThinLens::Numbers::light_cone.
+        /// Square of iris radius / image distance, like ThinLens::Numbers::light_cone.
         double light_cone() const { return aperture_radius_mm * aperture_radius_mm / (focal_mm.x * focal_mm.y); }
         std::vector<std::vector<double>> groups() const {
             return {{focal_mm.x, focal_mm.y}, {principal_mm.x, principal_mm.y}, {aperture_radius_mm}, {inverse_focus}};
@@ -42,7 +43,7 @@ struct Projection {
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
         generate(numbers(), samples, rays);
     }
-    /// With other numbers than its own.
+    /// Uses `numbers` instead of the camera's parameters.
     void generate(const Numbers& numbers, std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
 
     void reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const {
@@ -50,7 +51,7 @@ struct Projection {
     }
     void reproject(const Numbers& numbers, std::span<const CameraRay> rays, std::span<Reprojection> out) const;
 
-    /// Unit, camera frame; nothing where the model sees nothing.
+    /// Unit, camera frame; empty outside the field of view.
     std::optional<Vec3d> chief_direction(Vec2d film_mm) const { return chief_direction(numbers(), film_mm); }
     std::optional<Vec2d> film_point(Vec3d p, double) const { return film_point(numbers(), p); }
     Opening opening() const { return opening(numbers()); }

@@ -14,20 +14,21 @@ using Kind = ProjectionModel::Kind;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kNewton = 40;
-constexpr double kExact = 1e-13;   // relative, of points
-constexpr double kSame = 1e-6;     // relative, of a point and what came back of it
+constexpr double kExact = 1e-13;   // relative tolerance of points
+constexpr double kSame = 1e-6;     // relative tolerance of a round trip
 constexpr int kFoldSteps = 4096;
 
 double square(double x) {
     return x * x;
 }
 
-/// Half of the field that a unified model can look back into (Usenko et al. 2018, equations 34 and 43).
+/// Half of the range of a unified model's inverse (Usenko et al. 2018, equations 34 and 43).
 double widest(double alpha) {
     return alpha <= 0.5 ? alpha / (1 - alpha) : (1 - alpha) / alpha;
 }
 
-/// Where a slope that is positive at `low` and not at `high` turns, to the last bit that is positive.
+/// Bisects for the zero of a slope that is positive at `low` and not at `high`; returns the last
+/// position with a positive slope.
 template <class Slope>
 double last_rising(Slope slope, double low, double high) {
     for (int i = 0; i < 60; ++i) {
@@ -37,7 +38,8 @@ double last_rising(Slope slope, double low, double high) {
     return low;
 }
 
-/// Where a function that grows with `x` up to `high` has a value, by Newton's method within a bracket.
+/// Solves function(x) = value for a function that increases up to `high`, by Newton's method within
+/// a bracket.
 template <class Function, class Slope>
 double solved(Function function, Slope slope, double value, double high) {
     double low = 0, x = std::min(value, high);
@@ -66,7 +68,8 @@ Matrix product(const Matrix& a, const Matrix& b) {
     return c;
 }
 
-/// Matrix of the plane of a tilted sensor: turned by the angles, then seen from the lens (OpenCV's tauX, tauY).
+/// Homography of a tilted sensor: rotation by the angles, then projection from the lens (OpenCV's
+/// tauX, tauY).
 Matrix tilt_matrix(double x, double y) {
     const double cx = std::cos(x), sx = std::sin(x), cy = std::cos(y), sy = std::sin(y);
     const Matrix about_x{1, 0, 0, 0, cx, sx, 0, -sx, cx}, about_y{cy, 0, -sy, 0, 1, 0, sy, 0, cy};
@@ -87,13 +90,13 @@ Vec2d seen(Vec3d v) {
     return {v.x / v.z, v.y / v.z};
 }
 
-/// By the matrix of a tilted sensor or its inverse; nothing behind the horizon of its plane.
+/// Applies the homography of a tilted sensor or its inverse; empty beyond the horizon of its plane.
 std::optional<Vec2d> through(const Matrix& tilt, Vec2d p) {
     const Vec3d v = times(tilt, {p.x, p.y, 1});
     return v.z > 0 ? std::optional(seen(v)) : std::nullopt;
 }
 
-/// Faces of the cube by where they stand in the row: the axis that they look along, and those across.
+/// Faces of the cube in image order: viewing axis, and the axes of the image.
 struct Face {
     Vec3d ahead, right, down;
 };
@@ -160,7 +163,7 @@ bool ProjectionModel::is_wide() const {
     }
 }
 
-/// Where a radial model turns back upon itself, or ends.
+/// Finds the largest angle and radius: where a radial model folds back or its domain ends.
 void ProjectionModel::find_fold() {
     switch (kind_) {
     case Kind::rectilinear: largest_angle_ = kPiD / 2; return;
@@ -174,7 +177,7 @@ void ProjectionModel::find_fold() {
         return;
     }
     case Kind::double_sphere: {
-        // Along the line from the second sphere's middle that touches its end, to the first sphere.
+        // Tangent from the centre of the second sphere to its limit, continued to the first sphere.
         const double xi = k_[0], w = widest(k_[1]), inside = 1 - xi * xi * (1 - w * w);
         double z = inside >= 0 ? w * (w * xi - std::sqrt(inside)) - xi : -1;
         if (xi > 1) z = std::max(z, -1 / xi);
@@ -194,7 +197,7 @@ void ProjectionModel::find_fold() {
         return;
     }
     case Kind::ftheta: {
-        // Up to a full half turn, and no farther than the angle grows.
+        // Up to 180 degrees, as long as the angle increases.
         const auto seen = [&](double r) { return ftheta_slope(r) > 0 && ftheta_angle(r) <= kPiD ? 1.0 : -1.0; };
         double before = 0, r = 0;
         for (int i = 0; i <= 4 * kFoldSteps && seen(r) > 0; ++i) {
@@ -208,7 +211,8 @@ void ProjectionModel::find_fold() {
     case Kind::opencv:
     case Kind::opencv_inverse:
     case Kind::omni: {
-        // The ideal radius beyond which the distorted one falls; an omni model's ideal points end at its own.
+        // Ideal radius at which the distorted radius stops increasing; an omni model also has its
+        // domain limit.
         double last = kInfinity;
         double before = 0;
         for (int i = 0; i <= 4 * kFoldSteps && last == kInfinity; ++i) {
@@ -216,13 +220,13 @@ void ProjectionModel::find_fold() {
             if (!(radial_slope(r) > 0)) last = last_rising([&](double x) { return radial_slope(x); }, before, r);
             before = r;
         }
-        if (last < kInfinity && !(radial_factor(last) > 0))   // a pole before the first step, say
+        if (last < kInfinity && !(radial_factor(last) > 0))   // e.g. a pole before the first step
             throw input_error("projection", "parameters", "a radius that increases from the centre", "a radius that decreases");
         ideal_end_ = last;
         largest_angle_ = kind_ == Kind::opencv ? atan(last) : kPiD;
         largest_radius_ = last < kInfinity ? last * radial_factor(last) : kInfinity;
         if (kind_ == Kind::omni) {
-            const double xi = k_[0], inside = 1 + (1 - xi * xi) * last * last;   // of the sphere's points there
+            const double xi = k_[0], inside = 1 + (1 - xi * xi) * last * last;   // on the sphere at this radius
             largest_angle_ = acos(xi <= 1 ? -xi : -1 / xi);
             if (last < kInfinity && inside >= 0)
                 largest_angle_ = acos((xi + std::sqrt(inside)) / (1 + last * last) - xi);
@@ -236,14 +240,14 @@ void ProjectionModel::find_fold() {
     }
 }
 
-/// The distorted radius over the ideal one, by the radial terms alone.
+/// Ratio of distorted to ideal radius by the radial terms.
 double ProjectionModel::radial_factor(double r) const {
     const double r2 = r * r;
     const auto& [k1, k2, p1, p2, k3, k4, k5, k6] = radial_;
     return (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) * (1 / (1 + r2 * (k4 + r2 * (k5 + r2 * k6))));
 }
 
-/// How fast the distorted radius grows with the ideal one, by the radial terms alone.
+/// Derivative of the distorted radius by the ideal radius, radial terms only.
 double ProjectionModel::radial_slope(double r) const {
     const double r2 = r * r, r4 = r2 * r2, r6 = r4 * r2;
     const double a = 1 + radial_[0] * r2 + radial_[1] * r4 + radial_[4] * r6;
@@ -286,7 +290,7 @@ std::optional<double> ProjectionModel::angle_of(double r) const {
     }
     if (r > largest_radius_) return std::nullopt;
     if (kind_ == Kind::ftheta) return ftheta_angle(r);
-    // The radius grows with the angle up to the fold.
+    // The radius increases with the angle up to the fold.
     const auto slope = [&](double t) {
         const double t2 = t * t;
         return 1 + t2 * (3 * k_[0] + t2 * (5 * k_[1] + t2 * (7 * k_[2] + t2 * 9 * k_[3])));
@@ -302,13 +306,14 @@ double ProjectionModel::ftheta_slope(double r) const {
     return 1 + r * (2 * k_[0] + r * (3 * k_[1] + r * (4 * k_[2] + r * 5 * k_[3])));
 }
 
-/// Radial, tangential and thin prism terms, wherever they lead, and how they change with x and with y.
+/// Radial, tangential and thin prism terms, without domain checks, and their derivatives by x and
+/// y.
 ProjectionModel::Bent ProjectionModel::bent(Vec2d u) const {
     const double r2 = u.x * u.x + u.y * u.y, xy = 2 * u.x * u.y;
     const auto& [k1, k2, p1, p2, k3, k4, k5, k6] = radial_;
     const double a = 1 + r2 * (k1 + r2 * (k2 + r2 * k3)), b = 1 / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)));
     const double da = k1 + r2 * (2 * k2 + r2 * 3 * k3), db = k4 + r2 * (2 * k5 + r2 * 3 * k6);
-    const double radial = a * b, slope = 2 * (da - radial * db) * b;   // of r^2, twice
+    const double radial = a * b, slope = 2 * (da - radial * db) * b;   // derivative by r^2, times 2
     const double across = 0.5 * xy * slope;
     Bent out{{u.x * radial + p1 * xy + p2 * (r2 + 2 * u.x * u.x), u.y * radial + p1 * (r2 + 2 * u.y * u.y) + p2 * xy},
              {radial + u.x * u.x * slope + 2 * p1 * u.y + 6 * p2 * u.x, across + 2 * (p1 * u.x + p2 * u.y)},
@@ -327,12 +332,13 @@ std::optional<Vec2d> ProjectionModel::distorted(Vec2d u) const {
     const Vec2d d = bent(u).point;
     const auto p = tilts_ ? through(tilt_, d) : d;
     if (!p || !leans_) return p;
-    // Tangential and prism terms fold on one side first: what lies beyond is a point that sees something else.
+    // Tangential and prism terms fold on one side first: beyond the fold the point belongs to
+    // another direction.
     const auto back = undistorted(*p);
     return back && length(*back - u) <= kSame * std::max(length(u), 1e-3) ? p : std::nullopt;
 }
 
-/// By Newton's method on both coordinates; what it finds must lie before the fold.
+/// Newton's method in both coordinates; the solution must be before the fold.
 std::optional<Vec2d> ProjectionModel::undistorted(Vec2d p) const {
     const auto flat = tilts_ ? through(untilt_, p) : p;
     if (!flat) return std::nullopt;
@@ -353,7 +359,7 @@ std::optional<Vec2d> ProjectionModel::undistorted(Vec2d p) const {
         u = u - step;
         if (length(u) > ideal_end_) u = u * (0.999999 * ideal_end_ / length(u));
     }
-    const Bent here = bent(u);   // as near as rounding lets it come, or nowhere
+    const Bent here = bent(u);   // converged up to rounding, or not at all
     return here.area() > 0 && length(here.point - goal) <= 1e-10 * size ? std::optional(u) : std::nullopt;
 }
 
@@ -368,7 +374,8 @@ std::optional<Vec2d> ProjectionModel::project(Vec3d d) const {
     case Kind::opencv_inverse: return d.z > 0 ? undistorted(seen(d)) : std::nullopt;
     case Kind::omni: {
         const double z = d.z + k_[0] * norm;
-        // Beyond this angle two directions share a point (Mei and Rives 2007: xi > 1), or none has one.
+        // Beyond this angle two directions share a point (Mei and Rives 2007: xi > 1), or the
+        // direction has no point.
         const double back = k_[0] <= 1 ? -k_[0] : -1 / k_[0];
         if (!(z > 0 && d.z > back * norm)) return std::nullopt;
         return distorted({d.x / z, d.y / z});
@@ -376,8 +383,9 @@ std::optional<Vec2d> ProjectionModel::project(Vec3d d) const {
     case Kind::double_sphere: {
         const double xi = k_[0], alpha = k_[1];
         const double z = xi * norm + d.z, d2 = hypot(hypot(d.x, d.y), z);
-        // The second sphere ends where a unified model does. (Equation 43 says it of the first one's angle, but
-        // ends some degrees before.) Beyond a second angle two directions share a point of it, as in omni.
+        // The second sphere has the domain of a unified model. (Equation 43 bounds the angle of the
+        // first sphere instead, some degrees too early.) Beyond a second angle two directions share
+        // a point, as in omni.
         if (!(z > -widest(alpha) * d2 && (xi <= 1 || d.z * xi > -norm))) return std::nullopt;
         const double scale = alpha * d2 + (1 - alpha) * z;
         return scale > 0 ? std::optional(Vec2d{d.x / scale, d.y / scale}) : std::nullopt;
@@ -427,7 +435,7 @@ std::optional<Vec3d> ProjectionModel::unproject(Vec2d p) const {
         const double other = z * z + (1 - xi * xi) * r2;
         if (!(other >= 0)) return std::nullopt;
         const double scale = (z * xi + std::sqrt(other)) / (z * z + r2);
-        if (!(scale > 0)) return std::nullopt;   // of xi from 1 on: no direction has this point
+        if (!(scale > 0)) return std::nullopt;   // for xi >= 1: no direction has this point
         return normalize(Vec3d{scale * p.x, scale * p.y, scale * z - xi});
     }
     case Kind::eucm: {
@@ -435,7 +443,7 @@ std::optional<Vec3d> ProjectionModel::unproject(Vec2d p) const {
         const double inside = 1 - (2 * alpha - 1) * beta * r2;
         if (!(inside >= 0)) return std::nullopt;
         const double over = alpha * std::sqrt(inside) + 1 - alpha;
-        if (!(over > 0)) return std::nullopt;   // the rim of alpha 1
+        if (!(over > 0)) return std::nullopt;   // rim at alpha = 1
         return normalize(Vec3d{p.x, p.y, (1 - beta * alpha * alpha * r2) / over});
     }
     default: break;
@@ -451,7 +459,7 @@ std::optional<Vec3d> ProjectionModel::unproject(Vec2d p) const {
 Vec2d ProjectionModel::continued(Vec2d p) const {
     if (kind_ != Kind::equirectangular || (std::abs(p.x) <= kPiD && std::abs(p.y) <= kPiD / 2)) return p;
     p.y = std::remainder(p.y, 2 * kPiD);
-    if (std::abs(p.y) > kPiD / 2) {   // over a pole, and down behind it
+    if (std::abs(p.y) > kPiD / 2) {   // across a pole, continuing on the other side
         p.y = std::copysign(kPiD, p.y) - p.y;
         p.x += kPiD;
     }

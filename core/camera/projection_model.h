@@ -1,13 +1,14 @@
-// projection_model.h -- how a camera that is known by a calibration, or by a formula, maps directions to its
-// picture: fisheyes, panoramas, and the models of OpenCV, Kalibr and their kin.
+// projection_model.h -- projection models: maps from directions to image points by calibration or
+// formula, for fisheyes, panoramas, and the models of OpenCV, Kalibr and similar tools.
 //
-// Frame of this file, which is OpenCV's: x to the right, y down, z ahead. Points of the picture are in units
-// of the focal length from the principal point, as OpenCV has them before the camera matrix.
+// Frame of this file, as in OpenCV: x right, y down, z ahead. Image points are relative to the
+// principal point in units of focal length, like OpenCV's points before the camera matrix.
 //
-// Sources: OpenCV 5, "Camera Calibration and 3D Reconstruction" (rational, thin prism, tilt) and "Fisheye";
-// Kannala and Brandt 2006; OpenLensIO 1.0.1 (the inverse: its Brown-Conrady D-U); Usenko, Demmel and Cremers 2018, The Double Sphere Camera Model (double sphere,
-// EUCM, UCM and their domains); Mei and Rives 2007 (omni); Devernay and Faugeras 2001 (FOV); NVIDIA, "Lens Distortion
-// Schemas" of OmniLensDistortionFthetaAPI (f-theta).
+// Sources: OpenCV 5, "Camera Calibration and 3D Reconstruction" (rational, thin prism, tilt) and
+// "Fisheye"; Kannala and Brandt 2006; OpenLensIO 1.0.1 (the inverse: its Brown-Conrady D-U);
+// Usenko, Demmel and Cremers 2018, The Double Sphere Camera Model (double sphere, EUCM, UCM and
+// their domains); Mei and Rives 2007 (omni); Devernay and Faugeras 2001 (FOV); NVIDIA, "Lens
+// Distortion Schemas" of OmniLensDistortionFthetaAPI (f-theta).
 #pragma once
 #include <array>
 #include <optional>
@@ -19,40 +20,39 @@ namespace dg {
 
 struct ProjectionModel {
     enum class Kind {
-        rectilinear, equidistant, equisolid, stereographic, orthographic,   // by the angle from the axis alone
+        rectilinear, equidistant, equisolid, stereographic, orthographic,   // functions of the angle from the axis
         equirectangular,   // longitude and latitude; x, y in radians
-        cube,              // six faces side by side, of side 1: right, left, below, above, ahead, behind
+        cube,              // six faces in a row, of side 1: right, left, down, up, ahead, behind
         opencv,            // k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 tilt_x tilt_y (radians)
         kannala_brandt,    // k1 k2 k3 k4; OpenCV's fisheye, ROS's and Kalibr's equidistant
         double_sphere,     // xi alpha
         eucm,              // alpha beta
         omni,              // xi k1 k2 p1 p2; Kalibr's omni with radtan
         fov,               // w (radians)
-        opencv_inverse,    // k1 k2 p1 p2 k3 k4 k5 k6: points of the picture to ideal ones, by opencv's terms
+        opencv_inverse,    // k1 k2 p1 p2 k3 k4 k5 k6: maps image points to ideal points by opencv's terms
         ftheta,            // k2 k3 k4 k5: angle = r + k2 r^2 + k3 r^3 + k4 r^4 + k5 r^5, NVIDIA's f-theta
     };
     static constexpr int kMost = 14;
 
-    /// Error that names the parameter where they make no model.
+    /// Throws an Error with the parameter's name for invalid parameters.
     explicit ProjectionModel(Kind kind = Kind::rectilinear, std::array<double, kMost> parameters = {});
 
     Kind kind() const { return kind_; }
-    /// Where a direction (of any length) is seen; nothing outside of the model's valid field, where no point of the
-    /// picture sees it.
+    /// Image point of a direction (of any length); empty outside the model's field of view.
     std::optional<Vec2d> project(Vec3d direction) const;
-    /// The direction (unit) that a point sees; nothing where the model has none.
+    /// Direction (unit) of an image point; empty if the model has none.
     std::optional<Vec3d> unproject(Vec2d point) const;
-    /// The point in place of one beyond the edges: a panorama goes on at its other side, where the filters of its last
-    /// pixels reach. Of other models the point itself.
+    /// Wraps a point beyond the edges of a panorama to the other side, for the filters of edge
+    /// pixels. The identity for other models.
     Vec2d continued(Vec2d point) const;
-    /// Solid angle per area of the picture; 0 where nothing is seen.
+    /// Solid angle per area of the image; 0 outside the field of view.
     double solid_angle(Vec2d point) const;
 
-    /// Ends of the valid field: the largest angle from the axis, and the largest radius of the picture, of models that
-    /// are the same on all sides (opencv: of its radial part); infinite where nothing ends.
+    /// Limits of the field of view of axially symmetric models (opencv: of the radial terms):
+    /// largest angle from the axis and largest image radius; infinite without limit.
     double largest_angle() const { return largest_angle_; }
     double largest_radius() const { return largest_radius_; }
-    /// Directions straight to the side, or behind, may be seen.
+    /// Whether the field of view may include directions at 90 degrees and beyond.
     bool is_wide() const;
 
   private:
@@ -64,7 +64,7 @@ struct ProjectionModel {
     std::optional<Vec2d> undistorted(Vec2d point) const;
     struct Bent {
         Vec2d point, by_x, by_y;
-        double area() const { return by_x.x * by_y.y - by_x.y * by_y.x; }   // at most 0 where it folds
+        double area() const { return by_x.x * by_y.y - by_x.y * by_y.x; }   // not positive at a fold
     };
     Bent bent(Vec2d ideal) const;
     double radial_factor(double radius) const;
@@ -74,11 +74,12 @@ struct ProjectionModel {
     Kind kind_;
     std::array<double, kMost> k_;
     std::array<double, 8> radial_{};   // k1 k2 p1 p2 k3 k4 k5 k6, of opencv and omni
-    std::array<double, 9> tilt_{}, untilt_{};   // rows
+    std::array<double, 9> tilt_{}, untilt_{};   // row-major
     bool tilts_ = false;
-    bool leans_ = false;   // has terms that are not the same on all sides
+    bool leans_ = false;   // has terms without axial symmetry
     double largest_angle_, largest_radius_;
-    double ideal_end_;   // of opencv and omni: the ideal radius where the distorted one folds; of the inverse the other
+    double ideal_end_;   // fold of opencv and omni: ideal radius at which the distorted radius peaks; swapped for
+                         // opencv_inverse
 };
 
 }  // namespace dg

@@ -12,7 +12,7 @@ using Kind = ProjectionModel::Kind;
 
 namespace {
 
-/// At an angle from the axis, turned about it.
+/// Direction at an angle from the axis, rotated about it.
 Vec3d direction(double angle, double turn) {
     return {std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), std::cos(angle)};
 }
@@ -113,8 +113,8 @@ TEST_CASE("closed forms of fisheyes and panoramas") {
     const auto below = ProjectionModel(Kind::equirectangular).project({0, 1, 1});
     CHECK(below->y == doctest::Approx(kPiD / 4));
     const ProjectionModel cube(Kind::cube);
-    CHECK(cube.project({0, 0, 1})->x == doctest::Approx(1.5));      // ahead: the fifth
-    CHECK(cube.project({1, 0, 0})->x == doctest::Approx(-2.5));     // right: the first
+    CHECK(cube.project({0, 0, 1})->x == doctest::Approx(1.5));      // ahead: the fifth face
+    CHECK(cube.project({1, 0, 0})->x == doctest::Approx(-2.5));     // right: the first face
     CHECK(cube.project({0.2, 0.1, 1})->x == doctest::Approx(1.6));
     CHECK(cube.project({0.2, 0.1, 1})->y == doctest::Approx(0.05));
 }
@@ -153,7 +153,7 @@ TEST_CASE("an f-theta model gives the angle of a radius by its polynomial, up to
     CHECK(turns.unproject({1.999, 0}).has_value());
     CHECK_FALSE(turns.unproject({2.001, 0}).has_value());
     CHECK_FALSE(turns.project(direction(1.001, 0)).has_value());
-    const ProjectionModel behind(Kind::ftheta, {0, 0.1});   // r + r^3 / 10 is pi there
+    const ProjectionModel behind(Kind::ftheta, {0, 0.1});   // ends where r + r^3 / 10 is pi
     const double last = behind.largest_radius();
     CHECK(last + 0.1 * last * last * last == doctest::Approx(kPiD).epsilon(1e-12));
     CHECK(ProjectionModel(Kind::ftheta, {-1e3}).largest_radius() == doctest::Approx(5e-4).epsilon(1e-9));
@@ -188,7 +188,7 @@ TEST_CASE("models of one and two spheres see up to one edge, whichever way it is
             CAPTURE(set[0]);
             CAPTURE(set[1]);
             for (int i = 0; i < 4000; ++i) {
-                const double r = 0.001 * (i + 0.5);   // rings of the picture
+                const double r = 0.001 * (i + 0.5);   // rings of the image
                 const auto d = model.unproject({0.6 * r, 0.8 * r});
                 if (!d) continue;
                 const auto p = model.project(*d);
@@ -196,7 +196,7 @@ TEST_CASE("models of one and two spheres see up to one edge, whichever way it is
                 CHECK(length(*p - Vec2d{0.6 * r, 0.8 * r}) < 1e-6 * std::max(r, 1.0));
             }
             for (int i = 0; i < 1000; ++i) {
-                const Vec3d d = direction(kPiD * (i + 0.5) / 1000, 0.7);   // and of the world
+                const Vec3d d = direction(kPiD * (i + 0.5) / 1000, 0.7);   // rings of the world
                 const auto p = model.project(d);
                 if (!p) continue;
                 const auto back = model.unproject(*p);

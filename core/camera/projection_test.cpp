@@ -36,7 +36,7 @@ TEST_CASE("drawn rays come back to their film point with their weight") {
                             std::abs(back[i].aim_weight * back[i].transmittance / rays[i].weight - 1) < 1e-4f;
                 }
                 CHECK(seen > 20);
-                CHECK(near >= seen - 2);   // at the rim of the iris, or of a face of the cube
+                CHECK(near >= seen - 2);   // except at the rim of the iris, or of a cube face
             }
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("what is in focus is met by all rays of a film point") {
         for (const CameraRay& r : rays) {
             const Vec3d to = point - to_double(r.ray.origin);
             CHECK(length(cross(normalize(to), to_double(r.ray.direction))) < 1e-6);
-            CHECK(std::abs(dot(to_double(r.ray.origin), chief)) < 1e-7);   // the iris faces it
+            CHECK(std::abs(dot(to_double(r.ray.origin), chief)) < 1e-7);   // the iris faces the chief ray
         }
     }
 }

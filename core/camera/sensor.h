@@ -1,4 +1,4 @@
-// sensor.h -- where pixels lie on the film: the wall between px and mm.
+// sensor.h -- sensor geometry: conversion between px and mm.
 #pragma once
 #include "math/vec.h"
 
@@ -7,8 +7,8 @@ namespace dg {
 /// Pixel (0,0) has its top left corner at px (0,0); film mm are upright with +y up.
 struct Sensor {
     int width = 0, height = 0;              // px
-    double width_mm = 36, height_mm = 24;   // what the frame covers
-    Vec2d center_mm{0, 0};                  // film shift: where the frame's centre lies
+    double width_mm = 36, height_mm = 24;   // size of the frame
+    Vec2d center_mm{0, 0};                  // film shift: centre of the frame
 
     Vec2f mm_from_px(Vec2f px) const {
         return {float((px.x / width - 0.5) * width_mm + center_mm.x),
@@ -20,11 +20,11 @@ struct Sensor {
     }
     /// Area of a pixel.
     double mm2_per_px() const { return width_mm / width * height_mm / height; }
-    /// Whether a place is on the frame.
+    /// Whether a point is on the frame.
     bool holds(Vec2f px) const {
         return px.x >= 0 && px.y >= 0 && px.x < float(width) && px.y < float(height);
     }
-    /// The same in double, for ground truth.
+    /// In double, for ground truth.
     Vec2d mm_from_px(Vec2d px) const {
         return {(px.x / width - 0.5) * width_mm + center_mm.x,
                 (0.5 - px.y / height) * height_mm + center_mm.y};

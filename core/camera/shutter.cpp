@@ -59,9 +59,9 @@ double OpeningCurve::at(double u) const {
     return length > 0 ? s_[i - 1] + (s_[i] - s_[i - 1]) * (u - u_[i - 1]) / length : s_[i];
 }
 
-// Within a segment the density is linear from a to b, so its CDF is a parabola. The form of its root is
-// that which keeps its digits: x = r (a + b) / (a + sqrt(a^2 (1 - r) + b^2 r)).
-// Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 4th ed., section 2.3.2.
+// Within a segment the density is linear from a to b, so its CDF is quadratic; this form of the
+// root is numerically stable: x = r (a + b) / (a + sqrt(a^2 (1 - r) + b^2 r)). Source: Pharr,
+// Jakob, Humphreys, Physically Based Rendering, 4th ed., section 2.3.2.
 double OpeningCurve::draw(double r) const {
     const double wanted = r * mean();
     const auto above = std::upper_bound(area_.begin(), area_.end(), wanted);
@@ -100,7 +100,7 @@ Shutter Shutter::within(int pixels_left, int pixels_above) const {
 }
 
 double Shutter::opens_at(Vec2d px) const {
-    const double line = (scans_columns() ? px.x : px.y) - 0.5 - std::max(0, before_);   // lines have their middles there
+    const double line = (scans_columns() ? px.x : px.y) - 0.5 - std::max(0, before_);   // line centres
     return line_ > 0 ? open_of(std::clamp(line, 0.0, lines_ - 1.0)) : 0;
 }
 
@@ -122,7 +122,7 @@ float Shutter::opening(int row, float time) const {
     if (row < 0 || row >= lines_) return 0;
     const double open = open_of(row);
     if (!(exposure_ > 0)) return time == float(open) ? 1.f : 0.f;
-    // A time that was drawn in this window counts, whatever single precision made of it.
+    // Accept times that were sampled in this window, despite rounding to float.
     const double u = (time - open) / exposure_, slack = 1.2e-7 / exposure_;
     if (u < -slack || u > 1 + slack) return 0;
     return float(settings_.curve.at(std::clamp(u, 0.0, 1.0)));

@@ -17,7 +17,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 OpeningCurve curve_of(std::vector<double> u, std::vector<double> s) { return OpeningCurve::points(u, s); }
 
-/// Drawn times in 40 cells against the integral of `law` there, by midpoints.
+/// p-value of sampled times in 40 cells against the integral of `law`, by the midpoint rule.
 double p_value(const OpeningCurve& drawn, const OpeningCurve& law) {
     const int n = 40000, cells = 40, fine = 200;
     std::vector<double> observed(cells), expected(cells);
@@ -59,7 +59,7 @@ TEST_CASE("the mean of a curve is its efficiency") {
         settings.exposure_s = 0.02, settings.curve = OpeningCurve::trapezoid(e);
         CHECK(Shutter(settings, 8, 6).weight() == doctest::Approx(e));
     }
-    CHECK(curve_of({0, 1}, {0, 7}).mean() == doctest::Approx(0.5));   // scaled: its largest is open
+    CHECK(curve_of({0, 1}, {0, 7}).mean() == doctest::Approx(0.5));   // scaled to a maximum of 1
 }
 
 TEST_CASE("curves that are none are refused") {
@@ -81,7 +81,7 @@ TEST_CASE("curves that are none are refused") {
 }
 
 TEST_CASE("lines are exposed one after the other, from the side that is asked for") {
-    // 10 lines, 2 ms apart, each for 4 ms: 22 ms in all.
+    // 10 lines, 2 ms apart, 4 ms each: 22 ms in total.
     struct Case { ScanOrder scan; int x, y; double line; };
     for (const Case& c : {Case{ScanOrder::top, 3, 7, 7}, {ScanOrder::bottom, 3, 7, 2},
                           {ScanOrder::left, 3, 7, 3}, {ScanOrder::right, 3, 7, 6}}) {
@@ -109,7 +109,8 @@ TEST_CASE("lines are exposed one after the other, from the side that is asked fo
 }
 
 TEST_CASE("times of no line in particular expose each line as its own times do") {
-    for (const double exposure : {0.0, 0.002, 0.01, 0.5})   // an instant, windows apart, touching, over each other
+    for (const double exposure : {0.0, 0.002, 0.01, 0.5})   // an instant; separate, touching and overlapping
+                                                            // windows
         for (const ScanOrder scan : {ScanOrder::top, ScanOrder::right}) {
             ShutterSettings settings = rolling(scan, exposure, 0.01);
             settings.curve = OpeningCurve::trapezoid(0.75);
@@ -120,7 +121,8 @@ TEST_CASE("times of no line in particular expose each line as its own times do")
                 const float time = shutter.draw_any(float((i + 0.5) / n)).time;
                 for (int row = 0; row < lines; ++row) exposed[row] += shutter.opening(row, time) / n;
             }
-            // With times of density q each line gets the integral of s over its window; an instant counts as 1.
+            // With times of density q, each line receives the integral of s over its window; an
+            // instant counts as 1.
             const double mean = exposure > 0 ? shutter.weight() : 1;
             for (const double e : exposed)
                 CHECK(e / shutter.any_share() == doctest::Approx(mean).epsilon(0.01));

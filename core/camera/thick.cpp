@@ -11,11 +11,11 @@
 namespace dg {
 namespace {
 
-constexpr double kMetre = 1e-3;  // per mm
+constexpr double kMetre = 1e-3;  // m per mm
 
 Vec2d xy(Vec3d v) { return {v.x, v.y}; }
 
-/// E / L in the middle of the film: integral of cos^4 / Z^2 over the exit pupil (Kolb 1995, eq. 4).
+/// E / L at the centre of the film: integral of cos^4 / Z^2 over the exit pupil (Kolb 1995, eq. 4).
 double axial_exposure(const RadialOpening& opening, double radius, double distance) {
     constexpr int kSteps = 1024;
     double sum = 0;
@@ -27,7 +27,8 @@ double axial_exposure(const RadialOpening& opening, double radius, double distan
     return sum * opening.outer() / kSteps * radius / distance;
 }
 
-/// Along the axis, luminance-weighted over a D65 spectrum; 1 where the axis is no ray of the lens.
+/// Transmittance along the axis, luminance-weighted over a D65 spectrum; 1 if no ray along the axis
+/// passes.
 double axial_transmittance(const Prescription& lens) {
     const Tracer tracer(lens);
     const LensRay axis{{0, 0, lens.last_vertex() + 1}, {0, 0, -1}};
@@ -73,7 +74,7 @@ ThickLens::ThickLens(const Prescription& lens, const ThickLensSettings& s)
 
 ThickLens ThickLens::in_the_body_of(const ThickLens& middle) const {
     ThickLens lens = *this;
-    // The film stays; focusing moves the lens, and the pupil with it.
+    // The film is fixed; focusing moves the lens and its pupil.
     const auto film = [](const ThickLens& l) {
         return (l.film_z_ - l.order_.entrance_pupil_z) * l.turn_.z.z;
     };
@@ -83,7 +84,7 @@ ThickLens ThickLens::in_the_body_of(const ThickLens& middle) const {
     return lens;
 }
 
-/// The upright picture is turned by 180 degrees on the film.
+/// Film point in the lens frame. The image on the film is rotated by 180 degrees.
 Vec3d ThickLens::film_in_lens(Vec2d film_mm) const {
     const double depth = (film_z_ - order_.entrance_pupil_z) * turn_.z.z;
     const Vec3d p = back_.vector({film_origin_.x - film_mm.x, film_origin_.y - film_mm.y, depth});
@@ -103,20 +104,20 @@ ThickLens::Line ThickLens::to_film(const Line& scene) const {
     return {scene.height, (scene.slope * front_focal - scene.height) * (1 / order_.efl)};
 }
 
-/// Where a ray behind the lens meets the film, lens frame.
+/// Intersection of a ray behind the lens with the film, in the lens frame.
 std::optional<Vec3d> ThickLens::meets_film(const Line& rear) const {
-    // The film: n . (p - pupil) = depth, with n its normal.
+    // Film plane: n . (p - pupil) = depth, with normal n.
     const Vec3d n = -film_normal_;
     const double from_pupil = order_.back_principal_z - order_.entrance_pupil_z;
     const double depth = (film_z_ - order_.entrance_pupil_z) * turn_.z.z;
     const double run = dot(xy(n), rear.slope) + n.z;
     if (!(run > 0)) return std::nullopt;
-    const double z = (depth - dot(xy(n), rear.height) - n.z * from_pupil) / run;   // past H'
+    const double z = (depth - dot(xy(n), rear.height) - n.z * from_pupil) / run;   // distance past H'
     const Vec2d at = rear.height + rear.slope * z;
     return Vec3d{at.x, at.y, order_.back_principal_z + z};
 }
 
-/// Where the chief ray of a direction (camera frame) meets the film, camera frame, mm.
+/// Intersection of the chief ray of a direction (camera frame) with the film; camera frame, mm.
 std::optional<Vec2d> ThickLens::film_hit(Vec3d direction) const {
     const Vec3d d = back_.vector(direction);
     if (!(d.z < 0)) return std::nullopt;
@@ -143,7 +144,7 @@ Vec3d ThickLens::chief_direction(Vec2d film_mm) const {
     return normalize(turn_.vector({-ray.slope.x, -ray.slope.y, -1}));
 }
 
-/// Solid angle of a patch of the exit pupil for the film, both cosines over the distance squared: 1/mm2.
+/// Solid angle per area of the exit pupil times the cosine on the film, 1/mm2.
 double ThickLens::solid_angle(Vec3d film, Vec2d pupil) const {
     const Vec3d to_pupil{pupil.x - film.x, pupil.y - film.y, order_.exit_pupil_z - film.z};
     const double d2 = length_squared(to_pupil);
@@ -161,7 +162,7 @@ void ThickLens::generate(std::span<const CameraSample> samples, std::span<Camera
         const Vec3d film = film_in_lens({s.film_mm.x, s.film_mm.y});
         const Vec2d pupil = q * (pupil_radius * s.iris_opening);
         const Line ray = to_scene(film, pupil);
-        // Start where the glass starts.
+        // Start at the first vertex.
         const Vec2d start = ray.height - ray.slope * order_.front_principal_z;
         const Vec3d origin = turn_.vector({start.x, start.y, -order_.entrance_pupil_z}) * kMetre;
         const Vec3d out = turn_.vector(normalize(Vec3d{-ray.slope.x, -ray.slope.y, -1}));
@@ -195,7 +196,8 @@ void ThickLens::reproject(std::span<const CameraRay> rays, std::span<Reprojectio
         const double pass = iris_.transmission(pupil * (1 / (pupil_radius * r.iris_opening)));
         const double exposed = area * r.iris_opening * r.iris_opening * solid_angle(*film, pupil);
         if (!(pass > 0 && exposed > 0) || !std::isfinite(exposed)) continue;
-        // Slopes keep their measure through the lens, cos^-4 dw; film and scene see other cosines.
+        // The lens preserves the measure of slopes, cos^-4 dw; the cosines differ between film and
+        // scene.
         const double cos2 = d.z * d.z * (1 + dot(rear.slope, rear.slope));
         const double etendue = kMetre * kMetre * exposed * cos2 * cos2 * focal * focal;
         const Vec2d at = film_origin_ - xy(turn_.vector({film->x, film->y,

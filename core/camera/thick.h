@@ -1,11 +1,12 @@
-// thick.h -- the thick lens of a prescription: two principal planes and an exit pupil instead of glass.
-// Source: Kolb, Mitchell, Hanrahan 1995, A Realistic Camera Model for Computer Graphics, sections 3.2
-// (thick lens) and 3.4 (exposure over the exit pupil).
+// thick.h -- thick lens of a prescription: two principal planes and an exit pupil. Source: Kolb,
+// Mitchell, Hanrahan 1995, A Realistic Camera Model for Computer Graphics, sections 3.2 (thick
+// lens) and 3.4 (exposure over the exit pupil).
 //
-// A ray from the film goes to a point of the exit pupil, a disc of the iris's shape; it meets the rear
-// principal plane, leaves the front one at the same height, and is bent as the focal length says. So every
-// film point is imaged to one point. No mount vignettes and no glass absorbs; what is left of the fall-off is
-// that of the exit pupil as the film sees it, cos^4 where both are parallel.
+// A ray from the film toward a point of the exit pupil, a disc with the shape of the iris,
+// intersects the rear principal plane, leaves the front principal plane at the same height, and is
+// refracted by the focal length. So every film point is imaged to a point. There is no mechanical
+// vignetting and no absorption; the remaining fall-off comes from the exit pupil as seen from the
+// film, cos^4 if both are parallel.
 #pragma once
 #include <limits>
 #include <optional>
@@ -20,44 +21,45 @@
 namespace dg {
 
 struct ThickLensSettings {
-    double f_stop = 0;  // 0: as wide as the lens opens
+    double f_stop = 0;  // 0: wide open
     Iris iris = {};
     double focus_distance_m = std::numeric_limits<double>::infinity();
     FocusFrom focus_from = FocusFrom::pupil;
-    std::optional<double> film_z = {};  // lens frame, mm, on the lens's axis; set: focus was solved above
+    std::optional<double> film_z = {};  // lens frame, mm, on the lens's axis; if set, focus is already solved
     Vec2d tilt_deg{0, 0};               // see tilt.h
 };
 
 class ThickLens {
   public:
-    /// Error if the lens cannot open or focus like that, or has no pupils at a finite place.
+    /// Throws Error if the lens cannot open or focus as requested, or is telecentric.
     ThickLens(const Prescription& lens, const ThickLensSettings& settings);
 
-    /// The lens moved to the body of another, like ExactLens::in_the_body_of.
+    /// This lens as a state of another body, like ExactLens::in_the_body_of.
     ThickLens in_the_body_of(const ThickLens& middle) const;
 
-    /// Rays start on the plane of the first vertex.
+    /// Generates rays that start on the plane of the first vertex.
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const;
 
-    /// Where scene rays meet the film. (This lens keeps dx dy times the slopes', not dA cos dw: a response
-    /// is not the same for all rays.)
+    /// Traces scene rays to the film. (This lens preserves dx dy times the measure of slopes, not
+    /// dA cos dw, so the response varies between rays.)
     void reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const;
 
-    /// Through the centres of the pupils: from the camera's origin (unit; camera frame). Every plane that is
-    /// imaged to the film sees its points on these rays.
+    /// Ray from the camera's origin through the centres of the pupils (unit; camera frame). Film
+    /// points see points of every conjugate plane along these rays.
     Vec3d chief_direction(Vec2d film_mm) const;
-    /// Its inverse: the film point (mm, upright) that sees a point (p, 1), m, or a direction (p, 0); nothing if none
+    /// Film point (mm, upright) that sees a point (p, 1) in m, or a direction (p, 0); empty if none
     /// does.
     std::optional<Vec2d> film_point(Vec3d p, double w) const;
-    /// z of the camera's origin, m, as it lies from the middle of the pupil: 0 but for states of a body.
+    /// z of the camera's origin relative to the pupil's centre, m: nonzero only for states of a
+    /// body.
     double pupil_offset_m() const { return offset_m_; }
-    /// Camera from lens, with the middle of the entrance pupil as origin.
+    /// Camera from lens, with the centre of the entrance pupil as origin.
     const Affine3d& turn() const { return turn_; }
     const Iris& iris() const { return iris_; }
-    /// The entrance pupil.
+    /// Entrance pupil.
     Opening opening() const;
 
-    /// H0 like ExactLens::h0: with the transmittance of the glass on the axis, which all rays have here.
+    /// H0 like ExactLens::h0; all rays have the transmittance of the glass on the axis.
     double h0() const { return transmittance_ * axial_; }
     double transmittance() const { return transmittance_; }
     double f_stop() const { return f_stop_; }
@@ -66,9 +68,9 @@ class ThickLens {
     const FirstOrder& first_order() const { return order_; }
 
   private:
-    /// Lens frame, mm.
+    /// Ray in the lens frame, mm.
     struct Line {
-        Vec2d height;  // on the rear or front principal plane, which see the same
+        Vec2d height;  // on the principal planes, equal on both
         Vec2d slope;   // dx/dz, dy/dz
     };
     Vec3d film_in_lens(Vec2d film_mm) const;
@@ -82,10 +84,10 @@ class ThickLens {
     Iris iris_;
     double f_stop_, iris_radius_, film_z_;
     Affine3d turn_;          // camera from lens, mm, origin at the entrance pupil
-    Affine3d back_;          // its inverse
-    Vec3d film_normal_;      // in the lens's frame, toward the lens
-    Vec2d film_origin_{};    // camera frame, mm: where the chief ray from straight ahead lands
-    double axial_ = 0, transmittance_ = 1;   // E / L on the axis, without and through glass
+    Affine3d back_;          // inverse of turn_
+    Vec3d film_normal_;      // in the lens frame, toward the lens
+    Vec2d film_origin_{};    // camera frame, mm: landing point of the chief ray along -z
+    double axial_ = 0, transmittance_ = 1;   // E / L on the axis without glass, and transmittance of the glass
     double unit_ = 0;        // E / L of weight 1, without glass
     double offset_m_ = 0;
 };

@@ -1,4 +1,5 @@
-// The thick lens against the closed forms of its cardinal points, thin lenses, and exact ones near the axis.
+// Thick lens against closed forms of its cardinal points, thin lenses, and exact lenses near the
+// axis.
 #include "camera/thick.h"
 
 #include <doctest/doctest.h>
@@ -33,13 +34,13 @@ double mean_weight(const std::vector<CameraRay>& rays) {
     return sum / double(rays.size());
 }
 
-/// Where the rays meet: least squares over their lines. And how far they pass by, RMS, m.
+/// Least-squares intersection of rays, and their RMS distance from it, m.
 struct Meeting {
     Vec3d point;
     double miss;
 };
 Meeting meeting(const std::vector<CameraRay>& rays) {
-    // In two slopes: x + t m = p, with m = d / -d.z and t the depth: a line in t of the spread.
+    // In slopes: x + t m = p, with m = d / -d.z and t the depth; least squares in t.
     double n = 0, sm = 0, smm = 0;
     Vec3d so{}, sd{};
     double cross = 0;
@@ -65,7 +66,7 @@ Meeting meeting(const std::vector<CameraRay>& rays) {
     return {point, std::sqrt(miss / sm)};
 }
 
-/// A thin biconvex singlet with the stop at it: the gap between its principal planes closes.
+/// Thin biconvex singlet with the stop at it; its principal planes coincide as gap tends to 0.
 Prescription singlet(double gap) {
     return test::lens_from_rows(
         "singlet", {{100, gap, 1.5, 0, 20}, {-100, gap, 1, 0, 20}, {0, gap, 1, 0, 12.5, true}});
@@ -169,8 +170,9 @@ TEST_CASE("the plane in focus meets film and lens in one line (Scheimpflug)") {
     const Vec2d tilt{7, 0};
     const ThinLens thin{50, 6, focus, {}, false, tilt};
     const ThickLens thick = thick_double_gauss(4, focus, tilt);
-    // Sections with x = 0, m; the line: where the film's plane meets the front principal plane, both in
-    // object space: for a thick lens the film first goes from the rear principal plane to the front one.
+    // Sections with x = 0, in m. The hinge is the intersection of the film's plane with the front
+    // principal plane in object space: for a thick lens, the film is first moved from the rear
+    // principal plane to the front one.
     const double a = tilt.x * kPiD / 180;
     for (const bool is_thin : {true, false}) {
         std::vector<Vec3d> sharp;
@@ -180,7 +182,7 @@ TEST_CASE("the plane in focus meets film and lens in one line (Scheimpflug)") {
             CHECK(m.miss < 1e-6);
             sharp.push_back(m.point);
         }
-        // Three sharp points lie on a line, and it goes through the hinge.
+        // Three sharp points are on a line through the hinge.
         const Vec3d along = normalize(sharp[2] - sharp[0]);
         const auto off = [&](Vec3d p) {
             return std::abs((p - sharp[0]).y * along.z - (p - sharp[0]).z * along.y);
@@ -190,8 +192,9 @@ TEST_CASE("the plane in focus meets film and lens in one line (Scheimpflug)") {
         const double front = is_thin ? 0 : 1e-3 * (o.front_principal_z - o.entrance_pupil_z);
         const double hiatus = is_thin ? 0 : 1e-3 * (o.back_principal_z - o.front_principal_z);
         const double film = is_thin ? 0.05 : 1e-3 * (thick.film_z_mm() - o.entrance_pupil_z) * std::cos(a);
-        // Along the lens's plane upward (0, cos a, sin a) from its foot on the axis; the film's plane lies
-        // at z = film, brought forward by the hiatus along the axis, whose z is cos a.
+        // Upward along the lens plane (0, cos a, sin a) from its foot on the axis. The film plane
+        // is at z = film, moved forward by the hiatus along the axis, of which cos a is the z
+        // component.
         const double up = (film - (front + hiatus) * std::cos(a)) / std::sin(a);
         const Vec3d hinge = Vec3d{0, -std::sin(a), std::cos(a)} * front + Vec3d{0, std::cos(a), std::sin(a)} * up;
         CHECK(off(hinge) < 1e-4);
@@ -212,7 +215,7 @@ TEST_CASE("a tilted thick lens exposes its film as the exact one does: the film'
 TEST_CASE("a state of a lens that moves looks out from where its body puts it, and is as bright as it is") {
     const ThickLens near = thick_double_gauss(4, 1), far = thick_double_gauss(4, 3);
     const ThickLens state = near.in_the_body_of(far);
-    const double out = (near.film_z_mm() - far.film_z_mm()) * 1e-3;   // the film stays, the lens goes ahead
+    const double out = (near.film_z_mm() - far.film_z_mm()) * 1e-3;   // the film is fixed, the lens moves forward
     CHECK(out > 1e-3);
     const double alone = meeting(drawn(near, {3, 2}, 500)).point.z;
     CHECK(std::abs(meeting(drawn(state, {3, 2}, 500)).point.z - alone + out) < 1e-4);

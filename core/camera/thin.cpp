@@ -9,8 +9,8 @@ void ThinLens::set(const Numbers& n) {
     focus_distance_m = 1 / n.inverse_focus, tilt_deg = n.tilt_deg;
 }
 
-/// On the iris of unit radius, with the weight of what passes there; `covered`: the sampled region may
-/// exceed the shape.
+/// Samples the iris of unit radius, with the weight of the transmitted light; `covered`: ratio of
+/// the areas of sampled region and shape.
 Vec2f ThinLens::iris_point(Vec2f u, double covered, float& weight) const {
     if (iris.kind() == Iris::Kind::round) {
         weight = 1;
@@ -34,10 +34,10 @@ void ThinLens::generate(const Numbers& numbers, std::span<const CameraSample> sa
         float weight;
         const Vec2f p = iris_point(s.u_lens, covered, weight);
         const float radius = unit_m * s.iris_opening;
-        weight *= exposure * s.iris_opening * s.iris_opening;   // the area that is open
+        weight *= exposure * s.iris_opening * s.iris_opening;   // open area
         const Vec3f origin{p.x * radius, p.y * radius, 0};
-        // The chief ray, of length 1 along the axis, meets the plane of focus at chief * focus; divided
-        // by focus, infinity needs no case of its own.
+        // The chief ray, scaled to unit length along the axis, meets the plane of focus at chief *
+        // focus. Division by focus avoids a special case for infinity.
         const Vec3f chief{s.film_mm.x * inverse_film, s.film_mm.y * inverse_film, -1};
         if (natural_vignetting) {
             const float cos2 = 1 / length_squared(chief);
@@ -50,11 +50,12 @@ void ThinLens::generate(const Numbers& numbers, std::span<const CameraSample> sa
     }
 }
 
-// A film point lies at -D c of the centre, with c = (x / D, y / D, -1) its chief ray and D the film's
-// distance: at the depth D (c . a) behind the lens, whose axis is a. The thin lens formula puts its image at
-// the depth t (c . a) before it, t = 1 / w along the chief ray, with
+// A film point is at -D c from the centre, with chief ray c = (x / D, y / D, -1) and film distance
+// D: at depth D (c . a) behind the lens of axis a. The thin lens formula places its image at depth
+// t (c . a) in front, t = 1 / w along the chief ray, with
 //   w = (c . a) / f - 1 / D,  1 / f = a_z / D + 1 / focus,
-// so that the axis is in focus where it should be. w is linear over the film: the image is a plane.
+// so that the axis is in focus at the focus distance. w is linear over the film: the image is a
+// plane.
 void ThinLens::generate_tilted(const Numbers& numbers, std::span<const CameraSample> samples,
                                std::span<CameraRay> rays) const {
     const Affine3d turn = lens_turn(numbers.tilt_deg);
@@ -72,7 +73,7 @@ void ThinLens::generate_tilted(const Numbers& numbers, std::span<const CameraSam
         const double along = dot(chief, axis);
         const Vec3d direction = chief - origin * (along * power - 1e3 * inverse_film);
         double exposure = numbers.exposure * s.iris_opening * s.iris_opening;
-        if (natural_vignetting) {   // both cosines over the distance squared, 1 / |c|^2 less
+        if (natural_vignetting) {   // both cosines over the distance squared; 1 / |c|^2 is part of the solid angle
             const double cos2 = 1 / length_squared(chief);
             exposure *= along * cos2 * cos2;
         }
@@ -84,10 +85,10 @@ void ThinLens::generate_tilted(const Numbers& numbers, std::span<const CameraSam
     }
 }
 
-// The equations of generate_tilted, solved for the film point: with o the point of the lens (o . a = 0) and
-// v = s d what the ray is there before it is normalised, v = c - o (power (c . a) - k), so c . a = s (d . a),
-// and c_z = -1 gives s. Around one o the directions turn with c as dv/dc; a patch of the lens and one of the
-// film make dA cos dw = dA (v . a) |v . (dv/dx x dv/dy)| / |v|^4 dc.
+// Solves the equations of generate_tilted for the film point. With lens point o (o . a = 0) and the
+// unnormalized ray v = s d: v = c - o (power (c . a) - k), so c . a = s (d . a), and c_z = -1 gives
+// s. At constant o the directions change with c by dv/dc; an area element of the lens and dc on the
+// film have the etendue dA cos dw = dA (v . a) |v . (dv/dx x dv/dy)| / |v|^4 dc.
 void ThinLens::reproject(const Numbers& numbers, std::span<const CameraRay> rays,
                          std::span<Reprojection> out) const {
     const Affine3d turn = lens_turn(numbers.tilt_deg);

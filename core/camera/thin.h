@@ -1,4 +1,4 @@
-// thin.h -- the lecture's lens: an iris of some diameter and one plane in perfect focus.
+// thin.h -- thin lens: an iris of some diameter and one plane in perfect focus.
 #pragma once
 #include <optional>
 #include <span>
@@ -12,28 +12,30 @@
 
 namespace dg {
 
-/// film_distance_mm is that of the equivalent pinhole: the focal length, or the image distance
-/// f s / (s - f) when the lens breathes. The circle of confusion of a point at distance s is then
-/// 2 aperture_radius |s - focus| / s * film_distance / focus on the film.
+/// film_distance_mm is the film distance of the equivalent pinhole: the focal length, or the image
+/// distance f s / (s - f) with focus breathing. A point at distance s has the circle of confusion 2
+/// aperture_radius |s - focus| / s * film_distance / focus on the film.
 ///
-/// Tilted, the film lies film_distance_mm behind the centre along the camera's axis, and focus_distance_m runs
-/// along the lens's; rays through the centre go straight on, so the framing is the pinhole's. The plane in
+/// With tilt, the film is film_distance_mm behind the centre along the camera's axis, and
+/// focus_distance_m is measured along the lens's axis. Rays through the centre are undeviated, so
+/// the framing equals the pinhole's. The planes of focus, film and lens intersect in a line
+/// (Scheimpflug).
 /// focus meets film and lens in one line (Scheimpflug).
 struct ThinLens {
     double film_distance_mm = 50;
-    double aperture_radius_mm = 4.5;   // of the round iris; other shapes have its area
-    double focus_distance_m = 1;       // along the axis; infinity is allowed
+    double aperture_radius_mm = 4.5;   // round iris; other shapes have the same area
+    double focus_distance_m = 1;       // along the axis; may be infinite
     Iris iris = {};                    // shape of unit radius
     bool natural_vignetting = false;   // darken by cos^4 of the field angle
     Vec2d tilt_deg{0, 0};              // see tilt.h
 
-    /// Numbers that change evenly while it is on its way.
+    /// Parameters that can be interpolated over time.
     struct Numbers {
-        double film_distance_mm, aperture_radius_mm, inverse_focus;   // 1/m: 0 at infinity
+        double film_distance_mm, aperture_radius_mm, inverse_focus;   // 1/m, 0 at infinity
         double exposure = 1;                                          // factor on weights
         Vec2d tilt_deg{0, 0};
 
-        /// Measure that exposure is proportional to: the square of iris over image distance.
+        /// Proportional to exposure: square of iris radius / image distance.
         double light_cone() const {
             const double slope = aperture_radius_mm / film_distance_mm;
             return slope * slope;
@@ -50,18 +52,18 @@ struct ThinLens {
     void generate(std::span<const CameraSample> samples, std::span<CameraRay> rays) const {
         generate(numbers(), samples, rays);
     }
-    /// With other numbers than its own.
+    /// Uses `numbers` instead of the lens's parameters.
     void generate(const Numbers& numbers, std::span<const CameraSample> samples,
                   std::span<CameraRay> rays) const;
 
-    /// Where scene rays meet the film.
+    /// Traces scene rays to the film.
     void reproject(std::span<const CameraRay> rays, std::span<Reprojection> out) const {
         reproject(numbers(), rays, out);
     }
     void reproject(const Numbers& numbers, std::span<const CameraRay> rays,
                    std::span<Reprojection> out) const;
 
-    /// Through the centre, which does not bend a ray, tilted or not; unit, camera frame.
+    /// Undeviated ray through the centre, tilted or not; unit, camera frame.
     Vec3d chief_direction(Vec2d film_mm) const { return straight_direction(film_mm, film_distance_mm); }
     std::optional<Vec2d> film_point(Vec3d p, double) const { return straight_film_point(p, film_distance_mm); }
     Opening opening() const { return opening(numbers()); }

@@ -44,7 +44,8 @@ Estimate drawn(const ExactLens& lens, Vec2d film, double nm, int count, unsigned
     return estimate(sum, squares, passed, count);
 }
 
-/// Rotation of a tilt, computed by the tests themselves: about x, then about y, rows of camera_from_lens.
+/// Rotation of a tilt, independent of the code under test: about x, then about y; rows of
+/// camera_from_lens.
 struct Rotation {
     double row[3][3];
     explicit Rotation(Vec2d deg) {
@@ -61,7 +62,7 @@ struct Rotation {
     }
 };
 
-/// Where the film's (0, 0) lies across the camera's axis, mm.
+/// Offset of the film's (0, 0) from the camera's axis, mm.
 Vec2d middle_of_film(const ExactLens& lens, const Rotation& turn) {
     const Vec3d c = lens.film_plane().center - Vec3d{0, 0, lens.first_order().entrance_pupil_z};
     Vec2d ahead{};
@@ -69,8 +70,8 @@ Vec2d middle_of_film(const ExactLens& lens, const Rotation& turn) {
     return ahead;
 }
 
-/// E / L by points uniform on a disc behind the tilted lens's rear, in double: G = cos cos / d^2, with
-/// the cosine at the film raised to `film_power`.
+/// E / L with points uniform on a disc behind the last surface of the tilted lens, in double: G =
+/// cos cos / d^2, with the cosine at the film raised to `film_power`.
 Estimate rear_disc(const ExactLens& lens, const ExactLensSettings& s, Vec2d film, double nm,
                    int count, unsigned seed, double film_power = 1) {
     std::mt19937 random(seed);
@@ -190,15 +191,15 @@ TEST_CASE("tilted: rays lead back to their film points with their weights") {
     CHECK(lost < passed / 300 + 2);
 }
 
-// Scheimpflug: the planes of film, lens and sharp focus meet in one line. With the lens turned by t about
-// y of the pupil, a thin lens's plane of focus leans by atan(tan(t) s'' / f) there; the exact lens is held
-// to it where it is sharp, not beyond its own aberrations.
+// Scheimpflug: the planes of film, lens and sharp focus intersect in a line. With the lens rotated
+// by t about y of the pupil, a thin lens's plane of focus tilts by atan(tan(t) s'' / f). The exact
+// lens is compared where it is sharp, within its aberrations.
 TEST_CASE("tilted: the plane of focus leans as Scheimpflug's rule says") {
     const double tilt = 4;
     ExactLensSettings s = tilted(8, {0, tilt});
     const ExactLens lens(test::check_lens(true, 0.5), s);
     const FirstOrder& order = lens.first_order();
-    // Where the pencil of a film point is narrowest, in the camera's frame.
+    // Narrowest point of the pencil of a film point, in the camera frame.
     const auto sharpest = [&](double x) {
         std::vector<CameraSample> samples;
         for (int i = 0; i < 4096; ++i)
@@ -217,15 +218,15 @@ TEST_CASE("tilted: the plane of focus leans as Scheimpflug's rule says") {
                 const double h = r.ray.origin.x + t * r.ray.direction.x;
                 sum += h, squares += h * h, n += 1;
             }
-            // Width seen from the lens.
+            // Angular width as seen from the lens.
             const double width = std::sqrt(squares / n - sum / n * (sum / n)) / -z;
             if (width < best) best = width, at = z, where = sum / n;
         }
         return Vec2d{where, at};
     };
     const Vec2d a = sharpest(-4), b = sharpest(4);
-    // The film plane mapped through the tilted lens by collinear imaging (principal planes, Newton): two
-    // film points in the lens's frame, their images, and the line between them.
+    // The film plane is imaged through the tilted lens by collinear imaging (principal planes,
+    // Newton): images of two film points in the lens frame, and the line between them.
     const auto image = [&](double x) {
         const double c = std::cos(tilt * kDegree), si = std::sin(tilt * kDegree);
         const double depth = (lens.film_z_mm() - order.entrance_pupil_z) * c;

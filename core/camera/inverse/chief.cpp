@@ -8,13 +8,13 @@
 namespace dg {
 namespace {
 
-constexpr int kSteps = 64;  // film radii of the table
-constexpr int kTurns = 16;  // directions on the film over which a ray is averaged
-constexpr int kSide = 24;   // lens samples a side
+constexpr int kSteps = 64;  // film radii in the table
+constexpr int kTurns = 16;  // film azimuths over which a chief ray is averaged
+constexpr int kSide = 24;   // lens samples per side
 constexpr double kBeyond =
-    3;  // film radii past the table's end at which points are still found
+    3;  // largest film radius of a search, relative to the end of the table
 
-/// Rays that pass, from film points at one radius all round, turned to +x.
+/// Passing rays from film points of one radius at all azimuths, rotated to +x.
 std::vector<CameraRay> passing(const ExactLens& lens, double radius_mm) {
     std::vector<CameraSample> samples;
     for (int turn = 0; turn < kTurns; ++turn) {
@@ -38,10 +38,10 @@ std::vector<CameraRay> passing(const ExactLens& lens, double radius_mm) {
     return rays;
 }
 
-/// Mean ray, in the meridional plane, of rays turned to +x.
+/// Mean ray in the meridional plane, from rays rotated to +x.
 std::optional<ChiefRays::Meridional> mean_ray(const std::vector<CameraRay>& rays) {
     Vec3d axis = summed_direction(rays);
-    axis.y = 0;  // what is left of it is the grid's
+    axis.y = 0;  // residue of the sampling grid
     if (!(length(axis) > 0)) return std::nullopt;
     const RayMeans mean = means_across(normalize(axis), rays);
     const Vec3d o = mean.crossing, d = normalize(Vec3d{mean.slope.x, 0, mean.slope.z});
@@ -56,12 +56,12 @@ Meridional sum(const Meridional& a, double s, const Meridional& b) {
     return {a.angle + s * b.angle, a.offset + s * b.offset, a.start + s * b.start};
 }
 
-/// At -r the same ray is seen from the other side.
+/// The chief ray at -r, by symmetry.
 Meridional mirrored(const Meridional& m) {
     return {-m.angle, -m.offset, m.start};
 }
 
-/// Point that all chief rays of a kind with film_point() go through.
+/// Common point of all chief rays of a kind with film_point().
 template <typename L>
 Vec3d origin_of(const L& lens) {
     if constexpr (requires { lens.pupil_offset_m(); })
@@ -74,7 +74,7 @@ Vec3d direction_of(const auto& lens, Vec2d film_mm) {
     return std::optional<Vec3d>(lens.chief_direction(film_mm)).value_or(Vec3d{0, 0, 0});
 }
 
-/// Most kinds see something from every film point, and are not asked.
+/// Whether a film point has a chief ray; kinds without an optional always have one.
 bool has_chief(const auto& lens, Vec2d film_mm) {
     if constexpr (requires { lens.chief_direction(film_mm).has_value(); })
         return lens.chief_direction(film_mm).has_value();
@@ -87,7 +87,7 @@ std::optional<Vec2d> film_point_of(const L& lens, Vec3d p, double w) {
     if constexpr (HasFilmPoint<L>)
         return lens.film_point(p, w);
     else
-        return std::nullopt;   // never: an exact lens has a table or a grid
+        return std::nullopt;   // unreachable: an exact lens has a table or a grid
 }
 
 }  // namespace
@@ -140,7 +140,7 @@ ChiefRaysOverTime::ChiefRaysOverTime(const Camera& camera)
     for (const LensKind& lens : camera.lens_motion.lenses) states_.emplace_back(lens);
 }
 
-/// Cubic between radii (Catmull and Rom), linear past the last one.
+/// Catmull-Rom cubic in the radius, linear past the last node.
 ChiefRays::Meridional ChiefRays::at_radius(double mm) const {
     const int last = int(table_.size()) - 1;
     const auto node = [&](int i) {
@@ -150,7 +150,7 @@ ChiefRays::Meridional ChiefRays::at_radius(double mm) const {
                           : table_[i];
     };
     const double x = mm / step_mm_;
-    const int i = x < last - 1 ? int(x) : last - 1;   // NaN is nowhere
+    const int i = x < last - 1 ? int(x) : last - 1;   // NaN maps to the end
     const double t = x - i;
     if (t >= 1)
         return sum(sum(table_[last], t - 1, table_[last]), 1 - t, table_[last - 1]);
@@ -191,11 +191,11 @@ ChiefRays::Lit ChiefRays::lit(Vec2d film_mm) const {
     return radius <= last ? Lit::yes : radius < last + step_mm_ ? Lit::unknown : Lit::no;
 }
 
-/// The film radius whose ray meets the point: bisection until the bracket is short, since
-/// a ray of radius 0 passes inside of every point ahead and that of a large one outside.
+/// Film radius with a chief ray through the point: a ray of radius 0 passes on the inner side of
+/// every point ahead, a ray of large radius on the outer side, so the root is bracketed.
 std::optional<double> ChiefRays::solve(double outward, double z, double w) const {
     const double size = hypot(outward, z);
-    const auto past = [&](double mm) {  // < 0: the ray passes outside of the point
+    const auto past = [&](double mm) {  // < 0: the ray passes on the outer side of the point
         const Meridional m = at_radius(mm);
         return outward * std::cos(m.angle) + z * std::sin(m.angle) - w * m.offset;
     };
@@ -208,7 +208,7 @@ std::optional<double> ChiefRays::solve(double outward, double z, double w) const
         at_high = past(high);
     }
     if (!(at_high <= 0)) return std::nullopt;
-    // Regula falsi, with the end that stays taken at half (Illinois).
+    // Regula falsi, halving the value at the retained end (Illinois).
     for (int i = 0; i < 100 && high - low > 1e-10 * farthest; ++i) {
         const double middle = (low * at_high - high * at_low) / (at_high - at_low);
         const double here = past(middle);

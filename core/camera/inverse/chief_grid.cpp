@@ -10,9 +10,9 @@
 namespace dg {
 namespace {
 
-constexpr int kNodes = 33;  // a side
-constexpr int kSide = 24;   // lens samples a side
-constexpr double kBeyond = 3;   // sizes of the film past its middle at which points are still found
+constexpr int kNodes = 33;  // per side
+constexpr int kSide = 24;   // lens samples per side
+constexpr double kBeyond = 3;   // largest distance of a search, in half sizes of the film
 constexpr double kMargin = 1.02;
 
 Vec2d angle_of(Vec3d d) {
@@ -26,7 +26,7 @@ Vec3d direction_of(Vec2d angle) {
     return {angle.x * scale, angle.y * scale, -std::cos(a)};
 }
 
-/// Weights of four neighbours, t past the second (Catmull and Rom).
+/// Catmull-Rom weights of four neighbours, at t past the second.
 std::array<double, 4> cubic(double t) {
     const double t2 = t * t, t3 = t2 * t;
     return {0.5 * (2 * t2 - t3 - t), 0.5 * (3 * t3 - 5 * t2 + 2), 0.5 * (4 * t2 - 3 * t3 + t),
@@ -35,7 +35,7 @@ std::array<double, 4> cubic(double t) {
 
 }  // namespace
 
-/// Mean ray like that of the lenses of chief.cpp: means over the planes across the mean direction.
+/// Mean ray as in chief.cpp: means over planes across the mean direction.
 std::optional<ChiefGrid::Node> ChiefGrid::mean_ray(const ExactLens& lens, Vec2d film_mm) {
     const std::vector<CameraSample> samples =
         lens_cells({float(film_mm.x), float(film_mm.y)}, kSide);
@@ -73,7 +73,8 @@ ChiefGrid::Lit ChiefGrid::lit(Vec2d film_mm) const {
     return found == 4 ? Lit::yes : found == 0 ? Lit::no : Lit::unknown;
 }
 
-/// Beyond the image circle rays go on linearly: from two lit nodes in a row, ring by ring.
+/// Extrapolates chief rays linearly beyond the image circle, from two lit nodes in a row, ring by
+/// ring.
 void ChiefGrid::fill_dark() {
     std::vector<bool> lit = lit_;
     const auto inside = [](int x, int y) { return x >= 0 && y >= 0 && x < kNodes && y < kNodes; };
@@ -104,7 +105,7 @@ void ChiefGrid::fill_dark() {
     }
 }
 
-/// Past the edge: the last two in a row, continued.
+/// Node; beyond the edge, extrapolated linearly from the last two.
 ChiefGrid::Node ChiefGrid::node(int column, int row) const {
     const auto mixed = [](const Node& a, const Node& b, double t) {
         return Node{a.angle + (b.angle - a.angle) * t, a.foot + (b.foot - a.foot) * t,
@@ -139,7 +140,8 @@ ChiefGrid::Line ChiefGrid::at(Vec2d film_mm) const {
     return {n.foot - d * dot(n.foot, d), d, n.start};
 }
 
-/// Between the direction of a point as seen from the ray and the ray's own; 0 on it.
+/// Angle between the direction of the point as seen from the ray, and the ray's direction; 0 on the
+/// ray.
 Vec2d ChiefGrid::miss(Vec2d film_mm, Vec3d p, double w) const {
     const Line line = at(film_mm);
     return angle_of(normalize(p - line.foot * w)) - angle_of(line.direction);
@@ -149,7 +151,7 @@ std::optional<Vec2d> ChiefGrid::film_point(Vec3d p, double w) const {
     const Vec2d half = step_ * (0.5 * (kNodes - 1)), middle = corner_ + half;
     const double size = std::max(half.x, half.y), h = 1e-4 * size;
     Vec2d film = middle;
-    for (int i = 0; i < 60; ++i) {   // Newton, with differences and short enough steps
+    for (int i = 0; i < 60; ++i) {   // Newton's method with finite differences and limited steps
         const Vec2d here = miss(film, p, w);
         const Vec2d x = (miss({film.x + h, film.y}, p, w) - here) * (1 / h);
         const Vec2d y = (miss({film.x, film.y + h}, p, w) - here) * (1 / h);

@@ -1,5 +1,5 @@
-// chief_grid.h -- chief rays (see chief.h) over the whole film, for exact lenses that are not the same on all
-// sides of the camera's axis: tilted, decentred and anamorphic ones.
+// chief_grid.h -- chief rays (see chief.h) on a grid over the film, for exact lenses without axial
+// symmetry: tilted, decentred and anamorphic.
 #pragma once
 #include <optional>
 #include <vector>
@@ -10,24 +10,24 @@ namespace dg {
 
 class ChiefGrid {
   public:
-    /// Throws Error if no light passes near the middle of the film.
+    /// Throws Error if no light passes near the centre of the film.
     explicit ChiefGrid(const ExactLens& lens);
 
     struct Line {
-        Vec3d foot, direction;  // the point nearest to the camera's origin, m; unit
-        double start = 0;       // of the lens's own rays, m past the foot
+        Vec3d foot, direction;  // foot: point nearest to the camera's origin, m; direction: unit
+        double start = 0;       // distance of the lens's ray origins past the foot, m
     };
-    /// Between nodes by cubics, past the film linear.
+    /// Cubic interpolation between nodes, linear extrapolation past the film.
     Line at(Vec2d film_mm) const;
     /// Film point, like ChiefRays::film_point.
     std::optional<Vec2d> film_point(Vec3d p, double w) const;
 
-    /// Whether light comes to a film point; unknown between nodes that it reaches and others.
+    /// Whether light reaches a film point; unknown between lit and dark nodes.
     enum class Lit { no, unknown, yes };
     Lit lit(Vec2d film_mm) const;
 
   private:
-    /// Directions as vectors of their angle from straight ahead, which stay smooth beyond 90 degrees.
+    /// Directions are stored as vectors of their angle from -z, which are smooth beyond 90 degrees.
     struct Node {
         Vec2d angle;
         Vec3d foot;
@@ -40,7 +40,7 @@ class ChiefGrid {
     Vec2d miss(Vec2d film_mm, Vec3d p, double w) const;
 
     Vec2d corner_{}, step_{};   // mm
-    std::vector<Node> nodes_;   // rows from corner_ on
+    std::vector<Node> nodes_;   // row-major from corner_
     std::vector<bool> lit_;
 };
 

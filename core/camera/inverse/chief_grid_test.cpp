@@ -1,4 +1,4 @@
-// Chief rays over the film against those by film radius, and back to the film.
+// Chief rays on the film's grid against chief rays by film radius, and their inverse.
 #include "camera/inverse/chief_grid.h"
 
 #include <doctest/doctest.h>
@@ -52,7 +52,7 @@ TEST_CASE("film point of chief ray of film point is the film point, to 1e-3 px")
             const auto back = grid.film_point(p, 1), slipped = grid.film_point(p + Vec3d{1e-6 * distance, 0, 0}, 1);
             REQUIRE(back);
             CHECK(length(*back - film) < 1e-3 * kPixelMm);
-            CHECK(length(*slipped - film) > 1e-3 * kPixelMm);   // a planted fault shows
+            CHECK(length(*slipped - film) > 1e-3 * kPixelMm);   // planted fault
         }
 }
 

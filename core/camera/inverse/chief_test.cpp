@@ -10,9 +10,8 @@ namespace {
 
 constexpr double kPixelMm = 0.006;
 
-/// Largest distance (px) between film points and what comes back of them, by way of
-/// points at `distance` m along their chief rays; `slip` moves those points sideways (a
-/// planted fault).
+/// Largest distance (px) between film points and their images under the inverse, by way of points
+/// at `distance` m along their chief rays. `slip` moves those points sideways (planted fault).
 double round_trip(const LensKind& lens, double half_diagonal, double distance,
                   double slip = 0) {
     const ChiefRays chief(lens);
@@ -114,7 +113,7 @@ TEST_CASE("copies of a lens share its chief rays, other lenses have their own") 
     const ExactLens body = focused(test::tessar(), 4, 0.6).in_the_body_of(lens);
     const ExactLens fresh = focused(test::tessar(), 4, 0.6);
     CHECK(length(ChiefRays(body).at({10, -7}).origin - ChiefRays(fresh).at({10, -7}).origin) > 1e-4);
-    LensDirt half;   // a front that is dark on one side moves the mean of the rays
+    LensDirt half;   // a front that is dark on one side shifts the mean ray
     half.front = {2, 1, {0, 1}};
     const ExactLens dirty = lens.with_dirt(half);
     CHECK(kept(dirty) != kept(lens));

@@ -1,5 +1,6 @@
-// inverse_kind.h -- a kind of camera as the scene sees it: its chief rays, the cone of a pixel, and where light must
-// aim to come through. All three follow from chief_direction(), film_point() and opening(); an exact lens measures them.
+// inverse_kind.h -- interface of a kind of camera seen from the scene: chief rays, pixel cones, and
+// sampling of the lens. All follow from chief_direction(), film_point() and opening(); exact lenses
+// measure them instead.
 #pragma once
 #include "camera/inverse/chief.h"
 #include "camera/inverse/pixel_cone.h"

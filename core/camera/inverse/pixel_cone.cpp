@@ -6,10 +6,10 @@
 namespace dg {
 namespace {
 
-/// Where a kind sees nothing, 0.
+/// Direction, or 0 outside the field of view.
 Vec3d direction(const std::optional<Vec3d>& chief) { return chief.value_or(Vec3d{0, 0, 0}); }
 
-/// Whether a circle about the axis is seen under one angle.
+/// Whether the field angle depends only on the film radius.
 template <HasChief Lens>
 bool is_round(const Lens& lens) {
     if constexpr (requires { lens.is_axial(); })
@@ -18,8 +18,8 @@ bool is_round(const Lens& lens) {
         return true;
 }
 
-/// Solid angle per mm^2 of film (its root), mean over the directions at a radius: of lenses that are not the
-/// same on all sides.
+/// Root of the solid angle per mm^2 of film, averaged over azimuths at a radius, for lenses without
+/// axial symmetry.
 double mean_angle_per_mm(const Projection& lens, double radius_mm, double) {
     constexpr int kTurns = 16;
     double sum = 0;
@@ -88,8 +88,8 @@ void PixelCone::measure_around(const Lens& lens, const Sensor& sensor) {
     }
 }
 
-// A circle of radius r on the film is seen under the angle a(r). One mm along r covers a'(r),
-// one mm across covers sin(a) / r.
+// A film circle of radius r has the field angle a(r): one mm along r covers a'(r), one mm across
+// covers sin(a) / r.
 template <HasChief Lens>
 void PixelCone::measure_along(const Lens& lens, const Sensor& sensor) {
     const double step = largest_radius(sensor) / kSteps;
@@ -109,14 +109,14 @@ void PixelCone::measure_along(const Lens& lens, const Sensor& sensor) {
 
 float PixelCone::angle(Vec2f film_mm) const {
     const float most = float(kSteps) - 1e-3f, at = length(film_mm) * steps_per_mm_;
-    const float x = at < most ? at : most;   // NaN is nowhere
+    const float x = at < most ? at : most;   // NaN maps to the end
     const int i = int(x);
     return angles_[i] + (angles_[i + 1] - angles_[i]) * (x - float(i));
 }
 
 RayCone PixelCone::cone(Vec2f film_mm, const Ray& ray) const {
     const float spread = kConeShare * angle(film_mm);
-    // Rays of an exact lens start on its front, some way before the pupil.
+    // Rays of an exact lens start on the front surface, at some distance from the pupil.
     const float from_pupil = ray.direction.z < 0 ? ray.origin.z / ray.direction.z : 0.f;
     return {spread * std::max(0.f, from_pupil), spread};
 }

@@ -1,7 +1,7 @@
-// pixel_cone.h -- the cones with which camera rays start: how wide a pixel is as seen from
-// the lens. For one point of the lens the rays of neighbouring film points spread from that
-// point, in focus or not; so the cone's apex lies on the entrance pupil (the plane z = 0 of
-// the camera), and defocus does not widen it.
+// pixel_cone.h -- cones of camera rays: the angle of a pixel as seen from the lens. Rays from one
+// point of the lens to neighbouring film points diverge from that point, in focus or not. So the
+// apex of the cone is on the entrance pupil (the plane z = 0 of the camera frame), and defocus does
+// not widen it.
 #pragma once
 #include <array>
 
@@ -12,15 +12,15 @@ namespace dg {
 
 class PixelCone {
   public:
-    /// No cones at all: every texture is read at a point.
+    /// No cones: textures are point-sampled.
     PixelCone() = default;
     PixelCone(const Camera& camera, const Sensor& sensor);
     template <HasChief Lens>
     static PixelCone of(const Lens& lens, const Sensor& sensor);
 
-    /// Angle (rad) that a pixel covers there: geometric mean of its width and height.
+    /// Angle (rad) of a pixel at a film point: geometric mean of width and height.
     float angle(Vec2f film_mm) const;
-    /// The cone of a ray (camera frame) of that film point, kConeShare of a pixel wide.
+    /// Cone of a ray (camera frame) from that film point, kConeShare of a pixel wide.
     RayCone at(Vec2f film_mm, const Ray& ray) const {
         return steps_per_mm_ > 0 ? cone(film_mm, ray) : RayCone{};
     }

@@ -1,4 +1,4 @@
-// pixel_cone_test.cpp -- the angle of a pixel against closed forms and traced rays.
+// pixel_cone_test.cpp -- angles of pixels against closed forms and traced rays.
 #include "camera/inverse/pixel_cone.h"
 
 #include <doctest/doctest.h>
@@ -20,7 +20,7 @@ ExactLensSettings at_stop(double f_stop) {
     return settings;
 }
 
-/// Angle between the rays of two film points a tenth of a pixel apart, per pixel.
+/// Angle between rays from film points a tenth of a pixel apart, per pixel.
 double traced(const ExactLens& lens, Vec2f film_mm, Vec2f direction) {
     const float step = 0.01f;
     CameraSample samples[2] = {{film_mm, {0.5f, 0.5f}, 0, 587.56f},
@@ -56,7 +56,7 @@ TEST_CASE("an exact lens's pixel covers what two rays through the iris's centre 
             const double area = traced(lens, {r, 0}, {1, 0}) * traced(lens, {r, 0}, {0, 1});
             CHECK(cone.angle({r, 0}) / std::sqrt(area) == doctest::Approx(1).epsilon(0.01));
         }
-        for (const float r : {19.f, 21.6f}) {  // also where the picture ends
+        for (const float r : {19.f, 21.6f}) {  // also beyond the image circle
             CHECK(cone.angle({0, r}) >= 0);
             CHECK(cone.angle({0, r}) < 2 * cone.angle({0, 0}));
         }
@@ -66,7 +66,7 @@ TEST_CASE("an exact lens's pixel covers what two rays through the iris's centre 
 TEST_CASE("the cone of an exact lens has its apex on the entrance pupil") {
     const ExactLens lens(check_lens(), at_stop(8));
     const PixelCone cone({{}, lens}, kSensor);
-    const Vec3f from{0, 0, -0.02f};  // 20 mm before the pupil
+    const Vec3f from{0, 0, -0.02f};  // 20 mm in front of the pupil
     const RayCone start = cone.at({0, 0}, {.origin = from, .direction = {0, 0, -1}});
     CHECK(start.width / start.spread == doctest::Approx(0.02));
 }

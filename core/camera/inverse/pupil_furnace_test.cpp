@@ -1,4 +1,4 @@
-// The light that camera rays and light rays bring through one lens to one piece of film.
+// Camera rays and light rays through a lens bring the same light to a part of the film.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ struct Emitter {
     Vec3d center, x, y, normal;
     double w, half;
 
-    /// `half`: m, or at infinity the tangent of the angle.
+    /// `half`: m, or the tangent of the angle for an emitter at infinity.
     Emitter(Vec3d p, double w, double half, Vec3d facing)
         : center(w == 0 ? normalize(p) : p), w(w), half(half) {
         normal = normalize(w == 0 ? -center : facing);
@@ -64,7 +64,7 @@ std::vector<Found> by_light(const test::ViewCase& c, const PupilViewOverTime& vi
         if (!s) continue;
         rays[i] = camera_ray(*s, time, c.opening);
         const double cosine = -dot(to_double(s->direction), e.normal), side = 2 * e.half;
-        // Solid angle of a patch of the square at infinity: cos^3 of its area.
+        // Solid angle of a patch of the square at infinity: cos^3 times its area.
         const double factor = e.w == 0 ? cosine * cosine * cosine : std::max(0.0, cosine);
         found[i].light = side * side * factor / s->pdf;
     }
@@ -141,7 +141,7 @@ std::vector<SampleMoments> per_cell(const std::vector<Found>& found,
 void compare(const std::vector<SampleMoments>& a, const std::vector<SampleMoments>& b,
              std::vector<double>& cells, std::vector<double>& totals) {
     for (std::size_t k = 0; k < a.size(); ++k) {
-        // Means of few hits are not normal.
+        // Means of few hits are not normally distributed.
         const auto many = [](const SampleMoments& m) {
             return m.mean * m.mean * m.count > 40 * m.variance;
         };

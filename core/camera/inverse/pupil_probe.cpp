@@ -9,15 +9,15 @@
 namespace dg {
 namespace {
 
-constexpr double kFilmEdge = 1.03;  // film points beyond the edge are moved onto it
+constexpr double kFilmEdge = 1.03;  // film points beyond the edge are moved to the edge
 constexpr int kHalvings = 6;
 
 class Probe {
   public:
     Probe(const ExactLens& lens, bool axial) : lens_(lens), axial_(axial) {}
 
-    /// Along lines from the middle of the lens samples to their edge, the farthest that
-    /// is found to pass.
+    /// Farthest passing rays along lines from the centre of the lens samples to their edge, by
+    /// bisection.
     std::vector<CameraRay> rim(int count) const {
         std::vector<CameraSample> samples(count);
         std::vector<CameraRay> rays(count), best(count);
@@ -45,7 +45,7 @@ class Probe {
     }
 
   private:
-    /// `out`: 0 in the middle of the lens samples, 1 at their edge.
+    /// `out`: 0 at the centre of the lens samples, 1 at their edge.
     CameraSample sample(int i, double out) const {
         const auto u = quasi_random<4>(i);
         const double side = 4 * u[2], along = 2 * (side - std::floor(side)) - 1;
@@ -82,7 +82,7 @@ class Probe {
 std::vector<CameraRay> probe_pupil(const ExactLens& lens, bool axial) {
     const Probe probe(lens, axial);
     const Iris::Kind iris = lens.settings().iris.kind();
-    // Images are drawn pixel by pixel, in no order: there is no rim to look for.
+    // Image-shaped irises are sampled pixel by pixel in no order, so they have no rim to bisect.
     const bool image = iris == Iris::Kind::image;
     const int count = (axial ? 6000 : 24000) * (iris == Iris::Kind::blades ? 2 : 1);
     std::vector<CameraRay> rays = probe.within(image ? 7 * count : 2 * count / 3);

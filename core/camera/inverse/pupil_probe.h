@@ -1,4 +1,4 @@
-// pupil_probe.h -- camera rays that show where light passes an exact lens.
+// pupil_probe.h -- camera rays that bound the pupil of an exact lens.
 #pragma once
 #include <vector>
 
@@ -6,8 +6,8 @@
 
 namespace dg {
 
-/// Rays that the camera draws, at all wavelengths and film points: those at the
-/// rim of what passes, and some within. `axial`: the lens is the same on all sides.
+/// Passing camera rays at all wavelengths and film points: rays at the rim of the pupil, and some
+/// inside. `axial`: the lens is axially symmetric.
 std::vector<CameraRay> probe_pupil(const ExactLens& lens, bool axial);
 
 }  // namespace dg

@@ -1,5 +1,5 @@
-// pupil_rim.h -- the rim of what passes in one cell of a pupil's shape (pupil_shape.h),
-// in units of its oval.
+// pupil_rim.h -- rim of the passing rays in a cell of a pupil's shape (pupil_shape.h), in units of
+// its oval.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -10,12 +10,11 @@
 
 namespace dg {
 
-/// Rim of a cell, as far as it is known: the highest and lowest record in fine columns, and the
-/// outermost ones.
+/// Known rim of a cell: the highest and lowest record per fine column, and the outermost records.
 struct Rim {
     static constexpr int kFine = 96;
     Vec2f left{1e30f, 0}, right{-1e30f, 0};
-    std::array<Vec2f, kFine> top, bottom;  // bottom: upside down, too
+    std::array<Vec2f, kFine> top, bottom;  // bottom is stored with y negated
 
     Rim() { top.fill({0, -1e30f}), bottom.fill({0, -1e30f}); }
     bool lit() const { return left.x < right.x; }
@@ -31,8 +30,7 @@ struct Rim {
     }
 };
 
-/// The upper half of the convex hull, from left to right: what mounts and blades leave
-/// has few dents.
+/// Upper convex hull, from left to right: openings of mounts and blades are nearly convex.
 inline std::vector<Vec2f> hull(Vec2f left, std::span<const Vec2f> points, Vec2f right) {
     std::vector<Vec2f> h;
     const auto add = [&](Vec2f p) {
@@ -50,7 +48,7 @@ inline std::vector<Vec2f> hull(Vec2f left, std::span<const Vec2f> points, Vec2f 
     return h;
 }
 
-/// The highest point of a hull over [a, b].
+/// Largest y of a hull over [a, b].
 inline float highest(const std::vector<Vec2f>& h, float a, float b) {
     float high = -1e30f;
     for (std::size_t i = 0; i < h.size(); ++i) {

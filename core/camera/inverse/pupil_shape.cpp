@@ -18,7 +18,7 @@ PupilShape::Sight PupilShape::sight(Vec3d from_pupil, double w) const {
     if (axial_) {
         s.x = meridional, s.y = sagittal;
         s.angle = {angle, 0};
-    } else {  // x and y of the camera, carried along
+    } else {  // x and y of the camera, parallel-transported
         s.x = meridional * out.x - sagittal * out.y;
         s.y = meridional * out.y + sagittal * out.x;
         s.angle = out * angle;
@@ -26,7 +26,7 @@ PupilShape::Sight PupilShape::sight(Vec3d from_pupil, double w) const {
     return s;
 }
 
-/// In cells; nothing for points of which no camera ray knows.
+/// Position in cells; empty for points outside the range of all camera rays.
 std::optional<Vec3d> PupilShape::grid_place(const Sight& s) const {
     if (!(s.layer <= layers_)) return std::nullopt;
     const int i = std::min(int(s.layer), layers_ - 1);
@@ -44,8 +44,7 @@ PupilShape::Oval PupilShape::oval_at(Vec3d place) const {
     const int i = std::min(int(place.x), columns_ - 1),
               j = std::min(int(place.y), std::max(rows_ - 1, 0)),
               k = std::min(int(place.z), layers_ - 1);
-    // Changes with the distance are linear in its inverse, which is the square of the
-    // layer.
+    // Ovals change linearly with the inverse distance, which is the square of the layer.
     const double s = place.x - i, t = place.y - j,
                  r = (place.z * place.z - k * k) / (2 * k + 1);
     Oval sum;

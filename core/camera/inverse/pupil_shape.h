@@ -1,14 +1,14 @@
-// pupil_shape.h -- see pupil_view.h: where the light of a point passes an exact lens.
+// pupil_shape.h -- region of the pupil of an exact lens through which light from a point passes
+// (see pupil_view.h).
 //
-// A point is looked at along e from the middle of the (paraxial) entrance pupil; the
-// region lies on the plane across e through that middle, so it works beyond 90 degrees.
-// It is an oval frame that changes evenly with the direction and the nearness of the
-// point, and within the frame, cell by cell, columns that hold all that passes.
-// Directions: by their angle from straight ahead, in the meridional frame for lenses that
-// are the same on all sides, else as vectors. Nearness: the pupil's distance to the glass
-// over that to the point.
+// The point is seen in direction e from the centre of the (paraxial) entrance pupil. The region is
+// on the plane across e through that centre, so it is defined beyond 90 degrees too. It consists of
+// an oval frame, interpolated over direction and nearness of the point, and of columns in the
+// frame, per cell, that contain all passing rays. Directions: the angle from -z, in the meridional
+// frame for axially symmetric lenses, otherwise as vectors. Nearness: distance from pupil to glass,
+// divided by the distance to the point.
 //
-// All of it is found from camera rays, at all wavelengths: nothing is assumed of the
+// The region is measured with camera rays at all wavelengths; it makes no assumptions about the
 // lens.
 #pragma once
 #include <array>
@@ -27,22 +27,22 @@ class PupilShape {
   private:
     static constexpr int kColumns = 32;
 
-    /// A point as it is seen from the pupil.
+    /// Point as seen from the pupil.
     struct Sight {
-        Vec3d e, x, y;    // unit: toward it, and across
-        double distance;  // m; of points at infinity 1
+        Vec3d e, x, y;    // unit vectors: toward the point, and across
+        double distance;  // m; 1 for points at infinity
         double layer;     // by nearness
-        Vec2d angle;      // from straight ahead
+        Vec2d angle;      // from -z
     };
     struct Oval {
         Vec2d center{}, half{};  // m, along x and y of a sight
     };
-    /// Columns of one width from `first` to `last`, in units of the oval.
+    /// Columns of equal width from `first` to `last`, in units of the oval.
     struct Cell {
         float first = 0, last = 0;
         std::array<float, kColumns> low, high;
         std::array<float, kColumns>
-            until;  // area up to the end of a column; the last is 0: nothing passes
+            until;  // cumulative area at the end of each column; last value 0: empty
 
         float width() const { return (last - first) / kColumns; }
     };
@@ -53,9 +53,9 @@ class PupilShape {
     struct Angles {
         Vec2d low{1e9, 1e9}, high{-1e9, -1e9};
     };
-    /// Record of a camera ray about the points along it.
+    /// Sample of a camera ray: its position for a point along the ray.
     struct Record {
-        Vec2d angle, at;  // at: where it meets the plane of the region
+        Vec2d angle, at;  // at: intersection with the plane of the region
         double layer;
     };
 
@@ -75,7 +75,7 @@ class PupilShape {
     std::size_t cell_at(Vec3d place) const;
     std::optional<Region> region(const Sight& sight) const;
 
-    // The set-up, in this order.
+    // Set-up steps, in order.
     std::vector<Record> look_back(const ExactLens& lens);
     void bound_angles(const std::vector<Record>& records);
     std::optional<Placed> placed(const Record& record) const;
@@ -90,9 +90,9 @@ class PupilShape {
     ExactLens lens_;
     bool axial_;
     Vec3d pupil_;         // camera frame, m
-    double nearest_ = 0;  // m: no point is nearer
+    double nearest_ = 0;  // m: minimal distance of points
     int columns_, rows_,
-        layers_;  // cells; rows_ is 0 if the lens is the same on all sides
+        layers_;  // cells; rows_ is 0 for axially symmetric lenses
     std::vector<Angles> angles_;  // by layer
     std::vector<Oval> ovals_;     // at the corners of cells
     std::vector<Cell> cells_;

@@ -1,5 +1,4 @@
-// pupil_shape_fit.cpp -- the set-up of PupilShape: camera rays tell where the light of
-// points along them passes.
+// pupil_shape_fit.cpp -- set-up of PupilShape from camera rays.
 #include <algorithm>
 #include <cmath>
 
@@ -11,14 +10,14 @@
 namespace dg {
 namespace {
 
-// Margins for rays between those that were drawn. Cells in all directions hold fewer
-// of them, and of an image no rim is known.
+// Margins for rays between the sampled rays. Cells of lenses without axial symmetry hold fewer
+// rays, and image-shaped irises have no known rim.
 constexpr float kMargin = 1.03f, kWideMargin = 1.05f;
-constexpr int kFew = 300;    // records below which a cell takes its neighbours' as well
-constexpr int kFewest = 24;  // below which a corner has no oval of its own
-constexpr double kOverlap = 0.2;  // of cells, in cells
+constexpr int kFew = 300;    // records below which a cell also uses its neighbours'
+constexpr int kFewest = 24;  // records below which a corner's oval is interpolated
+constexpr double kOverlap = 0.2;  // overlap of cells, in cells
 constexpr double kSteepest =
-    0.1;  // cosine between a ray and the line from the pupil's middle
+    0.1;  // least cosine between a ray and the line from the pupil's centre
 constexpr int kRounds = 3;
 
 }  // namespace
@@ -39,13 +38,13 @@ PupilShape::PupilShape(const ExactLens& lens)
     fit_cells(records);
 }
 
-/// One point on every ray in every layer of nearness.
+/// Records for a point on every ray, in every layer of nearness.
 std::vector<PupilShape::Record> PupilShape::look_back(const ExactLens& lens) {
     const std::vector<CameraRay> rays = probe_pupil(lens, axial_);
     nearest_ = 1e9;
     for (const CameraRay& r : rays)
         nearest_ = std::min(nearest_, length(to_double(r.ray.origin) - pupil_));
-    // A stop before all glass: no nearer than it is wide.
+    // Stop in front of all glass: the minimal distance is half its width.
     nearest_ =
         std::max(0.98 * nearest_, 0.5e-3 * lens.first_order().entrance_pupil_diameter);
     std::vector<Record> records;
@@ -59,7 +58,7 @@ std::vector<PupilShape::Record> PupilShape::look_back(const ExactLens& lens) {
             const double t =
                 std::sqrt(distance * distance - length_squared(o) + along * along) -
                 along;
-            if (!(t > 0)) continue;  // in the glass
+            if (!(t > 0)) continue;  // inside the glass
             const Sight s = sight(o + d * t, 1);
             if (dot(d, s.e) < kSteepest) continue;
             const Vec3d q = o - d * (dot(o, s.e) / dot(d, s.e));
@@ -82,9 +81,9 @@ void PupilShape::bound_angles(const std::vector<Record>& records) {
     }
 }
 
-/// Around the records nearest to each corner of the cells. Where ovals move from corner
-/// to corner those of the first round are too large, since they hold what moves; seen
-/// from them the second ones are not.
+/// Bounding ovals of the records nearest to each corner. If ovals move between corners, the first
+/// round overestimates them, because records spread by that motion; later rounds measure records
+/// relative to the ovals.
 void PupilShape::fit_ovals(const std::vector<Record>& records) {
     std::fill(ovals_.begin(), ovals_.end(), Oval{{}, {1, 1}});
     for (int round = 0; round < kRounds; ++round) {
@@ -128,7 +127,7 @@ std::optional<PupilShape::Placed> PupilShape::placed(const Record& r) const {
                   {(r.at.x - o.center.x) / o.half.x, (r.at.y - o.center.y) / o.half.y}};
 }
 
-/// Corners of which no ray tells take the mean of their neighbours.
+/// Corners with too few records take the mean of their neighbours.
 void PupilShape::fill_ovals(std::vector<int>& count) {
     const int nx = columns_ + 1, ny = rows_ + 1, nz = layers_ + 1;
     const auto index = [&](int x, int y, int z) {
@@ -166,7 +165,7 @@ void PupilShape::fill_ovals(std::vector<int>& count) {
     }
 }
 
-/// Columns around a rim that is grown a little about its middle.
+/// Columns that cover a rim, slightly enlarged about its centre.
 PupilShape::Cell PupilShape::covered(std::vector<Vec2f> top, std::vector<Vec2f> bottom,
                                      float margin) {
     float up = -1e30f, down = -1e30f;
@@ -191,8 +190,8 @@ PupilShape::Cell PupilShape::covered(std::vector<Vec2f> top, std::vector<Vec2f> 
     return c;
 }
 
-/// Which cells a record counts for. Cells go a little beyond their edges, where what they
-/// hold often reaches farthest.
+/// Cells that a record contributes to. Cells overlap slightly, since extremes often occur at their
+/// edges.
 std::vector<PupilShape::Member> PupilShape::members(
     const std::vector<Record>& records) const {
     std::vector<Member> all;
@@ -220,7 +219,7 @@ std::vector<PupilShape::Member> PupilShape::members(
     return all;
 }
 
-/// Each cell with those of its neighbours that have few members of their own.
+/// For each cell, the cell itself and neighbours with few records.
 std::vector<std::vector<std::size_t>> PupilShape::shared_with(
     const std::vector<Member>& members) const {
     std::vector<int> count(cells_.size());

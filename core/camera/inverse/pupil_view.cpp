@@ -11,15 +11,15 @@
 namespace dg {
 namespace {
 
-// Rays at the very rim stay inside when they are rounded to float.
+// Keeps rays at the rim inside after rounding to float.
 constexpr double kRim = 1 + 1e-5;
 
 using Sample = PupilView::Sample;
 
-/// The line through a point of the scene and one of the lens, with the density of the
-/// second per m2 of a plane with the given normal.
+/// Line through a scene point and a lens point; density of the lens point per m2 of a plane with
+/// the given normal.
 struct Line {
-    Vec3d direction;  // unit, from the lens to the point, whichever of both lies in front
+    Vec3d direction;  // unit, from the lens to the point, or the reverse if the point is behind
     double pdf;
 };
 
@@ -32,11 +32,11 @@ std::optional<Line> line_through(Vec3d p, double w, Vec3d q, Vec3d axis, double 
     return Line{direction, per_m2 / cosine * (w == 0 ? 1 : d2)};
 }
 
-/// Points so near, in radii of the iris, see no lens: they lie within it.
+/// Closest distance in iris radii; nearer points are inside the ball of the iris.
 constexpr double kNear = 4;
 
-/// The radius of the disc across the way to a point through which all its rays come that pass an iris of
-/// that radius: the iris is turned a little against it, by angles of about radius / distance.
+/// Bound of the disc across the direction to a point that contains all its rays through an iris of
+/// the given radius: the iris is tilted against the disc by angles of about radius / distance.
 double bound_of(double radius, Vec3d p, double w) {
     const double angle = w == 0 ? 0 : radius / length(p);
     return kRim * radius * (1 + 4 * angle * angle);
@@ -72,7 +72,7 @@ std::optional<Sample> PupilView::sample(Vec3d p, double w, Vec2f u) const {
     }
     const FlatIris& disc = std::get<FlatIris>(opening_);
     const Vec3d axis = -disc.frame.z;
-    // Rays start at the depth -start along the axis, and the point lies before that.
+    // Rays start at depth -start along the axis; the point must be in front.
     if (!(dot(p - w * disc.frame.origin, axis) > w * -disc.start)) return std::nullopt;
     const Vec2d at = iris_->sample({u.x, u.y}, kRim) * disc.radius;
     const Vec3d q = disc.frame.point({at.x, at.y, 0});

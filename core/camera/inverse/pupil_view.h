@@ -1,15 +1,13 @@
-// pupil_view.h -- the lens as a point of the scene sees it: where light must aim to come
-// through.
+// pupil_view.h -- importance sampling of the lens from a point of the scene.
 //
-// A point (p, 1) of the camera frame (m), or a direction at infinity (p, 0), draws a ray
-// toward a region that holds every point at which its light passes the lens, and little
-// else. The density is known in closed form and can be asked again for any ray of the
-// point, so camera and light can weigh one ray alike. What passes is not the region's
-// affair: reproject() (camera.h) traces the ray. No ray depends on a wavelength.
+// A point (p, 1) of the camera frame (m), or a direction at infinity (p, 0), samples a ray toward a
+// region that tightly bounds all its passing rays. The density has a closed form and can be
+// evaluated for any ray through the point, so camera and light sampling can be combined by MIS.
+// reproject() (camera.h) decides whether the ray passes. Sampling does not depend on wavelength.
 //
-// Pinholes and projections without an iris are a lens of measure one. Thin lens: its iris; thick: the iris's image, the
-// entrance pupil. Exact: what camera rays of all wavelengths leave at the entrance pupil,
-// iris fully open (pupil_shape.h).
+// Pinholes and projections without an iris: a lens of measure one. Thin lens: its iris. Thick lens:
+// the entrance pupil, image of the iris. Exact lens: the region of passing camera rays of all
+// wavelengths on the entrance pupil, iris fully open (pupil_shape.h).
 #pragma once
 #include <memory>
 #include <mutex>
@@ -33,15 +31,15 @@ class PupilView {
     static PupilView of(const ExactLens& lens);
 
     struct Sample {
-        Vec3f origin;  // where rays of the camera start: the lens, or its first surface
+        Vec3f origin;  // origin of camera rays: on the lens, or its first surface
         Vec3f direction;  // unit, from the lens to the point
-        float pdf;        // see below
+        float pdf;        // see pdf()
     };
-    /// Nothing where the point sees no lens.
+    /// Empty if the point does not see the lens.
     std::optional<Sample> sample(Vec3d p, double w, Vec2f u) const;
 
-    /// Density of a ray through the point: per sr at the point, or (w = 0) per m2 across
-    /// the ray; 0: it is never drawn. Pinhole: 1 across the ray.
+    /// Density of a ray through the point: per sr at the point, or (w = 0) per m2 across the ray; 0
+    /// outside the sampling region. Pinhole: 1 across the ray.
     float pdf(Vec3d p, double w, const Ray& ray) const;
 
   private:
@@ -49,7 +47,7 @@ class PupilView {
     using Shape = std::shared_ptr<const Iris>;
     PupilView(const Opening& opening, Shape iris) : opening_(opening), iris_(std::move(iris)) {}
     explicit PupilView(std::shared_ptr<const PupilShape> pupil) : pupil_(std::move(pupil)) {}
-    /// Shape of the iris; none without one.
+    /// Shape of the iris; null for kinds without an iris.
     template <typename L>
     static Shape iris_of(const L& lens) {
         if constexpr (requires { lens.iris(); })
@@ -62,24 +60,23 @@ class PupilView {
 
     Opening opening_;
     Shape iris_;
-    std::shared_ptr<const PupilShape> pupil_;   // exact lenses, instead
+    std::shared_ptr<const PupilShape> pupil_;   // exact lenses: replaces opening_ and iris_
 };
 
-/// Those of a camera whose lens changes while the shutter is open: of the lens that draws
-/// at each time.
+/// Lens sampling for a camera with a lens that changes over time: uses the lens at the ray's time.
 class PupilViewOverTime {
   public:
     explicit PupilViewOverTime(const Camera& camera);
 
     std::optional<PupilView::Sample> sample(Vec3d p, double w, Vec2f u, float time) const;
-    /// At the ray's time.
+    /// Density at the ray's time.
     float pdf(Vec3d p, double w, const Ray& ray) const;
 
   private:
     template <typename Use>
     decltype(auto) with_lens(float time, const Use& use) const;
 
-    /// Made when it is first asked for: few of a long exposure's states may be.
+    /// Created on first use: long exposures may never need some states.
     struct State {
         LensKind lens;
         std::once_flag once;
@@ -87,7 +84,7 @@ class PupilViewOverTime {
     };
     const PupilView& view(std::size_t state) const;
 
-    std::vector<float> times_;  // empty: one state
+    std::vector<float> times_;  // empty: constant
     std::vector<std::unique_ptr<State>> states_;
 };
 

@@ -1,5 +1,4 @@
-// Camera rays and light rays through one lens: the same measure, the same film, the same
-// light.
+// Camera rays and light rays through the same lens: same measure, film point and light.
 #include "camera/inverse/pupil_view.h"
 
 #include <doctest/doctest.h>
@@ -55,7 +54,7 @@ TEST_CASE(
 
 namespace {
 
-/// Coordinates of a ray, in the frame across another.
+/// Coordinates of a ray in a frame across another ray.
 std::array<double, 4> across(const Ray& ray, Vec3d from, Vec3d x, Vec3d y) {
     const Vec3d d = to_double(ray.direction), z = cross(x, y);
     const Vec3d o = to_double(ray.origin) - from, at = o - d * (dot(o, z) / dot(d, z));
@@ -77,7 +76,7 @@ double determinant(std::vector<std::array<double, 4>> rows) {
     return std::abs(product);
 }
 
-/// The share of a hundred values that are 1 within the tolerance: warps have creases.
+/// Checks that most ratios are 1 within the tolerance; warps have creases.
 void check_most(std::vector<double>& ratios, double tolerance) {
     std::sort(ratios.begin(), ratios.end());
     CHECK(ratios.size() > 30);
@@ -132,7 +131,7 @@ TEST_CASE(
     }
 }
 
-/// Visits every lens with an opening, and its points: check(view, point).
+/// Visits all lenses with an opening and their points: check(view, point).
 template <typename Check>
 void from_each_point(const Check& check) {
     for (const test::ViewCase& c : test::view_cases()) {
@@ -210,7 +209,7 @@ TEST_CASE("what the camera draws lies in the region, seen from any point of its 
     }
 }
 
-// By rays toward a disc across the direction to the point, all alike.
+// Estimates the integral with uniform rays toward a disc across the direction to the point.
 TEST_CASE("the density integrates to one, and is that of what is drawn") {
     from_each_point([](const PupilViewOverTime& view, const test::ViewPoint& p) {
         Random random(7);

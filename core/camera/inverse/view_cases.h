@@ -1,5 +1,5 @@
-// view_cases.h -- cameras of every kind, with points of the scene that they see: for the
-// tests of light that goes through the lens from either side.
+// view_cases.h -- cameras of every kind with visible scene points, for tests of light transport
+// through the lens in both directions.
 #pragma once
 #include <cmath>
 #include <random>
@@ -17,7 +17,7 @@ inline Vec2f square(Random& random) {
     const float a = u(random);
     return {a, u(random)};
 }
-/// One of four, in turn.
+/// Cycles through four wavelengths.
 inline float wavelength(std::size_t i) {
     return 430.f + 70.f * float(i % 4);
 }
@@ -25,7 +25,7 @@ inline float wavelength(std::size_t i) {
 struct ViewPoint {
     Vec3d at;  // m, or a direction
     double w = 1;
-    double half = 0.01;  // of a square around it: m, or a tangent
+    double half = 0.01;  // half side of a square around the point: m, or a tangent
 };
 
 struct ViewCase {
@@ -35,7 +35,7 @@ struct ViewCase {
     float opening = 1;
     Vec2f half_film_mm{18, 12};
 
-    /// Where the camera draws.
+    /// Whether a film point is in the frame.
     bool on_film(Vec2f mm) const {
         return std::abs(mm.x) <= half_film_mm.x && std::abs(mm.y) <= half_film_mm.y;
     }
@@ -53,7 +53,7 @@ inline Camera still(LensKind lens) {
     return {Motion{}, std::move(lens)};
 }
 
-/// All light goes through one point.
+/// Whether all rays pass through one point.
 inline bool is_hole(const LensKind& lens) {
     const auto* projection = std::get_if<Projection>(&lens);
     return std::holds_alternative<Pinhole>(lens) || (projection && projection->aperture_radius_mm == 0);
@@ -125,8 +125,7 @@ inline ExactLensSettings exact_settings(double f_stop, double focus_m, Iris iris
     return s;
 }
 
-/// A check lens with a weak cylinder in front of its film: nothing is the same on all
-/// sides.
+/// Check lens with a weak cylinder at the front surface: no axial symmetry.
 inline Prescription anamorphic() {
     Prescription lens = check_lens(true, 0.5);
     lens.name = "anamorphic";
@@ -144,7 +143,7 @@ inline Prescription decentred() {
     return lens;
 }
 
-/// An iris whose opening lies to one side.
+/// Iris with an off-centre opening.
 inline Iris half_moon() {
     std::vector<float> values;
     for (int y = 0; y < 24; ++y)

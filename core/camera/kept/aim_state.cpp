@@ -7,11 +7,10 @@
 
 namespace dg {
 
-// Members are listed by structured bindings: a struct that gains one does not compile here until it is
-// decided whether an aim depends on it. They stand outside of the anonymous namespace to be found by the
-// archives.
+// Structured bindings list all members, so that a new member fails to compile until this file
+// handles it. The functions are outside the anonymous namespace so that the archives find them.
 
-/// To be raised whenever the same lens would be aimed or fitted differently.
+/// Version of the method; increase it when the same lens would get another aim or fit.
 constexpr int kAimVersion = 4;
 
 template <typename A>
@@ -69,7 +68,7 @@ template <typename A>
 void describe(A& a, const Surface& s) {
     const auto& [curvature, thickness, semi, glass, stop, shape, conic, curvature_x, conic_x,
                  asphere, inner, after, decenter, tilt, coating, ripple, reflectance] = s;
-    (void)reflectance;   // no camera ray is reflected
+    (void)reflectance;   // camera rays are not reflected
     a(curvature, thickness, semi, glass, stop, shape, conic, curvature_x, conic_x, asphere, inner,
       after, decenter, tilt, coating, ripple.rms_nm, ripple.period_um, ripple.seed);
 }
@@ -136,7 +135,7 @@ std::string digest(std::string_view bytes) {
     return digits(hash_bytes(bytes, 1), hash_bytes(bytes, 2));
 }
 
-/// Whether all that the kernels index with fits.
+/// Whether sizes and indices are within the kernels' bounds.
 bool consistent(const Aim& aim) {
     const AimTables& t = aim.tables;
     const FreeAimTables& f = t.free;

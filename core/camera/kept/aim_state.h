@@ -1,4 +1,4 @@
-// aim_state.h -- what the set-up of an exact lens finds out, as bytes to keep, and under which name.
+// aim_state.h -- cached set-up of an exact lens: serialization and cache key.
 #pragma once
 #include <optional>
 #include <string>
@@ -13,12 +13,12 @@ struct AimState {
     std::string fit{};  // of a fitted lens, see fit_state.h
 };
 
-/// 32 hexadecimal digits that differ as soon as anything differs of which the state depends: numbers of
-/// the prescription, iris, film, settings, version of the method, SIMD target.
+/// Hash, as 32 hexadecimal digits, of everything that determines the state: numbers of the
+/// prescription, iris, film, settings, version of the method, SIMD target.
 std::string aim_key(const Prescription& lens, const ExactLensSettings& settings);
 
 std::string to_bytes(const AimState& state, const std::string& key);
-/// Nothing if they are damaged or belong to another key.
+/// Empty if the bytes are damaged or have another key.
 std::optional<AimState> aim_from_bytes(const std::string& bytes, const std::string& key);
 
 }  // namespace dg

@@ -1,5 +1,5 @@
-// archive.h -- values as bytes and back, for what is kept between runs on one machine (native byte order).
-// A struct is described once, by a list of its members: `describe(archive, value)`.
+// archive.h -- binary serialization for caches on one machine (native byte order). A struct is
+// described by a list of its members: `describe(archive, value)`.
 #pragma once
 #include <cstring>
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace dg {
 
-/// 64 bits of the bytes; `seed` makes independent ones.
+/// 64-bit hash of the bytes; different seeds give independent hashes.
 inline std::uint64_t hash_bytes(std::string_view bytes, std::uint64_t seed) {
     std::uint64_t h = hash64(seed, bytes.size());
     for (std::size_t i = 0; i < bytes.size(); i += 8) {
@@ -25,7 +25,7 @@ inline std::uint64_t hash_bytes(std::string_view bytes, std::uint64_t seed) {
     return h;
 }
 
-/// Appends what it is called with.
+/// Serializes its arguments to `bytes`.
 class ByteWriter {
   public:
     template <typename... T>
@@ -64,7 +64,7 @@ class ByteWriter {
     }
 };
 
-/// Fills what it is called with; past the end, or at sizes that cannot be, `ok` turns false.
+/// Deserializes into its arguments; `ok` turns false past the end or at implausible sizes.
 class ArchiveReader {
   public:
     explicit ArchiveReader(std::string_view from) : rest(from) {}
@@ -96,7 +96,8 @@ class ArchiveReader {
         constexpr bool kNumbers = std::is_arithmetic_v<T>;
         std::size_t size = 0;
         get(size);
-        ok = ok && size <= rest.size() / (kNumbers ? sizeof(T) : 1);  // others have a byte at least
+        ok = ok && size <= rest.size() / (kNumbers ? sizeof(T) : 1);  // elements of other types have at least one
+                                                                      // byte
         if (!ok) return;
         v.resize(size);
         if constexpr (kNumbers)
@@ -117,7 +118,7 @@ class ArchiveReader {
     }
 };
 
-/// U both ways: for a writer T is const.
+/// U for readers, const U for writers.
 template <typename T, typename U>
 concept Either = std::is_same_v<std::remove_const_t<T>, U>;
 

@@ -5,8 +5,8 @@
 
 namespace dg {
 
-// Members are listed by structured bindings, as in aim_state.cpp: a struct that gains one
-// does not compile here until it is kept.
+// Structured bindings list all members, as in aim_state.cpp: a new member fails to compile until
+// this file handles it.
 
 template <typename A, Either<FitTerm> T>
 void describe(A& a, T& t) {

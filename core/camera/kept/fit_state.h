@@ -1,4 +1,4 @@
-// fit_state.h -- a fitted lens as bytes to keep.
+// fit_state.h -- serialization of a fitted lens.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,7 +8,7 @@
 namespace dg {
 
 std::string to_bytes(const LensFit& fit);
-/// Nothing if they are damaged.
+/// Empty if the bytes are damaged.
 std::optional<LensFit> fit_from_bytes(const std::string& bytes);
 
 }  // namespace dg
