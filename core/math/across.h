@@ -1,4 +1,4 @@
-// across.h -- axes across a direction.
+// across.h -- axes perpendicular to a direction.
 #pragma once
 #include <algorithm>
 
@@ -6,7 +6,8 @@
 
 namespace dg {
 
-/// They turn with a unit direction from straight ahead (-z) without a jump but straight behind.
+/// Orthonormal axes across a unit direction e, rotated from (x, y) together with -z: continuous
+/// except at e = +z.
 struct Across {
     Vec3d x, y;
     explicit Across(Vec3d e) {

@@ -1,4 +1,5 @@
-// below_one.h -- the largest float below 1, where random numbers in [0, 1) end that rounding may take to 1.
+// below_one.h -- largest float below 1: the upper clamp for random numbers in [0, 1) that rounding
+// may take to 1.
 #pragma once
 
 namespace dg {

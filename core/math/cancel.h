@@ -1,16 +1,16 @@
-// cancel.h -- cancellation: another thread ends long work of this one.
+// cancel.h -- cancellation of long work by another thread.
 #pragma once
 #include <atomic>
 #include <stdexcept>
 
 namespace dg {
 
-/// Thrown by work that was cancelled.
+/// Thrown by cancelled work.
 struct Cancelled : std::runtime_error {
     Cancelled() : std::runtime_error("cancelled") {}
 };
 
-/// A request to end work, made once, from any thread.
+/// Request to stop work; set once, by any thread.
 class CancelToken {
   public:
     void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
@@ -20,7 +20,8 @@ class CancelToken {
     std::atomic<bool> cancelled_{false};
 };
 
-/// While it lives, the token (none: nothing) cancels the work of this thread. Threads that help take it over.
+/// Makes the token (null: none) cancel work of this thread within the scope. Helper threads inherit
+/// it.
 class CancelScope {
   public:
     explicit CancelScope(const CancelToken* token) : before_(current_) { current_ = token; }
@@ -28,11 +29,11 @@ class CancelScope {
     CancelScope(const CancelScope&) = delete;
     CancelScope& operator=(const CancelScope&) = delete;
 
-    /// The token of this thread; null: none.
+    /// Token of this thread; null: none.
     static const CancelToken* current() { return current_; }
 
   private:
-    // Threads hold little of their own: the C library ends the process if there is no memory for that.
+    // Keep thread-local data small: the C library ends the process when it cannot allocate it.
     inline static thread_local const CancelToken* current_ = nullptr;
     const CancelToken* before_;
 };
@@ -43,7 +44,8 @@ inline bool is_cancelled() {
     return token && token->cancelled();
 }
 
-/// Ends the work of this thread if it was cancelled. Loops that last longer than a few ms call it.
+/// Throws Cancelled if the work of this thread was cancelled. Call it in loops that take more than
+/// a few ms.
 inline void throw_if_cancelled() {
     if (is_cancelled()) throw Cancelled();
 }

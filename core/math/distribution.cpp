@@ -1,4 +1,4 @@
-// distribution.cpp -- building and searching the tables of distribution.h.
+// distribution.cpp -- construction and search of the tables of distribution.h.
 #include "math/distribution.h"
 
 #include <cmath>
@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kColumnsPerGuide = 4;
 
-/// Running sums of the weights divided by the last one, so that the end is exactly 1;
-/// returns the sum.
+/// Writes the cumulative sums divided by the total, so that the last is exactly 1; returns the
+/// total.
 template <typename Weight, typename Out>
 double normalized_cdf(std::span<const Weight> weights, Out* cdf) {
     double sum = 0;
@@ -34,7 +34,7 @@ double normalized_cdf(std::span<const Weight> weights, Out* cdf) {
     return sum;
 }
 
-/// guide[j] = first cell that ends after j / guides; guide[guides] = the last cell with
+/// guide[j] = first cell that ends after j / guides; guide[guides] = the last cell with a positive
 /// weight.
 template <typename Cdf, typename Out>
 void fill_guide(const Cdf* cdf, int cells, int guides, Out* guide) {
@@ -48,7 +48,7 @@ void fill_guide(const Cdf* cdf, int cells, int guides, Out* guide) {
     guide[guides] = Out(last);
 }
 
-/// Smallest cell in [first, last] that ends after u.
+/// First cell in [first, last] that ends after u.
 template <typename Cdf>
 int bisect(const Cdf* cdf, int first, int last, double u) {
     while (first < last) {
@@ -65,8 +65,8 @@ float below_one(double v) {
     return std::clamp(float(v), 0.f, kBelowOne);
 }
 
-/// (cell + offset) / cells as a float that a look-up finds in the same cell: rounding may carry it
-/// over a border, into a cell of another density or none.
+/// (cell + offset) / cells as a float that maps back to the same cell: rounding could move it
+/// across a border, into a cell with another density or zero density.
 float place(int cell, double offset, int cells) {
     const float x = below_one((cell + offset) / cells);
     const int found = int(double(x) * cells);

@@ -1,9 +1,7 @@
-// distribution.h -- sampling from tabulated weights: discrete, and piecewise constant in
-// 1D and 2D.
+// distribution.h -- sampling of tabulated weights: discrete, and piecewise constant in 1D and 2D.
 //
-// All are inverse CDFs, so a stratified u gives stratified samples; a guide table makes
-// the search O(1) on average. Source: Chen and Asau 1974 (guide tables); Devroye 1986,
-// II.2.4 and III.2.4.
+// All use inverse CDFs, so stratified u give stratified samples; a guide table makes the search
+// O(1) on average. Source: Chen and Asau 1974 (guide tables); Devroye 1986, II.2.4 and III.2.4.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -25,9 +23,8 @@ struct ContinuousSample1D {
     int index;
 };
 
-/// Chooses index i with probability weights[i] / sum. Indices of weight 0 are never
-/// chosen. Throws Error if there is no weight, one is negative, NaN or infinite, or all
-/// are 0.
+/// Samples index i with probability weights[i] / sum; never an index of weight 0. Throws Error for
+/// an empty list, a weight that is negative, NaN or infinite, or if all are 0.
 class DiscreteDistribution {
   public:
     DiscreteDistribution() = default;
@@ -40,7 +37,7 @@ class DiscreteDistribution {
     bool empty() const { return cdf_.size() < 2; }
     double sum() const { return sum_; }  // of the weights
 
-    /// The same weights as a density over [0,1): cell i covers [i, i+1) / size().
+    /// Sampling of the weights as a density over [0,1): cell i covers [i, i+1) / size().
     ContinuousSample1D sample_continuous(float u) const;
     float pdf_continuous(float x) const;
 
@@ -48,7 +45,7 @@ class DiscreteDistribution {
     void build(std::span<const double> weights);
 
     std::vector<double> cdf_;           // size + 1, from exactly 0 to exactly 1
-    std::vector<std::uint32_t> guide_;  // first index whose cell ends after j / guides
+    std::vector<std::uint32_t> guide_;  // guide[j]: first cell that ends after j / guides
     double sum_ = 0;
 };
 
@@ -57,9 +54,8 @@ struct Sample2D {
     float pdf;   // density over the unit square
 };
 
-/// Density proportional to values[row * width + column]; x runs along a row, y over the
-/// rows. Throws Error as DiscreteDistribution does, and if width * height is not the
-/// number of values.
+/// Density proportional to values[row * width + column]; x runs along rows, y across rows. Throws
+/// Error like DiscreteDistribution, and if the number of values is not width * height.
 class Distribution2D {
   public:
     Distribution2D() = default;
@@ -81,7 +77,7 @@ class Distribution2D {
     DiscreteDistribution rows_;
     std::vector<float> cdf_;  // per row: width + 1
     std::vector<std::uint16_t>
-        guide_;  // per row: guides_, in units of guide steps of columns
+        guide_;  // per row: guides_ entries, in units of guide steps of columns
 };
 
 }  // namespace dg

@@ -1,4 +1,4 @@
-// dual.h -- forward automatic differentiation: a value with its derivatives for N inputs.
+// dual.h -- forward-mode automatic differentiation: a value with its derivatives by N inputs.
 #pragma once
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@ struct Dual {
     std::array<double, N> d{};
 
     Dual() = default;
-    Dual(double constant) : value(constant) {}  // NOLINT: constants mix with duals
+    Dual(double constant) : value(constant) {}  // NOLINT: constants convert implicitly
     static Dual input(double value, int index) {
         Dual x(value);
         x.d[index] = 1;
@@ -39,8 +39,8 @@ struct Dual {
         for (int i = 0; i < N; ++i) r.d[i] = (a.d[i] - r.value * b.d[i]) / b.value;
         return r;
     }
-    /// At 0 the derivative is taken as 0: what is a root there (a radius on the axis) comes
-    /// multiplied by a power of itself.
+    /// At 0 the derivative is set to 0: such a root (the radius on the axis) is always multiplied
+    /// by a power of itself.
     friend Dual sqrt(const Dual& a) {
         const double root = std::sqrt(a.value);
         return a.mapped(root, root > 0 ? 0.5 / root : 0);
@@ -60,7 +60,7 @@ double value_of(const Dual<N>& x) {
     return x.value;
 }
 
-/// How many of Newton's steps give a root all the derivatives that a number carries.
+/// Newton steps from an exact root that give it all derivatives of the number type.
 inline int newton_steps(double) { return 0; }
 template <int N>
 int newton_steps(const Dual<N>&) {

@@ -1,4 +1,4 @@
-// error.h -- bad input is dg::Error (what, where, wanted, got); an impossible state is DG_CHECK.
+// error.h -- dg::Error for bad input (what, where, wanted, got); DG_CHECK for internal invariants.
 #pragma once
 #include <sstream>
 #include <stdexcept>
@@ -6,7 +6,8 @@
 
 namespace dg {
 
-/// Input that cannot be used. The message is one sentence a user can act on; Python sees daguerre._core.Error.
+/// Unusable input. The message is a sentence that the user can act on; in Python,
+/// daguerre._core.Error.
 struct Error : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

@@ -1,9 +1,8 @@
-// linear_solve.cpp -- Householder QR of a tall matrix, a panel of rows at a time.
+// linear_solve.cpp -- Householder QR of a tall matrix, in panels of rows.
 //
-// The triangle R so far is a small matrix; each panel P of rows is annihilated against
-// it: column j's reflection touches row j of R and the panel only, so the work is 2 m n^2
-// as for one big QR, but everything stays in the cache. Source: Golub and Van Loan 2013,
-// Matrix Computations, 5.1 and 6.5.
+// The triangle R is updated panel by panel: the reflection of column j only changes row j of R and
+// the panel. The cost is 2 m n^2, as for QR of the whole matrix, but the working set fits the
+// cache. Source: Golub and Van Loan 2013, Matrix Computations, 5.1 and 6.5.
 #include "math/linear_solve.h"
 
 #include <cmath>
@@ -14,9 +13,9 @@
 namespace dg {
 namespace {
 
-constexpr int kPanelRows = 64;  // 64 x 80 doubles fit the first-level cache
+constexpr int kPanelRows = 64;  // 64 x 80 doubles fit the L1 cache
 
-/// A panel, column after column. Unused rows of the last panel are 0 and change nothing.
+/// Panel in column-major order. Unused rows of the last panel are 0 and have no effect.
 struct Panel {
     std::vector<double> values;
     explicit Panel(int columns) : values(std::size_t(columns) * kPanelRows) {}
@@ -25,8 +24,8 @@ struct Panel {
 
 using Pair [[gnu::vector_size(16)]] = double;
 
-/// Four partial sums of two: the compiler may not reorder additions, so the order is
-/// written out.
+/// Explicit partial sums in four pairs: the compiler may not reorder floating-point additions
+/// itself.
 double dot_panel(const double* a, const double* b) {
     Pair s[4] = {};
     for (int i = 0; i < kPanelRows; i += 8)
@@ -43,9 +42,9 @@ void subtract_multiple(double* a, const double* v, double factor) {
     for (int i = 0; i < kPanelRows; ++i) a[i] -= factor * v[i];
 }
 
-/// Reflects (R row j; panel) so that the panel's column j becomes 0, for all columns from
-/// j on. The reflector is v = (1; p / head) with head = r - alpha, alpha of the sign that
-/// adds up.
+/// Reflects (R row j; panel) so that column j of the panel becomes 0, and applies the reflection to
+/// all columns from j on. The reflector is v = (1; p / head) with head = r - alpha, where the sign
+/// of alpha avoids cancellation.
 void annihilate_column(std::vector<double>& r, Panel& panel, int j, int columns) {
     double* p = panel.column(j);
     const double below = dot_panel(p, p);
@@ -78,7 +77,7 @@ void check_input(const std::vector<double>& matrix, int rows, int cols,
                               std::to_string(nrhs));
     expect("matrix", std::size_t(rows) * cols, matrix.size());
     expect("right-hand sides", std::size_t(rows) * nrhs, rhs.size());
-    double sum = 0;  // of products with 0: NaN as soon as one number is not finite
+    double sum = 0;  // sum of products with 0: NaN if any number is not finite
     for (const double v : matrix) sum += v * 0;
     for (const double v : rhs) sum += v * 0;
     if (sum != 0)

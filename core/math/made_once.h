@@ -1,15 +1,15 @@
-// made_once.h -- a value that all copies of an object share: made when one of them first needs it.
+// made_once.h -- lazily created value, shared by all copies of an object.
 #pragma once
 #include <memory>
 #include <mutex>
 
 namespace dg {
 
-/// T may be incomplete where this is a member.
+/// T may be incomplete at the declaration of a member.
 template <typename T>
 class MadeOnce {
   public:
-    /// The value; make() makes it, unless that was done. If that throws, the next call tries again.
+    /// Returns the value; calls make() on first use. If make() throws, the next call retries.
     template <typename Make>
     const T& get(const Make& make) const {
         const std::scoped_lock lock(shared_->making);

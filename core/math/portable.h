@@ -1,7 +1,7 @@
-// portable.h -- functions whose bits differ between releases of the C library, made of those that keep
-// theirs. Held equal in glibc 2.36, 2.41 and 2.43: acosf, asinf, asinhf, atan2f and atan change there,
-// the functions below and what else the core calls do not (portable_test.cpp). A double that is rounded
-// to float is the correctly rounded value but for one argument in 10^8 or so.
+// portable.h -- replacements for functions with results that differ between releases of the C
+// library. acosf, asinf, asinhf, atan2f and atan differ between glibc 2.36, 2.41 and 2.43; the
+// functions below and all others that the core calls do not (portable_test.cpp). A result in
+// double, rounded to float, is correctly rounded for all but about one in 10^8 arguments.
 #pragma once
 #include <cmath>
 
@@ -16,7 +16,7 @@ inline float asin(float x) { return float(std::asin(double(x))); }
 inline float asinh(float x) { return float(std::asinh(double(x))); }
 inline float atan2(float y, float x) { return float(std::atan2(double(y), double(x))); }
 inline double atan(double x) { return std::atan2(x, 1.0); }
-/// The C library's also asks for its newest release (GLIBC 2.35).
+/// std::hypot also requires the newest C library (GLIBC 2.35).
 template <typename T>
 T hypot(T x, T y) { return std::sqrt(x * x + y * y); }
 

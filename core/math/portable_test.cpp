@@ -1,5 +1,5 @@
-// portable_test.cpp -- the C library's functions that the core calls have the bits that they have in glibc
-// 2.36, 2.41 and 2.43. A newer release that fails here draws other pictures: give portable.h one more function.
+// portable_test.cpp -- C library functions used by the core give the same bits as glibc 2.36, 2.41
+// and 2.43. If a newer release fails here, images would change: add a replacement to portable.h.
 #include <doctest/doctest.h>
 
 #include <bit>
@@ -21,7 +21,7 @@ std::uint64_t bits(T value) {
     else return std::bit_cast<std::uint64_t>(value);
 }
 
-/// One number for the bits of 200,000 values; arguments are evenly spread over [low, high].
+/// Hash of the bits of 200,000 values; arguments are uniform over [low, high].
 template <typename T>
 std::uint64_t fingerprint(T low, T high, const std::function<T(T, T)>& f) {
     std::uint64_t all = 0;
@@ -34,7 +34,7 @@ std::uint64_t fingerprint(T low, T high, const std::function<T(T, T)>& f) {
 
 bool is_judged() {
 #if defined(__GLIBC__) && defined(__x86_64__)
-    return __builtin_cpu_supports("fma");   // without it the library has other code, and other bits
+    return __builtin_cpu_supports("fma");   // otherwise the library takes other code paths, with other bits
 #else
     return false;
 #endif

@@ -1,5 +1,5 @@
-// quasi_random.h -- points of low-discrepancy sequences: multiples of powers of 1/g, g^(N+1) = g + 1.
-// Source: Roberts 2018, The Unreasonable Effectiveness of Quasirandom Sequences.
+// quasi_random.h -- low-discrepancy sequences: multiples of powers of 1/g, g^(N+1) = g + 1. Source:
+// Roberts 2018, The Unreasonable Effectiveness of Quasirandom Sequences.
 #pragma once
 #include <array>
 #include <cmath>

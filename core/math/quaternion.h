@@ -24,7 +24,7 @@ struct Quaternion {
     friend Quaternion operator*(Quaternion a, T s) {
         return {a.x * s, a.y * s, a.z * s, a.w * s};
     }
-    /// Hamilton product: the rotation b, then a.
+    /// Hamilton product: rotation b followed by a.
     friend Quaternion operator*(Quaternion a, Quaternion b) {
         return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
                 a.w * b.y + a.y * b.w + a.z * b.x - a.x * b.z,
@@ -47,9 +47,9 @@ Quaternion<T> normalize(Quaternion<T> q) {
     return q * (T(1) / std::sqrt(dot(q, q)));
 }
 
-/// Constant-speed interpolation along the shorter arc; a and b are unit, t in [0,1].
-/// The angle comes from atan2 of chord lengths, exact also where acos(dot) loses its
-/// digits. Source: Shoemake 1985, Animating Rotation with Quaternion Curves, SIGGRAPH.
+/// Constant-speed interpolation along the shorter arc; a and b are unit, t in [0,1]. The angle
+/// comes from atan2 of chord lengths, which is accurate where acos(dot) loses digits. Source:
+/// Shoemake 1985, Animating Rotation with Quaternion Curves, SIGGRAPH.
 template <typename T>
 Quaternion<T> slerp(Quaternion<T> a, Quaternion<T> b, T t) {
     if (dot(a, b) < 0) b = -b;
@@ -67,10 +67,9 @@ Affine<T> to_matrix(Quaternion<T> q) {
     return {q.rotate({1, 0, 0}), q.rotate({0, 1, 0}), q.rotate({0, 0, 1}), {}};
 }
 
-/// Unit quaternion of a rotation matrix (orthonormal columns, determinant +1), w >= 0
-/// where it is not 0. The largest of the four components is found first, so no root is
-/// taken of a small difference. Source: Shepperd 1978, Quaternion from Rotation Matrix,
-/// J. Guidance and Control 1(3).
+/// Unit quaternion of a rotation matrix (orthonormal columns, determinant +1), with w >= 0. Starts
+/// from the largest component to avoid cancellation. Source: Shepperd 1978, Quaternion from
+/// Rotation Matrix, J. Guidance and Control 1(3).
 template <typename T>
 Quaternion<T> from_matrix(const Affine<T>& m) {
     const T trace = m.x.x + m.y.y + m.z.z;

@@ -10,7 +10,7 @@ using Lanes [[gnu::vector_size(16)]] = std::uint32_t;
 
 constexpr auto kDirections = sobol_directions();
 
-/// Reversed coordinates 3 to 6 of point i: the directions of its set bits, added mod 2.
+/// Coordinates 3 to 6 of point i, bit-reversed: XOR of the direction numbers of its set bits.
 Lanes sobol_rest_reversed(std::uint32_t i) {
     Lanes sum{};
     for (; i != 0; i &= i - 1) {
@@ -20,7 +20,7 @@ Lanes sobol_rest_reversed(std::uint32_t i) {
     return sum;
 }
 
-/// Scrambles two reversed coordinates with the halves of `seed` and makes them floats.
+/// Scrambles two bit-reversed coordinates with the halves of `seed`, and converts them to float.
 Vec2f scrambled(std::uint32_t x, std::uint32_t y, std::uint64_t seed) {
     const std::uint64_t both = reverse_bits64(
         std::uint64_t(owen_scramble_reversed(y, std::uint32_t(seed >> 32))) << 32 |

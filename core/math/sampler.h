@@ -1,4 +1,4 @@
-// sampler.h -- the random numbers of one path, by purpose.
+// sampler.h -- random numbers of a path, by purpose.
 #pragma once
 #include <cstdint>
 
@@ -7,18 +7,18 @@
 
 namespace dg {
 
-/// The first six dimensions of a path; jointly stratified over the sample index.
+/// Camera dimensions of a path, jointly stratified over the sample index.
 struct CameraRandom {
     Vec2f film, lens;
     float time, lambda;
 };
 
-/// Owen-scrambled Sobol points. A pixel has its own scramble (from pixel and seed); the
-/// sample index runs through the sequence, so any range [a, b) of indices can be drawn
-/// anywhere, in any order. After the six camera dimensions, 1D and 2D pads follow, each a
-/// shuffled and scrambled sequence. The lens has the first two coordinates (a
-/// (0,2)-sequence): a defocused lamp is where noise shows. Source: Burley 2020, Practical
-/// Hash-based Owen Scrambling, JCGT 9(4).
+/// Owen-scrambled Sobol points. Each pixel has its own scramble (from pixel and seed); the sample
+/// index runs through the sequence, so any range [a, b) of indices can be rendered anywhere, in any
+/// order. The six camera dimensions are followed by 1D and 2D pads, each a shuffled and scrambled
+/// sequence. The lens uses the first two coordinates (a (0,2)-sequence), since noise is most
+/// visible in defocused highlights. Source: Burley 2020, Practical Hash-based Owen Scrambling, JCGT
+/// 9(4).
 class PathSampler {
   public:
     PathSampler(int pixel_x, int pixel_y, std::uint32_t sample_index, std::uint64_t seed)
@@ -29,7 +29,7 @@ class PathSampler {
 
     CameraRandom camera() const;
 
-    /// Leaves out the next n draws: nobody needs them, and what follows keeps its dimension.
+    /// Skips the next n dimensions, so that later ones keep their index.
     void skip(int n) { dimension_ += n; }
 
     /// In [0,1).
@@ -53,8 +53,8 @@ class PathSampler {
         std::uint32_t index, seed_x, seed_y;
     };
 
-    /// An Owen scramble of the index is a shuffle that keeps aligned blocks of 2^k
-    /// together: pads become independent of each other and every block stays stratified.
+    /// An Owen scramble of the index is a shuffle that preserves aligned blocks of 2^k indices:
+    /// pads become independent, and every block stays stratified.
     Pad next_pad() {
         const std::uint64_t h = mix64(seed_ + ++dimension_ * 0x9e3779b97f4a7c15ull);
         const std::uint32_t low(h), high(h >> 32);

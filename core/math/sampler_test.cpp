@@ -12,7 +12,7 @@ using namespace dg;
 
 namespace {
 
-/// True if every dyadic box of 2^-k (all shapes 2^-e x 2^-(k-e)) holds exactly 2^t of the
+/// Whether every dyadic box of area 2^-k (all shapes 2^-e x 2^-(k-e)) contains exactly 2^t of the
 /// 2^(k+t) points.
 bool is_net(const std::vector<Vec2f>& points, int k, std::size_t per_box) {
     for (int e = 0; e <= k; ++e) {
@@ -82,7 +82,7 @@ TEST_CASE("every single dimension is perfectly stratified, every camera pair nea
             for (const Vec2f v : p) ++hit[std::size_t(v.x * float(1 << k))];
             CHECK(std::all_of(hit.begin(), hit.end(), [](int h) { return h == 1; }));
         }
-    // The worst pair of these six coordinates is a (3,2)-net, as its polynomials allow.
+    // Any pair of these six coordinates is at worst a (3,2)-net, as its polynomials guarantee.
     for (int a = 0; a < 6; ++a)
         for (int b = 0; b < a; ++b)
             for (int k = 3; k <= 10; ++k)

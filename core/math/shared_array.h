@@ -1,4 +1,4 @@
-// shared_array.h -- an array that nobody changes, with the one who keeps its memory.
+// shared_array.h -- immutable array with shared ownership.
 #pragma once
 #include <cstddef>
 #include <initializer_list>
@@ -8,8 +8,8 @@
 
 namespace dg {
 
-/// Elements that are read in place, wherever they lie: in a vector that was handed over, or in
-/// another's memory (a numpy array) that `owner` keeps alive. Copies share the elements.
+/// Elements in a vector or in external memory (a numpy array) that `owner` keeps alive. Copies
+/// share the elements.
 template <typename T>
 class SharedArray {
   public:

@@ -1,9 +1,8 @@
 // sobol.h -- Sobol points and Owen scrambling on bit-reversed integers.
 //
-// Everything here works on REVERSED words: bit 0 is the first binary digit after the
-// point. In that form the first coordinate of point i is i itself, and a scramble in
-// which a digit depends on the digits before it is a function whose low bits drive its
-// high bits, which is what + and * do.
+// All words are REVERSED: bit 0 is the first binary digit after the point. Then the first
+// coordinate of point i is i, and Owen scrambling, in which a digit depends on the digits before
+// it, is a function in which low bits affect high bits, like + and *.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,9 +11,9 @@
 
 namespace dg {
 
-/// Owen's nested uniform scramble of a reversed word, hashed from `seed`.
-/// Sources: Laine and Karras 2011, Stratified Sampling for Stochastic Transparency (the
-/// idea); Burley 2020, JCGT 9(4); constants: Vegdahl 2021, Building a Better LK Hash.
+/// Owen's nested uniform scramble of a reversed word, hashed from `seed`. Sources: Laine and Karras
+/// 2011, Stratified Sampling for Stochastic Transparency (method); Burley 2020, JCGT 9(4); Vegdahl
+/// 2021, Building a Better LK Hash (constants).
 constexpr std::uint32_t owen_scramble_reversed(std::uint32_t v, std::uint32_t seed) {
     v ^= v * 0x3d20adeau;
     v += seed;
@@ -24,10 +23,10 @@ constexpr std::uint32_t owen_scramble_reversed(std::uint32_t v, std::uint32_t se
     return v;
 }
 
-/// Second Sobol coordinate, reversed. Its direction numbers are the rows of Pascal's
-/// triangle mod 2, so reversed it is the polynomial with the bits of i as coefficients,
-/// taken at (x + 1) over GF(2). Each line shifts by 1 in blocks: L + x^s H -> (L + H) +
-/// x^s H because (x + 1)^s = x^s + 1.
+/// Second Sobol coordinate, reversed. Its direction numbers are the rows of Pascal's triangle mod
+/// 2: reversed, the coordinate is the polynomial with the bits of i as coefficients, evaluated at
+/// (x + 1) over GF(2). Each line shifts by 1 in blocks: L + x^s H -> (L + H) + x^s H, because (x +
+/// 1)^s = x^s + 1.
 constexpr std::uint32_t sobol_second_reversed(std::uint32_t i) {
     i ^= i >> 16;
     i ^= (i >> 8) & 0x00ff00ffu;
@@ -36,8 +35,7 @@ constexpr std::uint32_t sobol_second_reversed(std::uint32_t i) {
     return i ^ ((i >> 1) & 0x55555555u);
 }
 
-/// Primitive polynomial (degree, inner coefficients) and initial numbers of one Sobol
-/// coordinate.
+/// Primitive polynomial (degree, inner coefficients) and initial numbers of a Sobol coordinate.
 struct SobolSeed {
     int degree;
     std::uint32_t coefficients;
@@ -51,8 +49,8 @@ inline constexpr std::array<SobolSeed, 4> kSobolSeeds{{{2, 1, {1, 3, 0, 0}},
                                                        {3, 2, {1, 1, 1, 0}},
                                                        {4, 1, {1, 1, 3, 3}}}};
 
-/// Reversed direction numbers: [index bit][coordinate 3..6]. Recurrence of Bratley and
-/// Fox 1988.
+/// Reversed direction numbers: [index bit][coordinate 3..6], by the recurrence of Bratley and Fox
+/// 1988.
 constexpr std::array<std::array<std::uint32_t, 4>, 32> sobol_directions() {
     std::array<std::array<std::uint32_t, 4>, 32> table{};
     for (int d = 0; d < 4; ++d) {
@@ -72,7 +70,7 @@ constexpr std::array<std::array<std::uint32_t, 4>, 32> sobol_directions() {
     return table;
 }
 
-/// First 24 bits as a float in [0,1): every value is exact, the largest is 1 - 2^-24.
+/// First 24 bits as a float in [0,1): all values are exact, the largest is 1 - 2^-24.
 inline float unit_float(std::uint32_t bits) {
     return float(std::int32_t(bits >> 8)) * 0x1p-24f;
 }

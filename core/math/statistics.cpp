@@ -1,7 +1,6 @@
-// statistics.cpp -- incomplete gamma and beta functions, and the tests made of them.
-// Series and continued fractions: Abramowitz and Stegun 1964, 6.5.29, 6.5.31 and 26.5.8;
-// fractions are evaluated by the method of Lentz 1976 as modified by Thompson and Barnett
-// 1986.
+// statistics.cpp -- incomplete gamma and beta functions, and statistical tests. Series and
+// continued fractions: Abramowitz and Stegun 1964, 6.5.29, 6.5.31 and 26.5.8; fractions are
+// evaluated by Lentz's method (1976) as modified by Thompson and Barnett 1986.
 #include "math/statistics.h"
 
 #include <algorithm>
@@ -19,7 +18,7 @@ namespace {
 constexpr double kEpsilon = 1e-16, kTiny = 1e-300;
 constexpr int kMaxTerms = 100000;
 
-/// One continued fraction b0 + a1/(b1 + a2/(b2 + ...)), advanced term by term.
+/// Continued fraction b0 + a1/(b1 + a2/(b2 + ...)), evaluated term by term.
 class Lentz {
   public:
     explicit Lentz(double b0) : value_(b0 == 0 ? kTiny : b0), c_(value_), d_(0) {}
@@ -128,7 +127,7 @@ ChiSquareResult chi_square_test(std::span<const double> observed,
         pool_expected += expected[i];
         left -= expected[i];
         ++in_pool;
-        // The remainder must be able to make a cell of its own, else it joins this one.
+        // Close the pool only if the remaining cells can fill another; otherwise they join it.
         if (pool_expected >= min_expected && (left >= min_expected || i == order.back()))
             close_pool();
     }

@@ -1,4 +1,4 @@
-// statistics.h -- the distributions behind the statistical tests of every room.
+// statistics.h -- distributions and tests for the statistical tests of all rooms.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -18,32 +18,32 @@ double chi_square_tail(double statistic, double degrees);
 
 struct ChiSquareResult {
     double statistic = 0;
-    int degrees = 0;  // cells after pooling, minus 1, minus dof_reduction
+    int degrees = 0;  // cells after pooling - 1 - dof_reduction
     double p_value =
-        0;           // probability of a statistic at least this large if the law is right
-    int pooled = 0;  // cells that were thrown together
+        0;           // probability of a statistic at least this large under the null hypothesis
+    int pooled = 0;  // number of pooled cells
 };
 
-/// Pearson's test of counts against expected counts. Cells are taken in the order of
-/// their expectation and pooled until each holds at least `min_expected`; a count where
-/// nothing can fall is p = 0. `dof_reduction`: parameters that were estimated from the
-/// counts. Throws Error if the sizes differ or fewer than two cells remain.
+/// Pearson's chi-square test of counts against expected counts. Sorts cells by expectation and
+/// pools them until each has at least `min_expected`; a count in a cell of expectation 0 gives p =
+/// 0. `dof_reduction`: number of parameters estimated from the counts. Throws Error if the sizes
+/// differ or fewer than two cells remain.
 ChiSquareResult chi_square_test(std::span<const double> observed,
                                 std::span<const double> expected, int dof_reduction = 0,
                                 double min_expected = 5);
 
-/// Sample mean with the unbiased variance of one observation, and how many there were.
+/// Sample mean, unbiased variance of an observation, and number of observations.
 struct SampleMoments {
     double mean = 0, variance = 0, count = 0;
 };
 SampleMoments moments(std::span<const double> values);
 
-/// Two-sided p-value that two means are equal, variances unknown and different.
-/// Source: Welch 1947, Biometrika 34. Both variances 0: 1 if the means are equal, else 0.
+/// Two-sided p-value of equal means with unknown and different variances. Source: Welch 1947,
+/// Biometrika 34. If both variances are 0: 1 for equal means, else 0.
 double welch_p_value(const SampleMoments& a, const SampleMoments& b);
 
-/// Level of each of n independent tests that keeps the chance of any false alarm at
-/// `alpha`. Source: Sidak 1967, JASA 62.
+/// Significance level of each of n independent tests for a family-wise level `alpha`. Source: Sidak
+/// 1967, JASA 62.
 double sidak_level(double alpha, double tests);
 
 }  // namespace dg

@@ -1,5 +1,4 @@
-// statistics_test.cpp -- published values, and that the tests have the stated level and
-// power.
+// statistics_test.cpp -- published values, and level and power of the tests.
 #include "math/statistics.h"
 
 #include <doctest/doctest.h>
@@ -13,8 +12,7 @@
 using namespace dg;
 
 TEST_CASE("chi-square, Student and normal tails agree with printed tables") {
-    // Abramowitz and Stegun 1964, tables 26.8 (chi-square), 26.10 (Student), 26.1
-    // (normal).
+    // Abramowitz and Stegun 1964, tables 26.8 (chi-square), 26.10 (Student), 26.1 (normal).
     CHECK(chi_square_tail(3.84146, 1) == doctest::Approx(0.05).epsilon(1e-5));
     CHECK(chi_square_tail(18.3070, 10) == doctest::Approx(0.05).epsilon(1e-5));
     CHECK(chi_square_tail(149.449, 100) == doctest::Approx(0.001).epsilon(1e-4));
@@ -75,7 +73,7 @@ TEST_CASE("small cells are pooled; a count where nothing can fall is impossible"
 }
 
 TEST_CASE("Welch's test: its level, a shift that it sees, a worked example") {
-    // Student's sleep data (1908), two groups of 10: t = -1.8608, 17.776 degrees, p =
+    // Student's sleep data (1908), two groups of 10: t = -1.8608, 17.776 degrees of freedom, p =
     // 0.07939.
     const std::vector<double> a{0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0.0, 2.0};
     const std::vector<double> b{1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4};

@@ -1,4 +1,4 @@
-// transform.h -- affine transforms, column vectors: world = matrix * local.
+// transform.h -- affine transforms on column vectors: world = matrix * local.
 #pragma once
 #include <array>
 
@@ -8,15 +8,15 @@ namespace dg {
 
 template <typename T>
 struct Affine {
-    // Columns of the linear part, and the translation.
+    // Columns of the linear part, and translation.
     Vec3<T> x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, origin{0, 0, 0};
 
     Vec3<T> point(Vec3<T> p) const { return x * p.x + y * p.y + z * p.z + origin; }
     Vec3<T> vector(Vec3<T> v) const { return x * v.x + y * v.y + z * v.z; }
     T determinant() const { return dot(x, cross(y, z)); }
 
-    /// Normals transform by the cofactor matrix; the result is not normalised and keeps its side
-    /// also when the transform mirrors.
+    /// Normals transform by the cofactor matrix. The result is not normalized; it stays on the same
+    /// side of the surface for mirroring transforms too.
     Vec3<T> normal(Vec3<T> n) const {
         const Vec3<T> m = cross(y, z) * n.x + cross(z, x) * n.y + cross(x, y) * n.z;
         return determinant() < 0 ? -m : m;
@@ -27,7 +27,7 @@ struct Affine {
     }
 };
 
-/// Inverse; the caller makes sure that the determinant is not 0.
+/// Inverse; the determinant must not be 0.
 template <typename T>
 Affine<T> inverse(const Affine<T>& a) {
     const T s = T(1) / a.determinant();
@@ -37,8 +37,8 @@ Affine<T> inverse(const Affine<T>& a) {
     return r;
 }
 
-/// Whether rays can be traced through it in single precision: the box that it makes of a cube keeps more than
-/// 1e-7, the precision of a float, of the volume that its edges would have at right angles.
+/// Whether rays can be transformed in single precision: the volume of the transformed unit cube is
+/// more than 1e-7 (the precision of float) of the product of its edges.
 inline bool is_invertible(const Affine<double>& a) {
     constexpr double kSmallest = 1e-7;
     const double edges = length_squared(a.x) * length_squared(a.y) * length_squared(a.z);

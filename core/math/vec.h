@@ -1,4 +1,4 @@
-// vec.h -- small vectors. Plain aggregates; component-wise operators.
+// vec.h -- small vectors: aggregates with component-wise operators.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -59,14 +59,15 @@ template <typename T>
 Vec3<T> normalize(Vec3<T> a) { return a * (T(1) / length(a)); }
 template <typename T>
 T max_component(Vec3<T> a) { return std::max(a.x, std::max(a.y, a.z)); }
-/// Rounding in a ray tracer goes by it.
+/// Scale of rounding errors in ray tracing.
 template <typename T>
 T largest_coordinate(Vec3<T> a) { return max_component(Vec3<T>{std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 
-/// Limit of coordinates and of the numbers of transforms, m: squares of longer ones overflow a float. Scenes are held
-/// to it when they are made (Python's scene/limits.py has the same number), rays when they are traced.
+/// Limit of coordinates and transform entries, m: squares of larger numbers overflow float. Checked
+/// for scenes when they are built (same number in Python's scene/limits.py), and for rays when they
+/// are traced.
 inline constexpr float kFar = 1e18f;
-/// False for NaN, too.
+/// False for NaN.
 template <typename T>
 bool within_limits(Vec3<T> a) {
     return std::abs(a.x) < T(kFar) && std::abs(a.y) < T(kFar) && std::abs(a.z) < T(kFar);
@@ -80,8 +81,8 @@ using Vec3d = Vec3<double>;
 inline Vec3f to_float(Vec3d a) { return {float(a.x), float(a.y), float(a.z)}; }
 inline Vec3d to_double(Vec3f a) { return {a.x, a.y, a.z}; }
 
-/// Right-handed orthonormal basis around a unit vector n; local z is n.
-/// Source: Duff et al. 2017, Building an Orthonormal Basis, Revisited, JCGT 6(1).
+/// Right-handed orthonormal basis with local z along the unit vector n. Source: Duff et al. 2017,
+/// Building an Orthonormal Basis, Revisited, JCGT 6(1).
 struct Frame {
     Vec3f x, y, z;
     static Frame from_normal(Vec3f n) {

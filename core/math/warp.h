@@ -1,13 +1,12 @@
-// warp.h -- maps of the unit square to discs, triangles and directions, with
-// their densities. Each is continuous or nearly so, so that stratified points stay
-// stratified.
+// warp.h -- maps from the unit square to discs, triangles and directions, with their densities. All
+// are nearly continuous, so that stratified points stay stratified.
 #pragma once
 #include "math/vec.h"
 
 namespace dg {
 
-/// Unit disc, uniform. Source: Shirley and Chiu 1997, A Low Distortion Map Between Disk
-/// and Square.
+/// Uniform on the unit disc. Source: Shirley and Chiu 1997, A Low Distortion Map Between Disk and
+/// Square.
 inline Vec2f warp_disk(Vec2f u) {
     const float a = 2 * u.x - 1, b = 2 * u.y - 1;
     if (a == 0 && b == 0) return {0, 0};
@@ -20,9 +19,8 @@ inline float warp_disk_pdf(Vec2f p) {
     return length_squared(p) <= 1 ? 1 / kPi : 0;
 }
 
-/// Barycentric weights of the second and third corner, uniform; density 2 over them, so 1
-/// / area over the triangle. Source: Heitz 2019, A Low-Distortion Map Between Triangle
-/// and Square.
+/// Barycentric weights of the second and third corner, uniform, with density 2 (1 / area on the
+/// triangle). Source: Heitz 2019, A Low-Distortion Map Between Triangle and Square.
 inline Vec2f warp_triangle(Vec2f u) {
     if (u.y > u.x) {
         const float x = u.x * 0.5f;
@@ -35,7 +33,7 @@ inline float warp_triangle_pdf(Vec2f b) {
     return b.x >= 0 && b.y >= 0 && b.x + b.y <= 1 ? 2.f : 0.f;
 }
 
-/// Directions around +z with density cos / pi: the disc, lifted (Malley's method).
+/// Cosine-weighted directions around +z, density cos / pi (Malley's method).
 inline Vec3f warp_cosine_hemisphere(Vec2f u) {
     const Vec2f d = warp_disk(u);
     return {d.x, d.y, std::sqrt(std::max(0.f, 1 - length_squared(d)))};
@@ -44,7 +42,7 @@ inline float warp_cosine_hemisphere_pdf(Vec3f w) {
     return std::max(0.f, w.z) / kPi;
 }
 
-/// All directions alike. z runs from 1 down to -1 with u.x.
+/// Uniform directions. z decreases from 1 to -1 with u.x.
 inline Vec3f warp_sphere(Vec2f u) {
     const float z = 1 - 2 * u.x;
     const float r = 2 * std::sqrt(std::max(0.f, u.x * (1 - u.x)));
@@ -55,8 +53,8 @@ inline float warp_sphere_pdf() {
     return 1 / (4 * kPi);
 }
 
-/// Directions around +z within a cone, uniform. The cone is given by 1 - cos of its half
-/// angle, because cos alone loses a small cone to rounding.
+/// Uniform directions in a cone around +z, given by 1 - cos of its half angle: cos alone loses
+/// precision for narrow cones.
 inline Vec3f warp_cone(Vec2f u, float one_minus_cos) {
     const float h = u.x * one_minus_cos;  // 1 - cos theta
     const float r = std::sqrt(std::max(0.f, h * (2 - h)));

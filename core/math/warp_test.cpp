@@ -1,5 +1,4 @@
-// warp_test.cpp -- every warp against its own density, cell by cell; irises; and a
-// planted fault.
+// warp_test.cpp -- warps against their densities, cell by cell; irises; planted faults.
 #include "math/warp.h"
 
 #include <doctest/doctest.h>
@@ -33,7 +32,7 @@ double cell_mass(const std::function<double(Vec2f)>& pdf, Vec2f corner, Vec2f si
     return sum * size.x * size.y / (n * n);
 }
 
-/// The same, finer where a border crosses the cell.
+/// Integral of pdf over a cell, refined if a border crosses the cell.
 double cell_mass(const std::function<double(Vec2f)>& pdf, Vec2f corner, Vec2f size) {
     bool border = false;
     const double mass = cell_mass(pdf, corner, size, 16, border);
@@ -66,7 +65,7 @@ double warp_p_value(const std::function<Vec2f(Vec2f)>& warp,
         }
     CHECK(sum == doctest::Approx(1).epsilon(1e-3));
     CHECK(outside < kSamples / 2000);  // rounding at a border only
-    // The quadrature misses slivers at a border: what it finds empty is possible, and
+    // Quadrature misses slivers at borders: give empty cells a small expectation, so that they are
     // pooled.
     for (double& e : expected) e += 1e-9;
     return chi_square_test(observed, expected, 0, 100).p_value;
@@ -85,7 +84,7 @@ TEST_CASE("a 2 % fault in the density of the disc is caught") {
 }
 
 TEST_CASE("directions, seen as (cos theta, phi)") {
-    // d omega = d cos theta d phi, so a density over directions is one over this
+    // d omega = d cos theta d phi, so a density over directions is also a density over this
     // rectangle.
     const auto chart = [](Vec3f w) { return Vec2f{w.z, std::atan2(w.y, w.x)}; };
     const auto cosine = [&](Vec2f u) { return chart(warp_cosine_hemisphere(u)); };

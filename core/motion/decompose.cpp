@@ -5,7 +5,7 @@
 namespace dg {
 namespace {
 
-constexpr double kOrthogonal = 1e-5;   // |cosine| between axes: glTF's own numbers are floats
+constexpr double kOrthogonal = 1e-5;   // |cosine| between axes: matrices from glTF have float precision
 
 Affine3d linear_part(const Affine3d& m) {
     return {m.x, m.y, m.z, {}};
@@ -16,7 +16,7 @@ Affine3d scaled(const Affine3d& m, double s) {
 Affine3d transposed(const Affine3d& m) {
     return {{m.x.x, m.y.x, m.z.x}, {m.x.y, m.y.y, m.z.y}, {m.x.z, m.y.z, m.z.z}, {}};
 }
-/// Largest column.
+/// Length of the longest column.
 double size(const Affine3d& m) {
     return std::sqrt(std::max({length_squared(m.x), length_squared(m.y), length_squared(m.z)}));
 }
@@ -31,7 +31,7 @@ std::optional<RotationStretch> polar(const Affine3d& m) {
     for (int i = 0; i < 100; ++i) {
         if (!(std::abs(r.determinant()) > 1e-12)) return std::nullopt;
         const Affine3d back = transposed(inverse(r));
-        // Scaling each round by the sizes of both makes ill-conditioned maps converge too.
+        // Scaling the iterates by their sizes makes ill-conditioned matrices converge.
         const double g = i < 8 ? std::sqrt(size(back) / size(r)) : 1;
         const Affine3d next{(r.x * g + back.x / g) * 0.5, (r.y * g + back.y / g) * 0.5,
                             (r.z * g + back.z / g) * 0.5, {}};
@@ -60,7 +60,7 @@ std::optional<RotationStretch> scaled_rotation(const Affine3d& m) {
                            {{side * x, 0, 0}, {0, y, 0}, {0, 0, z}, {}}};
 }
 
-// The largest eigenvalue of M^T M, in closed form. Source: Smith 1961, Eigenvalues of a symmetric 3x3
+// Largest eigenvalue of M^T M in closed form. Source: Smith 1961, Eigenvalues of a symmetric 3x3
 // matrix, Comm. ACM 4(4).
 double spectral_norm(const Affine3d& m) {
     const double xx = dot(m.x, m.x), yy = dot(m.y, m.y), zz = dot(m.z, m.z);

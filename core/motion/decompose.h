@@ -1,4 +1,4 @@
-// decompose.h -- a linear map as rotation after stretch.
+// decompose.h -- decompositions of a linear map into rotation and stretch.
 #pragma once
 #include <optional>
 
@@ -13,16 +13,16 @@ struct RotationStretch {
     Affine3d stretch;
 };
 
-/// Polar decomposition: the closest rotation, and a symmetric stretch, which a mirror makes negative.
-/// Empty where the map has no inverse. Source: Higham 1986, Computing the Polar Decomposition, SIAM J.
+/// Polar decomposition into the closest rotation and a symmetric stretch, negated for mirroring
+/// maps. Empty for a singular map. Source: Higham 1986, Computing the Polar Decomposition, SIAM J.
 /// Sci. Stat. Comput. 7(4); Shoemake and Duff 1992 for the factor -1 of mirrors.
 std::optional<RotationStretch> polar(const Affine3d& m);
 
-/// Rotation after scales along the axes (the first of them negative for a mirror). Empty where the
-/// columns are not at right angles, or one is 0.
+/// Decomposition into a rotation and scales along the axes (the first scale is negative for
+/// mirrors). Empty if the columns are not orthogonal, or one is 0.
 std::optional<RotationStretch> scaled_rotation(const Affine3d& m);
 
-/// Most that the map makes any vector longer.
+/// Spectral norm: largest factor by which the map lengthens a vector.
 double spectral_norm(const Affine3d& m);
 
 }  // namespace dg

@@ -34,7 +34,7 @@ Hull::Hull(std::span<const Vec3f> points) {
         for (int i = 0; i <= kCells; ++i) {
             for (int j = 0; j <= kCells; ++j) {
                 const Vec3f d = to_float(node(face, i, j));
-                float most = 0;  // the centre is inside
+                float most = 0;  // positive, as the centre is inside
                 for (const Vec3f p : offsets) most = std::max(most, dot(d, p));
                 reach_[face][i][j] = most + rounding;
             }

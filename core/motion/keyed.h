@@ -1,4 +1,4 @@
-// keyed.h -- a value over time: linear between keys, held before the first and after the last.
+// keyed.h -- value over time: linear between keys, constant before the first and after the last.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -7,13 +7,14 @@
 
 namespace dg {
 
-/// Where a time lies among keys: `share` of the way from key `left` to key `right`.
+/// Position of a time among keys: fraction `share` from key `left` to key `right`.
 struct KeyPlace {
     std::size_t left = 0, right = 0;
     double share = 0;
 };
 
-/// `times` do not fall and are not empty. Of two keys of one time (a jump) the second counts there.
+/// `times` are ascending and not empty. Of two keys at the same time (a jump), the second applies
+/// at that time.
 template <typename Time>
 KeyPlace place_among(const std::vector<Time>& times, Time t) {
     const auto after = std::upper_bound(times.begin(), times.end(), t);
@@ -23,8 +24,8 @@ KeyPlace place_among(const std::vector<Time>& times, Time t) {
     return {left, right, double(t - times[left]) / double(times[right] - times[left])};
 }
 
-/// Time is the fraction of the scene's interval, or (double) seconds. `blend(a, b, share)` must exist
-/// for T.
+/// Keyframed value. Time is the fraction of the scene's interval, or (double) seconds. T needs
+/// `blend(a, b, share)`.
 template <typename T, typename Time = float>
 struct Keyed {
     std::vector<Time> times;
@@ -41,7 +42,8 @@ struct Keyed {
     }
 };
 
-/// Keys of seconds with `open` as time 0 and `close` as time 1; one key if they do not move in between.
+/// Keys with times in seconds, mapped so that `open` is 0 and `close` is 1; a single key if the
+/// value is constant in between.
 template <typename T>
 Keyed<T> over(const Keyed<T, double>& keys, double open, double close) {
     Keyed<T> cut{{0}, {keys.at(open)}};
@@ -54,7 +56,7 @@ Keyed<T> over(const Keyed<T, double>& keys, double open, double close) {
     std::size_t i = std::upper_bound(keys.times.begin(), keys.times.end(), open) - keys.times.begin();
     for (; i < keys.times.size() && keys.times[i] < close; ++i) add(keys.times[i], keys.values[i]);
     if (i == keys.times.size()) return cut;
-    // A jump at the very end is not reached any more.
+    // A jump exactly at `close` has no effect.
     const double share = i == 0 ? 1 : (close - keys.times[i - 1]) / (keys.times[i] - keys.times[i - 1]);
     add(close, share < 1 ? keys.at({i - 1, i, share}) : keys.values[i]);
     return cut;

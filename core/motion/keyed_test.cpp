@@ -1,11 +1,11 @@
-// keyed_test.cpp -- values between keys, and keys of seconds cut to an interval.
+// keyed_test.cpp -- values between keys, and keys cut to an interval.
 #include "motion/keyed.h"
 
 #include <doctest/doctest.h>
 
 namespace dg {
 
-struct Number {  // of namespace dg, where blend() is looked for
+struct Number {  // in namespace dg, for argument-dependent lookup of blend()
     float x;
 };
 inline Number blend(Number a, Number b, float share) {

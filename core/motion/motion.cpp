@@ -9,8 +9,8 @@
 namespace dg {
 namespace {
 
-constexpr double kConstant = 1e-10;  // of stretches, relative: what is less is rounding
-constexpr double kRigid = 1e-5;   // largest stretch that twist takes for rounding
+constexpr double kConstant = 1e-10;  // relative change of stretches below which it counts as rounding
+constexpr double kRigid = 1e-5;   // largest stretch that twist accepts as rounding
 
 bool is_finite(const Affine3d& m) {
     for (const Vec3d v : {m.x, m.y, m.z, m.origin})
@@ -34,7 +34,7 @@ bool is_one(const Affine3d& stretch) {
     return length(d.x) + length(d.y) + length(d.z) < kRigid;
 }
 
-/// M = R S by the law of the interpolation; empty: there is none, and the way is linear.
+/// M = R S for the interpolation; empty: interpolate linearly.
 std::optional<RotationStretch> split(const Affine3d& m, Interpolation how, std::size_t key) {
     const auto where = [&] { return "motion key " + std::to_string(key); };
     switch (how) {
@@ -63,8 +63,8 @@ struct CosineSine {
     double cosine, sine;
 };
 
-/// The first terms of the series are exact to rounding for small angles, and cheaper: a camera that pans
-/// asks for them at every ray.
+/// For small angles, truncated series are exact to rounding and faster; panning cameras evaluate
+/// them for every ray.
 CosineSine cosine_sine(double angle) {
     const double x2 = angle * angle;
     if (x2 > 1.0 / 64) return {std::cos(angle), std::sin(angle)};
@@ -87,7 +87,7 @@ Motion::Turn turn_about(const Affine3d& base, Vec3d axis, const Affine3d& stretc
     return turn;
 }
 
-/// How the way to the next key turns, and what it changes.
+/// Sets rotation and change of the segment from one key to the next.
 void lead_to(Motion::Segment& from, const Motion::Segment& to, Vec3d pivot) {
     from.turns = from.turns && to.turns && from.first.determinant() * to.first.determinant() > 0;
     if (!from.turns) {
@@ -98,7 +98,7 @@ void lead_to(Motion::Segment& from, const Motion::Segment& to, Vec3d pivot) {
     from.stretches = spectral_norm(growth) > kConstant * spectral_norm(from.stretch);
     if (from.stretches) from.change = growth;
     from.change.origin = to.first.point(pivot) - from.first.point(pivot);
-    Quaterniond delta = from.rotation.conjugate() * to.rotation;   // R0^-1 R1: the lecture's twist
+    Quaterniond delta = from.rotation.conjugate() * to.rotation;   // R0^-1 R1
     if (delta.w < 0) delta = -delta;
     const Vec3d v{delta.x, delta.y, delta.z};
     const double sine = length(v);
@@ -199,7 +199,7 @@ Affine3d Motion::Track::at(double time) const {
     return spins() ? base * spun(time) : base;
 }
 
-/// Whole turns are taken off: the sine of a large angle has lost its digits.
+/// Reduces by whole turns, because sines of large angles lose precision.
 double Motion::Track::spin_angle(double time) const {
     const double turns = spin.revolutions_per_second * (time - spin.time);
     return 2 * kPiD * (turns - std::floor(turns));
@@ -218,7 +218,7 @@ Motion Motion::over(double open, double close) const {
     const std::vector<double>& times = track_->times;
     const std::size_t first = place_among(times, open).left, last = place_among(times, close).left;
     const bool on_key = last > first && times[last] == close;
-    const std::size_t end = std::min(last + (on_key ? 1 : 2), times.size());   // the key behind too
+    const std::size_t end = std::min(last + (on_key ? 1 : 2), times.size());   // including the key after `close`
     part.times.assign(times.begin() + first, times.begin() + end);
     part.segments.assign(track_->segments.begin() + first, track_->segments.begin() + end);
     for (double& t : part.times) t = (t - open) / span;

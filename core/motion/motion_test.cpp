@@ -1,4 +1,4 @@
-// motion_test.cpp -- transforms between their keys, against closed forms.
+// motion_test.cpp -- interpolated transforms against closed forms.
 #include "motion/motion.h"
 
 #include <doctest/doctest.h>
@@ -57,7 +57,7 @@ TEST_CASE("decomposed keeps mirror and shear") {
     Affine3d a{{-2, 0, 0}, {0.5, 1, 0}, {0, 0, 3}, {1, 0, 0}};   // mirrored, sheared
     const Affine3d b = turned({0, 0, 1}, 170) * a;
     const Motion m = between(a, b, Interpolation::decomposed);
-    // b = turn a, so the stretch stays and the rotation is that of the turn.
+    // b = turn a: the stretch is constant and the rotation is the turn.
     const Affine3d expected = turned({0, 0, 1}, 85);
     const Vec3d p{0.2, 0.4, 0.6};
     const Vec3d around = m.at(0.5).vector(p);

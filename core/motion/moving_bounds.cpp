@@ -15,11 +15,11 @@ using Corners = std::array<Vec3d, 8>;
 using Segment = Motion::Segment;
 using Track = Motion::Track;
 
-/// A tree that is lerped in time costs this much more than one that is not (measured).
+/// Relative cost of a tree that is interpolated in time (measured).
 constexpr double kMovingCost = 1.25;
-/// Beyond so many turns in the interval one box for the whole disc is as good.
+/// Number of turns in the interval above which a single box of the swept disc is as good.
 constexpr double kMostTurns = 4;
-/// Half as long steps must save this share of the boxes' surface.
+/// Halving the steps must reduce the boxes' area by this fraction.
 constexpr double kWorthwhile = 0.05;
 
 Corners corners_of(const Box& b) {
@@ -41,11 +41,11 @@ Box join(const Box& a, const Box& b) {
 Vec3d across(Vec3d v, Vec3d axis) { return v - axis * dot(v, axis); }
 Vec3d row(const Affine3d& m, int k) { return {m.x[k], m.y[k], m.z[k]}; }
 
-/// Moving body: the hull, or all that it sweeps while it spins.
+/// Moving body: the hull, or its sweep over all angles of a spin.
 struct Body {
     const Hull& hull;
     const Spin* sweep = nullptr;
-    Corners corners;  // of a box around it
+    Corners corners;  // of a bounding box
 
     Body(const Hull& hull, const Spin* sweep) : hull(hull), sweep(sweep) {
         Box box;
@@ -60,7 +60,8 @@ struct Body {
 
     double reach(Vec3d d) const {
         if (!sweep) return hull.reach(d);
-        // All turned copies of d lie in the convex hull of a few that are a little longer across.
+        // All rotated copies of d are in the convex hull of kTurns directions with a slightly
+        // longer component across the axis.
         constexpr int kTurns = 32;
         const double longer = 1 / std::cos(kPiD / kTurns);
         const Vec3d a = sweep->axis, along = a * dot(d, a), u = across(d, a) * longer, v = cross(a, u);
@@ -73,7 +74,7 @@ struct Body {
         return most + dot(d, sweep->center);
     }
 
-    /// Bound of |f(p)| over the body, for linear f: a convex function is largest at a corner.
+    /// Maximum of |f(p)| over the body for linear f: a convex function is largest at a corner.
     template <typename F>
     double most(const F& f) const {
         double r = 0;
@@ -82,14 +83,14 @@ struct Body {
     }
 };
 
-/// A part of one segment: shares s0 .. s1 of it, at times t0 .. t1.
+/// Part of a segment: fractions s0 .. s1 of it, at times t0 .. t1.
 struct Piece {
     const Segment& segment;
     double t0, t1, s0, s1;
-    double rate;  // shares per time
+    double rate;  // ds / dt
 };
 
-/// Calls visit(piece) for what happens from `begin` to `end`, in order.
+/// Calls visit(piece) for the pieces from `begin` to `end`, in order.
 template <typename Visit>
 void for_pieces(const Track& track, double begin, double end, const Visit& visit) {
     const auto& times = track.times;
@@ -104,12 +105,12 @@ void for_pieces(const Track& track, double begin, double end, const Visit& visit
     }
 }
 
-/// How fast the segment's own transform changes, as bounds over the piece.
+/// Bounds of the rates of change of a segment's transform over the piece.
 struct Rates {
     double turn = 0;     // rad per time, about `axis` in the world
     Vec3d axis{};
     double size = 0;     // norm of the linear part
-    double growth = 0;   // of what is not turning, per time
+    double growth = 0;   // rate of change apart from the rotation, per time
     bool constant() const { return turn == 0 && growth == 0; }
 };
 
@@ -126,13 +127,13 @@ Rates rates_of(const Piece& p) {
             spectral_norm(g.change) * p.rate};
 }
 
-/// Share of each axis of the world that lies across `axis`.
+/// Length of each world axis's component perpendicular to `axis`.
 Vec3d across_shares(Vec3d axis) {
     const auto share = [](double c) { return std::sqrt(std::max(0.0, 1 - c * c)); };
     return {share(axis.x), share(axis.y), share(axis.z)};
 }
 
-/// Bound of |x''| along each axis of the world, without a spin.
+/// Bound of |x''| along each world axis, without a spin.
 Vec3d bend_turning(const Body& body, const Track& track, const Piece& p, const Rates& r) {
     if (r.turn == 0) return {};
     const Segment& g = p.segment;
@@ -144,7 +145,7 @@ Vec3d bend_turning(const Body& body, const Track& track, const Piece& p, const R
     return across_shares(r.axis) * (r.turn * r.turn * arm + 2 * r.turn * growth);
 }
 
-/// The same with a spin inside: x = A(y), y = B p, so x'' = A'' y + 2 A' y' + A y''.
+/// Bound of |x''| with a spin inside: x = A(y), y = B p, so x'' = A'' y + 2 A' y' + A y''.
 Vec3d bend_spinning(const Body& body, const Track& track, const Piece& p, const Rates& r) {
     const Spin& spin = track.spin;
     const double w = 2 * kPiD * std::abs(spin.revolutions_per_second);
@@ -172,13 +173,14 @@ Box box_at(const Body& body, const Affine3d& m) {
     return b;
 }
 
-/// A box that must be held at one time.
+/// Box that the bounds must contain at a time.
 struct Demand {
     double time;
     Box box;
 };
 
-/// Demands on the boxes of a step: of each piece both ends, grown by how much it bends.
+/// Required boxes of a step: the boxes at both ends of each piece, enlarged by the bound on
+/// curvature.
 std::vector<Demand> demands(const Body& body, const Track& track, double begin, double end) {
     std::vector<Demand> all;
     const bool spins = track.spins() && !body.sweep;
@@ -197,7 +199,8 @@ std::vector<Demand> demands(const Body& body, const Track& track, double begin, 
     return all;
 }
 
-/// Boxes at n + 1 steps, such that the lerp of neighbours holds the body at every time.
+/// Boxes at n + 1 steps such that linear interpolation of neighbours contains the body at every
+/// time.
 std::vector<Box> boxes_at_steps(const Body& body, const Track& track, int n) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const Vec3d far{kInfinity, kInfinity, kInfinity};
@@ -211,7 +214,7 @@ std::vector<Box> boxes_at_steps(const Body& body, const Track& track, int n) {
             if (d.time >= end) boxes[i + 1] = join(boxes[i + 1], d.box);
         }
     }
-    // Keys inside a step: both of its boxes are moved outward until the lerp holds them too.
+    // Keys inside a step: move both of its boxes outward until their interpolation contains them.
     for (int i = 0; i < n; ++i) {
         Box &a = boxes[i], &b = boxes[i + 1];
         for (const Demand& d : between[i]) {
@@ -240,9 +243,10 @@ Box union_of(const std::vector<Box>& boxes) {
     return all;
 }
 
-/// Chooses as many steps as make the boxes small; where they stay nearly one, that one.
+/// Doubles the number of steps while the boxes shrink noticeably; a single box if they hardly
+/// change.
 std::vector<Box> best_boxes(const Body& body, const Track& track) {
-    // Steps that are much longer than the keys' would be wasted work.
+    // Start near the keys' spacing; coarser steps are not worth trying.
     const int keys = int(std::min<std::size_t>(track.segments.size(), 2 * kMostMotionSteps));
     int n = std::max(1, int(std::bit_ceil(unsigned(keys))) / 2);
     std::vector<Box> best = boxes_at_steps(body, track, n);
@@ -255,7 +259,8 @@ std::vector<Box> best_boxes(const Body& body, const Track& track) {
     return best;
 }
 
-/// Balls about the centre of the body on its way, which they may miss by the size of its box there.
+/// Balls about the centre of the body along its path, enlarged by the size of the centre's box per
+/// step.
 std::vector<Ball> balls_along(const Hull& hull, const Body& body, const Track& track, int n) {
     const Vec3f middle = to_float(hull.center());
     const double radius = hull.radius() + length(to_double(middle) - hull.center());

@@ -1,11 +1,10 @@
-// moving_bounds.h -- boxes that hold a moving mesh at every time, and not only at the times for which
-// they were made.
+// moving_bounds.h -- conservative bounds of moving meshes for all times.
 //
-// Trees for motion go linearly from the box at one step to the box at the next. A point of a turning
-// mesh does not: it leaves the chord by at most h^2 / 8 times its largest acceleration, h being the
-// time of the step. The boxes are grown by that much, with the acceleration bounded in closed form
-// (x = T + R S p with T, S linear in time and R of constant speed w has |x''| <= w^2 |S p| +
-// 2 w |S' p|, at right angles to the axis of R). There is no searching for extremes, so none is missed.
+// Motion trees interpolate boxes linearly between steps. A point of a rotating mesh deviates from
+// its chord by at most h^2 / 8 times its largest acceleration, where h is the duration of the step,
+// so the boxes are enlarged by this amount. The acceleration is bounded in closed form (x = T + R S
+// p with T, S linear in time and R of constant speed w has |x''| <= w^2 |S p| + 2 w |S' p|,
+// perpendicular to the axis of R), so no extreme can be missed.
 #pragma once
 #include <vector>
 
@@ -14,23 +13,23 @@
 
 namespace dg {
 
-/// A ball, in the world.
+/// Ball in world space.
 struct Ball {
     Vec3d center;
     double radius = 0;
 };
 
-/// Time is the fraction of the scene's interval.
+/// Bounds over time, as fractions of the scene's interval.
 struct MovingBounds {
-    /// At equal steps from time 0 to 1, linear between them. One box: it holds for all times.
+    /// At equal steps from time 0 to 1, linear in between. A single box holds for all times.
     std::vector<Box> boxes;
-    /// At equal steps likewise, but the radius of a step holds until the next.
+    /// At the same steps; the radius of a step holds until the next.
     std::vector<Ball> balls;
 
     Ball ball_at(double time) const;
 };
 
-inline constexpr int kMostMotionSteps = 128;  // Embree takes 129 boxes
+inline constexpr int kMostMotionSteps = 128;  // Embree accepts 129 boxes
 
 MovingBounds moving_bounds(const Hull& hull, const Motion& motion);
 

@@ -1,4 +1,4 @@
-// moving_bounds_test.cpp -- no point of a moving mesh is ever outside its boxes and balls.
+// moving_bounds_test.cpp -- points of moving meshes are always inside their boxes and balls.
 #include "motion/moving_bounds.h"
 
 #include <doctest/doctest.h>
@@ -39,7 +39,7 @@ std::vector<Vec3f> cloud(Random& random, Vec3d middle, Vec3d size) {
     return points;
 }
 
-/// Boxes and ball at a time, as the ray tracer uses them.
+/// Box at a time, interpolated like the ray tracer does.
 Box box_at(const MovingBounds& bounds, double t) {
     const std::size_t n = bounds.boxes.size() - 1;
     if (n == 0) return bounds.boxes[0];
@@ -51,8 +51,8 @@ Box box_at(const MovingBounds& bounds, double t) {
 
 struct Check {
     int outside = 0;
-    double furthest = 0;  // outside, relative to the size of the mesh
-    double area = 0;      // of the boxes over that of the points, on average
+    double furthest = 0;  // distance outside, relative to the size of the mesh
+    double area = 0;      // mean area of the boxes relative to the points' box
 };
 
 Check check(const std::vector<Vec3f>& points, const Motion& motion, Random& random, int times) {

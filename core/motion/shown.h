@@ -1,16 +1,16 @@
-// shown.h -- when something is there.
+// shown.h -- visibility over time.
 #pragma once
 #include <algorithm>
 #include <vector>
 
 namespace dg {
 
-/// A stretch of time: with seconds what a picture exposes, or when something is there.
+/// Interval of time: in seconds, the exposure of a frame; or a period of visibility.
 struct TimeInterval {
     double open = 0, close = 0;
 };
 
-/// There from each `open` on, until `close`, which does not belong to it.
+/// Visible from each `open` up to but excluding `close`.
 struct Shown {
     std::vector<TimeInterval> times;
 
@@ -18,7 +18,8 @@ struct Shown {
         return std::ranges::any_of(
             times, [&](const TimeInterval& i) { return i.open <= time && time < i.close; });
     }
-    /// With `open` as time 0 and `close` as time 1. Both ends are moments of the picture.
+    /// Intervals with time remapped so that `open` is 0 and `close` is 1, both included in the
+    /// picture.
     Shown over(const TimeInterval& picture) const {
         const double span = picture.close - picture.open;
         Shown part;
@@ -31,7 +32,7 @@ struct Shown {
         }
         return part;
     }
-    bool always() const {  // of fractions
+    bool always() const {  // in fractions
         return std::ranges::any_of(times, [](const TimeInterval& i) { return i.open <= 0 && i.close > 1; });
     }
     bool never() const { return times.empty(); }

@@ -1,4 +1,4 @@
-// responses.h -- what a sensor's channels make of light: weights over wavelengths.
+// responses.h -- spectral responses of a sensor's channels.
 #pragma once
 #include <span>
 #include <vector>
@@ -7,20 +7,21 @@
 
 namespace dg {
 
-/// Up to four curves, tabulated at every nm from 380 to 780, linear between. A value of a channel is the
-/// integral of radiance times its curve; curves of which D65 of luminance 1 makes 1 give white as 1.
+/// Up to four response curves, tabulated per nm from 380 to 780 and linear in between. A channel's
+/// value is the integral of radiance times its curve; white is 1 if the curves are normalized to 1
+/// for D65 of luminance 1.
 class Responses {
   public:
     static constexpr int kMost = 4, kNodes = 401;
     Responses() = default;
-    /// Curve by curve, per nm. Throws Error for another size than 1 .. 4 times 401, or values that are negative
-    /// or not finite.
+    /// Curves one after the other, per nm. Throws Error unless there are 1 to 4 times 401 values,
+    /// all finite and non-negative.
     explicit Responses(std::span<const double> curves);
 
     int count() const { return count_; }
-    /// The curves at a wavelength, lane by lane.
+    /// Values of the curves at a wavelength, one per lane.
     Spectrum at(float nm) const;
-    /// One sample's estimate of the channels, lane by lane.
+    /// Estimates of the channels from a sample, one per lane.
     Spectrum of(const Wavelengths& wavelengths, Spectrum radiance) const;
 
   private:

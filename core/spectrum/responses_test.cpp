@@ -1,4 +1,4 @@
-// responses_test.cpp -- curves are read where they are, and sums over samples are integrals.
+// responses_test.cpp -- interpolation of curves, and convergence of estimates to integrals.
 #include "spectrum/responses.h"
 
 #include <doctest/doctest.h>
@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kNodes = Responses::kNodes;
 
-/// Colour matching functions, of which D65 of luminance 1 makes 1; and a narrow peak, 3 nm wide at its foot.
+/// Colour matching functions normalized to 1 for D65 of luminance 1, and a triangular peak with a
+/// base of 3 nm.
 std::vector<double> curves() {
     std::vector<double> rows(4 * kNodes);
     double light[3] = {};

@@ -1,4 +1,4 @@
-// sampled_spectrum.h -- what was measured by wavelength.
+// sampled_spectrum.h -- spectra measured by wavelength.
 #pragma once
 #include <array>
 #include <memory>
@@ -8,17 +8,18 @@
 
 namespace dg {
 
-/// Linear between samples, constant beyond the ends. Kept at every nm of the visible range, linear between.
+/// Linear between samples, constant beyond the ends. Resampled to every nm of the visible range.
 class SampledSpectrum {
   public:
-    /// Throws Error for wavelengths (nm) that do not rise, as many values, and values that are negative or not finite.
+    /// Throws Error for wavelengths (nm) that do not ascend, a different number of values, or
+    /// negative or non-finite values.
     SampledSpectrum(std::span<const double> nm, std::span<const double> values);
 
     float at(float nm) const;
     Spectrum at(Spectrum nm) const { return {at(nm[0]), at(nm[1]), at(nm[2]), at(nm[3])}; }
     float least() const;
     float most() const;
-    /// Colour in the light of D65.
+    /// Colour under D65.
     Rgb rgb() const;
     friend bool operator==(const SampledSpectrum&, const SampledSpectrum&) = default;
 
@@ -27,7 +28,7 @@ class SampledSpectrum {
     std::array<float, kNodes> nodes_;
 };
 
-/// One that many share, or none. Equal if the spectra are.
+/// Shared spectrum, or none. Compares by value.
 class SharedSpectrum {
   public:
     SharedSpectrum() = default;
@@ -42,13 +43,13 @@ class SharedSpectrum {
     std::shared_ptr<const SampledSpectrum> spectrum_;
 };
 
-/// A number at each wavelength: a colour, or what was measured in its place.
+/// Spectral value: a colour to be upsampled, or a measured spectrum.
 struct SpectralColor {
     Rgb rgb{0, 0, 0};
     SharedSpectrum sampled;
 
     SpectralColor() = default;
-    SpectralColor(Rgb c) : rgb(c) {}  // NOLINT: a colour is one
+    SpectralColor(Rgb c) : rgb(c) {}  // NOLINT: colours convert implicitly
     SpectralColor(float r, float g, float b) : rgb{r, g, b} {}
     SpectralColor(std::shared_ptr<const SampledSpectrum> s) : sampled(std::move(s)) {}  // NOLINT
 

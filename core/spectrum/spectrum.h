@@ -1,4 +1,4 @@
-// spectrum.h -- a value at the four wavelengths of one path.
+// spectrum.h -- a value at the four wavelengths of a path.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace dg {
 /// RGB triples are linear Rec.709 / sRGB primaries, D65 white.
 using Rgb = Vec3f;
 
-inline constexpr int kWavelengths = 4;  // hero first, then three that are rotated from it
+inline constexpr int kWavelengths = 4;  // hero first, then three rotated from it
 
 struct Spectrum {
     using Lanes [[gnu::vector_size(16)]] = float;

@@ -1,10 +1,9 @@
-// wavelengths.cpp -- tables, wavelength sampling and the matrices that follow from them.
+// wavelengths.cpp -- spectral tables, wavelength sampling and colour matrices.
 //
-// Everything is piecewise linear over nodes 5 nm apart, so a product of three tables is a
-// cubic in each interval and Simpson's rule integrates it exactly: matrices, basis and
-// sampled estimates agree to rounding. Wavelengths are drawn by a table of quantiles:
-// cell i of 512 in u maps linearly to [quantile i, quantile i + 1], whose density 1 /
-// (512 width) is exact.
+// All tables are piecewise linear over nodes 5 nm apart. A product of three tables is thus a cubic
+// per interval, which Simpson's rule integrates exactly: matrices, basis and sampled estimates
+// agree to rounding. Wavelengths are sampled by a table of quantiles: cell i of 512 in u maps
+// linearly to [quantile i, quantile i + 1], with the exact density 1 / (512 width).
 #include "spectrum/wavelengths.h"
 
 #include <array>
@@ -35,12 +34,12 @@ constexpr std::array<double, kNodes> kOne = [] {
 }();
 
 constexpr double kLuma = product_integral(kCieY, kOne.data());
-/// D65 is scaled to the mean 1 under y, colour matching to the integral 1 of y: Y(d65)
-/// = 1.
+/// D65 is normalized to a mean of 1 under y, the matching functions to an integral of 1 for y, so
+/// that Y(d65) = 1.
 constexpr double kD65Scale = kLuma / product_integral(kCieY, kD65);
 constexpr double kCieScale = 1 / kLuma;
 
-/// Data of one wavelength, side by side: two loads of four floats per node.
+/// Table entry of a node; two loads of four floats.
 struct alignas(32) Node {
     float cie_d65[4];  // x, y, z over 4 wavelengths; d65
     float basis[4];    // red, green, -, -
@@ -62,7 +61,7 @@ Spectrum::Lanes load(const float* four) {
     return lanes;
 }
 
-/// Four neighbouring columns of the table at node i and t of the way to the next.
+/// Interpolates four columns of the table, at t from one node to the next.
 Spectrum::Lanes blend(const float* a, const float* b, float t) {
     const Spectrum::Lanes low = load(a);
     return low + (load(b) - low) * t;
@@ -81,7 +80,7 @@ double interpolate(const double* table, double nm) {
     return table[i] + (table[i + 1] - table[i]) * (x - i);
 }
 
-/// Looks everything up at lane k; inverse_pdf is that of its wavelength.
+/// Looks up all tables for lane k; inverse_pdf belongs to its wavelength.
 void look_up(Wavelengths& w, int k, float nm, float inverse_pdf) {
     const float x = (nm - kMinWavelength) * float(1 / kStepNm);
     const int i = std::min(int(x), kNodes - 2);
@@ -89,7 +88,7 @@ void look_up(Wavelengths& w, int k, float nm, float inverse_pdf) {
     const Node &a = kTable[i], &b = kTable[i + 1];
     const Spectrum::Lanes cie = blend(a.cie_d65, b.cie_d65, t);
     const Spectrum::Lanes basis = blend(a.basis, b.basis, t);
-    // Held to [0, 1 - red], and blue is what is left: the three add up to exactly 1 in
+    // Clamp to [0, 1 - red] and compute blue as the rest, so that the three sum to exactly 1 in
     // float too.
     const float red = std::min(basis[0], 1.f), green = std::min(basis[1], 1 - red);
     w.nm.v[k] = nm;
@@ -111,7 +110,7 @@ Vec3d solve(const Mat3& m, Vec3d b) {
             dot(b, cross(c0, c1)) * s};
 }
 
-/// Rec.709 primaries (ITU-R BT.709-6, table 1.3), scaled to add up to the white of our
+/// Rec.709 primaries (ITU-R BT.709-6, table 1.3), scaled so that they sum to the white of our
 /// tables.
 struct Matrices {
     Mat3 xyz_from_rgb, rgb_from_xyz;
@@ -130,8 +129,7 @@ struct Matrices {
         const Vec3d c[3] = {solve(xyz_from_rgb, {1, 0, 0}),
                             solve(xyz_from_rgb, {0, 1, 0}),
                             solve(xyz_from_rgb, {0, 0, 1})};
-        // Rows are scaled by a part in 10^8, so that the white rounded to float gives 1
-        // exactly.
+        // Scale rows by about 1e-8, so that the white rounded to float maps to exactly 1.
         const Vec3d rounded = to_double(to_float(white));
         for (int i = 0; i < 3; ++i) {
             const Vec3d row{c[0][i], c[1][i], c[2][i]};

@@ -1,5 +1,5 @@
-// wavelengths.h -- the wavelengths of one path and everything that depends on them alone,
-// looked up once per path: colour matching weights, the RGB basis and the D65 shape.
+// wavelengths.h -- wavelengths of a path and all values that depend only on them, looked up once
+// per path: matching functions, RGB basis and D65.
 #pragma once
 #include "spectrum/spectrum.h"
 
@@ -7,40 +7,40 @@ namespace dg {
 
 inline constexpr float kMinWavelength = 380.f, kMaxWavelength = 780.f;  // nm
 
-/// Four wavelengths in nm: hero first, the others rotated by quarters of the sampling
-/// CDF. An Rgb becomes a spectrum by three multiply-adds: the basis of Mallett and Yuksel
-/// (2019, Spectral Primary Decomposition for Rendering with sRGB Reflectance) sums to 1,
-/// so that a reflectance of (1,1,1) stays exactly 1 at every wavelength.
+/// Four wavelengths in nm: the hero, and three rotated by quarters of the sampling CDF. An Rgb is
+/// upsampled by three multiply-adds: the basis of Mallett and Yuksel (2019, Spectral Primary
+/// Decomposition for Rendering with sRGB Reflectance) sums to 1, so a reflectance of (1,1,1) is
+/// exactly 1 at every wavelength.
 struct Wavelengths {
     Spectrum nm;
-    Spectrum pdf;               // of each wavelength, per nm
-    Spectrum red, green, blue;  // basis of the upsampling at nm
-    Spectrum d65;  // D65 shape, scaled so that luminance(d65) = 1 (cd/m2 for Rgb 1,1,1)
-    Spectrum cie_x, cie_y, cie_z;  // colour matching / (4 pdf), scaled so that Y(d65) = 1
+    Spectrum pdf;               // per nm, of each wavelength
+    Spectrum red, green, blue;  // upsampling basis at nm
+    Spectrum d65;  // D65 normalized to luminance(d65) = 1 (cd/m2 for Rgb 1,1,1)
+    Spectrum cie_x, cie_y, cie_z;  // matching functions / (4 pdf), normalized to Y(d65) = 1
     bool secondary_ended = false;  // only the hero counts from here on
 
-    /// u in [0,1); importance sampled (see wavelengths.cpp).
+    /// Importance-samples wavelengths with u in [0,1) (see wavelengths.cpp).
     static Wavelengths sample(float u);
-    /// Four of their own: each at its u of the table that sample() draws by, together drawn over the u with so
-    /// many times the even density.
+    /// Four independent wavelengths at given u of the table of sample(), where each u was sampled
+    /// with the given density relative to uniform.
     static Wavelengths at(Spectrum u, Spectrum density);
 
     Spectrum reflectance(Rgb c) const { return red * c.x + green * c.y + blue * c.z; }
     Spectrum emission(Rgb c) const { return d65 * reflectance(c); }
 
-    /// Only the hero wavelength is followed (dispersion in the lens): its weight becomes 4,
-    /// the others 0. Idempotent.
+    /// Terminates the secondary wavelengths (dispersion in the lens): the hero's weight becomes 4,
+    /// the weights of the others 0. Idempotent.
     void end_secondary();
 
-    /// Weights (nm) of an estimate of the integral over wavelengths; 0 for those that have ended.
+    /// Weights (nm) for estimates of an integral over wavelength; 0 for terminated wavelengths.
     Spectrum measure() const;
 
-    /// One sample's estimate of CIE XYZ (2 degree), white = D65 with Y = 1.
+    /// Estimate of CIE XYZ (2 degree observer) from a sample; white is D65 with Y = 1.
     Vec3f to_xyz(Spectrum radiance) const;
 };
 
-/// Weights of a path that goes on with the hero alone: each wavelength is the hero of one
-/// path in four.
+/// Weights of a path with only the hero wavelength: each wavelength is the hero of a quarter of the
+/// paths.
 inline Spectrum hero_alone() {
     return {kWavelengths, 0, 0, 0};
 }
@@ -48,10 +48,10 @@ inline Spectrum hero_alone() {
 /// Density per nm of Wavelengths::sample; 0 outside 380-780 nm.
 float wavelength_pdf(float nm);
 
-/// Tabulated at 5 nm, linear between; zero outside 380-780 nm.
-/// CIE values as published: y peaks at 1, D65 is 100 at 560 nm.
+/// CIE tables at 5 nm, linear in between; 0 outside 380-780 nm. Values as published: y peaks at 1,
+/// D65 is 100 at 560 nm.
 double cie_x(double nm), cie_y(double nm), cie_z(double nm), d65(double nm);
-/// Basis of the upsampling at one wavelength (red, green, blue); sums to 1.
+/// Upsampling basis at a wavelength (red, green, blue); sums to 1.
 Vec3d rgb_basis(double nm);
 
 /// 3x3 matrices consistent with the tables: XYZ of D65 is exactly Rgb (1,1,1).

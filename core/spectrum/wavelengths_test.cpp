@@ -15,8 +15,7 @@ namespace {
 
 constexpr int kBins = 200;
 
-/// Observed: lane k of n stratified paths. Expected: the density, by midpoints of each
-/// bin.
+/// Observed: lane k of n stratified paths. Expected: the density at midpoints of the bins.
 ChiSquareResult sampler_test(int lane, double fault) {
     const int n = 400000;
     std::vector<double> observed(kBins), expected(kBins);
@@ -34,7 +33,7 @@ ChiSquareResult sampler_test(int lane, double fault) {
     return chi_square_test(observed, expected);
 }
 
-/// Mean XYZ of an emission over all u, by midpoints: the estimate is smooth between table
+/// Mean XYZ of an emission over all u by the midpoint rule: the estimate is smooth between table
 /// nodes.
 Vec3d mean_xyz(Rgb rgb, bool hero_only) {
     const int n = 1 << 17;
@@ -72,7 +71,7 @@ TEST_CASE(
     for (int i = 0; i < 10000; ++i) {
         const Wavelengths w = Wavelengths::sample(float(i) / 10000);
         for (int k = 0; k < kWavelengths; ++k) {
-            // A border of two cells may be seen from either side.
+            // At the border of two cells, either density is correct.
             const float a = wavelength_pdf(w.nm[k] - 1e-3f),
                         b = wavelength_pdf(w.nm[k] + 1e-3f);
             const bool found = std::abs(w.pdf[k] - a) <= 1e-4f * a ||
@@ -115,8 +114,7 @@ TEST_CASE("white: luminance 1, reflectance exactly 1, matrices exact") {
             REQUIRE(std::max({w.red[k], w.green[k], w.blue[k]}) <= 1);
         }
     }
-    // BT.709-6 with the CIE's own white, (0.3127, 0.3290): ours differs in the fourth
-    // digit.
+    // BT.709-6 with the CIE's white (0.3127, 0.3290); ours differs in the fourth digit.
     const Vec3f white = xyz_from_rgb({1, 1, 1});
     CHECK(white.x / (white.x + white.y + white.z) ==
           doctest::Approx(0.3127).epsilon(1e-3));
@@ -150,7 +148,7 @@ TEST_CASE("ending the secondary wavelengths is unbiased and idempotent") {
     CHECK(w.secondary_ended);
     CHECK(w.cie_y[0] == 4 * before);
     CHECK(w.cie_y[1] == 0);
-    // Only lane 0 counts now, also where a dead lane carries something.
+    // Only lane 0 counts, even if terminated lanes carry radiance.
     CHECK(w.to_xyz({0, 5, 6, 7}) == Vec3f{0, 0, 0});
 }
 
