@@ -15,7 +15,6 @@ PATTERNS, comments, files, rates = (WORDS[k] for k in ("PATTERNS", "comments", "
 #: Rooms with comments that are still to be rewritten.
 LEFT = {
     "core/bind",
-    "core/camera",
     "core/codec",
     "core/develop",
     "core/film",
