@@ -53,31 +53,42 @@ LAYER = {room: name for name, floors in LAYERS.items() for rooms in floors for r
 NAME = re.compile(r"daguerre\.([a-z_0-9.]+)(?::\w+)?")
 #: Compiled module below all rooms.
 FREE = {"_core"}
-#: (file, method, module above, or a higher one of its room): a value that hands itself up.
+#: (file, method, module above, or a higher one of its room): a value that hands itself up, and why
+#: the method is there. Methods with one underscore are the one way of several public ones.
 HAND_OVERS = {
-    ("analysis/plotted.py", "_repr_png_", "plots.results"),
-    ("analysis/plotted.py", "_repr_svg_", "plots.results"),
-    ("analysis/plotted.py", "plot", "plots.results"),
-    ("camera/camera.py", "from_colmap", "calibration.cameras"),
-    ("camera/camera.py", "from_kalibr", "calibration.cameras"),
-    ("camera/camera.py", "from_opencv", "calibration.cameras"),
-    ("camera/camera.py", "from_opentrackio", "calibration.cameras"),
-    ("camera/camera.py", "from_ros", "calibration.cameras"),
-    ("frame/frame.py", "_repr_png_", "development.shown"),
-    ("frame/frame.py", "display", "development.shown"),
-    ("frame/frame.py", "encoded", "development.shown"),
-    ("frame/frame.py", "expose", "exposure.expose"),
-    ("frame/frame.py", "exposure_truth", "exposure.expose"),
-    ("frame/raw.py", "develop", "development.recipe"),
-    ("lenses/lens.py", "_repr_svg_", "plots.lens_section"),
-    ("lenses/lens.py", "at_zoom", "lenses.zoom"),
-    ("lenses/lens.py", "focused", "lenses.focus"),
-    ("lenses/lens.py", "zoom_range_mm", "lenses.zoom"),
-    ("plates/match/plate_camera.py", "save", "plates.match.writer"),
-    ("polynomial/lens_fit.py", "save", "export"),
-    ("rendering/render.py", "_on_cluster", "cluster.opened"),
-    ("stocks/stock.py", "expose", "stocks.negative"),
+    ("analysis/plotted.py", "_drawn", "plots.results"): (
+        "spot.plot() and notebooks: a result shows itself; analyses load without drawings"
+    ),
+    ("camera/camera.py", "_calibrated", "calibration.cameras"): (
+        "Camera.from_opencv and four more: makers of a camera are found at Camera"
+    ),
+    ("frame/frame.py", "_before_sensor", "exposure.expose"): (
+        "frame.expose() and exposure_truth(): the next step of a picture is found at the frame"
+    ),
+    ("frame/frame.py", "_on_screen", "development.shown"): (
+        "frame.display() and encoded(): a frame is shown as its exposure mode develops it"
+    ),
+    ("frame/raw.py", "develop", "development.recipe"): (
+        "raw.develop(): the next step of a picture is found at the raw picture"
+    ),
+    ("lenses/lens.py", "_repr_svg_", "plots.lens_section"): (
+        "a notebook asks the lens itself for its section"
+    ),
+    ("lenses/lens.py", "_zoom", "lenses.zoom"): (
+        "lens.at_zoom() and zoom_range_mm: a zoom sets lenses, so it is above Lens"
+    ),
+    ("lenses/lens.py", "focused", "lenses.focus"): (
+        "lens.focused(): focusing moves and zooms lenses, so it is above Lens"
+    ),
+    ("rendering/render.py", "_on_cluster", "cluster.opened"): (
+        "dg.render(cluster=...): one function draws here or there; the cluster drives sessions"
+    ),
+    ("stocks/stock.py", "expose", "stocks.negative"): (
+        "stock.expose(frame): a negative keeps its stock, so it is above Stock"
+    ),
 }
+#: At most as many hand-overs.
+MOST_HAND_OVERS = 10
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 #: Modules that a folder shows to others; the rest is its inside. A format's exporter sees the
 #: inside of its importer: both use one table of the format's names.
@@ -271,6 +282,23 @@ def judge_face(module: str, other: str) -> str | None:
     return f"{other} is the inside of {folder}, which shows {face}" if inside else None
 
 
+def needless(package: Package) -> list[str]:
+    """Rows of hand-overs that no method uses, or that are too many."""
+    used = {
+        (package.files[module], found.method, found.module)
+        for module, imports in package.imports.items()
+        for found in imports
+    }
+    errors = [
+        f"{file}:1: {method} does not hand over to {above}: its row in HAND_OVERS is needless"
+        for file, method, above in HAND_OVERS
+        if file in package.files.values() and (file, method, above) not in used
+    ]
+    if len(HAND_OVERS) > MOST_HAND_OVERS:
+        errors.append(f"hand-overs: wanted at most {MOST_HAND_OVERS}, got {len(HAND_OVERS)}")
+    return errors
+
+
 def circles(package: Package) -> list[str]:
     """Files that import each other in a loop, hand-overs left out; one line a loop."""
     arrows = {
@@ -329,4 +357,4 @@ def strong_components(arrows: dict[str, list[str]]) -> list[list[str]]:
 def check(folder: Path) -> tuple[int, list[str]]:
     """Number of files of a package folder, and all its faults."""
     package = Package(folder)
-    return len(package.files), upward(package) + circles(package)
+    return len(package.files), upward(package) + circles(package) + needless(package)

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre import lenses
+from daguerre import export, lenses
 from daguerre.export import aim, code, from_fit
+from daguerre.files import formats
 from daguerre.polynomial import Iris, LensFit, fit
 from tests.export.test_export_code import _compiled
 
@@ -173,8 +174,9 @@ def test_what_code_cannot_express(double_gauss, tmp_path):
         code(tilted, ".osl")
     with pytest.raises(dg.InputError, match="setting: wanted the f-stop"):
         code({**data, "setting": None}, ".c")
+    assert formats.written("fit") == export.SUFFIXES
     with pytest.raises(
-        dg.UsageError, match=r"ending in .c, .glsl, .osl, .py, .json, got 'lens.txt'"
+        dg.UsageError, match=r"lens.txt: .* ending in .c, .glsl, .osl, .py or .json, got '.txt'"
     ):
         double_gauss.save("lens.txt")
     with pytest.raises(

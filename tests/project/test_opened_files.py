@@ -11,9 +11,8 @@ OTHERS = {
     "cluster/store.py",  # the worker's own cache
     "cli/completion/installing.py",  # the shell's start file, which is changed
     "compiled.py",  # /proc/cpuinfo
-    "development/shown.py",  # a temporary picture
     "files/reading.py",  # the place
-    "frame/picture.py",  # a temporary picture
+    "frame/shown.py",  # a temporary picture
     "pictures/picture_files.py",  # a pipe of this process
     "pictures/png.py",  # the temporary file that it writes
     "scene/packed/chunk.py",  # the .glb that was written just now

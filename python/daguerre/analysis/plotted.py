@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
+
+from daguerre.files import extras
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from daguerre.plots.results import Drawn
 
 
 class Plotted:
@@ -24,14 +28,19 @@ class Plotted:
         Raises:
             UsageError: matplotlib is not installed; the message says how to install it.
         """
-        from daguerre.plots.results import plot
-
-        return plot(self, axes)
+        return self._drawn().plot(axes)
 
     def _repr_png_(self) -> bytes | None:
-        from daguerre.plots.results import png
+        """The plot as PNG; None: matplotlib is not installed."""
+        if extras.missing("matplotlib"):
+            return None
+        return cast("bytes", self.plot()._repr_png_())  # type: ignore[attr-defined]
 
-        return png(self)
+    def _drawn(self) -> Drawn:
+        """The result as ``plots.results`` draws it."""
+        from daguerre.plots.results import Drawn
+
+        return Drawn(self)
 
 
 class Sectioned(Plotted):
@@ -40,6 +49,4 @@ class Sectioned(Plotted):
     _repr_png_ = None  # type: ignore[assignment]
 
     def _repr_svg_(self) -> str:
-        from daguerre.plots.results import svg
-
-        return svg(self)
+        return self._drawn().svg()

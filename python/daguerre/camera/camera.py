@@ -276,15 +276,8 @@ class Camera(Value):
         Raises:
             InputError: The calibration cannot be used; the message names the place in the file.
         """
-        from daguerre.calibration.cameras import from_opencv
-
-        return from_opencv(
-            *(calibration, name, camera, pixel_pitch),
-            model=model,
-            size=size,
-            rectified=rectified,
-            unit_m=unit_m,
-        )
+        options = {"model": model, "size": size, "rectified": rectified, "unit_m": unit_m}
+        return cls._calibrated("opencv", calibration, camera, pixel_pitch, name=name, **options)
 
     @classmethod
     def from_ros(
@@ -300,9 +293,7 @@ class Camera(Value):
         Args: those of :meth:`from_opencv`. ``camera`` stands at the first rectified camera of the
             rig. ``rectified`` takes the rectified picture (P) instead of the raw one.
         """
-        from daguerre.calibration.cameras import from_ros
-
-        return from_ros(calibration, rectified, camera, pixel_pitch)
+        return cls._calibrated("ros", calibration, camera, pixel_pitch, rectified=rectified)
 
     @classmethod
     def from_kalibr(
@@ -319,9 +310,8 @@ class Camera(Value):
         Args: those of :meth:`from_opencv`. ``camera`` stands at the first camera of the chain.
             ``timeshift`` delays the shutter by ``timeshift_cam_imu`` minus that of the first.
         """
-        from daguerre.calibration.cameras import from_kalibr
-
-        return from_kalibr(calibration, name, timeshift, camera, pixel_pitch)
+        options = {"name": name, "timeshift": timeshift}
+        return cls._calibrated("kalibr", calibration, camera, pixel_pitch, **options)
 
     @classmethod
     def from_colmap(
@@ -338,9 +328,8 @@ class Camera(Value):
         Args: those of :meth:`from_opencv`; ``name`` is that of the picture. With # in the place of
         a number (``IMG_####.jpg``) the camera moves: picture n is at n / fps, s.
         """
-        from daguerre.calibration.cameras import from_colmap
-
-        return from_colmap(folder, name, unit_m, camera, pixel_pitch)
+        options = {"name": name, "unit_m": unit_m}
+        return cls._calibrated("colmap", folder, camera, pixel_pitch, **options)
 
     @classmethod
     def from_opentrackio(
@@ -356,9 +345,21 @@ class Camera(Value):
         Args: those of :meth:`from_opencv`. Several samples (a list, or a file with a list or one
         sample a line) make keys over time, the first at 0 s.
         """
-        from daguerre.calibration.cameras import from_opentrackio
+        return cls._calibrated("opentrackio", calibration, camera, pixel_pitch, size=size)
 
-        return from_opentrackio(calibration, size, camera, pixel_pitch)
+    @classmethod
+    def _calibrated(
+        cls,
+        format: str,
+        source: Source | list[Source] | str | os.PathLike[str],
+        camera: Camera | None,
+        pixel_pitch: float | None,
+        **options: Any,
+    ) -> Camera:
+        """Reads a camera from a calibration in a format; ``camera`` gives all other parameters."""
+        from daguerre.calibration.cameras import read_camera
+
+        return read_camera(format, source, camera, pixel_pitch, **options)
 
     def frozen_at(self, time: float) -> Camera:
         """Returns the camera frozen at a time, s: a copy without motion."""

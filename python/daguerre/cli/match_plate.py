@@ -76,7 +76,7 @@ def match_plate(
     if json:
         from json import dumps
 
-        from daguerre.plates.match.writer import members
+        from daguerre.plates.match.plate_camera import members
 
         console.show(dumps(members(found, _sensor_name(found, target)), indent=2))
     elif not quiet:

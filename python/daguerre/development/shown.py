@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from pathlib import Path
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,24 +18,45 @@ if TYPE_CHECKING:
     from daguerre.frame.frame import Frame
 
 
-def display(frame: Frame, tone: str) -> NDArray[np.uint8]:
-    """Returns values of 8 bits; see :meth:`daguerre.Frame.display`."""
-    if is_developed(frame.metadata):
-        return _developed(frame, tone).bytes8()
-    shown = np.empty(frame.rgb.shape, np.uint8)
-    for rows, values in _stripes(frame, tone):
-        shown[rows] = np.rint(values * 255)
-    return shown
+@dataclass(frozen=True)
+class OnScreen:
+    """A frame for a screen: developed by its exposure mode, or by a tone curve."""
 
+    frame: Frame
+    tone: str
 
-def encoded(frame: Frame, tone: str) -> NDArray[np.float32]:
-    """Returns values 0 to 1; see :meth:`daguerre.Frame.encoded`."""
-    if is_developed(frame.metadata):
-        return _developed(frame, tone).pixels
-    shown = np.empty(frame.rgb.shape, np.float32)
-    for rows, values in _stripes(frame, tone):
-        shown[rows] = values
-    return shown
+    def bytes8(self) -> NDArray[np.uint8]:
+        """Returns values of 8 bits; see :meth:`daguerre.Frame.display`."""
+        if is_developed(self.frame.metadata):
+            return self.developed().bytes8()
+        shown = np.empty(self.frame.rgb.shape, np.uint8)
+        for rows, values in self._stripes():
+            shown[rows] = np.rint(values * 255)
+        return shown
+
+    def values(self) -> NDArray[np.float32]:
+        """Returns values 0 to 1; see :meth:`daguerre.Frame.encoded`."""
+        if is_developed(self.frame.metadata):
+            return self.developed().pixels
+        shown = np.empty(self.frame.rgb.shape, np.float32)
+        for rows, values in self._stripes():
+            shown[rows] = values
+        return shown
+
+    def developed(self) -> Picture:
+        """Develops the frame, with its overscan."""
+        from .channels import of_frame
+        from .recipe import develop
+
+        if self.tone != "srgb":
+            raise UsageError(
+                f"frame: tone {self.tone}: this frame is developed (exposure "
+                f"{self.frame.metadata['exposure']}), so its tone curve is the look of develop"
+            )
+        return develop(of_frame(self.frame))
+
+    def _stripes(self) -> Iterator[tuple[slice, NDArray[np.float32]]]:
+        return self.frame.encoded_rows(self.tone, compensation(self.frame.metadata))
 
 
 def as_png(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
@@ -43,43 +64,18 @@ def as_png(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> No
     from daguerre.pictures.png import write_png
 
     frame = frame.without_overscan()
+    shown = OnScreen(frame, tone)
     if is_developed(frame.metadata):
-        _developed(frame, tone).save(path)
+        shown.developed().save(path)
     else:
-        write_png(path, display(frame, tone), frame.metadata)
+        write_png(path, shown.bytes8(), frame.metadata)
 
 
 def as_picture(path: str | os.PathLike[str], frame: Frame, tone: str = "srgb") -> None:
     """Writes a picture with EXIF and an ICC profile, without overscan."""
     frame = frame.without_overscan()
+    shown = OnScreen(frame, tone)
     if is_developed(frame.metadata):
-        _developed(frame, tone).save(path)
+        shown.developed().save(path)
     else:
-        Picture(encoded(frame, tone), "srgb", frame.metadata).save(path)
-
-
-def png_bytes(frame: Frame) -> bytes:
-    """Returns the file of :func:`as_png` as bytes, for notebooks."""
-    from tempfile import TemporaryDirectory
-
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "frame.png"
-        as_png(path, frame)
-        return path.read_bytes()
-
-
-def _stripes(frame: Frame, tone: str) -> Iterator[tuple[slice, NDArray[np.float32]]]:
-    return frame.encoded_rows(tone, compensation(frame.metadata))
-
-
-def _developed(frame: Frame, tone: str) -> Picture:
-    """The developed frame, with its overscan."""
-    from .channels import of_frame
-    from .recipe import develop
-
-    if tone != "srgb":
-        raise UsageError(
-            f"frame: tone {tone}: this frame is developed (exposure "
-            f"{frame.metadata['exposure']}), so its tone curve is the look of develop"
-        )
-    return develop(of_frame(frame))
+        Picture(shown.values(), "srgb", frame.metadata).save(path)

@@ -90,8 +90,13 @@ def save(data: dict[str, Any], path: str | Path) -> None:
         InputError: The data are not a fit, or code cannot express it.
         OutputError: The file cannot be written.
     """
-    suffix = check_suffix(path)
-    write_bytes(path, code(data, suffix).encode())
+    check_suffix(path)
+    write(path, data)
+
+
+def write(path: str | Path, data: dict[str, Any]) -> None:
+    """Writes a fitted lens to a file whose suffix is one of the table's."""
+    write_bytes(path, code(data, Path(path).suffix.lower()).encode())
 
 
 def _coefficients(part: Any) -> int:

@@ -51,53 +51,76 @@ class Light(BriefRecord):
     lux_s: float
 
 
-def expose(
-    frame: Frame,
-    sensor: str | Sensor | None = None,
-    iso: float | None = None,
-    *,
-    seed: int = 0,
-    ev: float | None = None,
-    white_balance: Any = None,
-    temperature: float | None = None,
-) -> Raw:
-    """See :meth:`daguerre.Frame.expose`."""
-    frame = frame.without_overscan()
+@dataclass(frozen=True)
+class BeforeSensor:
+    """A frame before a sensor.
+
+    Attributes:
+        frame: The frame.
+        body: The sensor.
+        iso: ISO.
+        ev: Exposure compensation, EV.
+        notes: Remarks on these choices.
+    """
+
+    frame: Frame
+    body: Sensor
+    iso: float
+    ev: float
+    notes: tuple[str, ...] = ()
+
+    def raw(self, seed: int, white_balance: Any, temperature: float | None) -> Raw:
+        """Exposes the sensor; see :meth:`daguerre.Frame.expose`."""
+        frame, body, speed = self.frame, self.body, self.iso
+        white = white_balance if white_balance is not None else frame.metadata.get("white_balance")
+        white_xy = illuminants.white_xy(white)
+        light = light_of(frame, body, speed, self.ev)
+        seconds = number(frame.metadata.get("expTime", 0.0), "frame: expTime", 0, error=InputError)
+        shot = _shot(body, light, speed, dark_electrons(body, seconds, temperature))
+        shot.seed = whole(seed, "seed", 0, 2**64 - 1)
+        mosaic, saturated, negative, bad, place = _core.expose(light.planes, shot)
+        if bad:
+            raise InputError(
+                f"frame: {light.source}: wanted finite numbers, got NaN or infinity at {bad} "
+                f"photosites, the first at {place}"
+            )
+        return Raw(
+            mosaic=mosaic,
+            sensor=body,
+            iso=speed,
+            black_level=body.black_level,
+            white_level=body.white_level(speed),
+            gain=body.gain(speed),
+            neutral=body.neutral(white),
+            white_balance=white_xy,
+            metadata=_facts(frame, body, speed, self.ev, seed, light.source, negative),
+            clipped=saturated.view(np.bool_),
+            luminance_exposure=exposure_map(frame, speed, self.ev),
+            notes=(*self.notes, *_remarks(frame, body, light, negative / mosaic.size)),
+        )
+
+    def truth(self) -> dict[str, NDArray[np.float32]]:
+        """Computes exposure without noise; see :meth:`daguerre.Frame.exposure_truth`."""
+        frame, body = self.frame, self.body
+        light = light_of(frame, body, self.iso, self.ev)
+        highest = (body.highest_dn - body.black_level) / body.gain(self.iso)
+        most = np.float32(min(body.full_well_at(self.iso), highest))
+        weights = light.electrons.T.astype(np.float32)
+        full = np.empty((frame.height, frame.width, len(body.channels)), np.float32)
+        for rows in _stripes(frame.height):
+            full[rows] = light.planes[rows] @ weights >= most
+        truth = {"exposure.Y": exposure_map(frame, self.iso, self.ev)}
+        return truth | {f"saturated.{name}": full[..., i] for i, name in enumerate(body.channels)}
+
+
+def before_sensor(
+    frame: Frame, sensor: str | Sensor | None, iso: float | None, ev: float | None
+) -> BeforeSensor:
+    """Puts a frame before a sensor; None: the frame's sensor, ISO and compensation."""
     body = chosen_sensor(frame, sensor)
     notes: list[str] = []
     speed = chosen_iso(frame, body, iso, notes)
-    compensation = chosen_ev(frame, ev)
-    white = white_balance if white_balance is not None else frame.metadata.get("white_balance")
-    white_xy = illuminants.white_xy(white)
-    light = light_of(frame, body, speed, compensation)
-    seconds = number(frame.metadata.get("expTime", 0.0), "frame: expTime", 0, error=InputError)
-    shot = _shot(body, light, speed, dark_electrons(body, seconds, temperature))
-    shot.seed = whole(seed, "seed", 0, 2**64 - 1)
-    mosaic, saturated, negative, bad, place = _core.expose(light.planes, shot)
-    if bad:
-        raise InputError(
-            f"frame: {light.source}: wanted finite numbers, got NaN or infinity at {bad} "
-            f"photosites, the first at {place}"
-        )
-    if negative:
-        share = negative / mosaic.size
-        notes.append(f"light below 0 was clipped to 0 at {share:.2%} of the photosites")
-    notes += [*_source_note(frame, body, light), *_pitch_note(frame, body)]
-    notes += _noise_note(frame, body, light)
-    return Raw(
-        mosaic=mosaic,
-        sensor=body,
-        iso=speed,
-        black_level=body.black_level,
-        white_level=body.white_level(speed),
-        gain=body.gain(speed),
-        neutral=body.neutral(white),
-        white_balance=white_xy,
-        metadata=_facts(frame, body, speed, compensation, seed, light.source, negative),
-        clipped=saturated.view(np.bool_),
-        luminance_exposure=exposure_map(frame, speed, compensation),
-        notes=tuple(notes),
-    )
+    return BeforeSensor(frame, body, speed, chosen_ev(frame, ev), tuple(notes))
 
 
 def chosen_sensor(frame: Frame, sensor: str | Sensor | None) -> Sensor:
@@ -189,6 +212,17 @@ def _facts(
     }
 
 
+def _remarks(frame: Frame, sensor: Sensor, light: Light, negative: float) -> list[str]:
+    """Notes on a shot; ``negative``: share of the photosites with light below 0."""
+    clipped = f"light below 0 was clipped to 0 at {negative:.2%} of the photosites"
+    return [
+        *([clipped] if negative else []),
+        *_source_note(frame, sensor, light),
+        *_pitch_note(frame, sensor),
+        *_noise_note(frame, sensor, light),
+    ]
+
+
 def _source_note(frame: Frame, sensor: Sensor, light: Light) -> list[str]:
     if frame.channels is None or light.source == "channels":
         return []
@@ -252,27 +286,6 @@ def exposure_map(frame: Frame, iso: float, ev: float) -> NDArray[np.float32]:
         return np.asarray(frame.xyz[..., 1] * factor, np.float32)
     luma = luminance_of_rgb().astype(np.float32)
     return np.asarray((frame.rgb @ luma) * factor, np.float32)
-
-
-def exposure_truth(
-    frame: Frame,
-    sensor: str | Sensor | None = None,
-    iso: float | None = None,
-    ev: float | None = None,
-) -> dict[str, NDArray[np.float32]]:
-    """See :meth:`daguerre.Frame.exposure_truth`."""
-    body = chosen_sensor(frame, sensor)
-    speed = chosen_iso(frame, body, iso, [])
-    compensation = chosen_ev(frame, ev)
-    light = light_of(frame, body, speed, compensation)
-    highest = (body.highest_dn - body.black_level) / body.gain(speed)
-    most = np.float32(min(body.full_well_at(speed), highest))
-    weights = light.electrons.T.astype(np.float32)
-    full = np.empty((frame.height, frame.width, len(body.channels)), np.float32)
-    for rows in _stripes(frame.height):
-        full[rows] = light.planes[rows] @ weights >= most
-    truth = {"exposure.Y": exposure_map(frame, speed, compensation)}
-    return truth | {f"saturated.{name}": full[..., i] for i, name in enumerate(body.channels)}
 
 
 def check_can_expose(sensor: str | Sensor, iso: float | None) -> None:

@@ -20,7 +20,16 @@ from . import extras
 from .notes import Notes
 
 Kind = Literal[
-    "scene", "frame", "picture", "raw", "environment", "camera", "exchange", "profile", "density"
+    "scene",
+    "frame",
+    "picture",
+    "raw",
+    "environment",
+    "camera",
+    "exchange",
+    "profile",
+    "density",
+    "fit",
 ]
 #: A function, or "module:function", which is imported on first use.
 Function = str | Callable[..., Any]
@@ -95,6 +104,8 @@ _FORMATS = [
     Format("IES LM-63", "profile", (".ies",), "daguerre.importers.ies:read"),
     Format("NanoVDB", "density", (".nvdb",), f"{_DENSITY}:of_nanovdb", takes=("grid",)),
     Format("Mitsuba's grid", "density", (".vol",), f"{_DENSITY}:of_vol"),
+    Format("a fitted lens", "fit", (".c", ".glsl", ".osl", ".py", ".json"), None,
+           "daguerre.export.files:write"),
 ]  # fmt: skip
 
 

@@ -24,6 +24,8 @@ from .shown import Shown
 if TYPE_CHECKING:
     import os
 
+    from daguerre.development.shown import OnScreen
+    from daguerre.exposure.expose import BeforeSensor
     from daguerre.sensors.sensor import Sensor
 
     from .raw import Raw
@@ -193,15 +195,17 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
                 keep some shape and get whiter the brighter they are. Both move colours outside of
                 sRGB toward the grey of the same luminance, and leave ``rgb`` as it is.
         """
-        from daguerre.development.shown import display
-
-        return display(self, tone)
+        return self._on_screen(tone).bytes8()
 
     def encoded(self, tone: str = "srgb") -> NDArray[np.float32]:
         """Encodes values like ``display``, 0 to 1."""
-        from daguerre.development.shown import encoded
+        return self._on_screen(tone).values()
 
-        return encoded(self, tone)
+    def _on_screen(self, tone: str) -> OnScreen:
+        """The picture for a screen, developed if its exposure mode says so."""
+        from daguerre.development.shown import OnScreen
+
+        return OnScreen(self, tone)
 
     def encoded_rows(
         self, tone: str, gain: float = 1.0
@@ -269,17 +273,8 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
             DaguerreError: No such sensor, an ISO beyond its range, or a frame without the metadata
                 of its exposure; the message names the field.
         """
-        from daguerre.exposure.expose import expose
-
-        return expose(
-            self,
-            sensor,
-            iso,
-            seed=seed,
-            ev=ev,
-            white_balance=white_balance,
-            temperature=temperature,
-        )
+        before = self.without_overscan()._before_sensor(sensor, iso, ev)
+        return before.raw(seed, white_balance, temperature)
 
     def exposure_truth(
         self,
@@ -293,9 +288,15 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
             ``exposure.Y``, luminance exposure in lux s; ``saturated.R`` and so on, 1 where the
             noiseless light saturates that channel's photosite; each of shape (H, W).
         """
-        from daguerre.exposure.expose import exposure_truth
+        return self._before_sensor(sensor, iso, ev).truth()
 
-        return exposure_truth(self, sensor, iso, ev)
+    def _before_sensor(
+        self, sensor: str | Sensor | None, iso: float | None, ev: float | None
+    ) -> BeforeSensor:
+        """The frame before a sensor, at an ISO and an exposure compensation."""
+        from daguerre.exposure.expose import before_sensor
+
+        return before_sensor(self, sensor, iso, ev)
 
     def __repr__(self) -> str:
         spp = self.metadata.get("samples")
@@ -303,11 +304,6 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
         names = sorted({name.split(".")[0] for name in self.aovs})
         aovs = f", aovs: {' '.join(names)}" if names else ""
         return f"<Frame {self.width}x{self.height}{extra}{aovs}>"
-
-    def _repr_png_(self) -> bytes:
-        from daguerre.development.shown import png_bytes
-
-        return png_bytes(self)
 
     def _repr_html_(self) -> str:
         from base64 import b64encode

@@ -83,15 +83,6 @@ class Picture(ArrayValue, Shown, array="pixels"):
     def __repr__(self) -> str:
         return f"<Picture {self.width}x{self.height}, {self.colour_space}>"
 
-    def _repr_png_(self) -> bytes:
-        from pathlib import Path
-        from tempfile import TemporaryDirectory
-
-        with TemporaryDirectory() as folder:
-            path = Path(folder) / "picture.png"
-            self._shown().save(path)
-            return path.read_bytes()
-
 
 def _rec709(pixels: NDArray[np.float32], space: str) -> NDArray[np.float32]:
     """Linear Rec.709 of linear light in a space; a camera's colours stay."""

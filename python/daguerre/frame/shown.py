@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from typing import Any
 
 
 class Shown:
-    """Base of pictures, which have ``_repr_png_``."""
+    """Base of pictures that are saved by ``save``, or have a ``_repr_png_`` of their own."""
 
     def show(self) -> None:
         """Shows the picture: in a notebook in its cell, else in the desktop's viewer of images.
@@ -20,8 +21,18 @@ class Shown:
 
             open_picture(self._repr_png_)
 
+    def _shown(self) -> Any:
+        """Picture for a screen, which has ``save``."""
+        return self
+
     def _repr_png_(self) -> bytes:
-        raise NotImplementedError
+        """The picture as a PNG file, for notebooks."""
+        from tempfile import TemporaryDirectory  # pictures that no notebook shows need none
+
+        with TemporaryDirectory() as folder:
+            path = Path(folder) / "picture.png"
+            self._shown().save(path)
+            return path.read_bytes()
 
 
 def _show_in_notebook(picture: Shown) -> bool:

@@ -14,7 +14,7 @@ from .configurations import Configuration
 from .errors import LensError, reported
 from .lens import DESIGN_WAVELENGTH_NM, Lens
 from .setting import LensSetting
-from .zoom import Position, at_zoom, bracket, positions
+from .zoom import Position, Zoom, bracket, positions
 
 #: Groups may move beyond infinity by this share of their travel, as in real lenses.
 BEYOND = 0.2
@@ -84,7 +84,7 @@ class Path:
 def focused(lens: Lens, setting: LensSetting) -> Focused:
     """Focuses a lens; see ``Lens.focused``."""
     if setting.zoom_mm is not None:
-        lens = at_zoom(lens, setting.zoom_mm)
+        lens = Zoom(lens).at(setting.zoom_mm)
     if not setting.focus_m > 0:
         raise LensError(
             f"{lens.source}: focus distance: wanted a positive number of metres, "
@@ -138,7 +138,7 @@ def path_of(lens: Lens) -> Path | None:
     known = [_waypoints(*way) for way in ways]
     nearest = max((near for _, near in ways), key=len)
     printed = sum(not c.fitted for c in nearest)
-    base = at_zoom(lens, lens.zoom_mm) if lens.zoom_mm is not None else lens.with_gaps(low.gaps)
+    base = Zoom(lens).at(lens.zoom_mm) if lens.zoom_mm is not None else lens.with_gaps(low.gaps)
     first, last = known[0], known[-1]
     count = max(len(first), len(last))
     changes = []

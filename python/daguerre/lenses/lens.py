@@ -30,6 +30,7 @@ from .surface import LensSurface, stop_of
 
 if TYPE_CHECKING:
     from .focus import Focused
+    from .zoom import Zoom
 
 #: Wavelength at which lenses are specified, nm.
 DESIGN_WAVELENGTH_NM = LINE_D
@@ -250,9 +251,7 @@ class Lens(Value):
     @cached_property
     def zoom_range_mm(self) -> tuple[float, float] | None:
         """Shortest and longest focal length; None: not a zoom."""
-        from .zoom import zoom_range
-
-        return zoom_range(self)
+        return self._zoom().range_mm()
 
     def at_zoom(self, zoom_mm: float) -> Lens:
         """Returns the zoom at one focal length, focused at infinity; film and focus as in its file.
@@ -260,9 +259,13 @@ class Lens(Value):
         Raises:
             LensError: The focal length is outside the lens's range; code ``lens-zoom``.
         """
-        from .zoom import at_zoom
+        return self._zoom().at(zoom_mm)
 
-        return at_zoom(self, zoom_mm)
+    def _zoom(self) -> Zoom:
+        """The lens as a zoom."""
+        from .zoom import Zoom
+
+        return Zoom(self)
 
     def focused(
         self,

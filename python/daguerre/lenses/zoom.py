@@ -46,14 +46,6 @@ def positions(lens: Lens) -> list[Position]:
     return sorted(found, key=lambda position: position.efl)
 
 
-def zoom_range(lens: Lens) -> tuple[float, float] | None:
-    """Shortest and longest focal length, mm; None: not a zoom."""
-    if sum(c.at_infinity for c in lens.configurations) < 2:
-        return None
-    ends = positions(lens)
-    return ends[0].efl, ends[-1].efl
-
-
 def standing_mm(lens: Lens, configuration: Configuration) -> float | None:
     """Focal length of the zoom position to which a configuration belongs; None: not a zoom."""
     if sum(c.at_infinity for c in lens.configurations) < 2:
@@ -61,26 +53,41 @@ def standing_mm(lens: Lens, configuration: Configuration) -> float | None:
     return max(positions(lens), key=lambda p: configuration.like(p.configuration)).efl
 
 
-def at_zoom(lens: Lens, zoom_mm: float) -> Lens:
-    """Returns the lens at one focal length, focused at infinity as in its file.
+@dataclass(frozen=True)
+class Zoom:
+    """A lens as a zoom, by the positions of its file."""
 
-    Between two positions of the file, all moving gaps take the smallest changes that give the focal
-    length and keep film and focus between those of the two positions. So the lens is exact at each
-    position of the file.
+    lens: Lens
 
-    Raises:
-        LensError: The focal length is outside the lens's range; ``lens-zoom``.
-    """
-    low, high, share = bracket(lens, zoom_mm)
-    if share in (0, 1):
-        return _standing(lens, high if share else low, zoom_mm)
-    gaps = _between(lens, low, high, zoom_mm)
-    f_number = _mix(_opening(lens, low), _opening(lens, high), share)
-    moved = lens.with_gaps(gaps)
-    stop = _mix(low.stop, high.stop, share)
-    if f_number is not None and stop is not None:  # to first order, the pupil scales with the iris
-        stop *= with_stop(moved, stop).first_order().f_number / f_number
-    return _named(with_stop(moved, stop), zoom_mm, f_number)
+    def range_mm(self) -> tuple[float, float] | None:
+        """Shortest and longest focal length; None: not a zoom."""
+        if sum(c.at_infinity for c in self.lens.configurations) < 2:
+            return None
+        ends = positions(self.lens)
+        return ends[0].efl, ends[-1].efl
+
+    def at(self, zoom_mm: float) -> Lens:
+        """Returns the lens at one focal length, focused at infinity as in its file.
+
+        Between two positions of the file, all moving gaps take the smallest changes that give the
+        focal length and keep film and focus between those of the two positions. So the lens is
+        exact at each position of the file.
+
+        Raises:
+            LensError: The focal length is outside the lens's range; ``lens-zoom``.
+        """
+        lens = self.lens
+        low, high, share = bracket(lens, zoom_mm)
+        if share in (0, 1):
+            return _standing(lens, high if share else low, zoom_mm)
+        gaps = _between(lens, low, high, zoom_mm)
+        f_number = _mix(_opening(lens, low), _opening(lens, high), share)
+        moved = lens.with_gaps(gaps)
+        stop = _mix(low.stop, high.stop, share)
+        if f_number is not None and stop is not None:
+            # To first order, the pupil scales with the iris.
+            stop *= with_stop(moved, stop).first_order().f_number / f_number
+        return _named(with_stop(moved, stop), zoom_mm, f_number)
 
 
 def bracket(lens: Lens, zoom_mm: float) -> tuple[Position, Position, float]:

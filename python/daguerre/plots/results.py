@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from daguerre.analysis.bench import Bench
@@ -31,8 +32,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from .figure import Plot
-
 #: Functions that draw a kind of result into axes.
 DRAWERS: dict[type, Callable[[Axes, Any], None]] = {
     Bench: lambda axes, bench: _section(axes, drawing(bench)),
@@ -52,37 +51,35 @@ _SIZES = {Bench: (8.0, 4.0), Pencil: (8.0, 4.0), ProjectionFit: (8.0, 6.0), Ghos
 _SIZE = (5.5, 4.2)  # inches
 
 
-def plot(result: Plotted, axes: Axes | None = None) -> Figure:
-    """Plots a result into axes, or as a new figure, which is returned; see ``Plotted.plot``."""
-    extras.need("matplotlib", "plot")
-    from matplotlib.axes import Axes as MatplotlibAxes
+@dataclass(frozen=True)
+class Drawn:
+    """A result of the bench, as this room draws it."""
 
-    from . import figure
+    result: Plotted
 
-    if isinstance(result, Figures):
-        if axes is not None:
-            raise UsageError("plot: axes: wanted None, as a data sheet fills a page, got axes")
-        return figure.sheet_of(result)
-    if axes is not None and not isinstance(axes, MatplotlibAxes):
-        raise UsageError(f"plot: axes: wanted axes of matplotlib, got {shown(axes)}")
-    draw = DRAWERS[type(result)]
-    if axes is None:
-        return figure.drawn(draw, result, _SIZES.get(type(result), _SIZE))
-    draw(axes, result)
-    return axes.figure  # type: ignore[return-value]  # or a part of one
+    def plot(self, axes: Axes | None = None) -> Figure:
+        """Plots it into axes, or as a new figure, which is returned; see ``Plotted.plot``."""
+        extras.need("matplotlib", "plot")
+        from matplotlib.axes import Axes as MatplotlibAxes
 
+        from . import figure
 
-def png(result: Plotted) -> bytes | None:
-    """Plots a result as PNG; None: matplotlib is not installed."""
-    if extras.missing("matplotlib"):
-        return None
-    made: Plot = plot(result)  # type: ignore[assignment]
-    return made._repr_png_()
+        result = self.result
+        if isinstance(result, Figures):
+            if axes is not None:
+                raise UsageError("plot: axes: wanted None, as a data sheet fills a page, got axes")
+            return figure.sheet_of(result)
+        if axes is not None and not isinstance(axes, MatplotlibAxes):
+            raise UsageError(f"plot: axes: wanted axes of matplotlib, got {shown(axes)}")
+        draw = DRAWERS[type(result)]
+        if axes is None:
+            return figure.drawn(draw, result, _SIZES.get(type(result), _SIZE))
+        draw(axes, result)
+        return axes.figure  # type: ignore[return-value]  # or a part of one
 
-
-def svg(result: Any) -> str:
-    """Draws the section of a lens as SVG."""
-    return to_svg(drawing(result))
+    def svg(self) -> str:
+        """Draws the section of a lens as SVG."""
+        return to_svg(drawing(self.result))
 
 
 def drawing(result: Any) -> Drawing:

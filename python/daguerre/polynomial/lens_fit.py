@@ -13,6 +13,7 @@ import daguerre._core as _core
 from daguerre.checks import wavelengths
 from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, core_errors
+from daguerre.files import formats
 from daguerre.files.value import BriefRecord
 
 from .fit_data import error_zone, from_dict, to_dict
@@ -198,9 +199,7 @@ class LensFit:
             InputError: The language cannot express the fit.
             OutputError: The file cannot be written.
         """
-        from daguerre.export import save
-
-        save(self.to_dict(), path)
+        formats.write("fit", path, self.to_dict())
 
     @classmethod
     def from_dict(cls, data: Any) -> LensFit:

@@ -16,6 +16,7 @@ from .falloff import Falloff
 from .grain import Grain
 from .sharpness import Sharpness
 from .transfer import Transfer
+from .writer import SCHEMA, camera_members, falloff_members, noise_members, sharpness_members, write
 
 #: Camera parameters that a match sets.
 FOUND = (
@@ -79,10 +80,29 @@ class PlateCamera(Value):
         Raises:
             OutputError: A file cannot be written.
         """
-        from .writer import write
-
-        write(path, self)
+        write(path, self.sensor, lambda beside: members(self, beside))
 
     def __repr__(self) -> str:
         width, height = self.resolution
         return f"<PlateCamera {self.plate}: {width}x{height}, {self.kind}>"
+
+
+def members(plate: PlateCamera, sensor: str | None) -> dict[str, Any]:
+    """Members of the file; ``sensor``: name of the sensor's own."""
+    return {
+        "schema": SCHEMA,
+        "plate": {
+            "file": plate.plate,
+            "sha256": plate.sha256,
+            "kind": plate.kind,
+            "resolution": list(plate.resolution),
+            "focal_length_mm": plate.focal_length,
+        },
+        "camera": camera_members(plate.camera),
+        "sensor": sensor,
+        "noise": noise_members(plate.noise),
+        "sharpness": sharpness_members(plate.sharpness),
+        "vignetting": falloff_members(plate.falloff),
+        "development": {"look": plate.look},
+        "notes": list(plate.notes),
+    }

@@ -5,17 +5,21 @@ from __future__ import annotations
 import json
 import math
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from daguerre.camera.camera import Camera
 from daguerre.errors import OutputError
 from daguerre.files.atomic import write_bytes
+from daguerre.sensors import Sensor
 from daguerre.sensors.writer import write as write_sensor
 
+from .falloff import Falloff
 from .grain import Grain
-from .plate_camera import PlateCamera
+from .sharpness import Sharpness
 from .transfer import Transfer
 
 SCHEMA = "daguerre-plate-camera/0.1"
@@ -23,42 +27,31 @@ SCHEMA = "daguerre-plate-camera/0.1"
 UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 
 
-def write(path: str | os.PathLike[str], plate: PlateCamera) -> None:
-    """Writes a camera file, and its sensor file beside it, each atomically."""
+def write(
+    path: str | os.PathLike[str],
+    sensor: Sensor | None,
+    members: Callable[[str | None], dict[str, Any]],
+) -> None:
+    """Writes a camera file, and its sensor file beside it, each atomically.
+
+    Args:
+        path: Path of the camera file.
+        sensor: Sensor, if it has a file.
+        members: Makes the members of the camera file from the name of the sensor's file.
+    """
     file = Path(path)
     if not file.name:
         raise OutputError(f"{path or '(empty)'}: wanted the name of a file, got none")
     beside = None
-    if plate.sensor is not None:
+    if sensor is not None:
         beside = file.with_name(f"{file.stem}.sensor.json")
-        write_sensor(beside, plate.sensor)
-    made = members(plate, None if beside is None else beside.name)
+        write_sensor(beside, sensor)
+    made = members(None if beside is None else beside.name)
     write_bytes(file, (json.dumps(made, indent=1) + "\n").encode("utf-8"))
 
 
-def members(plate: PlateCamera, sensor: str | None) -> dict[str, Any]:
-    """Members of the file; ``sensor``: name of the sensor's own."""
-    return {
-        "schema": SCHEMA,
-        "plate": {
-            "file": plate.plate,
-            "sha256": plate.sha256,
-            "kind": plate.kind,
-            "resolution": list(plate.resolution),
-            "focal_length_mm": plate.focal_length,
-        },
-        "camera": _camera(plate),
-        "sensor": sensor,
-        "noise": _noise(plate.noise),
-        "sharpness": _sharpness(plate),
-        "vignetting": _vignetting(plate),
-        "development": {"look": plate.look},
-        "notes": list(plate.notes),
-    }
-
-
-def _camera(plate: PlateCamera) -> dict[str, Any]:
-    camera = plate.camera
+def camera_members(camera: Camera) -> dict[str, Any]:
+    """Members of the camera."""
     lens = camera.lens
     focus = camera.focus_distance
     return {
@@ -80,7 +73,8 @@ def _white(white: Any) -> Any:
     return list(white) if isinstance(white, tuple) else white
 
 
-def _noise(noise: Transfer | Grain | None) -> dict[str, Any] | None:
+def noise_members(noise: Transfer | Grain | None) -> dict[str, Any] | None:
+    """Members of the noise."""
     if noise is None:
         return None
     if isinstance(noise, Transfer):
@@ -105,8 +99,8 @@ def _noise(noise: Transfer | Grain | None) -> dict[str, Any] | None:
     }
 
 
-def _sharpness(plate: PlateCamera) -> dict[str, Any] | None:
-    found = plate.sharpness
+def sharpness_members(found: Sharpness | None) -> dict[str, Any] | None:
+    """Members of the sharpness."""
     if found is None:
         return None
     return {
@@ -118,8 +112,8 @@ def _sharpness(plate: PlateCamera) -> dict[str, Any] | None:
     }
 
 
-def _vignetting(plate: PlateCamera) -> dict[str, Any] | None:
-    found = plate.falloff
+def falloff_members(found: Falloff | None) -> dict[str, Any] | None:
+    """Members of the vignetting."""
     if found is None:
         return None
     lens = None if found.lens is None else list(found.lens)
