@@ -213,9 +213,10 @@ def section(pictures: list[Picture]) -> list[str]:
     for picture in pictures:
         if (PAGES / f"{picture.name}.jpg").exists():
             typed = "\n".join(command for command, _ in picture.commands("out"))
-            shown = f'<a id="{picture.name}"></a>\n\n![{picture.title}]({picture.name}.jpg)'
+            shown = f"![{thumbnails.brief(picture.title)}]({picture.name}.jpg)"
             text = f"{picture.title}{scene_link(picture.scene)}"
-            parts.append(f"{shown}\n\n{text}\n\n```\n{typed}\n```\n")
+            anchor = f'<a id="{picture.name}"></a>'
+            parts.append(f"{anchor}\n\n{shown}\n\n{text}\n\n```\n{typed}\n```\n")
     return parts
 
 
@@ -226,7 +227,7 @@ def blender_shots() -> list[str]:
         file = f"blender_{scene}.jpg"
         if (PAGES / file).exists():
             command = f"python script/docs/gallery/blender_engine.py {scene} docs/gallery/{file}"
-            shown = f'<a id="blender_{scene}"></a>\n\n![{title}]({file})'
+            shown = f'<a id="blender_{scene}"></a>\n\n![{thumbnails.brief(title)}]({file})'
             parts.append(f"{shown}\n\n{title} {text}\n\n```\n{command}\n```\n")
     return [ABOUT_BLENDER_ENGINE, *parts] if parts else []
 

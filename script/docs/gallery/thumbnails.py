@@ -45,6 +45,11 @@ def thumbnails(name: str, text: str) -> list[str]:
     return found
 
 
+def brief(title: str) -> str:
+    """The first words of a caption: the text of a picture whose whole caption follows it."""
+    return re.split(r"(?<=\w)(?:[:;]|\. |\.$)", title, maxsplit=1)[0]
+
+
 def slug(heading: str) -> str:
     """The anchor of a heading, as forges and the manual make it."""
     return re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-")

@@ -29,7 +29,8 @@ Each sheet shows, from left to right:
 - **2D**: the picture of a pinhole with effects of the darkroom added
   ([The darkroom](../darkroom.md), [Diffraction](../diffraction.md)).
 
-The bench draws the rays behind most sheets. Nothing is denoised. Everything in the scenes emits
+The bench draws the rays behind most sheets: `python script/docs/gallery/rays.py NAME out/rays.svg`,
+with the name of the picture, such as `coma`. Nothing is denoised. Everything in the scenes emits
 light (`--max-depth 1`), so that only the lens differs; all panels of a sheet have the same
 exposure. To make the scenes:
 
@@ -84,13 +85,22 @@ def section(word: Word, figures: list[Figures]) -> str:
     parts = [f"## {word.heading}\n", f"![{word.heading}]({word.name}.jpg)\n", f"{word.text}\n"]
     if word.name in DIAGRAMS:
         alt, file = DIAGRAMS[word.name][0], f"rays_{word.name}.svg"
-        command = f"python script/docs/gallery/rays.py {word.name} docs/gallery/{file}"
-        parts.append(f"![{alt}]({file})\n\n{alt}:\n\n```\n{command}\n```\n")
+        parts.append(f"![Its rays]({file})\n\n{alt}.\n")
+    before = ""
     for panel in panels(word):
         if panel.commands:
-            typed = "\n".join(panel.commands)
-            parts.append(f"{panel.caption[0].upper()}{panel.caption[1:]}:\n\n```\n{typed}\n```\n")
+            parts.append(f"{panel.caption[0].upper()}{panel.caption[1:]}{typed(panel, before)}")
+            before = panel.commands[-1]
     return "\n".join([*parts, *table(figures)])
+
+
+def typed(panel: Panel, before: str) -> str:
+    """The commands of a picture; where one only adds flags to the command before, these flags."""
+    flags, end = panel.commands[0].rsplit(" -o ", 1)
+    begin = before.rsplit(" -o ", 1)[0]
+    if len(panel.commands) == 1 and before and flags.startswith(f"{begin} "):
+        return f": the same with `{flags[len(begin) + 1 :]} -o {end}`.\n"
+    return ":\n\n```\n" + "\n".join(panel.commands) + "\n```\n"
 
 
 def table(figures: list[Figures]) -> list[str]:
