@@ -1,9 +1,9 @@
-// curve_segment.cpp -- points and normals on the surface of a segment, and back.
+// curve_segment.cpp -- points and normals on the surface of a curve segment, and the inverse map.
 //
-// The surface of a cubic segment is X(u, a) = c(u) + r(u) R(u, a), with R the unit vector across the
-// tangent T at the angle a. Where R does not twist, dR/du = -(R . dT/du) T, so the normal is
-// R (|c'| - r R . dT/du) - r' T. That of a straight one is the cone that touches both balls: its normal
-// leans by dr / l against the axis all along, and X(s) = c(s) + r(s) n.
+// The surface of a cubic segment is X(u, a) = c(u) + r(u) R(u, a), where R is the unit vector
+// perpendicular to the tangent T at angle a. For a frame without twist, dR/du = -(R . dT/du) T, so
+// the normal is R (|c'| - r R . dT/du) - r' T. A straight segment is the cone tangent to both
+// balls: its normal is tilted by dr / l against the axis, and X(s) = c(s) + r(s) n.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +16,7 @@ namespace dg {
 namespace {
 
 constexpr double kTurn = 2 * kPiD;
-constexpr double kNearEnd = 1e-4;  // of a segment
+constexpr double kNearEnd = 1e-4;  // fraction of a segment
 
 Vec3d second_derivative(const CurveSegment& s, double u) {
     if (!s.cubic) return {};
@@ -39,14 +39,15 @@ double size_of(const CurveSegment& s) {
     return most;
 }
 
-/// Lean of a straight segment's normals: their cosine with the axis. Beyond 1 one ball holds the other.
+/// Cosine between the normals of a straight segment and its axis. If it would exceed 1, one ball
+/// contains the other.
 double lean(const CurveSegment& s) {
     const double l = length(s.points[1] - s.points[0]);
     const double dr = s.radii[1] - s.radii[0];
     return l > 0 ? std::clamp(-dr / l, -1.0, 1.0) : 0;
 }
 
-/// Unit vectors across the curve at an angle, and the way that the angle grows.
+/// Unit vectors perpendicular to the curve at an angle, and in the direction of increasing angle.
 struct Around {
     Vec3d outward, onward;
 };
@@ -62,7 +63,7 @@ CurvePoint on_side(const CurveSegment& s, double u, double angle) {
     const double r = s.radius(u), dr = radius_slope(s, u), speed = length(first);
     const Vec3d second = second_derivative(s, u);
     const double bend = speed > 0 ? dot(second, a.outward) / speed : 0;  // R . dT/du
-    // Inside a bend tighter than the radius the surface passes through itself.
+    // On the inside of a bend tighter than the radius the surface intersects itself.
     const double stretch = std::max(speed - r * bend, 1e-3 * speed);
     Vec3d normal = a.outward * stretch - along * dr;
     const double size = length(normal);
@@ -89,7 +90,7 @@ CurvePoint on_disc(const CurveSegment& s, bool at_end, double out, double angle)
             a.onward * (kTurn * r * out), r};
 }
 
-/// Angle from the pole of the ball at an end to where the cone touches it.
+/// Angle between the pole of the ball at an end and its contact circle with the cone.
 double cap_angle(const CurveSegment& s, bool at_end) {
     return acos(at_end ? lean(s) : -lean(s));
 }
@@ -111,7 +112,7 @@ double turn_of(const CurveSegment& s, double u, Vec3d direction) {
     return angle < 0 ? angle + 1 : angle;
 }
 
-/// Below 1, also after rounding.
+/// Below 1, even after rounding.
 float share(double turn) { return std::min(float(turn), 1 - 0x1p-24f); }
 
 }  // namespace
@@ -144,7 +145,7 @@ Vec3d CurveSegment::derivative(double u) const {
            3.0;
 }
 
-/// Where control points coincide the curve stands still; its direction is that beside the place.
+/// The derivative vanishes where control points coincide; use the direction next to it.
 Vec3d CurveSegment::tangent(double u) const {
     const double least = 1e-9 * size_of(*this);
     const double beside = u < 0.5 ? u + kNearEnd : u - kNearEnd;

@@ -1,4 +1,4 @@
-// curves.cpp -- the check of curves, and directions across them that turn as little as they can.
+// curves.cpp -- validation of curves, and rotation-minimizing frames.
 #include "geometry/curves.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 std::string whole(const char* what, std::size_t i) { return what + (" " + std::to_string(i)); }
 
-/// Segments and positions lie side by side, as curve_of() counts on.
+/// Checks that segments and positions are contiguous, as curve_of() requires.
 void check_layout(const std::string& where, const Curves& c, std::size_t points) {
     std::size_t segment = 0, point = 0;
     const std::size_t step = c.points_per_segment();
@@ -61,7 +61,7 @@ void Curves::complete(const Mesh& mesh) {
     if (empty()) return;
     std::vector<Vec3f> made;
     made.reserve(starts.size() * mesh.steps);
-    std::vector<Vec3d> roots(ends.size()), tangents(ends.size());  // of the step before
+    std::vector<Vec3d> roots(ends.size()), tangents(ends.size());  // of the previous time step
     for (std::uint32_t step = 0; step < mesh.steps; ++step) {
         const float time = mesh.steps == 1 ? 0 : float(step) / float(mesh.steps - 1);
         Vec3d across{}, before{};

@@ -1,5 +1,5 @@
-// curves_test.cpp -- round curves against closed forms: cylinders, cones, balls and tori; points and
-// normals on them; bad ones are named.
+// curves_test.cpp -- round curves against closed forms: cylinders, cones, balls and tori; surface
+// points and normals; error messages.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ Vec3d random_direction(int i) {
     return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
-/// One curve of control points (x, y, z, radius), at one time or at several.
+/// Single curve of control points (x, y, z, radius), at one or more time steps.
 Mesh curve_mesh(bool cubic, std::vector<std::vector<std::array<float, 4>>> steps) {
     Mesh mesh;
     mesh.name = "hair";
@@ -45,7 +45,7 @@ Mesh curve_mesh(bool cubic, std::vector<std::vector<std::array<float, 4>>> steps
     return mesh;
 }
 
-/// From a to b along a straight line, in `segments` of even speed; the radius goes from r to s.
+/// Straight line from a to b in `segments` of constant speed; the radius goes from r to s.
 Mesh straight(bool cubic, Vec3d a, Vec3d b, double r, double s, int segments = 2) {
     const int n = segments * (cubic ? 3 : 1);
     std::vector<std::array<float, 4>> points;
@@ -71,7 +71,7 @@ struct Met {
     std::uint32_t segment;
 };
 
-/// Traces curves where they are, or in a placement.
+/// Traces curves directly or through an instance.
 class Tracer {
   public:
     explicit Tracer(Mesh mesh, const Affine3f& placed = {}, const Motion* motion = nullptr)
@@ -98,8 +98,8 @@ class Tracer {
     std::unique_ptr<Intersector> tracer_;
 };
 
-/// Nearest t > 0 of a ray with the side of a cone around the segment ab whose radius goes from r to s
-/// across the axis; nothing where it passes, or meets the ends first.
+/// Nearest hit t > 0 of a ray on the side of a cone around the segment ab, with radius r to s
+/// perpendicular to the axis; empty for a miss or a hit on the ends first.
 std::optional<double> side_of_cone(const Ray& ray, Vec3d a, Vec3d b, double r, double s) {
     const Vec3d axis = normalize(b - a), o = to_double(ray.origin) - a, d = to_double(ray.direction);
     const double l = length(b - a), k = (s - r) / l;
@@ -157,7 +157,7 @@ TEST_CASE("a straight cubic curve is a cylinder or a cone, at any scale") {
                 CHECK(length(hit->position - p) < 2e-3 * r + 1e-6 * scale);
                 const double grazing = std::abs(dot(hit->normal, to_double(ray.direction)));
                 const double here = r + (s - r) * dot(p - a, axis) / length(b - a);
-                if (grazing > 0.3)  // Embree's place is off by some 1e-4 of r
+                if (grazing > 0.3)  // Embree's position has an error of about 1e-4 of r
                     CHECK(length(hit->normal - cone_normal(p, a, b, r, s)) < 5e-4 * r / here);
                 CHECK(hit->place.along >= 0);
                 CHECK(hit->place.along <= 1);
@@ -186,7 +186,7 @@ TEST_CASE("normals are those of the surface: across both ways to go on it") {
             CHECK(std::abs(dot(p.normal, by_v)) < 2e-3 * length(by_v));
             CHECK(dot(cross(by_v, by_u), p.normal) > 0);
             CHECK(length(p.by_around - by_v) < 1e-3 * length(by_v) + 1e-6);
-            // Twisting of the frame adds to the derivative along the curve what lies around it.
+            // Twist of the frame adds a component around the curve to the derivative along it.
             const Vec3d w = normalize(p.by_around), off = p.by_along - by_u;
             CHECK(length(off - w * dot(off, w)) < 2e-3 * length(by_u) + 1e-5);
         }
@@ -227,7 +227,7 @@ TEST_CASE("flat ends of cubic curves, round ends of straight ones") {
         CHECK(hit->normal.x == (at_end ? 1 : -1));
         CHECK((at_end ? hit->place.along > 1 : hit->place.along < 0));
         CHECK(hit->segment == (at_end ? 1 : 0));
-        // The cap is part of the ball around the end.
+        // The cap is part of the ball at the end.
         hit = round.meet(ray);
         const Vec3d o = to_double(ray.origin) - (at_end ? b : a), d = to_double(ray.direction);
         const double radius = at_end ? s : r, half = dot(o, d);
@@ -235,7 +235,7 @@ TEST_CASE("flat ends of cubic curves, round ends of straight ones") {
         REQUIRE(disc > 0);
         const double t = -half - std::sqrt(disc);
         const Vec3d met = o + d * t;
-        const double lean = (r - s) * radius;  // dot of a point of the rim with the axis
+        const double lean = (r - s) * radius;  // dot product of a point of the rim with the axis
         if (at_end ? met.x < lean + 1e-4 : met.x > lean - 1e-4) continue;
         REQUIRE(hit.has_value());
         CHECK(hit->t == doctest::Approx(t).epsilon(1e-4));
@@ -279,7 +279,7 @@ TEST_CASE("the hull of two balls: a ray goes in where it comes from outside, at 
                     CHECK(length(x.point - centre) == doctest::Approx(here).epsilon(1e-6));
                     CHECK(length(x.point - centre - x.normal * here) < 1e-5 * r);
                     CHECK((dot(x.normal, target - from) > 0) == (k == 1));
-                    // Nothing of the body lies beyond the plane there.
+                    // The body is convex: it does not extend beyond the tangent plane.
                     CHECK(dot(a - x.point, x.normal) + r < 1e-5 * r);
                     CHECK(dot(b - x.point, x.normal) + ratio * r < 1e-5 * r);
                     CHECK(cone.holds(x.point - x.normal * (0.01 * here), 0));
@@ -298,7 +298,7 @@ TEST_CASE("the hull of two balls: a ray goes in where it comes from outside, at 
 TEST_CASE("a polyline is one body: in at its outside, out at its outside, nothing between") {
     const Tracer tracer(curve_mesh(false, {{{0, 0, 0, 0.2f}, {1, 0.6f, 0, 0.25f}, {2, -0.2f, 0.5f, 0.15f},
                                             {2.2f, 1, 0.6f, 0.2f}}}));
-    const auto depth = [&](Vec3d p) {  // distance to the union, from outside
+    const auto depth = [&](Vec3d p) {  // distance outside of the union
         double least = 1e9;
         const std::vector<std::array<double, 4>> at{{0, 0, 0, 0.2}, {1, 0.6, 0, 0.25}, {2, -0.2, 0.5, 0.15}, {2.2, 1, 0.6, 0.2}};
         for (int k = 0; k < 3; ++k)
@@ -327,7 +327,7 @@ TEST_CASE("a polyline is one body: in at its outside, out at its outside, nothin
 }
 
 TEST_CASE("a ring of many cubic segments is a torus") {
-    // Cubic arcs of 1/16 turn are round to 2e-8: h = 4/3 tan(angle / 4).
+    // Cubic arcs of 1/16 turn are circular to 2e-8: h = 4/3 tan(angle / 4).
     constexpr int kArcs = 16;
     const double big = 1, small = 0.2, arc = 2 * kPiD / kArcs, h = 4.0 / 3 * std::tan(arc / 4);
     std::vector<std::array<float, 4>> points;

@@ -1,11 +1,10 @@
-// embree.cpp -- ray tracing by Embree: the scene, its filters, and the two questions. With
-// embree_*.cpp beside it the only code that includes Embree.
+// embree.cpp -- ray tracing by Embree: scene, filters, and both queries. Only this file and
+// embree_*.cpp include Embree.
 //
-// One top-level scene. Geometry `i` in it is instance `i`, either as triangles in world
-// space (flattened) or as a user geometry that traces the mesh's own scene, as curves always are; geometry
-// `instances.size()` holds the sphere lights. So Embree's ids are ours, and no table
-// stands between them. Where there are catchers, a second one holds them and the lights
-// alone: the same geometries under the same ids.
+// A single top-level scene. Geometry `i` is instance `i`: either triangles in world space
+// (flattened), or a user geometry that traces the mesh's scene (always for curves). Geometry
+// `instances.size()` holds the sphere lights. Embree's ids are thus our indices, without a table.
+// With shadow catchers, a second scene holds only them and the lights, under the same ids.
 #include <cstring>
 #include <algorithm>
 #include <array>
@@ -68,23 +67,23 @@ class EmbreeIntersector final : public Intersector {
     std::vector<Keyed<Sphere>> spheres_;  // Embree may keep a pointer
     std::vector<bool> flattened_, has_cutout_;
     std::vector<Clear> clear_;
-    std::deque<PlacedMesh> placed_;  // by address: Embree keeps pointers
+    std::deque<PlacedMesh> placed_;  // deques have stable addresses: Embree keeps pointers
     std::deque<MovingMesh> moving_;
     std::deque<RoundSegments> rounds_;
     std::map<std::tuple<std::uint32_t, bool, bool>, SceneOwner>
-        mesh_scenes_;  // by mesh, and whether it is cut out, and clear
+        mesh_scenes_;  // by mesh, cutout and clearness
     std::map<std::uint32_t, TracedCurves> curves_;  // by mesh
     std::vector<const TracedCurves*> traced_;       // by instance; null: triangles
-    std::map<std::uint32_t, Hull> hulls_;  // of meshes that move; for building only
+    std::map<std::uint32_t, Hull> hulls_;  // of moving meshes; during build only
     SceneOwner top_;
-    SceneOwner set_;   // of catchers; null: there are none
+    SceneOwner set_;   // catchers only; null: there are none
     unsigned sphere_geometry_;
     std::string name_;
 };
 
-// Robust traversal: without it one ray in 10^7 leaks through an edge of a closed mesh,
-// and one in 20 to 1000 of those aimed at an edge (measured; with it none of 4 * 10^7).
-// It costs 12 to 15 % of traversal.
+// Robust traversal. Otherwise one ray in 10^7 leaks through an edge of a closed mesh, and one in 20
+// to 1000 of the rays aimed at an edge (measured; with it, none of 4 * 10^7). It costs 12 to 15 %
+// of traversal time.
 constexpr RTCSceneFlags kSceneFlags = RTC_SCENE_FLAG_ROBUST;
 
 EmbreeIntersector::EmbreeIntersector(const std::vector<Mesh>& meshes,
@@ -136,7 +135,7 @@ void EmbreeIntersector::set_filters(RTCGeometry geometry,
 void EmbreeIntersector::attach(RTCScene scene, GeometryOwner geometry, unsigned id) {
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(scene, geometry.get(),
-                          id);  // the scene keeps a reference of its own
+                          id);  // the scene keeps a reference
 }
 
 void EmbreeIntersector::attach_to_top(GeometryOwner geometry, unsigned id, bool of_set) {
@@ -234,7 +233,7 @@ void EmbreeIntersector::filter(const RTCFilterFunctionNArguments* arguments) {
     if (self.cutout_(*context.ray, self.raw_hit_inside(arguments))) arguments->valid[0] = 0;
 }
 
-/// Any hit will do for a shadow, so what may be passed is passed here.
+/// Any hit ends a shadow ray, so the filter decides which surfaces it passes.
 void EmbreeIntersector::filter_shadow(const RTCFilterFunctionNArguments* arguments) {
     if (arguments->valid[0] == 0) return;
     const auto& self = *static_cast<const EmbreeIntersector*>(arguments->geometryUserPtr);
@@ -281,10 +280,10 @@ bool EmbreeIntersector::occluded(const Ray& ray, Crossings* crossings) const {
     context.ray = &ray;
     context.crossings = crossings;
     RTCRay shadow_ray = embree_ray(ray);
-    // Found by fuzz_scene: lamps so far away that no ray to them can be traced. No light comes along those.
+    // Lamps so far away that rays to them cannot be traced count as occluded (found by fuzz_scene).
     if (!is_traceable(shadow_ray)) return true;
     query(top_of(ray), context.embree, shadow_ray);
-    return shadow_ray.tfar < 0;  // Embree's sign for "something was met"
+    return shadow_ray.tfar < 0;  // Embree's mark of an occluded ray
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// embree_api.h -- Embree 3.13 or 4 under one set of names: single rays, the context that travels
-// with them, and owners of handles. For the files embree*.cpp of this room only.
+// embree_api.h -- common names for Embree 3.13 and 4: single rays, query contexts, and owners of
+// handles. Only for the files embree*.cpp of this room.
 #pragma once
 #include <cmath>
 #include <memory>
@@ -48,15 +48,16 @@ inline void query(RTCScene scene, QueryContext& context, RTCRay& ray) {
 }
 #endif
 
-/// Embree hands its context to the filter; the world-space ray travels behind it, because
-/// inside an instance the filter sees the transformed one.
+/// Embree passes its context to filters; the world-space ray follows it in memory, because inside
+/// an instance the filter receives the transformed ray.
 struct Context {
     QueryContext embree;
     const Ray* ray;
     Crossings* crossings = nullptr;
 };
 
-/// Owners of Embree's handles. A process that a fork has torn keeps them: to release one takes locks.
+/// Owners of Embree's handles. After a fork that tore threads off (forks.h), handles leak, since
+/// releasing them takes locks.
 struct ReleaseDevice {
     void operator()(RTCDevice d) const {
         if (!forks::torn) rtcReleaseDevice(d);

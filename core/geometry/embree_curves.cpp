@@ -11,7 +11,8 @@ namespace {
 constexpr unsigned kCapGeometry = 1;
 constexpr int kMostBits = 30, kMostShift = 40;
 
-/// The power of two that makes the largest radius 1 to 2, or less where coordinates would become too large.
+/// Power of two that scales the largest radius to 1 .. 2, or less if coordinates would become too
+/// large.
 float scale_for(const Mesh& mesh) {
     const float radius = mesh.curves.largest_radius();
     float most = radius;
@@ -26,8 +27,8 @@ struct Vertex {
     float x, y, z, radius;
 };
 
-/// Scaled. Embree squares distances and divides by them: what is nothing beside the largest radius must
-/// not underflow.
+/// Scaled vertex. Embree squares and divides by distances, so values that are negligible relative
+/// to the largest radius are flushed to 0.
 Vertex vertex_at(Vec3f p, float radius, float scale) {
     const auto in_units = [scale](float v) {
         constexpr float kNothing = 0x1p-30f;
@@ -36,7 +37,8 @@ Vertex vertex_at(Vec3f p, float radius, float scale) {
     return {in_units(p.x), in_units(p.y), in_units(p.z), in_units(radius)};
 }
 
-/// Outward. The derivative, as that goes straight between time steps, and a unit vector does not.
+/// Outward normal of a cap, unnormalized: the derivative is linear between time steps, a unit
+/// vector is not.
 Vec3f cap_normal(const CurveSegment& s, double u, float scale) {
     const Vec3f d = to_float(s.derivative(u)) * scale;
     const Vec3f along = length_squared(d) > 1e-20f ? d : to_float(s.tangent(u));

@@ -1,4 +1,4 @@
-// embree_curves.h -- cubic curves by Embree's round ones, in units that suit it.
+// embree_curves.h -- cubic curves as Embree's round curves, in scaled units.
 #pragma once
 #include <vector>
 
@@ -8,28 +8,28 @@
 
 namespace dg::embree {
 
-/// Curves as Embree sees them, and the way from its hits to ours. Straight segments bring their hits
-/// as they are (embree_rounds.h). Embree's search for the place along
-/// a cubic segment ends at an error that is partly absolute (of the order of 1e-6): a hair of
-/// 0.00005 m would be met within a few per cent of its radius. So Embree gets lengths in units of
-/// about the radius: times a power of two, which rounds nothing.
+/// Curves in Embree's representation, and the conversion of its hits. Straight segments need none
+/// (embree_rounds.h). Embree's root search along a cubic segment has a partly absolute error (of
+/// the order of 1e-6): a hair of radius 0.00005 m would be hit within a few per cent of its radius.
+/// Lengths are therefore scaled by a power of two, which is exact, so that radii are near 1.
 class TracedCurves {
   public:
     explicit TracedCurves(const Mesh& mesh);
 
     bool cubic() const { return mesh_->curves.cubic; }
-    /// Geometry 0 of the mesh's scene, of cubic segments.
+    /// Geometry 0 of the mesh's scene: cubic segments.
     GeometryOwner segments(Device& device) const;
-    /// Geometry 1: the flat ends of cubic segments; empty where nothing ends.
+    /// Geometry 1: flat caps of cubic segments; empty for closed curves.
     GeometryOwner caps(Device& device);
 
-    /// From the mesh's space to Embree's; distances along the ray stay.
+    /// Scales a ray from mesh space to Embree's units; distances along the ray are unchanged.
     void scale(RTCRay& ray) const {
         const float by = cubic() ? scale_ : 1;
         ray.org_x *= by, ray.org_y *= by, ray.org_z *= by;
         ray.dir_x *= by, ray.dir_y *= by, ray.dir_z *= by;
     }
-    /// Turns primID, u and v into segment and place; `ray` is Embree's, with tfar at the hit.
+    /// Converts primID, u and v to segment and surface position; `ray` is Embree's, with tfar at
+    /// the hit.
     void set_place(const RTCRay& ray, RTCHit& hit) const;
 
   private:

@@ -1,4 +1,4 @@
-// embree_device.cpp -- errors of Embree become exceptions.
+// embree_device.cpp -- conversion of Embree's errors to exceptions.
 #include "geometry/embree_device.h"
 
 #include "math/error.h"
@@ -7,7 +7,7 @@ namespace dg::embree {
 
 Device::Device() : handle_(rtcNewDevice(nullptr)) {
     if (!handle_) {
-        const RTCError code = rtcGetDeviceError(nullptr);   // asking forgets it
+        const RTCError code = rtcGetDeviceError(nullptr);   // also clears the error
         if (code == RTC_ERROR_OUT_OF_MEMORY) throw Error("Embree: no device: out of memory");
         throw Error("Embree: no device: error " + std::to_string(code) +
                     " (the CPU or the installation of Embree is not supported)");

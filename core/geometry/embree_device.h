@@ -1,4 +1,4 @@
-// embree_device.h -- one device of Embree, and the errors that it reports.
+// embree_device.h -- Embree device and its error reports.
 #pragma once
 #include <mutex>
 #include <string>
@@ -7,17 +7,17 @@
 
 namespace dg::embree {
 
-/// Errors come by callback, from any thread; the first one is kept and thrown by check().
+/// Errors are reported by callback, from any thread; check() throws the first.
 class Device {
   public:
     Device();
     RTCDevice get() const { return handle_.get(); }
     std::string version() const;  // "Embree 3.13.5"
 
-    /// Throws Error that says during `what`, if anything went wrong so far.
+    /// Throws Error that names the operation `what` if any error was reported.
     void check(const std::string& what);
 
-    /// `check` follows: nothing is returned that Embree could not make.
+    /// Throws Error (by check()) instead of returning a null geometry.
     GeometryOwner new_geometry(RTCGeometryType type, const std::string& what);
 
   private:

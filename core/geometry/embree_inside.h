@@ -1,4 +1,4 @@
-// embree_inside.h -- user geometries of one primitive: a mesh that is traced in its own space.
+// embree_inside.h -- user geometries with a single primitive: a mesh traced in local space.
 #pragma once
 #include <cmath>
 
@@ -15,19 +15,19 @@ template <typename Real>
 RTCRay transformed(const RTCRay& ray, const Affine<Real>& m) {
     const Vec3<Real> o = m.point({ray.org_x, ray.org_y, ray.org_z});
     const Vec3<Real> d = m.vector({ray.dir_x, ray.dir_y, ray.dir_z});
-    RTCRay local = ray;  // t is the same in both spaces, as d is not normalised
+    RTCRay local = ray;  // t is equal in both spaces, as d is not normalized
     local.org_x = float(o.x), local.org_y = float(o.y), local.org_z = float(o.z);
     local.dir_x = float(d.x), local.dir_y = float(d.y), local.dir_z = float(d.z);
     return local;
 }
 
-/// Embree must not see other rays: its own numbers overflow.
+/// Other rays must not reach Embree, since its arithmetic overflows.
 inline bool is_traceable(const RTCRay& ray) {
     return dg::is_traceable({ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}) &&
            !std::isnan(ray.tnear) && !std::isnan(ray.tfar);
 }
 
-/// The context of a query inside, which tells hits and filters the instance.
+/// Context of a nested query, with the instance's id for hits and filters.
 inline Context inside(std::uint32_t id, const void* outer) {
     Context context;
     init_context(context.embree);
@@ -37,11 +37,11 @@ inline Context inside(std::uint32_t id, const void* outer) {
     return context;
 }
 
-// The rest is for a `Placed` with: RTCScene scene; std::uint32_t id; const TracedCurves* curves;
-// bool near(const RTCRay&); RTCRay to_local(const RTCRay&); void bounds(unsigned step, RTCBounds&); unsigned steps().
-// A ray that is not traceable in the mesh's space meets nothing: the transform has no inverse at its time, or shrinks
-// what it places beyond what floats hold.
-// Only single rays are traced, so N is 1 and the packets are plain structures.
+// The functions below are templates on `Placed`, which provides RTCScene scene; std::uint32_t id;
+// const TracedCurves* curves; bool near(const RTCRay&); RTCRay to_local(const RTCRay&); void
+// bounds(unsigned step, RTCBounds&); unsigned steps(). Rays that are not traceable in local space
+// miss: the transform is singular at their time, or its scale exceeds the range of float. Rays are
+// traced singly, so N is 1 and the packets are plain structures.
 
 template <typename Placed>
 void bounds_of(const RTCBoundsFunctionArguments* a) {

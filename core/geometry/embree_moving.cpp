@@ -14,7 +14,7 @@ MovingMesh::MovingMesh(RTCScene scene, std::uint32_t id, const Hull& hull,
     float far = 0;
     for (const Box& b : bounds.boxes)
         for (const Vec3d corner : {b.min, b.max}) far = std::max(far, float(largest_coordinate(corner)));
-    const float slack = 16 * 0x1p-24f * far;  // the rounding of the ray, as for still ones
+    const float slack = 16 * 0x1p-24f * far;  // rounding of the ray, as for static instances
     const Vec3f grow{slack, slack, slack};
     for (const Box& b : bounds.boxes)
         boxes_.push_back({to_float(b.min) - grow, to_float(b.max) + grow});

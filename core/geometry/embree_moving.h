@@ -1,5 +1,6 @@
-// embree_moving.h -- instances that move or are not always there, traced by the exact inverse of their
-// transform at the time of each ray. Embree is told linear boxes only (see motion/moving_bounds.h).
+// embree_moving.h -- instances that move or are visible only at times, traced by the exact inverse
+// of their transform at the time of each ray. Embree only receives linear boxes (see
+// motion/moving_bounds.h).
 #pragma once
 #include <vector>
 
@@ -14,12 +15,12 @@ class MovingMesh {
     MovingMesh(RTCScene scene, std::uint32_t id, const Hull& hull,
                const InstanceGeometry& instance);
 
-    RTCScene scene;    // of the mesh, in its own space
+    RTCScene scene;    // of the mesh, in local space
     std::uint32_t id;  // of the instance
     const TracedCurves* curves = nullptr;  // see PlacedMesh
 
     bool near(const RTCRay& ray) const;
-    /// Not traceable where the transform has no inverse at the time of the ray.
+    /// Returns an untraceable ray if the transform is singular at the time of the ray.
     RTCRay to_local(const RTCRay& ray) const {
         const Affine3d now = motion_.at(ray.time);
         if (is_invertible(now)) return transformed(ray, inverse(now));
@@ -27,7 +28,7 @@ class MovingMesh {
         nowhere.tnear = std::numeric_limits<float>::quiet_NaN();
         return nowhere;
     }
-    Box box() const;  // at all times
+    Box box() const;  // over all times
     unsigned steps() const { return unsigned(boxes_.size()); }
     void bounds(unsigned step, RTCBounds& out) const {
         set_bounds(out, boxes_[step].min, boxes_[step].max);
@@ -37,7 +38,7 @@ class MovingMesh {
     struct BoxAtStep {
         Vec3f min, max;
     };
-    struct Ball {  // the radius holds until the next
+    struct Ball {  // the radius holds until the next step
         Vec3f center;
         float radius_squared;
     };

@@ -10,7 +10,8 @@
 namespace dg::embree {
 namespace {
 
-// Share of the radius: surfaces of neighbours that go on in one another are not inside each other.
+// Tolerance relative to the radius: surfaces of consecutive segments that continue each other are
+// not inside each other.
 constexpr double kInside = 1e-6;
 
 RoundCone cone_at(const Mesh& mesh, std::uint32_t segment, float time) {
@@ -24,7 +25,7 @@ RoundCone cone_at(const Mesh& mesh, std::uint32_t segment, float time) {
     return {point(start), point(start + 1), mesh.curves.radii[start], mesh.curves.radii[start + 1]};
 }
 
-/// Most rays that enter the box of a thin segment pass its axis by.
+/// Most rays that enter the box of a thin segment miss its axis.
 bool comes_near(const RoundCone& cone, Vec3d origin, Vec3d way) {
     const Vec3d across = cross(way, cone.b - cone.a);
     const double off = dot(cone.a - origin, across), radius = std::max(cone.ra, cone.rb);
@@ -39,8 +40,8 @@ std::optional<std::uint32_t> neighbour(const Curves& c, std::uint32_t segment, b
     return after ? c.first_segment(curve) : c.ends[curve] - 1;
 }
 
-/// Segments of a curve are one body: what lies inside a neighbour is no surface. The ball between two
-/// belongs to the first.
+/// Whether a crossing is on the surface of the curve: the segments of a curve form a union, so
+/// points inside a neighbour are not. The ball between two segments belongs to the first.
 bool is_surface(const Mesh& mesh, std::uint32_t segment, const RoundConeCrossing& x, float time) {
     const Curves& c = mesh.curves;
     const auto before = neighbour(c, segment, false), after = neighbour(c, segment, true);
@@ -90,7 +91,7 @@ bool accepts(const Asked& asked, RTCRay& ray, RTCHit& hit) {
     return valid != 0;
 }
 
-/// The nearest surface within the ray; `ray` and `hit` are set to it.
+/// Intersects a segment within the ray's interval; on a hit, updates `ray` and `hit`.
 bool meet(const Asked& asked, RTCRay& ray, RTCHit& hit) {
     const Mesh& mesh = *asked.segments.mesh;
     const RoundCone cone = cone_at(mesh, asked.segment, ray.time);

@@ -9,7 +9,7 @@ namespace {
 
 using Spheres = std::vector<Keyed<Sphere>>;
 
-/// Between two keys centre and radius go straight, and so do the ends of the box.
+/// Centre and radius, and therefore the box, are linear between two keys.
 void bounds_of_sphere(const RTCBoundsFunctionArguments* a) {
     const auto& keys = (*static_cast<const Spheres*>(a->geometryUserPtr))[a->primID];
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -26,8 +26,8 @@ void bounds_of_sphere(const RTCBoundsFunctionArguments* a) {
     out.upper_x = high.x, out.upper_y = high.y, out.upper_z = high.z;
 }
 
-/// Distance (unit direction) to where the ray enters the sphere or, from inside, leaves it; infinity:
-/// not within the ray.
+/// Distance along a unit direction to the entry point on the sphere, or to the exit from inside;
+/// infinity outside the ray's interval.
 float distance_to(const Sphere& sphere, const RTCRay& ray) {
     const Vec3d d{ray.dir_x, ray.dir_y, ray.dir_z};
     const Vec3d to = to_double(sphere.center) - Vec3d{ray.org_x, ray.org_y, ray.org_z};

@@ -1,4 +1,4 @@
-// embree_spheres.h -- sphere lights that rays can hit.
+// embree_spheres.h -- visible sphere lights.
 #pragma once
 #include <vector>
 
@@ -8,8 +8,8 @@
 
 namespace dg::embree {
 
-/// Keeps a pointer to `spheres` if one of them moves: those Embree knows by the boxes of all their
-/// way, which is enough for the few that a scene has, and they are exact between any keys.
+/// Keeps a pointer to `spheres` if any moves. Embree then gets one box for the whole path of each
+/// sphere, which suffices for the few spheres of a scene; hits are exact between any keys.
 GeometryOwner geometry_of_spheres(Device& device, const std::vector<Keyed<Sphere>>& spheres);
 
 }  // namespace dg::embree

@@ -1,5 +1,4 @@
-// embree_test.cpp -- hits against closed forms, on both paths: flattened and through an
-// instance.
+// embree_test.cpp -- hits against closed forms, flattened and through an instance.
 #include <doctest/doctest.h>
 
 #include "math/hash.h"
@@ -39,8 +38,7 @@ Ray make_ray(Vec3f origin, Vec3f direction) {
     return ray;
 }
 
-/// Enough copies of a mesh to keep it from being flattened; instance 0 is the one under
-/// test.
+/// Enough copies of a mesh to prevent flattening; instance 0 is under test.
 std::vector<InstanceGeometry> crowd(const Mesh& mesh, const Affine3f& transform,
                                     bool cutout = false) {
     std::vector<InstanceGeometry> all{{0, transform, cutout}};
@@ -77,7 +75,7 @@ TEST_CASE(
     "a triangle: distance and barycentrics, on both paths, under shear and mirroring") {
     const Vec3f a{0.1f, 0.2f, 0.3f}, b{1.3f, 0.1f, -0.2f}, c{0.2f, 1.5f, 0.4f};
     std::vector<Mesh> meshes{triangle_mesh(a, b, c)};
-    std::vector<std::array<std::uint32_t, 3>> triangles(1000);  // zero-area ones are never hit
+    std::vector<std::array<std::uint32_t, 3>> triangles(1000);  // degenerate triangles are never hit
     triangles[0] = {0, 1, 2};
     meshes[0].triangles = triangles;
     const Affine3f transforms[] = {
@@ -99,7 +97,7 @@ TEST_CASE(
                 const float distance = 0.5f + random();
                 const Ray ray = make_ray(p, random.direction());
                 const Ray back = make_ray(p + ray.direction * distance, -ray.direction);
-                // Rays nearly in the plane of the triangle are ill conditioned.
+                // Rays nearly in the plane of the triangle are ill-conditioned.
                 const Vec3f n = normalize(m.normal(cross(b - a, c - a)));
                 if (std::abs(dot(n, ray.direction)) < 0.05f) continue;
                 const auto hit = tracer->intersect(back);
@@ -131,7 +129,7 @@ TEST_CASE("t_min and t_max are honoured") {
 }
 
 TEST_CASE("a shadow ray that cannot be traced is blocked, in an empty scene too") {
-    // Found by fuzz_scene: a lamp beyond 10^18 m ended the process.
+    // Found by fuzz_scene: a lamp beyond 10^18 m aborted the process.
     const float nan = std::numeric_limits<float>::quiet_NaN(),
                 infinity = std::numeric_limits<float>::infinity();
     const std::vector<Mesh> meshes{triangle_mesh({-1, -1, 0}, {1, -1, 0}, {0, 1, 0})};
@@ -175,13 +173,13 @@ TEST_CASE("spheres that move are met where they are at the time of the ray, and 
         for (int k = 0; k < 4; ++k) {
             const Vec3f center{float(hash_uniform(1, 4 * i + k)) * 6, float(i) * 3,
                                float(hash_uniform(2, 4 * i + k)) * 6};
-            keys.times.push_back(k == 2 ? 0.3f : float(k) / 3);  // a jump at 1/3, nearly
+            keys.times.push_back(k == 2 ? 0.3f : float(k) / 3);  // almost a jump at 1/3
             keys.values.push_back({center, 0.1f + float(hash_uniform(3, 4 * i + k))});
         }
         std::ranges::sort(keys.times);
         spheres.push_back(keys);
     }
-    spheres.push_back({{0}, {{{0, -9, 0}, 1}}});  // one that stays
+    spheres.push_back({{0}, {{{0, -9, 0}, 1}}});  // static sphere
     const auto tracer = Intersector::build({}, {}, spheres, {});
     for (int i = 0; i < 3000; ++i) {
         const std::uint32_t which = i % 6;

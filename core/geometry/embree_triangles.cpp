@@ -1,4 +1,4 @@
-// embree_triangles.cpp -- the arrays of a mesh, read in place where that is safe.
+// embree_triangles.cpp -- mesh arrays for Embree, shared where that is safe.
 #include "geometry/embree_triangles.h"
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 namespace dg::embree {
 namespace {
 
-/// Whether the bytes behind an array can be read: memory comes in pages (of 4096 bytes or a
-/// multiple), and a page that holds the end of an array is readable as a whole.
+/// Whether the bytes past the end of an array can be read: memory is mapped in pages (of 4096 bytes
+/// or a multiple), so the page that contains the end is readable as a whole.
 bool readable_behind(const void* end, std::size_t bytes) {
     constexpr std::uintptr_t kPage = 4096;
     const std::uintptr_t used = reinterpret_cast<std::uintptr_t>(end) % kPage;
@@ -33,7 +33,7 @@ std::span<const Vec3f> positions_at(const Mesh& mesh, std::uint32_t step) {
     return {mesh.positions.data() + step * mesh.vertex_count(), mesh.vertex_count()};
 }
 
-/// Room for the vertices of a step in memory of Embree's own.
+/// Allocates vertices of a time step in Embree's memory.
 Vec3f* new_vertices(Device& device, RTCGeometry geometry, const Mesh& mesh, std::uint32_t step) {
     void* copy = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, step,
                                          RTC_FORMAT_FLOAT3, sizeof(Vec3f),
@@ -49,7 +49,7 @@ GeometryOwner triangles_of(Device& device, const Mesh& mesh) {
     for (std::uint32_t step = 0; step < mesh.steps; ++step) {
         const auto p = positions_at(mesh, step);
         if (step + 1 < mesh.steps || readable_behind(p.data() + p.size(), 4)) {
-            // 16 bytes are read at the last vertex
+            // Embree reads 16 bytes at the last vertex
             rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, step,
                                        RTC_FORMAT_FLOAT3, p.data(), 0, sizeof(Vec3f), p.size());
         } else {

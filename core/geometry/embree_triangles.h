@@ -1,4 +1,4 @@
-// embree_triangles.h -- a mesh as Embree's triangles.
+// embree_triangles.h -- mesh as an Embree triangle geometry.
 #pragma once
 #include "geometry/embree_device.h"
 #include "geometry/mesh.h"
@@ -6,13 +6,13 @@
 
 namespace dg::embree {
 
-// High quality (spatial splits) traced no faster in robust mode.
+// High quality (spatial splits) was no faster in robust mode.
 inline constexpr RTCBuildQuality kBuildQuality = RTC_BUILD_QUALITY_MEDIUM;
 
-/// In the mesh's own space: its arrays are read in place.
+/// In local space; shares the mesh's arrays.
 GeometryOwner triangles_of(Device& device, const Mesh& mesh);
 
-/// In world space: the vertices are copied, unless the transform is the identity.
+/// In world space; copies the vertices unless the transform is the identity.
 GeometryOwner world_triangles_of(Device& device, const Mesh& mesh,
                                  const Affine3f& world_from_local);
 

@@ -1,5 +1,4 @@
-// layout.cpp -- which instances are copied into world space, and which are traced through
-// a transform.
+// layout.cpp -- selection of instances to flatten into world space.
 #include "geometry/layout.h"
 
 namespace dg {
@@ -14,8 +13,8 @@ std::vector<bool> choose_flattened(const std::vector<Mesh>& meshes,
     for (std::size_t m = 0; m < meshes.size(); ++m) {
         if (uses[m] > 1) shared += uses[m] * meshes[m].triangles.size();
     }
-    // All or nothing: copying only the smaller ones traced slower than either (a mixed
-    // top level).
+    // All or nothing: flattening only the smaller instances was slower than either (a mixed top
+    // level).
     std::vector<bool> flattened(instances.size());
     for (std::size_t i = 0; i < instances.size(); ++i) {
         const std::uint32_t m = instances[i].mesh;

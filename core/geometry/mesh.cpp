@@ -1,4 +1,4 @@
-// mesh.cpp -- the check that a mesh can be used.
+// mesh.cpp -- validation of meshes.
 #include "geometry/mesh.h"
 
 #include <cmath>
@@ -49,7 +49,7 @@ void check_array(const std::string& where, const char* what, const SharedArray<T
     }
 }
 
-/// Values of curves are one per position, or one per curve.
+/// Checks that attributes of curves have a value per position, or per curve.
 void check_curve_values(const std::string& where, const Mesh& mesh) {
     const auto wanted = [&](std::size_t given) {
         return given == mesh.curves.ends.size() ? given : mesh.vertex_count();
@@ -95,7 +95,7 @@ void Mesh::validate() const {
     }
 }
 
-/// A ball becomes an ellipsoid, whose reach along an axis is the length of that row of the matrix.
+/// A ball becomes an ellipsoid; its extent along an axis is the length of that row of the matrix.
 Vec3f reach_around(const Mesh& mesh, const Affine3f& m) {
     if (mesh.curves.empty()) return {0, 0, 0};
     const float r = 1.0001f * mesh.curves.largest_radius();

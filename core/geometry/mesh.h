@@ -1,4 +1,4 @@
-// mesh.h -- triangle meshes, and curves, as arrays in their own space (m).
+// mesh.h -- triangle meshes and curves as arrays in local space (m).
 #pragma once
 #include <algorithm>
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace dg {
 
-/// Empty attribute arrays mean "absent". Sizes are checked by validate().
-/// A mesh that deforms has positions, normals and tangents of several moments, one after the other:
-/// equal steps over the scene's interval, and linear between them.
+/// Empty attribute arrays mean "absent"; validate() checks sizes. A deforming mesh has positions,
+/// normals and tangents for several time steps in sequence, equally spaced over the scene's
+/// interval and linear in between.
 struct Mesh {
     std::string name;
-    std::uint32_t steps = 1;  // 1: it does not deform
+    std::uint32_t steps = 1;  // 1: static
     SharedArray<Vec3f> positions;
     SharedArray<std::array<std::uint32_t, 3>> triangles;
     SharedArray<Vec3f> normals;                  // unit, per vertex; absent: flat shading
@@ -26,28 +26,28 @@ struct Mesh {
     SharedArray<std::array<float, 4>> tangents;  // xyz, w = handedness
     SharedArray<std::array<float, 4>> colors;    // linear RGBA
 
-    Curves curves;  // in the place of triangles
+    Curves curves;  // in place of triangles
 
     std::size_t vertex_count() const { return positions.size() / steps; }
     std::size_t primitive_count() const { return triangles.size() + curves.starts.size(); }
     bool empty() const { return triangles.empty() && curves.empty(); }
 
-    /// Throws Error naming mesh and element: index out of range, NaN or Inf, wrong array
-    /// length.
+    /// Throws Error with mesh and element for indices out of range, NaN or Inf, and wrong array
+    /// lengths.
     void validate() const;
 };
 
-inline constexpr std::uint32_t kMostMeshSteps = 129;  // of Embree
+inline constexpr std::uint32_t kMostMeshSteps = 129;  // limit of Embree
 
-/// How far the surface reaches beyond the positions along each axis of the world, at most; 0 for triangles.
+/// Largest extent of the surface beyond the positions along each world axis; 0 for triangles.
 Vec3f reach_around(const Mesh& mesh, const Affine3f& world_from_local);
 
-/// A time step, and the share of the next.
+/// Time step, and interpolation weight of the next.
 struct MeshStep {
     std::uint32_t index;
     float share;
 };
-/// The step of a time (0 to 1) among `steps`; in single precision, as the ray tracer finds it.
+/// Step and weight at a time (0 to 1); in single precision like the ray tracer.
 inline MeshStep step_at(std::uint32_t steps, float time) {
     if (steps == 1) return {0, 0};
     const float along = time * float(steps - 1);
@@ -55,7 +55,7 @@ inline MeshStep step_at(std::uint32_t steps, float time) {
     return {std::uint32_t(step), along - step};
 }
 
-/// A sphere light that rays can hit.
+/// Visible sphere light.
 struct Sphere {
     Vec3f center;  // m, world
     float radius;  // m

@@ -1,4 +1,4 @@
-// mesh_test.cpp -- bad meshes are named, good ones pass; the rule for flattening.
+// mesh_test.cpp -- validation of meshes; selection of flattened instances.
 #include <doctest/doctest.h>
 
 #include <limits>

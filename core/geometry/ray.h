@@ -1,4 +1,4 @@
-// ray.h -- a ray in the world (m) at one instant.
+// ray.h -- world-space ray (m) at an instant.
 #pragma once
 #include <cmath>
 #include <limits>
@@ -11,14 +11,14 @@ namespace dg {
 struct Ray {
     Vec3f origin;     // m
     Vec3f direction;  // unit
-    float time = 0;   // fraction of the scene's interval; kept by all that descend from a camera ray
+    float time = 0;   // fraction of the scene's interval; secondary rays inherit it
     float t_min = 0;  // m
     float t_max = std::numeric_limits<float>::infinity();
-    RayCone cone = {};  // about the ray; empty: no texture is averaged
-    bool of_set = false;  // meets catchers alone: the set as it is without the objects
+    RayCone cone = {};  // empty: textures are point-sampled
+    bool of_set = false;  // hits only catchers: the set without the objects
 };
 
-/// Whether a ray tracer bears it: no NaN, nothing infinite, and nothing at which its own numbers overflow.
+/// Whether a ray tracer accepts the ray: no NaN or infinity, and no overflow in its arithmetic.
 inline bool is_traceable(Vec3f origin, Vec3f direction) {
     return std::abs(origin.x) + std::abs(origin.y) + std::abs(origin.z) + std::abs(direction.x) +
                std::abs(direction.y) + std::abs(direction.z) <

@@ -1,36 +1,36 @@
-// ray_cone.h -- how much of the scene one ray stands for: a cone around it, of which the
-// width at a hit says over what a texture may be averaged.
-// Source: Akenine-Moller et al. 2019, Texture Level of Detail Strategies for Real-Time Ray
-// Tracing (Ray Tracing Gems, chapter 20). Through mirrors and glass the width follows the
-// paraxial equations, as the height of a ray in a lens does.
+// ray_cone.h -- ray cones: the width at a hit is the filter width of textures. Source:
+// Akenine-Moller et al. 2019, Texture Level of Detail Strategies for Real-Time Ray Tracing (Ray
+// Tracing Gems, chapter 20). At mirrors and refractive surfaces the width follows the paraxial
+// equations, like the height of a ray in a lens.
 #pragma once
 #include <cmath>
 
 namespace dg {
 
-/// The share of a pixel, and of a BSDF's lobe, that a cone covers. Many samples fill the
-/// pixel, so a cone as wide as the pixel would blur a converged picture twice.
-/// How they were chosen: docs/textures.md.
+/// Fraction of a pixel, and of a BSDF lobe, covered by a cone. A pixel has many samples, so a cone
+/// as wide as the pixel would blur a converged image twice. The choice of the values:
+/// docs/textures.md.
 inline constexpr float kConeShare = 0.5f;
 inline constexpr float kLobeShare = 0.1f;
 
-/// Both 0: a ray of no width, which stays so; textures are then read at full resolution.
+/// Both 0: a ray without width, also after scattering; textures are read at full resolution.
 struct RayCone {
-    float width = 0;   // m across the ray, where it starts; negative beyond a focus
+    float width = 0;   // m across the ray at its origin; negative beyond a focus
     float spread = 0;  // growth of the width per m
 
     bool empty() const { return width == 0 && spread == 0; }
     RayCone after(float t) const { return {width + spread * t, spread}; }
 
-    /// `curvature` in 1/m as the ray meets it: positive where the surface bulges toward it.
+    /// Cone after reflection. `curvature` in 1/m: positive for a surface that is convex toward the
+    /// ray.
     RayCone reflected(float curvature) const {
         return {width, spread + 2 * curvature * width};
     }
-    /// `eta` = index behind the surface / index before it; 1 bends nothing.
+    /// Cone after refraction. `eta` = index behind the surface / index in front of it.
     RayCone refracted(float curvature, float eta) const {
         return {width, (spread - (eta - 1) * curvature * width) / eta};
     }
-    /// Into a lobe: 1 / pdf is the solid angle that a sample of this density stands for.
+    /// Cone after sampling a BSDF lobe: 1 / pdf is the solid angle of a sample.
     RayCone scattered(float pdf) const {
         return {std::abs(width), std::abs(spread) + kLobeShare / std::sqrt(pdf)};
     }

@@ -1,4 +1,4 @@
-// ray_cone_test.cpp -- cones against the paraxial formulas of textbooks.
+// ray_cone_test.cpp -- ray cones against paraxial formulas from textbooks.
 #include "geometry/ray_cone.h"
 
 #include <doctest/doctest.h>
@@ -27,7 +27,7 @@ TEST_CASE("glass: a plane divides the spread by n, a surface of radius R has f =
     CHECK(RayCone{0, 0.003f}.refracted(0, n).spread == doctest::Approx(0.002));
     const RayCone inside = RayCone{0.001f, 0}.refracted(1 / radius, n);
     CHECK(std::abs(inside.after(n * radius / (n - 1)).width) < 1e-8f);
-    // A ball of n = 1.5: from its centre to its focus n R / (2 (n - 1)).
+    // Ball of n = 1.5: from its centre to its focus n R / (2 (n - 1)).
     const RayCone out = inside.after(2 * radius).refracted(-1 / radius, 1 / n);
     CHECK(std::abs(out.after(n * radius / (2 * (n - 1)) - radius).width) < 1e-8f);
 }

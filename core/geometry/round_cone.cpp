@@ -1,8 +1,9 @@
-// round_cone.cpp -- rays through the hull of two balls, in double.
+// round_cone.cpp -- intersection of rays with the convex hull of two balls, in double.
 //
-// With z along the axis from the first centre and q the distance from it, the cone that touches both
-// balls is q c + z m = ra, where its normals lean by m = (ra - rb) / l against the axis and
-// c = sqrt(1 - m^2). It touches the balls at z = ra m and z = l + rb m; beyond these lie the balls.
+// With z along the axis from the first centre and q the distance from the axis, the cone tangent to
+// both balls is q c + z m = ra, where its normals are tilted by m = (ra - rb) / l against the axis
+// and c = sqrt(1 - m^2). It touches the balls at z = ra m and z = l + rb m; the balls continue the
+// surface beyond.
 #include "geometry/round_cone.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace {
 struct Shape {
     Vec3d axis;
     double length, lean, across;
-    double low, high;  // of z, where the cone touches the balls
+    double low, high;  // range of z on the cone
 
     explicit Shape(const RoundCone& c) {
         const Vec3d way = c.b - c.a;
@@ -26,7 +27,7 @@ struct Shape {
         across = std::sqrt(std::max(0.0, 1 - lean * lean));
         low = c.ra * lean, high = length + c.rb * lean;
     }
-    /// One ball holds the other.
+    /// Whether one ball contains the other.
     bool is_ball() const { return !(length > 0 && std::abs(lean) < 1); }
 };
 
@@ -40,7 +41,7 @@ std::optional<Roots> roots(double a, double half_b, double c) {
     return q == 0 ? Roots{{0, 0}} : Roots{{q / a, c / q}};
 }
 
-/// Keeps the first and the last of what is noted.
+/// Records the first and the last hit.
 class Span {
   public:
     Span(Vec3d origin, Vec3d direction) : origin_(origin), direction_(direction) {}
@@ -95,7 +96,7 @@ void cross_side(Span& span, Vec3d direction, const RoundCone& c, const Shape& s,
 }  // namespace
 
 RoundConeCrossings cross_round_cone(const RoundCone& c, Vec3d origin, Vec3d direction) {
-    // From where the ray passes by, so that its distance costs no digits.
+    // Shift the origin to the closest approach, so that distance costs no precision.
     const double shift = dot((c.a + c.b) * 0.5 - origin, direction) / dot(direction, direction);
     Span span(origin + direction * shift, direction);
     const Shape s(c);
@@ -122,7 +123,7 @@ bool RoundCone::holds(Vec3d point, double margin) const {
     if (s.is_ball())
         return rb > ra ? length(point - b) < rb - margin : length(from) < ra - margin;
     const double q = length(from - s.axis * z);
-    // The ball that would touch the surface nearest to the point.
+    // The ball that touches the surface nearest to the point.
     const double nearest = std::clamp((z - q * s.lean / s.across) / s.length, 0.0, 1.0);
     const double radius = ra + (rb - ra) * nearest;
     return length(from - s.axis * (nearest * s.length)) < radius - margin;

@@ -1,4 +1,4 @@
-// round_cone.h -- the hull of two balls, which is convex: a ray goes in once and out once.
+// round_cone.h -- convex hull of two balls: a ray enters and leaves it once.
 #pragma once
 #include "math/vec.h"
 
@@ -8,13 +8,13 @@ struct RoundCone {
     Vec3d a, b;    // centres
     double ra, rb;  // radii
 
-    /// Whether a point lies inside by more than `margin`.
+    /// Whether a point is inside by more than `margin`.
     bool holds(Vec3d point, double margin) const;
 };
 
 struct RoundConeCrossing {
     double t;
-    double along;  // place on the axis of the ball that touches here: 0 on the first, 1 on the second
+    double along;  // position on the axis of the touching ball: 0 on the first, 1 on the second
     Vec3d point, normal;
 };
 struct RoundConeCrossings {
