@@ -1,4 +1,4 @@
-// bytes.h -- a cursor over packed bytes that cannot run past their end.
+// bytes.h -- bounds-checked reader of packed bytes.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -10,7 +10,7 @@ namespace dg {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// Reads bytes in order; Error where more are asked for than there are.
+/// Reads bytes in order; throws Error past the end.
 class ByteReader {
   public:
     ByteReader(Bytes bytes, const char* what) : bytes_(bytes), what_(what) {}
@@ -38,7 +38,7 @@ class ByteReader {
 
     std::size_t left() const { return bytes_.size() - at_; }
 
-    /// Error unless every byte was read.
+    /// Throws Error unless all bytes were read.
     void finish() const {
         if (left() != 0)
             throw input_error(what_, "length", "all bytes used",

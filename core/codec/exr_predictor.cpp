@@ -9,8 +9,9 @@ void undo_exr_predictor(Bytes packed, std::span<std::uint8_t> pixels) {
         throw input_error("pixels", "bytes", std::to_string(packed.size()), std::to_string(pixels.size()));
     if (packed.empty()) return;
     const std::size_t half = (packed.size() + 1) / 2;
-    // The sum of the even bytes is where the odd ones begin, so that both halves are added up side by side. The first
-    // byte of a block is no difference: the 128 that the loop takes off is put on before.
+    // The sum of the even bytes' differences is the start of the odd bytes, so both halves can be
+    // summed in one loop. The first byte of a block is not a difference; it starts at 128 to cancel
+    // the loop's offset.
     std::uint8_t even = 128, odd = std::accumulate(packed.begin(), packed.begin() + half, std::uint8_t(128),
                                                    [](std::uint8_t sum, std::uint8_t d) { return sum + d - 128; });
     for (std::size_t i = 0; i < packed.size() / 2; ++i) {

@@ -1,5 +1,6 @@
-// exr_predictor.h -- inflated bytes of an OpenEXR block as its pixels. A block keeps the even bytes first, then the
-// odd ones, each as its difference to the one before, plus 128 (OpenEXR Technical Introduction, "ZIP").
+// exr_predictor.h -- predictor of OpenEXR's ZIP blocks. A block stores the even bytes followed by
+// the odd bytes, each as the difference from its predecessor plus 128 (OpenEXR Technical
+// Introduction, "ZIP").
 #pragma once
 #include <span>
 
@@ -7,8 +8,8 @@
 
 namespace dg {
 
-/// Adds the differences up and puts both halves together again. Error unless both have as many bytes; `pixels` may
-/// not overlap `packed`.
+/// Sums the differences and interleaves both halves. Throws Error unless both spans have the same
+/// size; `pixels` must not overlap `packed`.
 void undo_exr_predictor(Bytes packed, std::span<std::uint8_t> pixels);
 
 }  // namespace dg

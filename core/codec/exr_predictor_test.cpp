@@ -1,4 +1,4 @@
-// exr_predictor_test.cpp -- what OpenEXR's rule does to bytes, undone.
+// exr_predictor_test.cpp -- the predictor of OpenEXR, applied and undone.
 #include "codec/exr_predictor.h"
 
 #include <doctest/doctest.h>
@@ -13,7 +13,7 @@ namespace {
 
 using Vec = std::vector<std::uint8_t>;
 
-/// The rule as the Technical Introduction gives it: even bytes, odd bytes, differences plus 128.
+/// Predictor of the Technical Introduction: even bytes, odd bytes, differences plus 128.
 Vec packed(const Vec& pixels) {
     Vec out;
     for (std::size_t first : {0, 1})

@@ -25,8 +25,8 @@ T number(const std::uint8_t* at, bool swapped) {
     return value;
 }
 
-/// A number as a length: negative where it is none, the largest of all where it is larger
-/// than any file.
+/// Converts a number to a length: negative if it is not a whole number, clamped to the largest
+/// integer.
 std::int64_t whole(std::uint64_t value) {
     return std::int64_t(
         std::min(value, std::uint64_t(std::numeric_limits<std::int64_t>::max())));
@@ -36,7 +36,7 @@ std::int64_t whole(double value) {
     return std::int64_t(std::min(value, 0x1p62));
 }
 
-/// Length of a list that begins at `at`; negative where it is none.
+/// Length of the list at `at`; negative if invalid.
 std::int64_t length_at(const std::uint8_t* at, const RowField& field) {
     switch (field.length) {
         case LengthType::none:
@@ -63,7 +63,7 @@ std::int64_t length_at(const std::uint8_t* at, const RowField& field) {
     return 1;
 }
 
-/// Bytes of a row whose lists are empty. Error unless all numbers have bytes.
+/// Size of a row with empty lists, in bytes. Throws Error unless all numbers have 1 to 8 bytes.
 std::size_t least_size(std::span<const RowField> fields) {
     std::size_t least = 0;
     for (const RowField& field : fields) {
@@ -87,8 +87,8 @@ std::size_t least_size(std::span<const RowField> fields) {
     throw Error("wanted a whole number as the length of a list, got " + shown.str());
 }
 
-/// Writes the lengths of a row that begins at `at`, and moves behind it; false where the
-/// bytes end before.
+/// Writes the list lengths of the row at `at` and advances past it; returns false if the data ends
+/// first.
 bool take_row(Bytes data, std::size_t& at, std::span<const RowField> fields,
               std::uint32_t*& lengths) {
     const std::size_t begin = at;

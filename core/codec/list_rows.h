@@ -1,5 +1,4 @@
-// list_rows.h -- rows of bytes with lists in them, each with its length in front, as PLY
-// files have them.
+// list_rows.h -- rows of bytes with lists that store their length in front, as in PLY files.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,35 +9,34 @@
 
 namespace dg {
 
-/// Type of the length of a list; none: a field is a number.
+/// Type of a list's length; none: the field is a number.
 enum class LengthType { none, i1, u1, i2, u2, i4, u4, i8, u8, f8 };
 
-/// A field of a row: a number of `size` bytes, or a list of such numbers behind its
-/// length.
+/// Field of a row: a number of `size` bytes, or a list of numbers preceded by its length.
 struct RowField {
     std::size_t size;
     LengthType length = LengthType::none;
-    bool swapped = false;  ///< The length has the other byte order than this machine.
+    bool swapped = false;  ///< The length has the opposite byte order of this machine.
 };
 
-/// Maximum size of a row, bytes; lengths of lists fit in 32 bits then.
+/// Maximum size of a row in bytes; it keeps list lengths within 32 bits.
 constexpr std::size_t kMostRow = std::size_t(1) << 30;
 
-/// Lengths of the lists of rows that begin at a byte.
+/// List lengths of consecutive rows.
 struct ListLengths {
-    std::vector<std::uint32_t> lengths;  ///< Those of the first row, then of the next.
-    /// Rows that are whole; 0 where even empty lists would not leave room for `count`.
+    std::vector<std::uint32_t> lengths;  ///< Lengths in the first row, then in the next.
+    /// Number of complete rows; 0 if `count` rows with empty lists exceed the data.
     std::size_t rows = 0;
-    std::size_t end = 0;  ///< Where the last of these ends.
+    std::size_t end = 0;  ///< Offset of the end of the last complete row.
 };
 
-/// Follows `count` rows by the lengths of their lists. Error where a length is no whole
-/// number of at least 0, and where a row is larger than kMostRow.
+/// Scans `count` rows by their list lengths. Throws Error for a length that is not a non-negative
+/// whole number, and for a row larger than kMostRow.
 ListLengths list_lengths(Bytes data, std::size_t begin, std::size_t count,
                          std::span<const RowField> fields);
 
-/// Copies one field of all rows that `list_lengths` found, one after the other. Error
-/// unless the rows are inside of the data and fill `out`.
+/// Copies a field of all rows found by `list_lengths`, in order. Throws Error unless the rows are
+/// inside the data and fill `out`.
 void copy_field(Bytes data, std::size_t begin, std::span<const RowField> fields,
                 std::span<const std::uint32_t> lengths, std::size_t field,
                 std::span<std::uint8_t> out);

@@ -1,4 +1,4 @@
-// list_rows_test.cpp -- rows with lists, followed and copied, and what lies.
+// list_rows_test.cpp -- scanning and copying of rows with lists, and invalid lengths.
 #include "codec/list_rows.h"
 
 #include <doctest/doctest.h>
@@ -17,7 +17,7 @@ namespace {
 using Vec = std::vector<std::uint8_t>;
 using Lengths = std::vector<std::uint32_t>;
 
-/// Appends a number in the order of the machine, or in the other one.
+/// Appends a number in the byte order of the machine, or swapped.
 template <typename T>
 void put(Vec& to, T value, bool swapped = false) {
     std::uint8_t bytes[sizeof(T)];

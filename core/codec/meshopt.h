@@ -1,8 +1,7 @@
-// meshopt.h -- the three bitstreams of EXT_meshopt_compression and
-// KHR_meshopt_compression, unpacked. Written from the bitstream specification in the
-// README of KHR_meshopt_compression (appendix A), which holds that of the EXT one as its
-// version 0. Bytes in, bytes out; a broken stream is an Error, and nothing is allocated
-// before the stream is known to be long enough for the elements that it claims.
+// meshopt.h -- decoders of the three bitstreams of EXT_meshopt_compression and
+// KHR_meshopt_compression, written from the bitstream specification in the README of
+// KHR_meshopt_compression (appendix A; version 0 is the EXT format). Malformed streams throw Error.
+// The size of a stream is checked against the claimed number of elements before any allocation.
 #pragma once
 #include <vector>
 
@@ -10,13 +9,12 @@
 
 namespace dg {
 
-/// Mode ATTRIBUTES: `count` elements of `stride` bytes (4 .. 256, a multiple of 4).
-/// Versions 0 and 1.
+/// Mode ATTRIBUTES: `count` elements of `stride` bytes (4 .. 256, a multiple of 4), versions 0 and
+/// 1.
 std::vector<std::uint8_t> unpack_attributes(Bytes packed, std::size_t count,
                                             std::size_t stride);
 
-/// Mode TRIANGLES: `count` indices (a multiple of 3) of `stride` bytes (2 or 4),
-/// little-endian.
+/// Mode TRIANGLES: `count` indices (a multiple of 3) of `stride` bytes (2 or 4), little-endian.
 std::vector<std::uint8_t> unpack_triangles(Bytes packed, std::size_t count,
                                            std::size_t stride);
 

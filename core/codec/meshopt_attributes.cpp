@@ -1,5 +1,4 @@
-// meshopt_attributes.cpp -- mode ATTRIBUTES: deltas between elements, byte plane by byte
-// plane.
+// meshopt_attributes.cpp -- mode ATTRIBUTES: deltas between elements, stored per byte plane.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,8 +12,8 @@ constexpr const char* kWhat = "meshopt attributes";
 constexpr std::size_t kGroup = 16, kMaxBlock = 256;
 using Plane = std::array<std::uint8_t, kMaxBlock>;
 
-/// How the bytes of one position are stored: the width of a delta in bits for each of the
-/// four header values of a group; or no groups at all.
+/// Encoding of a byte plane: delta width in bits for each of the four header values of a group, or
+/// no groups.
 struct Control {
     enum Kind { kGroups, kZero, kLiteral } kind;
     std::array<int, 4> bits;
@@ -25,8 +24,8 @@ constexpr std::array<Control, 4> kControls{{{Control::kGroups, {0, 1, 2, 4}},
                                             {Control::kZero, {}},
                                             {Control::kLiteral, {}}}};
 
-/// 16 deltas of `bits` each; a delta with all bits set stands for a whole byte behind the
-/// packed ones.
+/// Decodes 16 deltas of `bits` each; a delta with all bits set is replaced by a literal byte after
+/// the group.
 void unpack_group(ByteReader& in, int bits, std::uint8_t* out) {
     if (bits == 0) {
         std::fill_n(out, kGroup, std::uint8_t(0));
@@ -40,8 +39,7 @@ void unpack_group(ByteReader& in, int bits, std::uint8_t* out) {
     const int sentinel = (1 << bits) - 1;
     for (std::size_t i = 0; i < kGroup; ++i) {
         const int bit = int(i) * bits, place = bit % 8;
-        // Deltas of one bit run from the lowest bit up, the wider ones from the highest
-        // down.
+        // One-bit deltas start at the lowest bit, wider deltas at the highest.
         const int shift = bits == 1 ? place : 8 - bits - place;
         const int value = (packed[bit / 8] >> shift) & sentinel;
         out[i] = value == sentinel ? in.byte() : std::uint8_t(value);
@@ -71,8 +69,7 @@ T unzigzag(T v) {
     return T((v >> 1) ^ T(-T(v & 1)));
 }
 
-/// Sums deltas of type T; `planes` are the bytes of one channel, from the lowest to the
-/// highest.
+/// Accumulates deltas of type T; `planes` are the bytes of a channel, lowest byte first.
 template <typename T>
 void add_deltas(const Plane* planes, std::size_t count, std::size_t stride,
                 std::uint8_t* last, std::uint8_t* out) {
@@ -93,7 +90,7 @@ void add_deltas(const Plane* planes, std::size_t count, std::size_t stride,
     }
 }
 
-/// Deltas by exclusive or, each stored turned left by `turn` bits.
+/// Deltas combined by XOR, stored rotated left by `turn` bits.
 void xor_deltas(const Plane* planes, int turn, std::size_t count, std::size_t stride,
                 std::uint8_t* last, std::uint8_t* out) {
     std::uint32_t value = 0;
@@ -119,7 +116,7 @@ void decode_channel(int mode, const Plane* planes, std::size_t count, std::size_
     }
 }
 
-/// Layout of a stream before its blocks are read.
+/// Sections of a stream before its blocks are decoded.
 struct Layout {
     int version;
     std::size_t block;  // elements
@@ -139,8 +136,8 @@ Layout lay_out(Bytes packed, std::size_t count, std::size_t stride) {
     const std::size_t block = std::min((8192 / stride) & ~(kGroup - 1), kMaxBlock);
     const std::size_t base = stride + (version ? stride / 4 : 0);
     const std::size_t tail = std::max<std::size_t>(base, version ? 24 : 32);
-    // The fewest bytes: a group takes 2 bits per position in version 0; a block in
-    // version 1 takes 2.
+    // Minimal size: 2 bits per group and position in version 0, 2 bits per block and position in
+    // version 1.
     const std::size_t blocks = count / block + (count % block != 0);
     const std::size_t least =
         version ? blocks * (stride / 4) : count / (4 * kGroup) * stride;

@@ -1,5 +1,4 @@
-// meshopt_indices.cpp -- modes TRIANGLES and INDICES: small codes for indices seen a
-// moment ago.
+// meshopt_indices.cpp -- modes TRIANGLES and INDICES: short codes for recent indices.
 #include <array>
 
 #include "codec/meshopt.h"
@@ -7,12 +6,12 @@
 namespace dg {
 namespace {
 
-/// The last 16 things pushed; only those that were pushed can be read.
+/// Ring buffer of the last 16 values; reading a slot that was never pushed is an Error.
 template <typename T>
 class Fifo {
   public:
     void push(const T& value) { slots_[pushed_++ % 16] = value; }
-    /// The thing pushed `ago` pushes before the last one.
+    /// Value pushed `ago` pushes before the last.
     const T& operator[](unsigned ago) const {
         if (ago >= pushed_)
             throw input_error(
@@ -30,7 +29,7 @@ std::uint32_t unzigzag(std::uint32_t v) {
     return (v >> 1) ^ (0u - (v & 1));
 }
 
-/// Writes indices as 2 or 4 little-endian bytes each.
+/// Writes indices as 2 or 4 little-endian bytes.
 class IndexWriter {
   public:
     IndexWriter(std::size_t count, std::size_t stride) : stride_(stride) {
@@ -64,7 +63,7 @@ struct Triangles {
 
     std::uint32_t explicit_index() { return last += unzigzag(data.varint()); }
 
-    /// A code 0xXY with X < 15: a recent edge and a third vertex.
+    /// Code 0xXY with X < 15: a recent edge and a third vertex.
     Triangle on_edge(std::uint8_t code) {
         const Edge edge = edges[code >> 4];
         const unsigned y = code & 15;
@@ -85,13 +84,14 @@ struct Triangles {
         return {edge.a, edge.b, c};
     }
 
-    /// A vertex by a nibble of the table: 0 the next one, 15 explicit, else a recent one.
+    /// Vertex by a nibble of the table: 0 next vertex, 15 explicit index, otherwise a recent
+    /// vertex.
     std::uint32_t vertex(unsigned nibble) {
         if (nibble == 0) return next++;
         return nibble == 15 ? explicit_index() : vertices[nibble - 1];
     }
 
-    /// A code 0xfY: three vertices, new, recent or explicit.
+    /// Code 0xfY: three vertices, each new, recent or explicit.
     Triangle on_its_own(std::uint8_t code) {
         const bool free = code >= 0xfe;
         const std::uint8_t table = free ? data.byte() : codeaux[code & 15];
@@ -110,7 +110,7 @@ struct Triangles {
     }
 };
 
-/// The bytes between a header byte and a tail of fixed size, at least `least` of them.
+/// Bytes between the header byte and a tail of fixed size; checks that there are at least `least`.
 Bytes body(Bytes packed, const char* what, int header, std::size_t tail,
            std::size_t least) {
     if (packed.size() < 1 + tail || packed.size() - 1 - tail < least)

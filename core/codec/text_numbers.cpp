@@ -32,7 +32,7 @@ bool read(const char* begin, const char* end, double& value) {
     return error == std::errc() && stop == end;
 #else
     static const locale_t plain = newlocale(LC_ALL_MASK, "C", locale_t(0));
-    char word[64];  // longer ones are left to the caller
+    char word[64];  // longer words are left to the caller
     const std::size_t size = std::size_t(end - begin);
     if (size >= sizeof word) return false;
     for (std::size_t i = 0; i < size; ++i) {

@@ -1,4 +1,4 @@
-// text_numbers.h -- numbers in text, many and fast.
+// text_numbers.h -- fast parsing of many numbers in text.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -7,17 +7,17 @@
 
 namespace dg {
 
-/// Numbers of a text, up to the first word that is none.
+/// Numbers of a text, up to the first word that is not a number.
 template <typename T>
 struct TextNumbers {
     std::vector<T> values;
     std::size_t end =
-        0;  ///< Where that word begins; the size of the text where all are numbers.
+        0;  ///< Offset of that word; the size of the text if there is none.
 };
 
-/// Reads words between white space as numbers, rounded to the nearest, whatever the
-/// locale is. It stops at words that only some programs take for numbers, such as "inf",
-/// "0x10" and "1_000", and at numbers out of range.
+/// Parses words between white space as numbers, rounded to nearest, independent of the locale.
+/// Stops at words that only some programs accept as numbers, such as "inf", "0x10" and "1_000", and
+/// at numbers out of range.
 TextNumbers<double> text_floats(Bytes text);
 TextNumbers<std::int64_t> text_integers(Bytes text);
 

@@ -1,4 +1,4 @@
-// text_numbers_test.cpp -- words as numbers, and where reading stops.
+// text_numbers_test.cpp -- parsing of numbers, and words at which it stops.
 #include "codec/text_numbers.h"
 
 #include <doctest/doctest.h>
@@ -38,11 +38,11 @@ TEST_CASE("numbers are the nearest to their digits") {
         return text_floats(bytes(text)).values.at(0) == wanted;
     };
     CHECK(is("0.1000000000000000055511151231257827", 0.1));
-    CHECK(is("9007199254740993", 9007199254740992.0));  // a tie goes to the even one
+    CHECK(is("9007199254740993", 9007199254740992.0));  // ties to even
     CHECK(is("9007199254740993.00000000001", 9007199254740994.0));
     CHECK(is("1.7976931348623157e308", std::numeric_limits<double>::max()));
     CHECK(is("2.2250738585072014e-308", std::numeric_limits<double>::min()));
-    for (std::size_t i = 0; i < 2000; ++i) {  // 17 digits give each double back
+    for (std::size_t i = 0; i < 2000; ++i) {  // 17 digits reproduce each double
         const double value =
             std::ldexp(double(hash64(i, 1)), int(hash64(i, 2) % 200) - 160);
         char word[40];

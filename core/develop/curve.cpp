@@ -16,7 +16,7 @@ Curve::Curve(std::vector<float> values) : values_(std::move(values)) {
     const std::size_t wanted = kLast - kFirst + 2;
     if (values_.size() != wanted)
         throw input_error("curve", "values", std::to_string(wanted), std::to_string(values_.size()));
-    values_.push_back(values_.back());   // the last breakpoint is the start of a level piece
+    values_.push_back(values_.back());   // the last breakpoint starts a constant piece
 }
 
 }  // namespace dg

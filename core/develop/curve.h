@@ -1,4 +1,4 @@
-// curve.h -- a curve of light as a table, over all stops that pictures have.
+// curve.h -- tabulated curve over the whole range of exposures.
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -6,21 +6,21 @@
 
 namespace dg {
 
-/// A smooth curve of light x >= 0, straight between breakpoints: 0, and kPerOctave in each octave from
-/// kLowest to kHighest. Steps grow with x, so that shadows are as exact as highlights, and the place in
-/// the table is read off a float's bits.
+/// Smooth curve of light x >= 0, piecewise linear with breakpoints at 0 and kPerOctave per octave
+/// from kLowest to kHighest. Steps grow with x, so the relative precision is constant, and the
+/// table index comes from a float's bits.
 class Curve {
   public:
     static constexpr int kOctaveBits = 6, kPerOctave = 1 << kOctaveBits;
     static constexpr float kLowest = 0x1p-20f, kHighest = 0x1p12f;
 
-    /// Where the curve has to be known, rising.
+    /// Ascending positions at which the curve is tabulated.
     static std::vector<float> breakpoints();
 
     /// `values` at the breakpoints.
     explicit Curve(std::vector<float> values);
 
-    /// NaN and negative light count as none; above the last breakpoint the curve is level.
+    /// NaN and negative light count as 0; the curve is constant above the last breakpoint.
     float operator()(float x) const {
         const float* const values = values_.data();
         if (!(x >= kLowest)) return x > 0 ? values[0] + (values[1] - values[0]) * (x / kLowest) : values[0];
@@ -31,7 +31,7 @@ class Curve {
     }
 
   private:
-    static constexpr int kFractionBits = 23 - kOctaveBits;   // of a float, below those that choose the place
+    static constexpr int kFractionBits = 23 - kOctaveBits;   // mantissa bits below the table index
     static constexpr float kFraction = 1.0f / (1 << kFractionBits);
     static constexpr std::uint32_t kFirst = std::bit_cast<std::uint32_t>(kLowest) >> kFractionBits;
     static constexpr std::uint32_t kLast = std::bit_cast<std::uint32_t>(kHighest) >> kFractionBits;

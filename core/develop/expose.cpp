@@ -16,7 +16,7 @@
 namespace dg {
 namespace {
 
-constexpr int kBlock = 32;   // rows; crosstalk looks one row beyond
+constexpr int kBlock = 32;   // rows; crosstalk reads one more row on each side
 constexpr double kMostLowPass = 1000;   // px
 enum Use { kShot, kPattern };
 
@@ -25,7 +25,7 @@ struct Tap {
     float weight;
 };
 
-/// Where light of the two images lies in whole pixels: along one axis, or both.
+/// Taps in whole pixels of the low-pass filter's two images: along one axis, or along both.
 std::vector<Tap> low_pass_taps(double distance_px) {
     if (distance_px == 0) return {{0, 0, 1.f}};
     const double half = distance_px / 2;
@@ -43,7 +43,7 @@ std::vector<Tap> low_pass_taps(double distance_px) {
     return taps;
 }
 
-/// A place beyond the edge stands for its mirror image, the edge between the two.
+/// Index mirrored at the edges of the image.
 int mirrored(int i, int size) {
     while (i < 0 || i >= size) i = i < 0 ? -1 - i : 2 * size - 1 - i;
     return i;
@@ -56,7 +56,7 @@ float dot(const float* a, const float* b, int count) {
     return sum;
 }
 
-/// Finds the first bad photosite whichever thread meets it.
+/// Counters; the first bad photosite does not depend on thread order.
 struct Counts {
     std::atomic<std::int64_t> negative{0}, bad{0};
     std::atomic<std::int64_t> first_bad{std::numeric_limits<std::int64_t>::max()};
@@ -75,12 +75,12 @@ public:
     Exposing(const Planes& light, const Shot& shot, Exposed& out)
         : light_(light), shot_(shot), out_(out), taps_(low_pass_taps(shot.low_pass_px)) {}
 
-    /// Rows [begin, end).
+    /// Exposes rows [begin, end).
     void rows(int begin, int end) {
         each(begin, end, [&](int x, int y, float mean, const Keys& keys) { read(x, y, mean, keys); });
     }
 
-    /// The same on average.
+    /// Expected electrons of rows [begin, end).
     void expected_rows(int begin, int end, std::vector<float>& out) {
         each(begin, end, [&](int x, int y, float mean, const Keys& keys) {
             out[std::size_t(y) * light_.width + x] = mean * float(pattern(x, keys.pattern).response);
@@ -94,7 +94,7 @@ private:
         std::uint64_t shot, pattern;
     };
 
-    /// Calls `use` with the electrons that light makes on average at each photosite of rows [begin, end).
+    /// Calls `use` with the expected photoelectrons at each photosite of rows [begin, end).
     template <typename Photosite>
     void each(int begin, int end, const Photosite& use) {
         const bool mixed = shot_.crosstalk > 0;
@@ -114,7 +114,7 @@ private:
         return shot_.cells[std::size_t(y % shot_.cell_height) * shot_.cell_width + x % shot_.cell_width];
     }
 
-    /// A tap on its row of the picture.
+    /// Tap on its row of the image.
     struct RowTap {
         const float* row;
         int dx;
@@ -130,7 +130,7 @@ private:
         return out;
     }
 
-    /// Electrons that light makes behind a photosite's filter, by all taps of the low-pass filter.
+    /// Photoelectrons behind a photosite's filter, summed over the taps of the low-pass filter.
     float light_at(int x, const std::vector<RowTap>& taps, const float* weights) const {
         float sum = 0;
         for (const RowTap& tap : taps) {
@@ -142,7 +142,7 @@ private:
         return sum;
     }
 
-    /// One row of expected electrons, before crosstalk; y may lie one row beyond the picture.
+    /// Expected electrons of a row before crosstalk; y may be one row outside the image.
     void expect(int y, bool counted, float* row) {
         const int from = mirrored(y, light_.height);
         const std::vector<RowTap> taps = taps_of_row(from);
@@ -169,7 +169,7 @@ private:
         return float(1 - shot_.crosstalk) * row[x] + float(shot_.crosstalk / 4) * sides;
     }
 
-    /// Pattern that is fixed for a copy of the sensor.
+    /// Fixed pattern of a sensor copy.
     struct Pattern {
         double response = 1, offset = 0, dark;
     };
@@ -185,12 +185,12 @@ private:
         return p;
     }
 
-    /// Light and heat make electrons, electrons make a number.
+    /// Draws the electrons from light and dark current, and converts them to a DN.
     void read(int x, int y, float expected, const Keys& keys) {
         const Pattern fixed = pattern(x, keys.pattern);
         PixelRandom random(keys.shot, x);
         const double mean = expected * fixed.response + fixed.dark;
-        // So much more than the well holds that no draw can be less.
+        // The mean exceeds the full well by so much that no draw can be below it.
         const bool flooded = mean > 2 * shot_.full_well + 1000;
         const double well = std::floor(shot_.full_well);
         const double electrons = flooded ? well : std::min(well, poisson(mean, random));
@@ -209,7 +209,7 @@ private:
     const std::vector<Tap> taps_;
 };
 
-/// No cell reads a channel, and no channel a plane, that is not there.
+/// Checks that cells refer to existing channels, and channels to existing planes.
 void check(const Planes& light, const Shot& shot) {
     const auto want = [](bool good, const char* what, const char* wanted, double got) {
         if (!good) throw input_error("exposure", what, wanted, std::to_string(got));

@@ -1,4 +1,4 @@
-// expose_test.cpp -- what is kept, what is fixed, what clips.
+// expose_test.cpp -- preserved sums, fixed pattern, clipping.
 #include "develop/expose.h"
 
 #include <doctest/doctest.h>
@@ -11,7 +11,7 @@ using namespace dg;
 
 namespace {
 
-/// One channel, an electron per unit of light, no noise but that of light.
+/// One channel, an electron per unit of light, shot noise only.
 Shot plain() {
     Shot shot;
     shot.electrons = {1};
@@ -51,7 +51,7 @@ TEST_CASE("expose: mean equals variance in electrons, gain scales them") {
     shot.black_dn = 64;
     const Moments m = moments(even(shot, 900).mosaic);
     CHECK(m.mean == doctest::Approx(64 + 450).epsilon(1e-3));
-    CHECK(m.variance == doctest::Approx(225 + 1. / 12).epsilon(0.025));   // quantisation adds 1/12 DN2
+    CHECK(m.variance == doctest::Approx(225 + 1. / 12).epsilon(0.025));   // quantization adds 1/12 DN2
 }
 
 TEST_CASE("expose: noise of reading, dark current and offsets add up in the dark") {
@@ -116,7 +116,7 @@ TEST_CASE("expose: the well and the converter clip, and say so") {
     for (const auto s : e.saturated) CHECK(s == 1);
     e = even(shot, 1e30f, 8);
     CHECK(e.mosaic[0] == 1000);
-    e = even(shot, 1000);   // half of the photosites would hold more
+    e = even(shot, 1000);   // half of the photosites exceed the full well
     int full = 0;
     for (std::size_t i = 0; i < e.mosaic.size(); ++i) {
         CHECK(e.mosaic[i] <= 1000);
@@ -220,7 +220,7 @@ TEST_CASE("expose: neighbours, and shots of two seeds, know nothing of each othe
             shots += here * (second[at] - m.mean);
         }
     for (const double sum : {right, below, shots})
-        CHECK(std::abs(sum / m.variance) < 4 * kSize);   // of so many products the deviation is kSize
+        CHECK(std::abs(sum / m.variance) < 4 * kSize);   // standard deviation for this number of products: kSize
 }
 
 TEST_CASE("expose: light below 0 is none, and counted; what is not finite is placed") {

@@ -12,22 +12,22 @@
 namespace dg {
 namespace {
 
-constexpr float kTop = 1e30f;            // light beyond is no picture's; sums of it stay finite
-constexpr float kFull = 0.985f;          // noise and rounding keep full channels just below
-constexpr float kHalfWhite = 4;          // above white, by which a colour is half way there
-constexpr std::size_t kPixels = 4096;    // of one task
+constexpr float kTop = 1e30f;            // clamp of light; sums stay finite
+constexpr float kFull = 0.985f;          // noise and rounding keep saturated channels slightly below 1
+constexpr float kHalfWhite = 4;          // excess over white at which a colour is halfway to white
+constexpr std::size_t kPixels = 4096;    // per task
 
 float smallest(const Vec3f& v) { return std::min({v.x, v.y, v.z}); }
 
-/// From the neutral of luminance y (t = 0) to a colour (t = 1).
+/// Interpolates from the neutral of luminance y (t = 0) to a colour (t = 1).
 Vec3f from_neutral(const Vec3f& rgb, float y, float t) {
     return {y + t * (rgb.x - y), y + t * (rgb.y - y), y + t * (rgb.z - y)};
 }
 
 Vec3f capped(const Vec3f& v, float top) { return {std::min(v.x, top), std::min(v.y, top), std::min(v.z, top)}; }
 
-/// Mean and hue as they are, and no more colour than the capped channels have: where all are full that is
-/// none, where a lamp is red it stays so.
+/// Keeps mean and hue, but limits the saturation to the saturation of the clipped channels: zero
+/// where all channels are full, while red lamps stay red.
 Vec3f blended(const Vec3f& v, const Vec3f& full) {
     const Vec3f ended = capped(v, smallest(full));
     const float mean = (v.x + v.y + v.z) / 3, ended_mean = (ended.x + ended.y + ended.z) / 3;
@@ -61,8 +61,8 @@ Vec3f times(const std::array<float, 9>& m, const Vec3f& v) {
             m[6] * v.x + m[7] * v.y + m[8] * v.z};
 }
 
-/// The curve on the largest and the smallest number; the one between keeps its part of the way, so that
-/// hues stay.
+/// Applies the curve to the largest and smallest component; the middle component keeps its relative
+/// position, which preserves the hue.
 Vec3f toned(const Curve& tone, const Vec3f& rgb) {
     const float high = max_component(rgb), low = smallest(rgb);
     const float top = tone(high), bottom = tone(low);

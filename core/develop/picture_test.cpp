@@ -119,7 +119,7 @@ TEST_CASE("sharpening: flat stays flat, an edge gets steeper by the stated amoun
     std::vector<float> dot(3 * 21 * 21, 0.0f);
     for (int k = 0; k < 3; ++k) dot[3 * (10 * 21 + 10) + k] = 1;
     sharpen(dot, 21, 21, weights, 0.5f, 1);
-    const double middle = 0.39905 * 0.39905;   // of a Gaussian of 1 px at whole px, cut at 3 px
+    const double middle = 0.39905 * 0.39905;   // Gaussian of 1 px at whole px, truncated at 3 px
     CHECK(dot[3 * (10 * 21 + 10)] == doctest::Approx(1 + 0.5 * (1 - middle)).epsilon(1e-4));
     CHECK(dot[3 * (10 * 21 + 11)] == doctest::Approx(-0.5 * middle * std::exp(-0.5)).epsilon(1e-4));
     CHECK_THROWS_AS(sharpen(dot, 20, 21, weights, 1, 1), Error);

@@ -6,21 +6,21 @@
 namespace dg {
 namespace {
 
-constexpr double kLarge = 10;   // from this mean on the rejection method is valid, and the faster one
+constexpr double kLarge = 10;   // mean from which rejection is valid and faster
 
-/// The distribution function turned around, term by term from 0 on.
+/// Inversion of the distribution function, term by term from 0.
 double by_inversion(double mean, PixelRandom& random) {
     double u = random.uniform(), term = std::exp(-mean);
     int k = 0;
-    while (u > term && k < 200) {   // beyond 200 no term of a mean below 10 can be told from 0
+    while (u > term && k < 200) {   // beyond 200, terms of a mean below 10 are negligible
         u -= term;
         term *= mean / ++k;
     }
     return k;
 }
 
-/// Logarithm of k!, by a table and Stirling's series (Abramowitz and Stegun 1964, 6.1.41): an error below
-/// 1e-12. std::lgamma writes a global sign, which threads must not.
+/// Logarithm of k!, by a table and Stirling's series (Abramowitz and Stegun 1964, 6.1.41), with an
+/// error below 1e-12. std::lgamma is not thread-safe: it writes a global sign.
 double log_factorial(double k) {
     static const std::array<double, 16> table = [] {
         std::array<double, 16> t{};
@@ -33,8 +33,8 @@ double log_factorial(double k) {
     return (n - 0.5) * std::log(n) - n + 0.5 * std::log(2 * kPiD) + tail;
 }
 
-/// Transformed rejection with a squeeze. Source: Hoermann 1993, The transformed rejection method for
-/// generating Poisson random variables, algorithm PTRS, with its constants and letters.
+/// Transformed rejection with a squeeze. Source: Hoermann 1993, The transformed rejection method
+/// for generating Poisson random variables, algorithm PTRS, with its constants and letters.
 double by_rejection(double mean, PixelRandom& random) {
     const double b = 0.931 + 2.53 * std::sqrt(mean), a = -0.059 + 0.02483 * b;
     const double v_r = 0.9277 - 3.6224 / (b - 2);

@@ -1,11 +1,10 @@
-// poisson.h -- how many electrons, where so many are expected.
+// poisson.h -- Poisson-distributed electron counts.
 #pragma once
 #include "develop/random.h"
 
 namespace dg {
 
-/// A number of the Poisson distribution of this mean, which is at least 0 and at most 1e9; by exact methods
-/// for small means and large ones.
+/// Poisson variate with a mean from 0 to 1e9, by exact methods.
 double poisson(double mean, PixelRandom& random);
 
 }  // namespace dg

@@ -1,4 +1,4 @@
-// poisson_test.cpp -- counts of electrons against the law, term by term; normal numbers.
+// poisson_test.cpp -- Poisson counts and normal numbers against their distributions.
 #include "develop/poisson.h"
 
 #include <doctest/doctest.h>
@@ -63,7 +63,7 @@ TEST_CASE("poisson: mean and variance are equal, from few to very many") {
         }
         const double variance = squares / kDraws;
         CHECK(std::abs(sum / kDraws) < 4 * std::sqrt(mean / kDraws));
-        // The fourth moment about the mean is mean + 3 mean^2.
+        // The fourth central moment is mean + 3 mean^2.
         CHECK(std::abs(variance - mean) < 4 * std::sqrt((mean + 2 * mean * mean) / kDraws));
     }
 }

@@ -12,7 +12,8 @@
 namespace dg {
 namespace {
 
-/// Weights of a Gaussian at whole px, from the middle out; all of them add to 1.
+/// Weights of a Gaussian at whole px, from the centre outward; normalized to a sum of 1 over both
+/// sides.
 std::vector<float> gaussian(float radius) {
     std::vector<float> taps;
     double sum = 0;

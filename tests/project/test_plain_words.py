@@ -15,10 +15,7 @@ PATTERNS, comments, files, rates = (WORDS[k] for k in ("PATTERNS", "comments", "
 #: Rooms with comments that are still to be rewritten.
 LEFT = {
     "core/bind",
-    "core/codec",
-    "core/develop",
     "core/film",
-    "core/geometry",
     "core/light",
     "core/material",
     "core/medium",
