@@ -10,8 +10,8 @@
 namespace dg {
 namespace {
 
-constexpr float kStep = 1;   // px of radius between surfaces of which one hides the other
-constexpr double kLayersPerE = 4;   // layers while a radius grows by e; as many per 1 px near the focus
+constexpr float kStep = 1;   // px, difference of radii from which a surface occludes another
+constexpr double kLayersPerE = 4;   // layers per factor e of the radius; the same number per px near the focus
 
 class DefocusKernel {
   public:
@@ -35,7 +35,7 @@ class DefocusKernel {
                 origin[std::ptrdiff_t(s->dy) * kSpreadTile + s->dx].add(light, s->change);
             return;
         }
-        for (auto s = first; s != last; ++s) {   // what changes before the tile has changed at its edge
+        for (auto s = first; s != last; ++s) {   // changes left of the tile apply at its edge
             const int at = std::max(x + s->dx, to.x0);
             if (at < to.x1) to.row(y + s->dy)[at - to.x0].add(light, s->change);
         }
@@ -46,7 +46,8 @@ class DefocusKernel {
     std::span<const float> radius_;
 };
 
-/// How far the lens looks behind an edge: as far as what it sees through its rim moves against it.
+/// Depth of the search behind edges: the largest displacement between surfaces as seen from the rim
+/// of the lens.
 float parallax(std::span<const float> radius) {
     float low = 0, high = 0;
     for (const float r : radius)

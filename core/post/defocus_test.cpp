@@ -40,7 +40,7 @@ TEST_CASE("one plane out of focus is the picture convolved with the iris, across
         const IrisKernel k = iris_kernel(blades(5), r);
         for (int y : {12, 20, 27})
             for (int x : {12, 250, 255, 256, 260, 287}) {
-                double sum = 0;   // by summation by parts: running sums of what is added
+                double sum = 0;   // summation by parts: running sums of the changes
                 for (int dy = k.top; dy <= k.bottom; ++dy) {
                     double change = 0;
                     int s = k.begin(dy);
@@ -65,7 +65,8 @@ TEST_CASE("light far from the border is kept, however far out of focus its surfa
     CHECK(after == doctest::Approx(before).epsilon(0.02));
 }
 
-/// A near half plane of colour 1 (left), a far one of colour 0 (right), with their radii.
+/// Row across an edge between a near half plane of colour 1 (left) and a far half plane of colour 0
+/// (right).
 std::vector<double> across_an_edge(float near, float far) {
     const int width = 120, height = 80;
     std::vector<float> values(4 * width * height), radius(width * height);
@@ -88,7 +89,7 @@ TEST_CASE("what is sharp and near keeps what is blurred and far off itself, and 
 TEST_CASE("what is near and blurred covers what is sharp behind it as its disc does, on both sides of its edge") {
     const double r = 12;
     const auto row = across_an_edge(r, 0);
-    for (int x = 40; x < 80; ++x) {   // share of a disc about x that lies left of the edge
+    for (int x = 40; x < 80; ++x) {   // fraction of a disc about x to the left of the edge
         const double t = std::clamp((59.5 - x) / r, -1.0, 1.0);
         const double share = 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / kPiD;
         CHECK(row[x] == doctest::Approx(share).scale(1).epsilon(0.01));
@@ -105,7 +106,7 @@ TEST_CASE("behind a blurred edge the farther surface goes on as in a mirror") {
         radius[i] = x < 60 ? float(r) : 0.f;
     }
     const auto out = blurred(width, values, radius, blades(128));
-    for (int x = 51; x < 60; ++x) {   // black before it covers a share of the lens
+    for (int x = 51; x < 60; ++x) {   // black foreground covers a fraction of the lens
         const double t = (59.5 - x) / r;
         const double share = 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / kPiD;
         CHECK(at(out, width, x, 30) == doctest::Approx((1 - share) * (59 - x)).scale(1).epsilon(0.05));
@@ -113,7 +114,8 @@ TEST_CASE("behind a blurred edge the farther surface goes on as in a mirror") {
 }
 
 TEST_CASE("a mixed pixel on an edge gives each surface its own light") {
-    // A sharp lamp before a wall out of focus; the column between them is two fifths lamp, and said to be wall.
+    // Sharp lamp in front of an unsharp wall. The pixels between them are two fifths lamp, with the
+    // depth of the wall.
     const int width = 90, height = 60;
     std::vector<float> values(4 * width * height), radius(width * height);
     for (int i = 0; i < width * height; ++i) {

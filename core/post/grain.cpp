@@ -11,7 +11,7 @@
 namespace dg {
 namespace {
 
-constexpr int kCorners = 64;   // of a grain
+constexpr int kCorners = 64;   // of a grain's outline
 constexpr int kMostSide = 1 << 20;
 
 struct Tap {
@@ -28,7 +28,7 @@ IrisShape round_grain() {
     return IrisShape::outline(corners);
 }
 
-/// How much of a grain lies on each pixel, scaled so that squares sum to 1.
+/// Coverage of pixels by a grain, scaled so that squares sum to 1.
 std::vector<Tap> grain_taps(double radius) {
     const IrisKernel kernel = iris_kernel(round_grain(), radius);
     std::vector<Tap> taps;
@@ -46,7 +46,7 @@ std::vector<Tap> grain_taps(double radius) {
     return taps;
 }
 
-/// A normal number from 64 random bits. Source: Box and Muller 1958.
+/// Normal number from 64 random bits. Source: Box and Muller 1958.
 float normal_of(std::uint64_t bits) {
     const double u = (double(bits >> 32) + 0.5) * 0x1p-32, v = double(bits & 0xffffffffu) * 0x1p-32;
     return float(std::sqrt(-2 * std::log(u)) * std::cos(2 * kPiD * v));

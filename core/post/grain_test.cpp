@@ -12,7 +12,8 @@ namespace dg {
 namespace {
 
 TEST_CASE("grain is normal: mean 0, variance 1, and as many numbers in each eighth") {
-    const auto field = grain_pattern({0, 0, 600, 500}, 0.4, 1, 0);   // within a pixel: no neighbours
+    const auto field = grain_pattern({0, 0, 600, 500}, 0.4, 1, 0);   // grains smaller than a pixel: neighbours are
+                                                                     // uncorrelated
     std::vector<double> counts(8), expected(8, field.size() / 8.0);
     for (const float v : field) counts[std::min(7, int(8 * normal_cdf(v)))] += 1;
     CHECK(chi_square_test(counts, expected).p_value > 1e-3);
@@ -35,7 +36,7 @@ TEST_CASE("neighbours share grains as discs overlap") {
             }
         const double t = std::min(1.0, d / (2 * r));
         const double overlap = (std::acos(t) - t * std::sqrt(1 - t * t)) * 2 / 3.14159265358979;
-        CHECK(sum / squares == doctest::Approx(overlap).scale(1).epsilon(0.04));   // pixels soften it a bit
+        CHECK(sum / squares == doctest::Approx(overlap).scale(1).epsilon(0.04));   // pixels soften it slightly
     }
 }
 

@@ -1,8 +1,9 @@
-// hidden.h -- what may lie behind an edge: the farther surface beside it, continued as in a mirror.
+// hidden.h -- reconstruction of surfaces hidden behind edges: the farther surface is mirrored at
+// the edge.
 //
-// A blurred edge lets light through from places that the picture never saw. They are guessed from the four
-// sides: along rows and columns, the nearest pixels beyond a step down in `nearness`, the mirror lying on the
-// step, each by the inverse square of its distance.
+// Light passes blurred edges from places that the image does not show. They are estimated from four
+// directions, along rows and columns: the nearest pixels beyond a decrease in `nearness`, mirrored
+// at the step and weighted by the inverse square of their distance.
 #pragma once
 #include <oneapi/tbb/parallel_for.h>
 
@@ -16,20 +17,20 @@
 namespace dg {
 
 struct EdgeRule {
-    std::span<const float> nearness;   // per pixel; larger is nearer. NaN: takes no part
-    float step;                        // a difference from which on one surface lies behind another
-    float deepest;                     // nothing is looked for farther behind an edge, px
+    std::span<const float> nearness;   // per pixel, larger is nearer; NaN: excluded
+    float step;                        // difference from which a surface counts as behind another
+    float deepest;                     // largest search distance behind an edge, px
 };
 
-/// A line of pixels: a row or a column.
+/// Row or column of pixels.
 struct PixelLine {
     std::size_t begin, stride;
     int count;
     std::size_t at(int i) const { return begin + std::size_t(i) * stride; }
 };
 
-/// Pixels of the line on the far side of a step, seen in direction `way` (1 or -1): whoever looks along it
-/// from before one finds it farther away than its predecessor.
+/// Finds the pixels on the far side of steps in direction `way` (1 or -1): each is farther away
+/// than its predecessor in that direction.
 inline void find_far_edges(const EdgeRule& rule, const PixelLine& line, int way, std::vector<int>& edges) {
     edges.clear();
     for (int i = 1; i < line.count; ++i) {
@@ -38,21 +39,23 @@ inline void find_far_edges(const EdgeRule& rule, const PixelLine& line, int way,
     }
 }
 
-/// The pixel that mirrors i at the edge, if it still shows that farther surface; else the edge itself.
+/// Pixel i mirrored at the edge if it still shows the farther surface; otherwise the edge pixel.
 inline int mirrored(const EdgeRule& rule, const PixelLine& line, int i, int edge, int way) {
     const int mirror = 2 * edge - i - way;
     if (mirror < 0 || mirror >= line.count) return edge;
     return rule.nearness[line.at(mirror)] <= rule.nearness[line.at(edge)] + rule.step ? mirror : edge;
 }
 
-/// Calls add(hidden pixel, pixel that it may look like, pixel at the edge, weight) along one line.
-/// `depth(near, far)`: how far behind the edge of a near pixel's surface the far one may show, px.
+/// Calls add(hidden pixel, source pixel, edge pixel, weight) along a line. `depth(near, far)`:
+/// distance in px behind the edge of a near pixel up to which the far pixel's surface may become
+/// visible.
 template <typename Depth, typename Add>
 void look_along(const EdgeRule& rule, const PixelLine& line, int way, std::vector<int>& edges,
                 const Depth& depth, const Add& add) {
     find_far_edges(rule, line, way, edges);
     const int count = int(edges.size());
-    int next = way > 0 ? 0 : -1;   // the first edge beyond i, for way 1; the last before i, for way -1
+    int next = way > 0 ? 0 : -1;   // index of the first edge beyond i for way 1, of the last edge before i for way
+                                   // -1
     for (int i = 0; i < line.count; ++i) {
         if (way > 0)
             while (next < count && edges[next] <= i) ++next;
@@ -71,7 +74,7 @@ void look_along(const EdgeRule& rule, const PixelLine& line, int way, std::vecto
     }
 }
 
-/// The same along all rows, then all columns, both ways. Calls for one pixel come one after the other, in
+/// Runs look_along over all rows, then all columns, in both directions. The calls for a pixel have
 /// a fixed order.
 template <typename Depth, typename Add>
 void look_behind(const EdgeRule& rule, int width, int height, const Depth& depth, const Add& add) {
@@ -85,13 +88,13 @@ void look_behind(const EdgeRule& rule, int width, int height, const Depth& depth
     oneapi::tbb::parallel_for(0, width, [&](int x) { both_ways({std::size_t(x), stride, height}); });
 }
 
-/// The colours behind edges, and one or more numbers of the surface there; both 0 where nothing is hidden.
+/// Colours behind edges, and additional values of the hidden surface; 0 where nothing is hidden.
 struct HiddenSurface {
     std::vector<float> values, numbers;
-    std::vector<float> weights;   // > 0 where something is
+    std::vector<float> weights;   // > 0 where a surface is hidden
 };
 
-/// Guesses colours and `per_pixel` numbers (such as motion) behind all edges.
+/// Estimates colours and `per_pixel` values (such as motion) behind all edges.
 template <typename Depth>
 HiddenSurface hidden_surface(const EdgeRule& rule, const SpreadPicture& picture, std::span<const float> numbers,
                              int per_pixel, const Depth& depth) {
@@ -99,7 +102,8 @@ HiddenSurface hidden_surface(const EdgeRule& rule, const SpreadPicture& picture,
                       std::vector<float>(rule.nearness.size())};
     look_behind(rule, picture.width, picture.height, depth,
                 [&](std::size_t i, std::size_t like, std::size_t edge, float weight) {
-                    const float share = weight * picture.cover(like);   // its colours have it already
+                    const float share = weight * picture.cover(like);   // colours are already premultiplied by
+                                                                        // cover
                     if (!(share > 0) || !picture.finite(like)) return;
                     for (int c = 0; c < kSpreadColours; ++c)
                         out.values[kSpreadColours * i + c] += weight * picture.at(like)[c];

@@ -11,8 +11,8 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, 16>;
 
-/// `step` at 0, as many pixels as there are lanes, and so on; the last ones may overlap
-/// those before. Returns how many pixels were done: all, or none if they fill no vector.
+/// Calls `step` at multiples of the vector length; the last vector may overlap the previous.
+/// Returns the number of pixels done: all, or none if they do not fill a vector.
 template <typename Step>
 HWY_INLINE int in_vectors(int count, const Step& step) {
     const int lanes = int(hn::Lanes(D()));

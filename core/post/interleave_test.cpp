@@ -14,7 +14,7 @@ float value(int pixel, int channel) { return float(100 * pixel + channel); }
 }  // namespace
 
 TEST_CASE("values change between pixel by pixel and channel by channel") {
-    // Sizes around those of vectors; what lies beside stays as it is.
+    // Sizes around the vector lengths; memory beyond must stay unchanged.
     for (int channels : {1, 2, 3, 4, 5})
         for (int count : {0, 1, 3, 4, 7, 8, 15, 16, 17, 33, 64}) {
             CAPTURE(channels);

@@ -12,15 +12,15 @@ namespace {
 
 constexpr int kFine = 16;   // levels per px up to kFine px
 
-/// Changes of coverage on a small grid of pixels, whose lower edges are whole numbers.
+/// Changes of coverage along the rows of a pixel grid.
 class Coverage {
   public:
     Coverage(int left, int top, int width, int height)
         : left_(left), top_(top), width_(width), changes_(std::size_t(width) * height) {}
 
-    /// An edge between pixels' rows and columns: what lies to its right is covered, or uncovered where it
-    /// runs upward (y is down here). Within one pixel the covered area to the right of a piece of an edge
-    /// is its height times what its middle leaves of the pixel.
+    /// Adds an edge of the outline: pixels to its right become covered, or uncovered for edges that
+    /// run upward (y is down here). Within a pixel, the area to the right of a piece of edge is its
+    /// height times the width to the right of its midpoint.
     void add(Vec2d a, Vec2d b, double weight) {
         if (a.y == b.y) return;
         if (a.y > b.y) return add(b, a, -weight);
@@ -40,7 +40,7 @@ class Coverage {
         for (int i = int(std::floor(x0)); i <= int(std::floor(x1)); ++i) {
             const double from = std::max(x0, double(i)), to = std::min(x1, i + 1.0);
             const double part = x1 > x0 ? per_px * (to - from) : height;
-            const double past = 0.5 * (from + to) - i;   // of the pixel, to the left
+            const double past = 0.5 * (from + to) - i;   // fraction of the pixel to the left
             changes[i] += part * (1 - past);
             changes[i + 1] += part * past;
         }
@@ -50,7 +50,7 @@ class Coverage {
     std::vector<double> changes_;
 };
 
-/// A row's changes sum to 0, so that nothing is left over behind what they cover.
+/// Makes the changes of a row sum to exactly 0, so that no residue remains to the right.
 void close_row(std::span<IrisKernel::Step> row) {
     double sum = 0;
     for (std::size_t i = 0; i + 1 < row.size(); ++i) sum += row[i].change;
@@ -114,7 +114,7 @@ IrisKernel iris_kernel(const IrisShape& shape, double radius) {
         coverage.add({0, 0}, {0, 1}, 1), coverage.add({1, 0}, {1, 1}, -1);
     IrisKernel kernel{{}, {}, reach + 1, -reach - 1, reach + 1, -reach - 1};
     const std::span<const double> changes = coverage.changes();
-    const double none = 1e-13 / std::max(1.0, area);   // what rounding leaves where nothing changes
+    const double none = 1e-13 / std::max(1.0, area);   // rounding residue where coverage is constant
     for (int y = 0; y < side; ++y) {
         const std::size_t begin = kernel.steps.size();
         for (int x = 0; x < side; ++x) {

@@ -45,7 +45,7 @@ TEST_CASE("a kernel sums to 1, its middle lies on the pixel, and a disc has its 
         CHECK(sum == doctest::Approx(1).epsilon(1e-12));
         CHECK(std::abs(x) < 1e-9);
         CHECK(std::abs(y) < 1e-9);
-        if (std::abs(radius) > 5)   // r^2/4, and 1/12 of the pixel's own width
+        if (std::abs(radius) > 5)   // r^2/4, plus 1/12 for the width of the pixel
             CHECK(xx == doctest::Approx(radius * radius / 4 + 1.0 / 12).epsilon(2e-3));
     }
 }
@@ -72,7 +72,7 @@ TEST_CASE("each pixel of a kernel is the area of the shape on it") {
 }
 
 TEST_CASE("an iris given as a picture is the same as its outline; row 0 is the top") {
-    const std::vector<float> picture{0, 1, 0, 1, 1, 1};   // a T upside down
+    const std::vector<float> picture{0, 1, 0, 1, 1, 1};   // an inverted T
     const std::vector<Vec2d> corners{{-1.5, -1}, {1.5, -1}, {1.5, 0}, {0.5, 0},
                                      {0.5, 1},   {-0.5, 1}, {-0.5, 0}, {-1.5, 0}};
     const auto a = whole(iris_kernel(IrisShape::image(3, 2, picture), -9.3));

@@ -1,9 +1,11 @@
-// mixed.h -- pixels on edges, taken apart: a filter has mixed two surfaces in them, depth names one.
+// mixed.h -- separation of edge pixels in which a filter mixed two surfaces, while depth names a
+// single surface.
 //
-// Light of a lamp's rim on a pixel of the wall behind it would be blurred with the wall. Within kMixed px of an
-// edge a pixel is taken as a mixture of what lies clear of the edge on its own and on the other side, along its
-// row or column; the other's share is the one that explains its colour best (least squares), and both keep
-// their light together. What its own surface varies by as well, as noise and texture do, is no mixture.
+// Light from the rim of a lamp in a pixel of the wall behind would be blurred like the wall. Within
+// kMixed px of an edge, a pixel is modelled as a mixture of unmixed pixels on both sides of the
+// edge, along its row or column. The fraction of the other surface is the least-squares fit to its
+// colour; both parts sum to the pixel's light. Variation within its own surface, like noise and
+// texture, is not attributed to mixing.
 #pragma once
 #include <oneapi/tbb/parallel_for.h>
 
@@ -16,12 +18,13 @@
 
 namespace dg {
 
-inline constexpr int kMixed = 2;   // px from an edge that filters of renderers reach
+inline constexpr int kMixed = 2;   // px, reach of renderers' pixel filters from an edge
 
-/// The picture without what belongs to other surfaces, and that: colours and how much of each pixel they cover.
+/// Image split into the pixels' own surfaces and other surfaces: colours and coverage of each
+/// pixel.
 struct Unmixed {
     std::vector<float> own, own_cover, other, other_cover;
-    std::vector<std::size_t> other_at;   // a pixel of the surface that the other part belongs to
+    std::vector<std::size_t> other_at;   // a pixel of the other surface
 };
 
 inline float square_distance(const float* a, const float* b) {
@@ -30,8 +33,8 @@ inline float square_distance(const float* a, const float* b) {
     return sum;
 }
 
-/// The share of `there` in a pixel that else is `here`, which varies by `variation` (squared): at most `most`,
-/// and what leaves no colour below 0.
+/// Least-squares fraction of `there` in a pixel of surface `here` with variation `variation`
+/// (squared): at most `most`, and small enough that no colour of the remainder is negative.
 inline float share_of_other(const float* pixel, const float* here, const float* there, float variation,
                             float most) {
     float along = 0;
@@ -51,7 +54,7 @@ class Mixtures {
 
     struct Found {
         float share = 0;
-        std::size_t clear = 0;   // a pixel of the other surface, clear of the edge
+        std::size_t clear = 0;   // an unmixed pixel of the other surface
     };
     Found at(int x, int y) const {
         Found found;
@@ -63,7 +66,7 @@ class Mixtures {
     bool inside(int x, int y) const { return x >= 0 && x < picture_.width && y >= 0 && y < picture_.height; }
     std::size_t index(int x, int y) const { return std::size_t(y) * picture_.width + x; }
 
-    /// The farthest pixel, up to `count` steps on, that is still of the surface at (x, y).
+    /// Farthest pixel within `count` steps that belongs to the surface at (x, y).
     std::size_t clear_of_edge(int x, int y, int dx, int dy, int count) const {
         const std::size_t first = index(x, y);
         std::size_t last = first;
@@ -81,14 +84,14 @@ class Mixtures {
             if (!(std::abs(nearness_[n] - nearness_[i]) > step_)) continue;
             const std::size_t there = clear_of_edge(x + d * dx, y + d * dy, dx, dy, kMixed);
             const std::size_t here = clear_of_edge(x, y, -dx, -dy, kMixed + 1 - d);
-            if (here == i || !picture_.finite(here) || !picture_.finite(there)) return;   // nothing to compare with
+            if (here == i || !picture_.finite(here) || !picture_.finite(there)) return;   // no reference
             float variation = 0;
             for (int k = 1; k <= 3 && inside(x - (kMixed + k) * dx, y - (kMixed + k) * dy); ++k) {
                 const std::size_t beyond = index(x - (kMixed + k) * dx, y - (kMixed + k) * dy);
                 if (std::abs(nearness_[beyond] - nearness_[i]) <= step_)
                     variation = std::max(variation, square_distance(picture_.at(here), picture_.at(beyond)));
             }
-            // A pixel's middle lies on its own surface, and filters end soon.
+            // The centre of a pixel is on its own surface, and filters are narrow.
             const float share = share_of_other(picture_.at(i), picture_.at(here), picture_.at(there), variation,
                                                d == 1 ? 0.5f : 0.1f);
             if (share > found.share) found = {share, there};

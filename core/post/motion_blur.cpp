@@ -12,14 +12,14 @@ namespace dg {
 namespace {
 
 constexpr double kGauss = 0.28867513459481288;   // 1 / sqrt(12)
-constexpr double kFarthest = 1e5;   // px of a way: what moves farther passes the widest picture unseen
+constexpr double kFarthest = 1e5;   // px of motion; faster pixels cross any image unseen
 constexpr double kMostLayers = 1e9;
 
 class MotionKernel {
   public:
     static constexpr bool kRunningSums = false;
 
-    /// `motion`: four numbers per pixel, to the next frame and back to the last.
+    /// `motion`: four numbers per pixel, to the next frame and back to the previous.
     MotionKernel(std::span<const float> motion, std::span<const float> nearness, double layers_per_step,
                  const ShutterTime& shutter)
         : motion_(motion), nearness_(nearness), layers_(layers_per_step), shutter_(shutter),
@@ -28,12 +28,12 @@ class MotionKernel {
     bool takes_part(std::size_t i) const {
         const float* m = motion_.data() + 4 * i;
         const double way = double(std::abs(m[0])) + std::abs(m[1]) + std::abs(m[2]) + std::abs(m[3]);
-        return std::isfinite(nearness_[i]) && frames_ * way <= kFarthest;   // NaN is not
+        return std::isfinite(nearness_[i]) && frames_ * way <= kFarthest;   // false for NaN
     }
     float reach(std::size_t i) const {
         return 1 + float(std::max(length(place(i, shutter_.open)), length(place(i, shutter_.close))));
     }
-    /// How far one pixel moves against another.
+    /// Largest displacement between two pixels.
     float parting(std::size_t i, std::size_t j) const {
         return float(std::max(length(place(i, shutter_.open) - place(j, shutter_.open)),
                               length(place(i, shutter_.close) - place(j, shutter_.close))));
@@ -45,7 +45,7 @@ class MotionKernel {
     void spread(std::size_t i, int x, int y, const SpreadLight& light, SpreadLayer& to) const {
         const double times[] = {shutter_.open, std::clamp(0.0, shutter_.open, shutter_.close), shutter_.close};
         for (int k = 0; k < 2; ++k) {
-            const bool first = k == 0;   // an exposure of no length is an instant
+            const bool first = k == 0;   // an exposure of zero length is an instant
             if (times[k] < times[k + 1] || (first && times[0] == times[2]))
                 draw_line(i, {double(x), double(y)}, times[k], times[k + 1], light, to);
         }
@@ -60,12 +60,12 @@ class MotionKernel {
         return shutter_.close > shutter_.open ? (time - shutter_.open) / (shutter_.close - shutter_.open) : 0;
     }
 
-    /// Straight on from one moment to another. Between lines of pixel centres the shares of the four pixels
-    /// around are quadratic in time, so two points of Gauss and Legendre integrate them exactly.
+    /// Splats straight motion between two moments. Between grid lines of pixel centres, the
+    /// bilinear weights are quadratic in time, so two-point Gauss-Legendre quadrature is exact.
     void draw_line(std::size_t i, Vec2d pixel, double from, double till, const SpreadLight& light,
                    SpreadLayer& to) const {
         const Vec2d begin = pixel + place(i, from), way = pixel + place(i, till) - begin;
-        const auto crossing = [](double at, double along) {   // of the next line, and between two of them
+        const auto crossing = [](double at, double along) {   // time to the next grid line, and between grid lines
             const double left = along > 0 ? std::floor(at) + 1 - at : at - std::ceil(at) + 1;
             const double per_line = along == 0 ? 2 : 1 / std::abs(along);
             return Vec2d{left * per_line, per_line};
@@ -83,7 +83,7 @@ class MotionKernel {
         }
     }
 
-    /// On the four pixels around a place, as the picture is read between pixels: linearly.
+    /// Bilinear splat onto four pixels.
     static void draw(Vec2d at, const SpreadLight& light, double weight, SpreadLayer& to) {
         const double left = std::floor(at.x), top = std::floor(at.y);
         const double u = at.x - left, v = at.y - top;
@@ -150,7 +150,7 @@ std::vector<float> motion_blur(int width, std::span<const float> values, const P
     const HiddenSurface hidden = hidden_surface(
         {nearness, step, 2 * farthest}, own, paths, 4,
         [&](std::size_t near, std::size_t far) { return kernel.parting(near, far); });
-    std::vector<float> behind(hidden.weights.size());   // one layer for all
+    std::vector<float> behind(hidden.weights.size());   // a single layer
     for (std::size_t i = 0; i < behind.size(); ++i)
         if (!(hidden.weights[i] > 0)) behind[i] = std::numeric_limits<float>::quiet_NaN();
     const MotionKernel hidden_kernel(hidden.numbers, behind, 1, shutter);

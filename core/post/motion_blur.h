@@ -1,4 +1,4 @@
-// motion_blur.h -- motion blur of a picture that was taken in an instant.
+// motion_blur.h -- synthetic motion blur for instantaneous images.
 #pragma once
 #include <span>
 #include <vector>
@@ -7,26 +7,26 @@
 
 namespace dg {
 
-/// While the shutter is open: from `open` to `close`, in frames from the moment of the picture. Of the light
-/// `arrived[i]` has come after i equal parts of that time: from 0, never falling, to 1.
+/// Exposure from `open` to `close`, in frames relative to the image's moment. `arrived[i]` is the
+/// fraction of the light after i equal parts of the exposure: non-decreasing from 0 to 1.
 struct ShutterTime {
     double open = -0.25, close = 0.25;
     std::vector<double> arrived{0, 1};
 
-    double until(double fraction) const;   // of the light
+    double until(double fraction) const;   // fraction of the light
 };
 
-/// Where pixels go until the next frame and where they come from, px to the right and down, two numbers
-/// each; they move evenly on either side of the picture's moment.
+/// Motion of pixels to the next frame and from the previous, two numbers each, px to the right and
+/// down; linear on either side of the image's moment.
 struct PixelMotion {
     std::span<const float> next, last;
 };
 
-/// Spreads each pixel along its way.
+/// Splats each pixel along its motion.
 ///
-/// `values`: four per pixel, row by row. `nearness`: larger hides smaller; surfaces farther apart than `step`
-/// in it hide each other. A pixel where it or the motion is not finite, or that moves more than 1e5 px while
-/// the shutter is open, gives no light. Returns the rows asked for.
+/// `values`: four per pixel, row-major. `nearness`: larger occludes smaller; surfaces that differ
+/// by more than `step` occlude each other. Pixels with non-finite nearness or motion, or that move
+/// more than 1e5 px during the exposure, emit no light. Returns the requested rows.
 std::vector<float> motion_blur(int width, std::span<const float> values, const PixelMotion& motion,
                                std::span<const float> nearness, float step, const ShutterTime& shutter,
                                SpreadRows rows);

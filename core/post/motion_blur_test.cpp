@@ -27,7 +27,7 @@ struct Case {
 
 double at(const std::vector<float>& v, int x, int y, int c = 0) { return v[4 * (y * kWidth + x) + c]; }
 
-/// Between pixels, linearly.
+/// Bilinear interpolation.
 double between(const std::vector<float>& v, double x, double y) {
     const int i = int(std::floor(x)), j = int(std::floor(y));
     const double u = x - i, w = y - j;
@@ -50,7 +50,7 @@ TEST_CASE("uniform motion is the integral along a line, across tiles, for any sh
             late += between(c.values, x - 9.3 * b, 20 + 4.1 * b) / n * (t < 0.5 ? 0.5 : 1.5);
         }
         CHECK(at(even, x, 20) == doctest::Approx(sum).epsilon(1e-5));
-        CHECK(at(risen, x, 20) == doctest::Approx(late).epsilon(6e-3));   // even within a pixel
+        CHECK(at(risen, x, 20) == doctest::Approx(late).epsilon(6e-3));   // constant within a pixel
     }
 }
 
@@ -60,7 +60,7 @@ TEST_CASE("what stands still stays, bit for bit") {
     CHECK(c.blurred() == c.values);
 }
 
-/// A bar of colour 1 and 20 px on ground of colour 0; one of the two moves by 10 px.
+/// Bar of colour 1, 20 px wide, on ground of colour 0; one of the two moves by 10 px.
 std::vector<float> bar(bool bar_moves, bool bar_near) {
     Case c;
     for (int i = 0; i < kWidth * kHeight; ++i) {
@@ -74,7 +74,7 @@ std::vector<float> bar(bool bar_moves, bool bar_near) {
 
 TEST_CASE("a bar that moves before still ground is a trapezoid") {
     const auto out = bar(true, true);
-    for (int x = 90; x < 130; ++x) {   // half a pixel of softness where the ramp bends
+    for (int x = 90; x < 130; ++x) {   // half a pixel of softness at the kinks of the ramp
         const double ramp = std::clamp(std::min(x - 94.5, 124.5 - x) / 10, 0.0, 1.0);
         CHECK(at(out, x, 20) == doctest::Approx(ramp).scale(1).epsilon(0.02));
     }

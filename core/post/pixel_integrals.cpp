@@ -13,7 +13,7 @@ void check(const PixelWeights& w) {
         throw Error("pixel_integrals: all pixels must have the same number of weights");
 }
 
-/// One row of pixels before its columns are summed.
+/// Sums the rows of a pixel, before its columns are summed.
 void sum_rows(std::span<const float> samples, int columns, const PixelWeights& down, int pixel,
               std::vector<float>& line) {
     const int rows = int(samples.size() / columns), taps = down.taps();

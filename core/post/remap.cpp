@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kCell = SourceMap::kCell;
 constexpr int kMaxRegion =
-    16 * kTileWidth * kTileHeight;  // pixels; beyond it a map is torn
+    16 * kTileWidth * kTileHeight;  // pixels; a larger region means a torn map
 
 struct Job {
     const RemapSource& source;
@@ -32,14 +32,14 @@ struct Job {
     std::atomic<std::int64_t> undefined{0};
 };
 
-/// Nearest whole number below, and the rest.
+/// Floor and fraction.
 struct Split {
     int whole;
     float rest;
     explicit Split(float d) : whole(int(std::floor(d))), rest(d - float(whole)) {}
 };
 
-/// The memory for one tile after the other.
+/// Working memory, reused for all tiles.
 class Tile {
   public:
     explicit Tile(Job& job)
@@ -75,15 +75,15 @@ class Tile {
                (y <= float(job_.source.height) - 0.5f);
     }
 
-    /// The region that pixels within the source read, by any map; false if it would be
-    /// absurdly large.
+    /// Computes the source region that the tile's pixels read through any map; false if it is too
+    /// large.
     bool find_region() {
         RemapBounds b;
         for (std::size_t m = 0; m < maps_.size(); ++m)
             for (int y = top_; y < bottom_; ++y) remap_bounds(places(y, int(m)), b);
         region_ = RemapRegion{0, 0, 0, 0, std::move(region_.values)};
-        if (!(b.left <= b.right && b.up <= b.down)) return false;  // nothing is there
-        // A pixel more on either side: the sum of a place is rounded.
+        if (!(b.left <= b.right && b.up <= b.down)) return false;  // no pixel is inside the source
+        // A pixel of margin on either side for rounding.
         region_.x0 = int(std::floor(b.left)) - 2, region_.y0 = int(std::floor(b.up)) - 2;
         region_.width = int(std::floor(b.right)) + 4 - region_.x0;
         region_.height = int(std::floor(b.down)) + 4 - region_.y0;
@@ -127,7 +127,7 @@ class Tile {
         }
     }
 
-    /// A pixel that is stretched, far from its neighbours, or outside.
+    /// Pixel that is stretched, outside of the region, or undefined.
     float other(int u, int v, int c) const {
         const TileMap& map = maps_[job_.map_of[c]];
         const float dx = map.dx[v][u], dy = map.dy[v][u];
@@ -154,13 +154,13 @@ class Tile {
 
     Job& job_;
     std::vector<TileMap> maps_;
-    std::vector<float> values_;  // of a row, channel by channel
+    std::vector<float> values_;  // of a row, planar
     std::vector<RemapChannel> channels_;
     RemapRegion region_;
     int x0_ = 0, y0_ = 0, count_ = 0, top_ = 0, bottom_ = 0;
 };
 
-/// Rows [begin, end) of a picture of some width have cells of the map.
+/// Checks that the map has cells for rows [begin, end) of an image of the given width.
 void check(const SourceMap& m, int width, int begin, int end) {
     m.check();
     if (!(0 <= begin && begin <= end))

@@ -9,8 +9,8 @@ namespace dg {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-// Vectors are blocks of four lanes. A block holds four neighbours in a row of the source,
-// or four pixels of the result.
+// Vectors consist of blocks of four lanes. A block holds four neighbours in a row of the source, or
+// four pixels of the result.
 using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 constexpr int kLanes = int(hn::MaxLanes(D()));
@@ -19,7 +19,7 @@ HWY_INLINE V sum_of(V a, V b) { return hn::Add(a, b); }
 HWY_INLINE V least_of(V a, V b) { return hn::Min(a, b); }
 HWY_INLINE V most_of(V a, V b) { return hn::Max(a, b); }
 
-/// Four values each at offsets 0, 4, 8 ..: as many as there are blocks.
+/// Four values at offsets 0, 4, 8 ..., one offset per block.
 template <class Tag>
 HWY_INLINE hn::Vec<Tag> blocks_at(Tag d, const float* p, const std::int32_t* offset) {
     if constexpr (hn::MaxLanes(d) == 4) {
@@ -31,7 +31,7 @@ HWY_INLINE hn::Vec<Tag> blocks_at(Tag d, const float* p, const std::int32_t* off
     }
 }
 
-/// Each block of p[k] to one value by a fold of two: lane k of that block.
+/// Reduces each block of p[k] by `fold` to lane k of that block.
 template <V (*fold)(V, V)>
 HWY_INLINE V folded(const V (&p)[4]) {
     const D d;
@@ -44,7 +44,7 @@ HWY_INLINE V folded(const V (&p)[4]) {
                 hn::BitCast(d, hn::InterleaveUpper(pairs, a, b)));
 }
 
-/// Lane j of block k to lane k of block j, within each block.
+/// Transposes within each block: lane j of block k to lane k of block j.
 HWY_INLINE void transpose(V (&p)[4]) {
     const D d;
     const hn::Repartition<std::uint64_t, D> pairs;
@@ -58,8 +58,8 @@ HWY_INLINE void transpose(V (&p)[4]) {
     p[3] = hn::BitCast(d, hn::InterleaveUpper(pairs, c, e));
 }
 
-/// Weights of kLanes pixels. Those of pixels k, k + 4, .. are blocks: `across` has the
-/// four columns' in a block, `down` one row's four times.
+/// Weights of kLanes pixels; block k of a vector belongs to pixels k, k + 4, .... `across` has the
+/// weights of four columns per block, `down` the weight of a row repeated four times.
 struct Weights {
     V across[4], down[4][4];
 
@@ -84,7 +84,7 @@ struct Weights {
     }
 };
 
-/// kLanes pixels of one channel: the weighed sum of 4 x 4 values, within their bounds.
+/// Filters kLanes pixels of a channel: weighted sum of 4 x 4 values, clamped to their range.
 HWY_INLINE V filtered(const float* plane, int stride, const std::int32_t* offset,
                       const Weights& w) {
     const D d;
@@ -103,7 +103,7 @@ HWY_INLINE V filtered(const float* plane, int stride, const std::int32_t* offset
     }
     const V s = folded<sum_of>(sum);
     const V held = hn::Min(hn::Max(s, folded<least_of>(low)), folded<most_of>(high));
-    return hn::IfThenElse(hn::IsNaN(s), s, held);  // NaN stays
+    return hn::IfThenElse(hn::IsNaN(s), s, held);  // propagates NaN
 }
 
 void Row(std::span<const RemapChannel> channels, int stride, const RemapRow& row,
@@ -115,10 +115,10 @@ void Row(std::span<const RemapChannel> channels, int stride, const RemapRow& row
     }
 }
 
-/// Where kLanes pixels from i on lie in the source, and whether they do.
+/// Source positions of kLanes pixels from i on, and whether they are inside.
 struct Places {
     V dx, dy, x, y;
-    hn::Mask<D> here;  // not for NaN
+    hn::Mask<D> here;  // false for NaN
 
     HWY_INLINE Places(const RemapPlaces& p, int i) {
         const D d;

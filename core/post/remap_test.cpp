@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kCell = SourceMap::kCell;
 
-/// A map by a formula for displacements: at nodes, and exact where asked.
+/// Map from a displacement formula: sampled at nodes, or exact on request.
 struct TestMap {
     std::vector<float> nodes, cells;
     std::vector<std::int32_t> exact;
@@ -67,7 +67,7 @@ struct Shift {
 
 const std::vector<int> kOneMap{0, 0, 0};
 
-/// Keys' cubic (a = -1/2) at a place, by its formula in double; edges go on outside.
+/// Keys' cubic (a = -1/2) at a position, by its formula in double; edges are extended.
 double keys_cubic(const TestImage& image, double x, double y, int c) {
     const auto weight = [](double d) {
         d = std::abs(d);
@@ -87,7 +87,7 @@ double keys_cubic(const TestImage& image, double x, double y, int c) {
     return std::clamp(sum, low, high);
 }
 
-/// Runs the body once for every instruction set that was built and that this machine has.
+/// Runs the body for each instruction set that is compiled in and supported by this machine.
 template <typename Body>
 void for_each_target(const Body& body) {
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {

@@ -1,5 +1,4 @@
-// remap_tile.h -- what remap.cpp knows of one tile, and the SIMD kernels that fill its
-// rows.
+// remap_tile.h -- tile of remap.cpp, and the SIMD kernels that fill its rows.
 #pragma once
 #include <cmath>
 
@@ -7,9 +6,9 @@
 
 namespace dg {
 
-inline constexpr int kTileWidth = 64, kTileHeight = 32;  // whole cells
+inline constexpr int kTileWidth = 64, kTileHeight = 32;  // multiples of cells
 
-/// The light around a tile, channel by channel, its edges continued outward.
+/// Source region of a tile, planar, with edges extended.
 struct RemapRegion {
     int x0 = 0, y0 = 0, width = 0, height = 0;  // in the source
     std::vector<float> values;
@@ -18,46 +17,44 @@ struct RemapRegion {
     const float* plane(int channel) const { return values.data() + channel * size(); }
 };
 
-/// Where the pixels of one row of a tile lie in a region: the first of 4 x 4 values, and
-/// how far past the second of them.
+/// Positions of a row's pixels in a region: index of the first of 4 x 4 values, and fraction past
+/// the second.
 struct RemapRow {
     std::int32_t offset[kTileWidth];
     float tx[kTileWidth], ty[kTileWidth];
-    std::int32_t here[kTileWidth];  // whether the pixel is filled from the region; else
-                                    // offset is 0
+    std::int32_t here[kTileWidth];  // whether the region fills the pixel; otherwise offset is 0
 };
 
-/// Inputs of the places of a row.
+/// Inputs for the positions of a row.
 struct RemapPlaces {
     const float *dx, *dy;     // displacements, kTileWidth each
-    const float *sx, *sy;     // stretches; null: all are 1
-    int x, y, count;          // the first pixel, and how many belong to the picture
-    int width, height;        // the source's size
+    const float *sx, *sy;     // filter stretches; null: all are 1
+    int x, y, count;          // first pixel, and number of pixels inside the image
+    int width, height;        // of the source
     const RemapRegion* region;
 };
-/// Which pixels of a row a region fills, and where they lie in it. Returns how many.
+/// Computes positions in the region of the pixels that it fills; returns their number.
 int remap_places(const RemapPlaces& p, RemapRow& row);
 
-/// Least and greatest places.
+/// Bounding box of positions.
 struct RemapBounds {
     float left = INFINITY, right = -INFINITY, up = INFINITY, down = -INFINITY;
 };
-/// Extends bounds by the pixels of a row that lie in the source; stretches and region
-/// have no say.
+/// Extends bounds by the pixels of a row inside the source; ignores stretches and region.
 void remap_bounds(const RemapPlaces& p, RemapBounds& bounds);
 
-/// Weights of four values as cubics in t: coefficient of t^k of weight i is at [k][i].
+/// Filter weights as cubics in t: the coefficient of t^k of weight i is at [k][i].
 struct RemapWeights {
     float at[4][4];
 };
 const RemapWeights& weights_of(RemapFilter filter);
 
-/// A channel of a region, and where its values of a row go: kTileWidth of them.
+/// Channel of a region, and its output for a row: kTileWidth values.
 struct RemapChannel {
     const float* plane;
     float* out;
 };
-/// Values of a row's pixels from a region of width `stride`.
+/// Filters a row's pixels from a region of width `stride`.
 void remap_row(std::span<const RemapChannel> channels, int stride, const RemapRow& row,
                const RemapWeights& weights);
 

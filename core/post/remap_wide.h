@@ -1,4 +1,4 @@
-// remap_wide.h -- one value by a filter that is as wide as a pixel is in the source.
+// remap_wide.h -- filtering of single pixels with a stretched filter.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -9,17 +9,16 @@
 
 namespace dg {
 
-/// Beyond this a pixel of the result takes a part of what it covers.
+/// Largest stretch; beyond it a pixel samples only part of its footprint.
 inline constexpr float kMaxStretch = 16;
 
-/// A stretch as small as 9/8 costs time and shows nothing; from there to 5/4 it is faded
-/// in.
+/// Stretches below 9/8 are invisible and would cost time; they are blended in up to 5/4.
 inline float stretch_of(float scale) {
     if (!(scale > 1.125f)) return 1;
     return std::min(scale < 1.25f ? 2 * scale - 1.25f : scale, kMaxStretch);
 }
 
-/// A place along one axis: pixel, share of the way to the next, and stretch.
+/// Position along an axis: pixel, fraction to the next, and stretch.
 struct WidePlace {
     int at;
     float rest, stretch;

@@ -14,9 +14,9 @@ namespace {
 
 constexpr int kCell = SourceMap::kCell;
 
-/// Lagrange's cubic through values at -1, 0, 1, 2: its coefficients at 1, t, t^2, t^3.
+/// Lagrange cubic through values at -1, 0, 1, 2: coefficients of 1, t, t^2, t^3.
 std::array<float, 4> cubic(float a, float b, float c, float d) {
-    a -= b, c -= b, d -= b;  // so that equal values give it exactly
+    a -= b, c -= b, d -= b;  // equal values are reproduced exactly
     return {b, c - a / 3 - d / 6, (a + c) / 2, (d - a) / 6 - c / 2};
 }
 
@@ -24,7 +24,7 @@ float value(const std::array<float, 4>& k, float t) {
     return k[0] + t * (k[1] + t * (k[2] + t * k[3]));
 }
 
-/// One coordinate of a cell between nodes: along columns first, then along each row.
+/// Interpolates a coordinate in a cell between nodes: first along columns, then along each row.
 void between(const SourceMap& map, int column, int row, int axis, float* out,
              int stride) {
     const std::size_t line = 2 * std::size_t(map.columns + 3);
@@ -43,7 +43,7 @@ void between(const SourceMap& map, int column, int row, int axis, float* out,
     }
 }
 
-/// Both coordinates at a point, in cells; NaN where nodes do not tell.
+/// Both coordinates at a point given in cells; NaN where the nodes do not apply.
 void at_point(const SourceMap& map, double x, double y, float* out) {
     out[0] = out[1] = NAN;
     if (!(x >= 0 && y >= 0 && x < map.columns && y < map.rows)) return;

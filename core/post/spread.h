@@ -1,15 +1,14 @@
-// spread.h -- pixels give their light to others, and nearer surfaces hide farther ones.
+// spread.h -- splatting of pixels with occlusion by layers.
 //
-// Every pixel spreads its light, and its coverage of 1, by a kernel of its own (a disc, a streak) into the
-// layer that its depth belongs to. Where layers meet in a pixel they share the lens, or the time that the
-// shutter is open, from the nearest on: each takes the share that it covers, as long as something is left.
-// So parts of one surface add to 1 however many layers it runs through; what is nearer hides; and what is
-// left open in the end shows what is hidden behind edges (hidden.h). Where all of a picture lies in one
-// layer with one kernel, this is the convolution with it.
+// Each pixel splats its light and its coverage of 1, by a kernel (disc, streak), into the layer of
+// its depth. Layers are composited front to back: each takes the fraction of the lens (or of the
+// exposure) that it covers, up to the remainder. So the parts of a surface sum to 1 regardless of
+// the number of layers, nearer layers occlude, and the final remainder shows the estimate of hidden
+// surfaces (hidden.h). With a single layer and kernel, the result is a convolution.
 //
-// Sources: the order of layers after Potmesil and Chakravarty 1981 (light is spread, not gathered); the
-// running sums after Kosloff, Tao and Barsky 2009, Depth of field postprocessing for layered scenes using
-// constant-time rectangle spreading.
+// Sources: order of layers after Potmesil and Chakravarty 1981 (splatting instead of gathering);
+// running sums after Kosloff, Tao and Barsky 2009, Depth of field postprocessing for layered scenes
+// using constant-time rectangle spreading.
 #pragma once
 #include <oneapi/tbb/parallel_for.h>
 
@@ -24,11 +23,11 @@ namespace dg {
 
 inline constexpr int kSpreadTile = 256, kSpreadBlock = 32, kSpreadColours = 4;
 
-/// A picture of kSpreadColours values per pixel, row by row.
+/// Image of kSpreadColours values per pixel, row-major.
 struct SpreadPicture {
     int width = 0, height = 0;
     std::span<const float> values;
-    std::span<const float> covers = {};   // how much of its pixel each covers; empty: all of it
+    std::span<const float> covers = {};   // coverage per pixel; empty: 1
     float cover(std::size_t pixel) const { return covers.empty() ? 1.f : covers[pixel]; }
     const float* at(std::size_t pixel) const { return values.data() + kSpreadColours * pixel; }
     bool finite(std::size_t pixel) const {
@@ -37,7 +36,7 @@ struct SpreadPicture {
     }
 };
 
-/// Light on its way, or arrived, and how much of the pixel it covers.
+/// Light, and its coverage of a pixel.
 struct SpreadLight {
     double colour[kSpreadColours] = {};
     double cover = 0;
@@ -53,13 +52,13 @@ struct SpreadLight {
     }
 };
 
-/// One layer of one tile; places are those of the picture.
+/// A layer of a tile, in image coordinates.
 struct SpreadLayer {
     int x0, y0, x1, y1;   // ends exclusive
     std::vector<SpreadLight> light = std::vector<SpreadLight>(kSpreadTile * kSpreadTile);
 
     SpreadLight* row(int y) { return light.data() + std::size_t(y - y0) * kSpreadTile; }
-    /// Changes along rows become light.
+    /// Converts changes along rows to light by running sums.
     void run_sums() {
         for (int y = y0; y < y1; ++y) {
             SpreadLight* const values = row(y);
@@ -68,7 +67,7 @@ struct SpreadLayer {
     }
 };
 
-/// Largest reach in each block of pixels, so that those that cannot reach a tile are passed over.
+/// Largest reach per block of pixels, to skip blocks that cannot reach a tile.
 template <typename Kernel>
 class SpreadBlocks {
   public:
@@ -89,7 +88,7 @@ class SpreadBlocks {
     std::vector<float> reach_;
 };
 
-/// A picture, or what is hidden behind it, with the kernels of its pixels.
+/// Image, or the hidden surfaces behind it, with the kernels of its pixels.
 template <typename Kernel>
 struct SpreadSource {
     SpreadPicture picture;
@@ -97,8 +96,8 @@ struct SpreadSource {
     SpreadBlocks<Kernel> blocks{kernel, picture};
 };
 
-/// Spreads all light that arrives in a tile into the layers that `layer(number)` hands out. A kernel says for
-/// a pixel: takes_part, reach (px), layer (a number; larger is nearer), and spreads it.
+/// Splats all light that reaches a tile into the layers returned by `layer(number)`. A kernel
+/// provides, per pixel: takes_part, reach (px), layer (a number; larger is nearer), and spread.
 template <typename Source, typename Layer>
 void spread_into(const Source& from, const SpreadLayer& tile, const Layer& layer) {
     const auto away = [](int begin, int end, int tile_begin, int tile_end) {
@@ -124,11 +123,11 @@ void spread_into(const Source& from, const SpreadLayer& tile, const Layer& layer
         }
 }
 
-/// Light that one pixel shows: layers from the nearest on, then what they leave open.
+/// Front-to-back compositing of a pixel.
 class SpreadShares {
   public:
     void take(const SpreadLight& l) {
-        if (l.cover < 1e-6) return;   // running sums leave some 1e-12 of what was there
+        if (l.cover < 1e-6) return;   // running sums leave a residue of about 1e-12
         const double share = std::min(left_, l.cover);
         sum_.add(l, share / l.cover);
         left_ -= share;
@@ -145,7 +144,7 @@ class SpreadShares {
     double left_ = 1;
 };
 
-/// The layers of a tile, made as light comes to them.
+/// Layers of a tile, created on demand.
 class SpreadTile {
   public:
     SpreadTile(int x0, int y0, int x1, int y1) : behind{x0, y0, x1, y1} {}
@@ -172,7 +171,7 @@ class SpreadTile {
         return shares;
     }
 
-    SpreadLayer behind;   // hidden light
+    SpreadLayer behind;   // hidden surfaces
 
   private:
     std::map<int, SpreadLayer, std::greater<>> layers_;   // nearest first
@@ -180,14 +179,14 @@ class SpreadTile {
     int last_number_ = 0;
 };
 
-/// Rows of a picture, the last one exclusive.
+/// Range of rows, end exclusive.
 struct SpreadRows {
     int begin, end;
 };
 
-/// Rows of the picture with its light spread. All sources have its size: those that are seen, and what is
-/// hidden behind them. Pixels that are not finite give no light and stay what they are, as those do where
-/// nothing arrives. The same bits on any number of threads.
+/// Composites the rows of the splatted image. All sources have the size of the image: the visible
+/// ones, and the hidden surfaces. Non-finite pixels emit no light and keep their value, as do
+/// pixels that no light reaches. Bitwise equal for any number of threads.
 template <typename Kernel>
 std::vector<float> spread(const SpreadPicture& picture, std::span<const SpreadSource<Kernel>> seen,
                           const SpreadSource<Kernel>& hidden, SpreadRows rows) {

@@ -1,4 +1,4 @@
-// tile_map.h -- displacements and stretches of a tile's pixels by one map.
+// tile_map.h -- displacements and filter stretches of a tile's pixels for a map.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace dg {
 struct TileMap {
     float dx[kTileHeight][kTileWidth], dy[kTileHeight][kTileWidth];
     float sx[kTileHeight][kTileWidth], sy[kTileHeight][kTileWidth];
-    bool stretched = false;  // else sx and sy are 1, and not set
+    bool stretched = false;  // false: sx and sy count as 1 and are not set
 
     void read(const SourceMap& map, int x0, int y0, bool antialias) {
         stretched = false;
@@ -40,8 +40,8 @@ struct TileMap {
         }
     }
 
-    /// Squares of steps in the source, across and down, at one pixel of a cell: by
-    /// differences within the cell, so that no other cell has a say.
+    /// Squared lengths of the source steps across and down at a pixel of a cell, by differences
+    /// within the cell, so that they do not depend on other cells.
     static Vec2f steps(const float* x, const float* y, int i, int j) {
         const int i0 = std::min(i, kCell - 2), j0 = std::min(j, kCell - 2);
         const int a = j * kTileWidth + i0, b = j0 * kTileWidth + i;
@@ -51,11 +51,11 @@ struct TileMap {
     }
 
     static bool shrinks(const float* x, const float* y) {
-        float most[kCell] = {};  // by column, so that compilers use vectors
+        float most[kCell] = {};  // per column, to allow vectorization
         const auto look = [&](int i, int j) {
             const Vec2f s = steps(x, y, i, j);
             const float larger = s.x > s.y ? s.x : s.y;
-            most[i] = larger > most[i] ? larger : most[i];  // NaN does not count
+            most[i] = larger > most[i] ? larger : most[i];  // ignores NaN
         };
         for (int j = 0; j < kCell; ++j) {
             for (int i = 0; i < kCell - 1; ++i) look(i, j);

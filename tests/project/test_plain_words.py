@@ -19,7 +19,6 @@ LEFT = {
     "core/light",
     "core/material",
     "core/medium",
-    "core/post",
     "core/render",
     "core/scene",
     "core/transport",
