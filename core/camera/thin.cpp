@@ -73,7 +73,7 @@ void ThinLens::generate_tilted(const Numbers& numbers, std::span<const CameraSam
         const double along = dot(chief, axis);
         const Vec3d direction = chief - origin * (along * power - 1e3 * inverse_film);
         double exposure = numbers.exposure * s.iris_opening * s.iris_opening;
-        if (natural_vignetting) {   // both cosines over the distance squared; 1 / |c|^2 is part of the solid angle
+        if (natural_vignetting) {   // both cosines over the squared distance, in units of D
             const double cos2 = 1 / length_squared(chief);
             exposure *= along * cos2 * cos2;
         }
