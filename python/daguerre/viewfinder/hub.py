@@ -98,7 +98,7 @@ class Hub:
         self._tasks: set[asyncio.Task[None]] = set()
         self._shot = stage.shot(dials)
         self._previews = Previews()
-        self._painter = Painter(self.publish, self._failed)
+        self._painter = Painter(self.publish, self._failed, self._ask_for_turn)
         self._wish()
         self._start(watch(stage.scene.path, self._guests))
 
@@ -295,6 +295,11 @@ class Hub:
 
     # The painter's thread
 
+    def _ask_for_turn(self, wish: Wish) -> None:
+        """Lets the page send its next turn while a picture is developed."""
+        message = {"drawn": wish.number}
+        self._loop.call_soon_threadsafe(lambda: self._start(self._guests.tell(message)))
+
     def publish(self, drawn: Drawn) -> None:
         """Develops a picture and sends it to the pages; may be called by any thread."""
         if self._tev is not None:
@@ -325,16 +330,18 @@ class Hub:
     # The server's thread
 
     def _hand_out(self, drawn: Drawn, image: Image, show: Show, readings: dict[str, Any]) -> None:
-        if drawn.wish.number != self.number:
-            return  # a newer wish came
-        self._drawn_history = self._history
+        number = drawn.wish.number
+        if self._sheet is not None and number < self._sheet.drawn.wish.number:
+            return  # a newer picture was faster
+        if number == self.number:
+            self._drawn_history = self._history
         self._sheet = self._sheet_of(
             drawn, image, show, denoised=bool(show.denoised) and drawn.is_one
         )
         for guest in self._guests:
             self._start(guest.offer(self._sheet))  # before the numbers, which take the page longer
-        if (readings, self.number) != (self._readings, self._read):
-            self._readings, self._read = readings, self.number
+        if (readings, number) != (self._readings, self._read):
+            self._readings, self._read = readings, number
             self._start(self._tell_state())
 
     def _hand_out_preview(self, drawn: Drawn, image: Image, show: Show) -> None:

@@ -28,14 +28,17 @@ class Painter:
     Args:
         show: Called in a thread of the painter with each picture.
         fail: Called there with a wish that cannot be drawn, and the reason.
+        ready: Called there when a picture of a wish is drawn, before it is shown: the next wish may
+            come while the picture is developed.
     """
 
     def __init__(
         self,
         show: Callable[[Drawn], None],
         fail: Callable[[Wish, Exception], None],
+        ready: Callable[[Wish], None] = lambda _: None,
     ) -> None:
-        self._show, self._fail = show, fail
+        self._show, self._fail, self._ready = show, fail, ready
         self._changed = threading.Condition()
         self._wish: Wish | None = None  # the next one
         self._taken: Wish | None = None  # the one before
@@ -78,6 +81,7 @@ class Painter:
                 with self._token:
                     for drawn in self._begun(wish):
                         self._token.throw_if_cancelled()
+                        self._ready(drawn.wish)
                         self._show(drawn)
                         self._wait_for_turn()
             except Cancelled:

@@ -81,7 +81,7 @@ class Viewfinder {
   }
 
   /**
-   * Sends turns at once, and further ones when a picture of those has come, the newest of each dial: a turn ends
+   * Sends turns at once, and further ones when a picture of those is drawn, the newest of each dial: a turn ends
    * the work on the one before, so that faster ones would leave a hand that moves without pictures.
    */
   turn(dials) {
@@ -117,6 +117,7 @@ class Viewfinder {
 
   told(message) {
     if (message.open) this.opened(message.open);
+    if ('drawn' in message) this.drawn(message.drawn);
     if (message.heard) this.unheard--;
     if (message.role) this.unheard = 0;
     const noPicture = message.role || (message.heard && message.refused) || message.state?.error;
@@ -134,11 +135,15 @@ class Viewfinder {
     this.tell('told', message);
   }
 
+  /** Sends the next turn once a picture of the last is drawn, while the server develops it. */
+  drawn(turn) {
+    if (turn <= this.newest) return;
+    this.newest = turn;
+    this.sendTurn();
+  }
+
   async shown(head, bytes) {
-    if (head.turn > this.newest) {   // the server draws the next one while this one is decoded
-      this.newest = head.turn;
-      this.sendTurn();
-    }
+    this.drawn(head.turn);
     const fresh = await this.picture.show(head, bytes);
     this.send({got: head.picture});
     if (!fresh) return;
