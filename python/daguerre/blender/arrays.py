@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import bpy
+
 
 #: Property of the items of an attribute, columns, and type, by Blender's name of the type.
 _KINDS: dict[str, tuple[str, int, type[np.generic]]] = {
@@ -20,14 +24,16 @@ _KINDS: dict[str, tuple[str, int, type[np.generic]]] = {
 }
 
 
-def read(items: Any, name: str, columns: int, kind: type[np.generic]) -> NDArray[Any]:
+def read(
+    items: bpy.types.bpy_prop_collection, name: str, columns: int, kind: type[np.generic]
+) -> NDArray[Any]:
     """Values of a property of all items, shape (N,) for one column, else (N, columns)."""
     flat = np.empty(len(items) * columns, kind)
     items.foreach_get(name, flat)
     return flat if columns == 1 else flat.reshape(-1, columns)
 
 
-def attribute(geometry: Any, name: str) -> NDArray[Any] | None:
+def attribute(geometry: bpy.types.Mesh | bpy.types.Curves, name: str) -> NDArray[Any] | None:
     """Values of an attribute, by its name; None: there is none, or it has no numbers.
 
     Colours are linear, of either type.
@@ -38,7 +44,7 @@ def attribute(geometry: Any, name: str) -> NDArray[Any] | None:
     return read(found.data, *_KINDS[found.data_type])
 
 
-def points_of(geometry: Any) -> NDArray[np.float32]:
+def points_of(geometry: bpy.types.Mesh | bpy.types.Curves) -> NDArray[np.float32]:
     """Positions of a mesh or of curves, shape (N, 3), in units of the scene."""
     found = attribute(geometry, "position")
     return np.zeros((0, 3), np.float32) if found is None else found

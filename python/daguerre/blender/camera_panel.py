@@ -8,7 +8,11 @@ counts.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import bpy
+
 
 #: Lens of a camera that keeps Blender's own.
 BLENDER = "blender"
@@ -22,9 +26,9 @@ class CameraPanel:
         always: Whether all properties count, as those of a scene.
     """
 
-    def __init__(self, data: Any, *, always: bool = False) -> None:
+    def __init__(self, data: bpy.types.ID | None, *, always: bool = False) -> None:
         self._always = always
-        self._group: Any = getattr(data, "daguerre", None)
+        self._group: bpy.types.PropertyGroup | None = getattr(data, "daguerre", None)
 
     def chosen(self, name: str) -> Any:
         """Value of a property; None if it does not count, or names nothing."""

@@ -90,7 +90,7 @@ def _check_type(kind: str, lens: str, where: str) -> None:
     raise InputError(f"{where}: type: wanted PERSP or PANO, got {kind}")
 
 
-def _lens_of(data: Any, panel: CameraPanel, where: str) -> str:
+def _lens_of(data: bpy.types.Camera, panel: CameraPanel, where: str) -> str:
     """Name or file of the lens; without one of the panel, Blender's own switch of blur decides."""
     lens = panel.named("lens", BLENDER)
     if lens is None:
@@ -106,7 +106,7 @@ def _lens_of(data: Any, panel: CameraPanel, where: str) -> str:
 
 
 def _optics(
-    data: Any, film: Film, lens: str, panel: CameraPanel, where: str, notes: Notes
+    data: bpy.types.Camera, film: Film, lens: str, panel: CameraPanel, where: str, notes: Notes
 ) -> dict[str, Any]:
     """Lens or projection, and the film."""
     found: dict[str, Any] = {"sensor_size": film.size}
@@ -121,7 +121,9 @@ def _optics(
     return found | _movements(film, panel if lens == "thin" else None)
 
 
-def _glass(data: Any, film: Film, lens: str, panel: CameraPanel, notes: Notes) -> dict[str, Any]:
+def _glass(
+    data: bpy.types.Camera, film: Film, lens: str, panel: CameraPanel, notes: Notes
+) -> dict[str, Any]:
     """Values of a lens with a prescription, which has its own focal length."""
     found: dict[str, Any] = {"lens": lens}
     model = panel.named("lens_model", "auto")
@@ -169,7 +171,7 @@ def _body(panel: CameraPanel) -> dict[str, Any]:
 
 
 def _iris(
-    data: Any, values: dict[str, Any], panel: CameraPanel, metres: float, notes: Notes
+    data: bpy.types.Camera, values: dict[str, Any], panel: CameraPanel, metres: float, notes: Notes
 ) -> dict[str, Any]:
     """Stop and blades."""
     dof, found = data.dof, {}
@@ -189,7 +191,7 @@ def _iris(
     return found | _blades(dof, panel)
 
 
-def _blades(dof: Any, panel: CameraPanel) -> dict[str, Any]:
+def _blades(dof: bpy.types.CameraDOFSettings, panel: CameraPanel) -> dict[str, Any]:
     """Blades of the iris.
 
     The polygon of Blender is turned by half a side, and lies within the circle of the f-stop; that
@@ -206,7 +208,7 @@ def _blades(dof: Any, panel: CameraPanel) -> dict[str, Any]:
     return {"blades": blades, "blade_rotation": degrees, "blade_curvature": float(bend or 0.0)}
 
 
-def _focus(thing: Any, panel: CameraPanel, metres: float) -> dict[str, Any]:
+def _focus(thing: bpy.types.Object, panel: CameraPanel, metres: float) -> dict[str, Any]:
     """Distance along the camera's axis; none for autofocus."""
     if panel.named("focus_mode", "blender") is not None:
         return {}
@@ -218,7 +220,7 @@ def _focus(thing: Any, panel: CameraPanel, metres: float) -> dict[str, Any]:
     return {"focus_distance": abs(float(axis @ (target - camera[:3, 3]))) * metres}
 
 
-def _place(dof: Any) -> Matrix:
+def _place(dof: bpy.types.CameraDOFSettings) -> Matrix:
     """Point of the object to focus on, or of one of its bones, in Blender's world."""
     target, bone = dof.focus_object, None
     if dof.focus_subtarget and target.pose is not None:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from daguerre.camera.camera import Camera
 from daguerre.motion.values import Keys, keys
@@ -37,7 +38,9 @@ def eye_of(camera: Camera, still: Camera, time: float) -> Camera:
     return still.with_(**moves).evaluated_at(time) if moves else still
 
 
-def _each(given: Keys, change: Callable[[Any], Any], pivot: Any = None) -> Keys:
+def _each(
+    given: Keys, change: Callable[[Any], Any], pivot: NDArray[np.floating] | None = None
+) -> Keys:
     """Keys with other values at the same times."""
     pairs = zip(given.times.tolist(), map(change, given.values), strict=True)
     return keys(pairs, given.interpolation, pivot)

@@ -11,7 +11,10 @@ Source: Blender manual, Cameras: sensor fit and shift; ``bpy_extras.object_utils
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import bpy
 
 
 @dataclass(frozen=True)
@@ -33,7 +36,7 @@ class Film:
     square: bool
 
 
-def resolution_of(render: Any) -> tuple[int, int]:
+def resolution_of(render: bpy.types.RenderSettings) -> tuple[int, int]:
     """Width and height of the picture, px."""
     share = render.resolution_percentage
     columns, rows = (
@@ -42,7 +45,9 @@ def resolution_of(render: Any) -> tuple[int, int]:
     return columns, rows
 
 
-def film_of(data: Any, render: Any, shift_x: float | None = None) -> Film:
+def film_of(
+    data: bpy.types.Camera, render: bpy.types.RenderSettings, shift_x: float | None = None
+) -> Film:
     """Film of a camera.
 
     Args:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,10 @@ from daguerre.scene.scene import Scene
 
 from .arrays import attribute, points_of, read
 from .meshes import Materials, Parts, Steps, slots_of
+
+if TYPE_CHECKING:
+    import bpy
+
 
 #: Radius of curves without an attribute of it, units of the scene.
 RADIUS = 0.01
@@ -36,7 +40,7 @@ class Hair:
         self._notes = notes
         self._made: dict[tuple[int, int], Parts] = {}
 
-    def index(self, thing: Any, steps: Steps | None = None) -> Parts:
+    def index(self, thing: bpy.types.Object, steps: Steps | None = None) -> Parts:
         """Pairs (mesh, material) of an evaluated object of type CURVES.
 
         Args:
@@ -51,7 +55,7 @@ class Hair:
             self._made[key] = [(mesh, index) for mesh in made]
         return self._made[key]
 
-    def _add(self, curves: Any, steps: Steps | None) -> list[int]:
+    def _add(self, curves: bpy.types.Curves, steps: Steps | None) -> list[int]:
         """Adds the curves of each type."""
         counts = np.diff(read(curves.curve_offset_data, "value", 1, np.int32))
         types = _per_curve(curves, "curve_type", len(counts))
@@ -74,7 +78,7 @@ class Hair:
 
     def _group(
         self,
-        curves: Any,
+        curves: bpy.types.Curves,
         counts: NDArray[np.int32],
         chosen: NDArray[np.bool_],
         kind: tuple[str, str],
@@ -108,7 +112,7 @@ def _wrap(basis: str, closed: bool) -> str:
     return "nonperiodic" if basis == "linear" else "pinned"
 
 
-def _per_curve(curves: Any, name: str, count: int) -> NDArray[Any]:
+def _per_curve(curves: bpy.types.Curves, name: str, count: int) -> NDArray[Any]:
     """Values of an attribute of curves, shape (count,); zeros if it is missing."""
     found = attribute(curves, name)
     return np.zeros(count, np.int32) if found is None or len(found) != count else found

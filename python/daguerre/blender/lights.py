@@ -134,7 +134,7 @@ def _lamp(
     world: Matrix,
     metres_per_unit: float,
     notes: Notes,
-) -> Any:
+) -> DirectionalLight | PointLight:
     if light.type == "SUN":
         return DirectionalLight(rgb, name, angle=math.degrees(light.angle))
     radius = light.shadow_soft_size * metres_per_unit

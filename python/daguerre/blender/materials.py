@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from functools import partial
 from math import isqrt
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from daguerre.files.notes import Notes, Silence
 from daguerre.scene.materials import Diffuse, Gltf, Material
@@ -33,6 +34,10 @@ from .shading.surfaces import ATLAS, Surface
 from .shading.texture_nodes import ACTIVE
 from .shading.tree import Tree
 from .shading.uv_size import uv_size
+
+if TYPE_CHECKING:
+    import bpy
+
 
 #: Texels of all canvases on which patterns are computed, and the share of what is left of them that
 #: one may have.
@@ -76,7 +81,7 @@ class Materials:
         self._read: dict[str, Reads] = {}
         self._texels = MAX_TEXELS
 
-    def index(self, material: Any) -> int:
+    def index(self, material: bpy.types.Material | None) -> int:
         """Index of a material (``bpy.types.Material``) in the scene; None: a plain grey one.
 
         Raises:
@@ -84,14 +89,14 @@ class Materials:
         """
         return self._of(material).index
 
-    def uv_sets(self, material: Any) -> tuple[str, ...]:
+    def uv_sets(self, material: bpy.types.Material | None) -> tuple[str, ...]:
         """Names of the UV layers that a mesh must hold as sets 0 and 1.
 
         An empty name is the layer that is active for rendering.
         """
         return _names(self._of(material).uv_sets)
 
-    def color_attribute(self, material: Any) -> str | None:
+    def color_attribute(self, material: bpy.types.Material | None) -> str | None:
         """Name of the colours of vertices that the base colour is multiplied with.
 
         An empty name is the attribute that is active for rendering. None: no colours; the mesh
@@ -99,11 +104,13 @@ class Materials:
         """
         return _name(self._of(material).colors)
 
-    def needs(self, material: Any) -> Needs:
+    def needs(self, material: bpy.types.Material | None) -> Needs:
         """Layers that a mesh with a material must hold."""
         return Needs(self.uv_sets(material), self.color_attribute(material))
 
-    def binding(self, material: Any, world: Any) -> Any | None:
+    def binding(
+        self, material: bpy.types.Material | None, world: NDArray[np.float64]
+    ) -> Any | None:
         """Key of what a material depends on besides the mesh; None: it is the same on all meshes.
 
         Args:
@@ -117,7 +124,7 @@ class Materials:
             return None
         return str(material.name_full), np.asarray(world).tobytes() if reads.world else b""
 
-    def painted(self, material: Any, surface: Surface) -> tuple[int, Needs]:
+    def painted(self, material: bpy.types.Material, surface: Surface) -> tuple[int, Needs]:
         """Index of a material whose patterns are computed for a surface, and layers that it reads.
 
         Raises:
@@ -126,7 +133,7 @@ class Materials:
         made = self._paint(material, surface) or self._of(material)
         return made.index, Needs(_names(made.uv_sets), _name(made.colors))
 
-    def _paint(self, material: Any, surface: Surface) -> _Made | None:
+    def _paint(self, material: bpy.types.Material, surface: Surface) -> _Made | None:
         """Bakes the patterns of a material; None: the surface has no room for them."""
         reads = self._reads(material)
         trial = canvas_of(reads, surface, TRIAL)
@@ -149,7 +156,7 @@ class Materials:
         self._painted[alike] = made = self._make(material, surface, canvas)
         return made
 
-    def _reads(self, material: Any) -> Reads:
+    def _reads(self, material: bpy.types.Material) -> Reads:
         """Coordinates that patterns read, found once: each object asks for them."""
         key = str(material.name_full)
         if key not in self._read:
@@ -157,14 +164,14 @@ class Materials:
             self._read[key] = Reads() if graph is None else reads_of(graph)
         return self._read[key]
 
-    def _graph(self, material: Any) -> Graph | None:
+    def _graph(self, material: bpy.types.Material) -> Graph | None:
         """Nodes of a material, read once."""
         key = str(material.name_full)
         if key not in self._graphs:
             self._graphs[key] = Networks(self._notes).graph(material)
         return self._graphs[key]
 
-    def _of(self, material: Any) -> _Made:
+    def _of(self, material: bpy.types.Material | None) -> _Made:
         key = None if material is None else str(material.name_full)
         if key not in self._made:
             self._made[key] = self._plain() if material is None else self._make(material)
@@ -174,7 +181,7 @@ class Materials:
         return _Made(self._scene.add_material(Material(Diffuse(_PLAIN))))
 
     def _make(
-        self, material: Any, on: Surface | None = None, canvas: Canvas | None = None
+        self, material: bpy.types.Material, on: Surface | None = None, canvas: Canvas | None = None
     ) -> _Made:
         if material.node_tree is None:
             return _Made(self._scene.add_material(_displayed(material)))
@@ -196,7 +203,7 @@ class Materials:
         made = assembler.material(surface, name)
         return _Made(self._scene.add_material(made), sets, colors)
 
-    def _closure(self, material: Any, on: Surface | None, baker: Baker) -> Closure:
+    def _closure(self, material: bpy.types.Material, on: Surface | None, baker: Baker) -> Closure:
         """Scattering and emission of a material's surface; black if it has none."""
         graph = self._graph(material)
         if graph is None:
@@ -210,7 +217,7 @@ class Materials:
         return Tree(graph, evaluator, math).surface()
 
 
-def _unit(material: Any, on: Surface | None, primvar: str) -> float:
+def _unit(material: bpy.types.Material | None, on: Surface | None, primvar: str) -> float:
     """Length of one unit of texture coordinates, in units of the scene."""
     length = None if on is None else on.length(primvar)
     return uv_size(material) if length is None else length
@@ -224,7 +231,7 @@ def _name(colors: str | None) -> str | None:
     return "" if colors == ACTIVE else colors
 
 
-def _displayed(material: Any) -> Material:
+def _displayed(material: bpy.types.Material) -> Material:
     """Material without nodes: the values that Blender shows in its workbench."""
     r, g, b = (min(max(float(c), 0.0), 1.0) for c in material.diffuse_color[:3])
     kind = Gltf(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,11 @@ from daguerre.scene.scene import Scene
 from .arrays import attribute, points_of, read
 from .shading.surfaces import Surface
 
+if TYPE_CHECKING:
+    import bpy
+
+
+Matrix = NDArray[np.float64]
 #: Times (S,) in s, and points of all vertices at each, shape (S, N, 3).
 Steps = tuple[Sequence[float], NDArray[np.float32]]
 Parts = list[tuple[int, int]]
@@ -44,20 +49,20 @@ class Needs(NamedTuple):
 class Materials(Protocol):
     """Materials of the scene."""
 
-    def index(self, material: Any) -> int:
+    def index(self, material: bpy.types.Material | None) -> int:
         """Index in the scene of a ``bpy.types.Material``; None: the default."""
 
-    def needs(self, material: Any) -> Needs:
+    def needs(self, material: bpy.types.Material | None) -> Needs:
         """Layers of a mesh that a material reads."""
 
-    def binding(self, material: Any, world: Any) -> Any | None:
+    def binding(self, material: bpy.types.Material | None, world: Matrix) -> Any | None:
         """Key of what a material depends on besides the mesh; None: it is the same on all."""
 
-    def painted(self, material: Any, surface: Surface) -> tuple[int, Needs]:
+    def painted(self, material: bpy.types.Material | None, surface: Surface) -> tuple[int, Needs]:
         """Index of a material that is made for a surface, and layers that it reads."""
 
 
-def slots_of(thing: Any) -> tuple[Any, ...]:
+def slots_of(thing: bpy.types.Object) -> tuple[Any, ...]:
     """Materials of an object, by slot; at least one, which may be None."""
     return tuple(slot.material for slot in thing.material_slots) or (None,)
 
@@ -76,7 +81,7 @@ class Source:
         normals: Unit normals of corners, shape (C, 3); None: the mesh is flat.
     """
 
-    mesh: Any
+    mesh: bpy.types.Mesh
     points: NDArray[np.float32]
     vertices: NDArray[np.int32]
     triangles: NDArray[np.int32]
@@ -85,7 +90,7 @@ class Source:
     normals: NDArray[np.float32] | None
 
 
-def source_of(mesh: Any, slots: int) -> Source:
+def source_of(mesh: bpy.types.Mesh, slots: int) -> Source:
     """Reads a mesh.
 
     Args:
@@ -111,7 +116,7 @@ def source_of(mesh: Any, slots: int) -> Source:
     )
 
 
-def _normals(mesh: Any, vertices: NDArray[np.int32]) -> NDArray[np.float32] | None:
+def _normals(mesh: bpy.types.Mesh, vertices: NDArray[np.int32]) -> NDArray[np.float32] | None:
     """Normals of corners; None: each face has one normal."""
     if mesh.normals_domain == "FACE":
         return None
@@ -135,7 +140,9 @@ class Meshes:
         self._notes = notes
         self._made: dict[Any, Added] = {}
 
-    def index(self, thing: Any, steps: Steps | None = None, world: Any = _STILL) -> Parts:
+    def index(
+        self, thing: bpy.types.Object, steps: Steps | None = None, world: Matrix = _STILL
+    ) -> Parts:
         """Pairs (mesh, material) of an evaluated object of type MESH; no pairs: no faces.
 
         Args:
@@ -153,13 +160,18 @@ class Meshes:
             for mesh, slot, made in self._made[key]
         ]
 
-    def _plan(self, material: Any, world: Any) -> tuple[Any, Needs | None]:
+    def _plan(self, material: bpy.types.Material | None, world: Matrix) -> tuple[Any, Needs | None]:
         """Key of a material that is made for the mesh, or what one for all meshes needs."""
         key = self._materials.binding(material, world)
         return (key, None) if key is not None else (None, self._materials.needs(material))
 
     def _add(
-        self, mesh: Any, slots: Sequence[Any], plans: Sequence[Any], steps: Steps | None, world: Any
+        self,
+        mesh: bpy.types.Mesh,
+        slots: Sequence[Any],
+        plans: Sequence[Any],
+        steps: Steps | None,
+        world: Matrix,
     ) -> Added:
         """Adds a mesh for each slot that some face has."""
         source = source_of(mesh, len(slots))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,10 @@ from .meshes import Steps
 from .objects import Identity, Seen, walk
 from .shutters import shutter_of
 
+if TYPE_CHECKING:
+    import bpy
+
+
 #: Goes to a frame and a fraction of one: ``Scene.frame_set`` or ``RenderEngine.frame_set``.
 FrameSet = Callable[[int, float], None]
 #: Reads what else changes with a thing, such as a light; None: nothing.
@@ -35,7 +39,9 @@ USUAL_STEPS, MOST_STEPS = 1, 7
 _SHAPES = ("MESH", "CURVES")
 
 
-def exposure_of(scene: Any, camera: Any) -> tuple[float, float] | None:
+def exposure_of(
+    scene: bpy.types.Scene, camera: bpy.types.Object | None
+) -> tuple[float, float] | None:
     """When a camera's exposure begins and ends, s from the frame; None: it freezes motion.
 
     Args:
@@ -50,7 +56,9 @@ def exposure_of(scene: Any, camera: Any) -> tuple[float, float] | None:
 
 
 @contextmanager
-def moments(scene: Any, frame_set: FrameSet | None) -> Iterator[Callable[[float], None]]:
+def moments(
+    scene: bpy.types.Scene, frame_set: FrameSet | None
+) -> Iterator[Callable[[float], None]]:
     """Goes to moments of a scene, s from its frame, and restores the frame.
 
     Args:
@@ -87,7 +95,7 @@ class Blur:
     deforms: bool
 
 
-def blur_of(thing: Any) -> Blur:
+def blur_of(thing: bpy.types.Object) -> Blur:
     """Cycles' settings of an object, which it has if that add-on is there."""
     given = getattr(thing.original, "cycles", None)  # a script's changes do not reach the copy
     if given is None:
@@ -116,7 +124,7 @@ class Look:
     probed: dict[Identity, Any] = field(default_factory=dict)
 
 
-def look(depsgraph: Any, probe: Probe, wanted: set[Identity] | None = None) -> Look:
+def look(depsgraph: bpy.types.Depsgraph, probe: Probe, wanted: set[Identity] | None = None) -> Look:
     """Looks at a scene; points only of ``wanted`` things, if given."""
     found, pointers = Look(), set()
     for seen in walk(depsgraph):
@@ -156,7 +164,7 @@ class Motion:
 
 
 def motion_of(
-    depsgraph: Any,
+    depsgraph: bpy.types.Depsgraph,
     shutter: tuple[float, float],
     time: float,
     probe: Probe,

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import bpy
+
 
 #: Tells the same thing at another moment: instancer, object, type, and place among the copies.
 Identity = tuple[str, str, str, tuple[int, ...]]
@@ -35,12 +39,12 @@ class Seen:
         copy: The walk's own record of it.
     """
 
-    object: Any
+    object: bpy.types.Object
     matrix: NDArray[np.float64]
     name: str
     own: bool
     surface: bool
-    copy: Any
+    copy: bpy.types.DepsgraphObjectInstance
 
     @property
     def identity(self) -> Identity:
@@ -49,7 +53,7 @@ class Seen:
         return self.name, self.object.name_full, self.object.type, path
 
 
-def walk(depsgraph: Any) -> Iterator[Seen]:
+def walk(depsgraph: bpy.types.Depsgraph) -> Iterator[Seen]:
     """Everything that renders show, in the order of the dependency graph.
 
     The graph of a render holds nothing else. That of the viewport also holds what renders hide.
@@ -70,7 +74,7 @@ def walk(depsgraph: Any) -> Iterator[Seen]:
         yield Seen(thing, matrix, name, own, surface, copy)
 
 
-def _hides(thing: Any, owner: Any) -> bool:
+def _hides(thing: bpy.types.Object, owner: bpy.types.Object) -> bool:
     """Whether switches of an object or of its instancer hide it in renders.
 
     Geometry nodes and particles also copy objects that renders hide.
@@ -79,7 +83,7 @@ def _hides(thing: Any, owner: Any) -> bool:
     return bool(owner.hide_render or (thing.hide_render and not copied))
 
 
-def _is_pattern(thing: Any) -> bool:
+def _is_pattern(thing: bpy.types.Object) -> bool:
     """Whether an object is there to be copied: one above it copies what is below itself."""
     above = thing.parent
     while above is not None:
@@ -89,7 +93,7 @@ def _is_pattern(thing: Any) -> bool:
     return False
 
 
-def _hidden(scene: Any) -> set[str]:
+def _hidden(scene: bpy.types.Scene) -> set[str]:
     """Names of objects that only collections without render visibility hold."""
     shown: set[str] = set()
     every: set[str] = set()
@@ -105,7 +109,7 @@ def _hidden(scene: Any) -> set[str]:
     return every - shown
 
 
-def descendants(depsgraph: Any) -> dict[str, list[str]]:
+def descendants(depsgraph: bpy.types.Depsgraph) -> dict[str, list[str]]:
     """Names of the objects below each object that has children."""
     below: dict[str, list[str]] = {}
     for thing in depsgraph.objects:

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from daguerre.camera.projection import Projection
 from daguerre.errors import InputError
@@ -22,11 +22,15 @@ from daguerre.files.notes import Notes
 
 from .film import Film
 
+if TYPE_CHECKING:
+    import bpy
+
+
 #: Largest angle, radians, that a lens polynomial may have at the middle of the picture.
 _MIDDLE = 1e-3
 
 
-def panorama_of(data: Any, film: Film, where: str, notes: Notes) -> Projection:
+def panorama_of(data: bpy.types.Camera, film: Film, where: str, notes: Notes) -> Projection:
     """Makes the projection of a panoramic camera.
 
     Args:
@@ -49,7 +53,7 @@ def panorama_of(data: Any, film: Film, where: str, notes: Notes) -> Projection:
     return make(data, film, where)
 
 
-def _equirectangular(data: Any, film: Film, where: str) -> Projection:
+def _equirectangular(data: bpy.types.Camera, film: Film, where: str) -> Projection:
     (columns, rows), turn = film.resolution, math.pi
     west, east = data.longitude_min, data.longitude_max
     south, north = data.latitude_min, data.latitude_max
@@ -63,19 +67,19 @@ def _equirectangular(data: Any, film: Film, where: str) -> Projection:
     return _shifted("equirectangular", data, film, (across, down), middle)
 
 
-def _equidistant(data: Any, film: Film, where: str) -> Projection:
+def _equidistant(data: bpy.types.Camera, film: Film, where: str) -> Projection:
     _field(data, where)
     across, down = (side / data.fisheye_fov for side in film.resolution)
     return _shifted("equidistant", data, film, (across, down))
 
 
-def _equisolid(data: Any, film: Film, where: str) -> Projection:
+def _equisolid(data: bpy.types.Camera, film: Film, where: str) -> Projection:
     _field(data, where)
     focal = data.fisheye_lens / _pitch(film)
     return _shifted("equisolid", data, film, (focal, focal))
 
 
-def _polynomial(data: Any, film: Film, where: str) -> Projection:
+def _polynomial(data: bpy.types.Camera, film: Film, where: str) -> Projection:
     """Angle -(k0 + k1 r + ...), radians, of a radius in mm, as f-theta in focal lengths."""
     bend = [-getattr(data, f"fisheye_polynomial_k{k}") for k in range(5)]
     if abs(bend[0]) > _MIDDLE or not bend[1] > 0:
@@ -91,7 +95,7 @@ def _polynomial(data: Any, film: Film, where: str) -> Projection:
 
 def _shifted(
     model: str,
-    data: Any,
+    data: bpy.types.Camera,
     film: Film,
     focal: tuple[float, float],
     middle: tuple[float, float] | None = None,
@@ -107,7 +111,7 @@ def _pitch(film: Film) -> float:
     return film.size[0] / film.resolution[0]
 
 
-def _field(data: Any, where: str) -> None:
+def _field(data: bpy.types.Camera, where: str) -> None:
     if not data.fisheye_fov > 0:
         raise InputError(f"{where}: fisheye_fov: wanted a number above 0, got {data.fisheye_fov}")
 

@@ -5,7 +5,7 @@ Source: Blender's Python API, ParticleSystem.co_hair and ParticleSettings (diame
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,10 @@ from daguerre.files.notes import Notes
 from daguerre.scene.scene import Scene
 
 from .meshes import Materials, Parts, slots_of
+
+if TYPE_CHECKING:
+    import bpy
+
 
 FloatArray = NDArray[np.float64]
 
@@ -35,7 +39,7 @@ class ParticleHair:
         self._rendering = rendering
         self._made: dict[int, Parts] = {}
 
-    def index(self, thing: Any) -> Parts:
+    def index(self, thing: bpy.types.Object) -> Parts:
         """Pairs (mesh, material) of the hair of an evaluated object, in its own frame."""
         if not len(thing.particle_systems):
             return []
@@ -45,7 +49,9 @@ class ParticleHair:
             self._made[key] = [part for part in found if part is not None]
         return self._made[key]
 
-    def _add(self, thing: Any, system: Any) -> tuple[int, int] | None:
+    def _add(
+        self, thing: bpy.types.Object, system: bpy.types.ParticleSystem
+    ) -> tuple[int, int] | None:
         settings = system.settings
         if settings.type != "HAIR" or settings.render_type != "PATH":
             return None  # its particles are copies, or nothing
@@ -66,7 +72,7 @@ class ParticleHair:
         slot = min(max(settings.material - 1, 0), len(slots) - 1)
         return mesh, self._materials.index(slots[slot])
 
-    def _strands(self, thing: Any, system: Any) -> FloatArray:
+    def _strands(self, thing: bpy.types.Object, system: bpy.types.ParticleSystem) -> FloatArray:
         """Points of strands in the frame of the object, shape (strands, points, 3)."""
         settings = system.settings
         parents, children = len(system.particles), len(system.child_particles)
@@ -83,7 +89,7 @@ class ParticleHair:
         return np.asarray(points.reshape(-1, (1 << steps) + 1, 3))
 
 
-def _widths(settings: Any, points: int) -> FloatArray:
+def _widths(settings: bpy.types.ParticleSettings, points: int) -> FloatArray:
     """Diameters along a strand, in units of the scene, shape (points,)."""
     widths = np.linspace(settings.root_radius, settings.tip_radius, points)
     if settings.use_close_tip:

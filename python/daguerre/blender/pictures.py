@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.color.srgb import to_linear
 
+if TYPE_CHECKING:
+    import bpy
+
+
 Picture = NDArray[np.float32]
 #: Colour spaces whose bytes are linear.
 LINEAR = ("Non-Color", "Linear Rec.709", "Linear", "Raw")
 
 
-def raw_pixels(image: Any) -> Picture | None:
+def raw_pixels(image: bpy.types.Image) -> Picture | None:
     """Pixels as Blender has them, shape (H, W, C), row 0 on top; None: they cannot be loaded."""
     count = len(image.pixels)  # loads the image
     width, height = (int(n) for n in image.size)
@@ -26,7 +30,7 @@ def raw_pixels(image: Any) -> Picture | None:
     return flat.reshape(height, width, channels)[::-1]
 
 
-def pixels_of(image: Any) -> Picture | None:
+def pixels_of(image: bpy.types.Image) -> Picture | None:
     """Scene-linear picture, shape (H, W, 3), row 0 on top; None: there are no pixels.
 
     Bytes of another colour space than sRGB are taken as linear. Blender itself converts pictures of

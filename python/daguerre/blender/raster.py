@@ -75,7 +75,9 @@ class _Planes:
     factors: NDArray[np.float32]
     heights: NDArray[np.float32]
 
-    def at(self, which: Any, column: Any, row: Any) -> tuple[Any, Any, Any]:
+    def at(
+        self, which: NDArray[np.int64] | int, column: NDArray[np.float32], row: NDArray[np.float32]
+    ) -> tuple[Any, Any, Any]:
         """Two coordinates, and the distance to the nearest edge, of texels of boxes."""
         heights = self.heights[which]
         found = []
@@ -127,7 +129,7 @@ def _planes(corners: NDArray[np.float64], size: tuple[int, int]) -> _Planes:
     return _Planes(low, extent, factors.astype(np.float32), heights.astype(np.float32))
 
 
-def _cross(a: Any, b: Any) -> Any:
+def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
     return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
 
 
@@ -142,7 +144,7 @@ def _portions(chosen: NDArray[np.int64], texels: NDArray[np.int64]) -> Iterator[
         start = end
 
 
-def _add_large(raster: Raster, depth: Any, planes: _Planes, which: int) -> None:
+def _add_large(raster: Raster, depth: NDArray[np.float32], planes: _Planes, which: int) -> None:
     """Adds one triangle, in all texels of its box."""
     (left, top), (columns, rows) = planes.low[which], planes.extent[which]
     part = slice(top, top + rows), slice(left, left + columns)
@@ -157,7 +159,9 @@ def _add_large(raster: Raster, depth: Any, planes: _Planes, which: int) -> None:
     np.copyto(raster.weights[1][part], two, where=deeper)
 
 
-def _add_small(raster: Raster, depth: Any, planes: _Planes, few: NDArray[np.int64]) -> None:
+def _add_small(
+    raster: Raster, depth: NDArray[np.float32], planes: _Planes, few: NDArray[np.int64]
+) -> None:
     """Adds many small triangles at once."""
     extent = planes.extent[few]
     count = extent.prod(axis=1)

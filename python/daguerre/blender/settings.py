@@ -55,12 +55,14 @@ def settings_of(scene: bpy.types.Scene, camera: bpy.types.Object | None = None) 
     return RenderSettings.of(**values, **_sampling(scene, panel), **_light(panel, switches))
 
 
-def _threads(render: Any) -> int:
+def _threads(render: bpy.types.RenderSettings) -> int:
     """Number of threads; 0: all cores."""
     return int(render.threads) if render.threads_mode == "FIXED" else 0
 
 
-def region_of(render: Any, size: tuple[int, int]) -> tuple[int, int, int, int] | None:
+def region_of(
+    render: bpy.types.RenderSettings, size: tuple[int, int]
+) -> tuple[int, int, int, int] | None:
     """Render region, px, from the top left, ends exclusive; None: the whole picture.
 
     It has at least a pixel.
@@ -78,7 +80,7 @@ def region_of(render: Any, size: tuple[int, int]) -> tuple[int, int, int, int] |
     return left, rows - top, right, rows - bottom
 
 
-def _sampling(scene: Any, panel: CameraPanel) -> dict[str, Any]:
+def _sampling(scene: bpy.types.Scene, panel: CameraPanel) -> dict[str, Any]:
     """Samples, noise and seed."""
     cycles = getattr(scene, "cycles", None)
     found: dict[str, Any] = {}

@@ -6,12 +6,16 @@ the opening over that time. Source: Blender manual, Motion Blur.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from daguerre.camera.rolling_shutter import RollingShutter
 from daguerre.files.notes import Notes
 
 from .camera_panel import CameraPanel
+
+if TYPE_CHECKING:
+    import bpy
+
 
 #: When a shutter of one frame opens, frames.
 OPENS = {"START": 0.0, "CENTER": -0.5, "END": -1.0}
@@ -19,7 +23,9 @@ OPENS = {"START": 0.0, "CENTER": -0.5, "END": -1.0}
 _POINTS = 33
 
 
-def shutter_of(render: Any, panel: CameraPanel, notes: Notes) -> dict[str, Any]:
+def shutter_of(
+    render: bpy.types.RenderSettings, panel: CameraPanel, notes: Notes
+) -> dict[str, Any]:
     """Parameters of a camera's shutter.
 
     Args:
@@ -43,7 +49,7 @@ def shutter_of(render: Any, panel: CameraPanel, notes: Notes) -> dict[str, Any]:
     return found
 
 
-def _of_blender(render: Any, fps: float, notes: Notes) -> dict[str, Any]:
+def _of_blender(render: bpy.types.RenderSettings, fps: float, notes: Notes) -> dict[str, Any]:
     share = float(render.motion_blur_shutter)
     if not render.use_motion_blur or share <= 0:
         return {"shutter_time": 0.0}
@@ -56,7 +62,7 @@ def _of_blender(render: Any, fps: float, notes: Notes) -> dict[str, Any]:
     return found | ({"shutter_curve": curve} if curve else {})
 
 
-def _curve(mapping: Any) -> list[tuple[float, float]] | None:
+def _curve(mapping: bpy.types.CurveMapping) -> list[tuple[float, float]] | None:
     """Opening over the time of the shutter, 0 to 1; None: open all the time, or never."""
     mapping.initialize()
     line = mapping.curves[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,10 @@ from .over_time import move_lights, moving_camera
 from .particles import ParticleHair
 from .placing import Placing
 from .world import set_world
+
+if TYPE_CHECKING:
+    import bpy
+
 
 Matrix = NDArray[np.float64]
 
@@ -56,7 +60,7 @@ def rooms(unit_m: float) -> Rooms:
 
 
 def scene_of(
-    depsgraph: Any,
+    depsgraph: bpy.types.Depsgraph,
     *,
     time: float = 0.0,
     shutter: tuple[float, float] | None = None,
@@ -103,7 +107,9 @@ class _Translation:
         notes: Receives notes.
     """
 
-    def __init__(self, scene: Scene, depsgraph: Any, by: Rooms, notes: Notes) -> None:
+    def __init__(
+        self, scene: Scene, depsgraph: bpy.types.Depsgraph, by: Rooms, notes: Notes
+    ) -> None:
         self.motion = Motion()
         self._scene, self._depsgraph = scene, depsgraph
         self._by, self._notes = by, notes
@@ -116,7 +122,7 @@ class _Translation:
         self._cameras: dict[str, Camera] = {}
         self._effects: dict[str, str] = {}
 
-    def probe(self, seen: Seen) -> Any:
+    def probe(self, seen: Seen) -> Scene | Camera | None:
         """A light as a scene of its own, or a camera; None for all else."""
         world, quiet = self._base @ seen.matrix, Silence()
         if seen.object.type == "LIGHT":

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from daguerre.files.notes import Notes
 from daguerre.scene.scene import Scene
@@ -58,7 +59,7 @@ def set_world(scene: Scene, world: bpy.types.World | None, notes: Notes) -> None
         _set_picture(scene, picture, 1.0)
 
 
-def _output(world: Any) -> tuple[Any, Any]:
+def _output(world: bpy.types.World) -> tuple[Any, Any]:
     """Nodes behind the surface and the volume of the active output of a world."""
     outputs = [n for n in world.node_tree.nodes if n.bl_idname == "ShaderNodeOutputWorld"]
     chosen = next((n for n in outputs if n.is_active_output), None)
@@ -75,7 +76,7 @@ def _set_color(scene: Scene, color: tuple[float, ...], strength: float) -> None:
         scene.set_environment(color=(red, green, blue))
 
 
-def _set_picture(scene: Scene, picture: Any, strength: float) -> None:
+def _set_picture(scene: Scene, picture: NDArray[np.float32], strength: float) -> None:
     if strength > 0:
         clean = np.clip(np.nan_to_num(picture, nan=0.0), 0.0, _MOST).astype(np.float32)
         scene.set_environment(clean, scale=strength * LUMENS_PER_WATT)

@@ -12,18 +12,22 @@ import os
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from daguerre.files.notes import Notes
 
 from .pictures import Picture, pixels_of
+
+if TYPE_CHECKING:
+    import bpy
+
 
 #: Width and height of a panorama, and samples of a pixel.
 SIZE, _SAMPLES = (1024, 512), 16
 _KEPT: dict[str, Picture] = {}
 
 
-def baked(world: Any, notes: Notes) -> Picture | None:
+def baked(world: bpy.types.World, notes: Notes) -> Picture | None:
     """Panorama of a world, shape (H, W, 3), -z of the scene at its centre; None, with a note.
 
     Args:
@@ -44,7 +48,7 @@ def baked(world: Any, notes: Notes) -> Picture | None:
     return picture
 
 
-def bake(world: Any, size: tuple[int, int] = SIZE) -> Picture:
+def bake(world: bpy.types.World, size: tuple[int, int] = SIZE) -> Picture:
     """Draws a world and keeps the panorama.
 
     Raises:
@@ -74,7 +78,7 @@ def _read(path: Path) -> Picture:
 
 
 @contextlib.contextmanager
-def _scene_of(world: Any, size: tuple[int, int]) -> Iterator[tuple[Any, Path]]:
+def _scene_of(world: bpy.types.World, size: tuple[int, int]) -> Iterator[tuple[Any, Path]]:
     """A scene that draws a world into a file; both are removed in the end."""
     import bpy
 
@@ -97,7 +101,7 @@ def _scene_of(world: Any, size: tuple[int, int]) -> Iterator[tuple[Any, Path]]:
         Path(name).unlink(missing_ok=True)
 
 
-def _set_up(scene: Any, size: tuple[int, int], name: str) -> None:
+def _set_up(scene: bpy.types.Scene, size: tuple[int, int], name: str) -> None:
     render, cycles = scene.render, scene.cycles
     render.engine, cycles.device = "CYCLES", "CPU"
     cycles.samples, cycles.use_adaptive_sampling = _SAMPLES, False

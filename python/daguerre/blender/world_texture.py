@@ -12,7 +12,7 @@ holds both against Cycles.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,10 @@ from numpy.typing import NDArray
 from daguerre.files.notes import Notes
 
 from .pictures import LINEAR, pixels_of
+
+if TYPE_CHECKING:
+    import bpy
+
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.float32]
@@ -29,7 +33,7 @@ _MOST_ROWS, _CHUNK = 4096, 1 << 18
 _FINE = 2
 
 
-def environment_texture(node: Any, notes: Notes) -> Picture | None:
+def environment_texture(node: bpy.types.ShaderNode, notes: Notes) -> Picture | None:
     """Panorama of an environment texture, shape (H, W, 3); None: the nodes need a bake.
 
     Args:
@@ -53,7 +57,7 @@ def environment_texture(node: Any, notes: Notes) -> Picture | None:
     return resampled(pixels, max(rows, 8), found, mirrored=mirrored)
 
 
-def _mapping(socket: Any) -> tuple[Array, Array] | None:
+def _mapping(socket: bpy.types.NodeSocket) -> tuple[Array, Array] | None:
     """Matrix and shift of the direction that is looked up; None: the nodes need a bake."""
     if not socket.is_linked:
         return np.eye(3), np.zeros(3)
@@ -75,7 +79,7 @@ def _mapping(socket: Any) -> tuple[Array, Array] | None:
     return outer[0] @ inner[0], outer[0] @ inner[1] + outer[1]
 
 
-def _values(part: Any) -> Array:
+def _values(part: bpy.types.NodeSocket | None) -> Array:
     return np.zeros(3) if part is None else np.array(part.default_value, np.float64)
 
 

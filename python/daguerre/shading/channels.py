@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from daguerre.color import srgb as srgb_curve
 
+#: Numbers of one channel of a node: one number, or an array of any shape.
+Numbers = NDArray[np.floating] | np.floating | float
 Six = tuple[float, float, float, float, float, float]
 IDENTITY: Six = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 

@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from daguerre.shading.channels import Numbers
+
 from .channels import Channel, UnsupportedError, Value, broadcast
 from .evaluate import Arguments, Operation
 
@@ -94,7 +96,7 @@ def smoothstep(given: Arguments) -> Value:
     return given.context.math.each(_smooth, *values)
 
 
-def _smooth(value: Any, low: Any, high: Any) -> Any:
+def _smooth(value: Numbers, low: Numbers, high: Numbers) -> Numbers:
     share = (value - low) / np.where(high == low, 1, high - low)
     return np.where(value >= high, 1, np.where(value <= low, 0, share * share * (3 - 2 * share)))
 
@@ -133,7 +135,7 @@ def of_three(function: Callable[..., Any]) -> Operation:
     return apply
 
 
-def hsv_from_rgb(r: Any, g: Any, b: Any) -> tuple[Any, Any, Any]:
+def hsv_from_rgb(r: Numbers, g: Numbers, b: Numbers) -> tuple[Numbers, Numbers, Numbers]:
     """Hue in turns, saturation and value (Smith 1978, "Color gamut transform pairs").
 
     Colours without a channel above 0 have neither hue nor saturation.
@@ -150,7 +152,7 @@ def hsv_from_rgb(r: Any, g: Any, b: Any) -> tuple[Any, Any, Any]:
     return hue, span / np.where(span == 0, 1, high), high
 
 
-def rgb_from_hsv(h: Any, s: Any, v: Any) -> tuple[Any, Any, Any]:
+def rgb_from_hsv(h: Numbers, s: Numbers, v: Numbers) -> tuple[Numbers, Numbers, Numbers]:
     """Red, green and blue of hue (in turns), saturation and value; undoes ``hsv_from_rgb``."""
     r, g, b = (
         v * (1 - s * np.clip(np.minimum(k, 4 - k), 0, 1))
@@ -159,7 +161,7 @@ def rgb_from_hsv(h: Any, s: Any, v: Any) -> tuple[Any, Any, Any]:
     return r, g, b
 
 
-def _chosen(function: Callable[..., Any], index: int, *channels: Any) -> Any:
+def _chosen(function: Callable[..., Any], index: int, *channels: object) -> Any:
     return function(*channels)[index]
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 #: Points that are evaluated at once.
 _BLOCK = 1 << 15
@@ -23,7 +23,7 @@ def in_blocks(
         count: Number of results.
     """
 
-    def apply(*values: Any) -> list[NDArray[np.float32]]:
+    def apply(*values: ArrayLike) -> list[NDArray[np.float32]]:
         given = [np.asarray(value, np.float32) for value in values]
         shape = np.broadcast_shapes(*(one.shape for one in given))
         total = int(np.prod(shape, dtype=np.int64))

@@ -14,31 +14,31 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .hashes import color_of_numbers, of_cell, of_numbers
+from .hashes import Numbers, color_of_numbers, of_cell, of_numbers
 
 Array = NDArray[np.float32]
 Point = list[Array]
 Metric = Callable[[Sequence[Array], Any], Array]
 
 
-def euclidean(offset: Sequence[Array], exponent: Any) -> Array:
+def euclidean(offset: Sequence[Array], exponent: Numbers) -> Array:
     """Length of an offset."""
     return np.sqrt(square(offset))
 
 
-def manhattan(offset: Sequence[Array], exponent: Any) -> Array:
+def manhattan(offset: Sequence[Array], exponent: Numbers) -> Array:
     """Sum of the sizes along the axes."""
     return _total([np.abs(one) for one in offset])
 
 
-def chebychev(offset: Sequence[Array], exponent: Any) -> Array:
+def chebychev(offset: Sequence[Array], exponent: Numbers) -> Array:
     """Largest size along an axis."""
     return np.asarray(np.maximum.reduce([np.abs(one) for one in offset]))
 
 
-def minkowski(offset: Sequence[Array], exponent: Any) -> Array:
+def minkowski(offset: Sequence[Array], exponent: Numbers) -> Array:
     """Length by powers with an exponent, a number or array."""
-    total = _total([np.abs(one) ** exponent for one in offset])
+    total = _total([np.asarray(np.abs(one) ** exponent, np.float32) for one in offset])
     return np.asarray(total ** (np.float32(1) / exponent))
 
 
@@ -75,10 +75,10 @@ class Grid:
 
     floors: Point
     inside: Point
-    randomness: Any
+    randomness: Numbers
 
     @classmethod
-    def around(cls, point: Sequence[Array], randomness: Any) -> Grid:
+    def around(cls, point: Sequence[Array], randomness: Numbers) -> Grid:
         """Grid around points."""
         floors = [np.floor(axis) for axis in point]
         inside = [axis - floor for axis, floor in zip(point, floors, strict=True)]

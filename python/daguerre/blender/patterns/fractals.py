@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from .gradient_noise import Array, Point, signed_noise
+from .hashes import Numbers
 
 #: Weight under which octaves of a hybrid add nothing.
 _LEAST_WEIGHT = np.float32(0.001)
@@ -34,10 +35,10 @@ class Octaves:
     """
 
     detail: float = 2.0
-    roughness: Any = 0.5
-    lacunarity: Any = 2.0
-    offset: Any = 0.0
-    gain: Any = 1.0
+    roughness: Numbers = 0.5
+    lacunarity: Numbers = 2.0
+    offset: Numbers = 0.0
+    gain: Numbers = 1.0
     normalize: bool = True
 
     def noises(self, point: Point) -> Iterator[tuple[np.float32, Any, Array]]:
@@ -47,11 +48,11 @@ class Octaves:
 
 
 def octaves_of(
-    detail: float, roughness: Any, lacunarity: Any
+    detail: float, roughness: Numbers, lacunarity: Numbers
 ) -> Iterator[tuple[np.float32, Any, Any]]:
     """Share that counts, size and frequency of each octave; the share of the last may be a part."""
-    size: Any = ONE
-    scale: Any = ONE
+    size: Numbers = ONE
+    scale: Numbers = ONE
     for i in range(ceil(detail) + 1):
         yield ONE if i <= floor(detail) else np.float32(detail - floor(detail)), size, scale
         size = size * roughness
@@ -60,8 +61,8 @@ def octaves_of(
 
 def fbm(point: Point, octaves: Octaves) -> Array:
     """Sum of octaves (fractal Brownian motion)."""
-    total: Any = np.float32(0)
-    sizes: Any = np.float32(0)
+    total: Numbers = np.float32(0)
+    sizes: Numbers = np.float32(0)
     for share, size, noise in octaves.noises(point):
         more, most = total + noise * size, sizes + size
         if share < 1:
@@ -71,7 +72,7 @@ def fbm(point: Point, octaves: Octaves) -> Array:
     return np.asarray(_level(total, sizes, octaves))
 
 
-def _level(total: Any, sizes: Any, octaves: Octaves) -> Any:
+def _level(total: Numbers, sizes: Numbers, octaves: Octaves) -> Numbers:
     if not octaves.normalize:
         return total
     return np.float32(0.5) * total / sizes + np.float32(0.5)
@@ -79,7 +80,7 @@ def _level(total: Any, sizes: Any, octaves: Octaves) -> Any:
 
 def multifractal(point: Point, octaves: Octaves) -> Array:
     """Product of octaves."""
-    value: Any = ONE
+    value: Numbers = ONE
     for share, size, noise in octaves.noises(point):
         value = value * (share * size * noise + ONE)
     return np.asarray(value)
@@ -87,7 +88,7 @@ def multifractal(point: Point, octaves: Octaves) -> Array:
 
 def hetero_terrain(point: Point, octaves: Octaves) -> Array:
     """Terrain that is rougher where it is higher."""
-    value: Any = np.float32(0)
+    value: Numbers = np.float32(0)
     for i, (share, size, noise) in enumerate(octaves.noises(point)):
         raised = noise + octaves.offset
         step = raised * size * value if i else raised
@@ -97,8 +98,8 @@ def hetero_terrain(point: Point, octaves: Octaves) -> Array:
 
 def hybrid_multifractal(point: Point, octaves: Octaves) -> Array:
     """Terrain whose octaves weigh what lies below them."""
-    value: Any = np.zeros_like(point[0])
-    weight: Any = np.ones_like(point[0])
+    value: Numbers = np.zeros_like(point[0])
+    weight: Numbers = np.ones_like(point[0])
     for share, size, noise in octaves.noises(point):
         alive = weight > _LEAST_WEIGHT
         weight = np.minimum(weight, ONE)
@@ -110,8 +111,8 @@ def hybrid_multifractal(point: Point, octaves: Octaves) -> Array:
 
 def ridged_multifractal(point: Point, octaves: Octaves) -> Array:
     """Terrain with ridges; a part of an octave does not count."""
-    value: Any = np.float32(0)
-    signal: Any = np.float32(0)
+    value: Numbers = np.float32(0)
+    signal: Numbers = np.float32(0)
     for i, (share, size, noise) in enumerate(octaves.noises(point)):
         if share < 1:
             break

@@ -8,13 +8,14 @@ for GPU rendering", JCGT 9(3) (PCG); how numbers and cells become keys: Cycles, 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Words = NDArray[np.uint32]
 Array = NDArray[np.float32]
+#: Parameter of a pattern: one number, or an array (N,).
+Numbers = Array | np.float32 | float
 _SEED = 0xDEADBEEF + 13
 #: Steps of the two mixers: a word, the two that change it, and by how many bits they turn.
 _FINAL = ((2, 1, 14), (0, 2, 11), (1, 0, 25), (2, 1, 16), (0, 2, 4), (1, 0, 14), (2, 1, 24))
@@ -60,7 +61,7 @@ def fraction(word: Words) -> Array:
     return word.astype(np.float32) * _TO_FRACTION
 
 
-def bits(value: Any) -> Words:
+def bits(value: ArrayLike) -> Words:
     """Bits of numbers of single precision."""
     return np.ascontiguousarray(value, np.float32).view(np.uint32)
 

@@ -6,10 +6,9 @@ import hashlib
 import threading
 from collections import OrderedDict
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Arrays = list[NDArray[np.float32]]
 #: Bytes that are kept.
@@ -38,7 +37,7 @@ class Kept:
             identity: Text that no other function has.
         """
 
-        def apply(*values: Any) -> Arrays:
+        def apply(*values: ArrayLike) -> Arrays:
             given = [np.asarray(value, np.float32) for value in values]
             if max((one.size for one in given), default=0) < _LEAST:
                 return function(*given)

@@ -7,19 +7,18 @@ and of the distortion.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
 from .fractals import Octaves
 from .gradient_noise import Array, Point, signed_noise
-from .hashes import of_numbers
+from .hashes import Numbers, of_numbers
 
 Fractal = Callable[[Point, Octaves], Array]
 
 
 def noise(
-    point: Point, fractal: Fractal, octaves: Octaves, distortion: Any, *, colored: bool
+    point: Point, fractal: Fractal, octaves: Octaves, distortion: Numbers, *, colored: bool
 ) -> list[Array]:
     """Value, or three channels of the colour, of the Noise Texture.
 

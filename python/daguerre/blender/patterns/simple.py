@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .fractals import Octaves, fbm
+from .hashes import Numbers
 
 Array = NDArray[np.float32]
 _TURN = np.float32(2 * np.pi)
@@ -46,10 +47,10 @@ class Wave:
     rings: bool
     direction: str
     profile: str
-    phase: Any
-    distortion: Any
+    phase: Numbers
+    distortion: Numbers
     octaves: Octaves
-    scale: Any
+    scale: Numbers
 
 
 def wave(point: list[Array], given: Wave) -> Array:
@@ -95,7 +96,7 @@ def gradient(point: list[Array], kind: str) -> Array:
     return np.asarray(np.clip(choices[kind](), 0, 1))
 
 
-def _eased(t: Any) -> Any:
+def _eased(t: Numbers) -> Numbers:
     return t * t * (np.float32(3) - np.float32(2) * t)
 
 
@@ -115,7 +116,7 @@ _TURNS = (
 )
 
 
-def magic(point: list[Array], scale: Any, distortion: Any, depth: int) -> list[Array]:
+def magic(point: list[Array], scale: Numbers, distortion: Numbers, depth: int) -> list[Array]:
     """Magic Texture: three channels.
 
     Args:
@@ -156,11 +157,11 @@ class Bricks:
         squash_rows: See ``squash``.
     """
 
-    mortar: Any
-    smooth: Any
-    bias: Any
-    width: Any
-    height: Any
+    mortar: Numbers
+    smooth: Numbers
+    bias: Numbers
+    width: Numbers
+    height: Numbers
     offset: float
     offset_rows: int
     squash: float
@@ -170,8 +171,8 @@ class Bricks:
 def bricks(point: list[Array], wall: Bricks) -> tuple[Array, Array]:
     """Brick Texture: tint of the brick, and share of the mortar, both 0 .. 1."""
     row = _whole(point[1] / wall.height)
-    width: Any = np.broadcast_to(np.asarray(wall.width, np.float32), row.shape)
-    shift: Any = np.zeros(row.shape, np.float32)
+    width: Numbers = np.broadcast_to(np.asarray(wall.width, np.float32), row.shape)
+    shift: Numbers = np.zeros(row.shape, np.float32)
     if wall.offset_rows and wall.squash_rows:
         squashed = row % wall.squash_rows == 0
         width = np.where(squashed, width * np.float32(wall.squash), width)

@@ -11,9 +11,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .cells import Array, Grid, Metric, Point, euclidean, square
 from .fractals import ONE, octaves_of
+from .hashes import Numbers
 
 #: Square of the distance between two points below which they have no edge.
 _SAME = np.float32(0.0001)
@@ -36,20 +38,20 @@ class Cells:
         normalize: Whether distances are brought to 0 .. 1.
     """
 
-    randomness: Any = 1.0
+    randomness: Numbers = 1.0
     metric: Metric = euclidean
-    exponent: Any = 0.5
-    smoothness: Any = 0.5
+    exponent: Numbers = 0.5
+    smoothness: Numbers = 0.5
     detail: float = 0.0
-    roughness: Any = 0.5
-    lacunarity: Any = 2.0
+    roughness: Numbers = 0.5
+    lacunarity: Numbers = 2.0
     normalize: bool = False
 
     def octaves(self) -> Iterator[tuple[np.float32, Any, Any]]:
         """Share that counts, size and frequency of each octave."""
         return octaves_of(self.detail, self.roughness, self.lacunarity)
 
-    def widest(self, axes: int) -> Any:
+    def widest(self, axes: int) -> Numbers:
         """Distance by which the nearest one is divided."""
         half = np.asarray(0.5 + 0.5 * self.randomness, np.float32)
         return self.metric([half] * axes, self.exponent) if axes > 1 else half
@@ -94,7 +96,9 @@ class _Cell:
         """No cell."""
         return cls(np.full_like(like[0], np.inf), _zeros(like, len(like)), _zeros(like, len(like)))
 
-    def take(self, where: Any, distance: Any, offset: Sequence[Any], there: Point) -> None:
+    def take(
+        self, where: NDArray[np.bool_], distance: Array, offset: Sequence[Any], there: Point
+    ) -> None:
         """Replaces the cell at some points."""
         targets = (self.distance, *self.offset, *self.there)
         for target, values in zip(targets, (distance, *offset, *there), strict=True):
@@ -200,7 +204,7 @@ def _edge_of_line(point: Point, cells: Cells) -> Array:
     return np.asarray(np.minimum(*ends))
 
 
-def fractal(point: Point, cells: Cells, feature: Feature, widest: Any) -> Found:
+def fractal(point: Point, cells: Cells, feature: Feature, widest: Numbers) -> Found:
     """Octaves of a feature, summed; positions are mixed.
 
     Args:
@@ -212,7 +216,7 @@ def fractal(point: Point, cells: Cells, feature: Feature, widest: Any) -> Found:
     if cells.detail == 0 or not np.any(cells.roughness):
         found = feature(point, cells)
         return _normalized(found, ONE, widest) if cells.normalize else found
-    total: Any = np.float32(0)
+    total: Numbers = np.float32(0)
     sum_ = Found(np.zeros_like(point[0]), _zeros(point, 3), _zeros(point, len(point)))
     for share, size, scale in cells.octaves():
         octave = feature([axis * scale for axis in point], cells)
@@ -229,7 +233,7 @@ def _zeros(point: Point, count: int) -> list[Array]:
     return [np.zeros_like(point[0]) for _ in range(count)]
 
 
-def _normalized(found: Found, total: Any, widest: Any) -> Found:
+def _normalized(found: Found, total: Numbers, widest: Numbers) -> Found:
     color = [channel / total for channel in found.color]
     return Found(found.distance / (total * widest), color, found.position)
 
@@ -240,8 +244,8 @@ def fractal_edge(point: Point, cells: Cells) -> Array:
     if cells.detail == 0 or not np.any(cells.roughness):
         found = edge(point, cells)
         return np.asarray(found / widest) if cells.normalize else found
-    most: Any = widest
-    distance: Any = _FAR
+    most: Numbers = widest
+    distance: Numbers = _FAR
     for share, size, scale in cells.octaves():
         least = np.minimum(distance, edge([axis * scale for axis in point], cells) / scale)
         mixed = distance + size * (least - distance)

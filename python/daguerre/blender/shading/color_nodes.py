@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from daguerre.shading.channels import UnsupportedError, Value, broadcast
+from daguerre.shading.channels import Channel, Numbers, UnsupportedError, Value, broadcast
 from daguerre.shading.evaluate import Arguments
 from daguerre.shading.math_nodes import hsv_from_rgb, rgb_from_hsv
 
@@ -73,7 +73,7 @@ def blended(sockets: Sockets, mode: str, share: Value, pair: tuple[Value, Value]
     function = blends.COLORS[mode]
     combined = arithmetic.baker.combined
 
-    def channel(index: int) -> Any:
+    def channel(index: int) -> Channel:
         return combined(lambda t, *c: function(t, c[:3], c[3:])[index], share[0], *a, *b)
 
     return channel(0), channel(1), channel(2)
@@ -92,7 +92,7 @@ def gamma(given: Arguments) -> Value:
     return sockets.math.each(_raised, sockets.value("Color"), sockets.one("Gamma"))
 
 
-def _raised(color: Any, exponent: Any) -> Any:
+def _raised(color: Numbers, exponent: Numbers) -> Numbers:
     return np.where(color > 0, np.power(np.maximum(color, 0), exponent), color)
 
 
@@ -117,7 +117,7 @@ def hue_saturation(given: Arguments) -> Value:
     return r, g, b
 
 
-def _adjusted(index: int, *arguments: Any) -> Any:
+def _adjusted(index: int, *arguments: Numbers) -> Numbers:
     turn, saturate, scale, share, *color = arguments
     hue, saturation, value = hsv_from_rgb(*color)
     hue = (hue + turn + 0.5) % 1.0
@@ -178,13 +178,13 @@ def combine_color(given: Arguments) -> Value:
 def _of_three(sockets: Sockets, function: Callable[..., Any], value: Value) -> Value:
     combined = sockets.math.baker.combined
 
-    def channel(index: int) -> Any:
+    def channel(index: int) -> Channel:
         return combined(lambda *c: function(*c)[index], *value)
 
     return channel(0), channel(1), channel(2)
 
 
-def _hsl_from_rgb(r: Any, g: Any, b: Any) -> tuple[Any, Any, Any]:
+def _hsl_from_rgb(r: Numbers, g: Numbers, b: Numbers) -> tuple[Numbers, Numbers, Numbers]:
     """Hue in turns, saturation and lightness."""
     hue, _, high = hsv_from_rgb(r, g, b)
     low = np.minimum(np.minimum(r, g), b)
@@ -193,7 +193,9 @@ def _hsl_from_rgb(r: Any, g: Any, b: Any) -> tuple[Any, Any, Any]:
     return hue, np.where(rest == 0, 0, (high - low) / np.where(rest == 0, 1, rest)), light
 
 
-def _rgb_from_hsl(hue: Any, saturation: Any, light: Any) -> tuple[Any, Any, Any]:
+def _rgb_from_hsl(
+    hue: Numbers, saturation: Numbers, light: Numbers
+) -> tuple[Numbers, Numbers, Numbers]:
     """Red, green and blue; undoes ``_hsl_from_rgb``."""
     chroma = (1 - np.abs(2 * light - 1)) * saturation
     r, g, b = ((pure - 0.5) * chroma + light for pure in rgb_from_hsv(hue, 1.0, 1.0))

@@ -11,8 +11,9 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from daguerre.shading.channels import UnsupportedError, Value
+from daguerre.shading.channels import Channel, Numbers, UnsupportedError, Value
 from daguerre.shading.evaluate import Arguments
 
 from .sockets import Sockets
@@ -20,49 +21,49 @@ from .sockets import Sockets
 _LEAST = 1e-5
 
 
-def _where(test: Any, value: Callable[[], Any]) -> Any:
+def _where(test: NDArray[np.bool_] | np.bool_ | bool, value: Callable[[], Any]) -> Numbers:
     """Value where a test holds, else 0."""
     with np.errstate(all="ignore"):
         return np.where(test, value(), 0.0)
 
 
-def divided(a: Any, b: Any) -> Any:
+def divided(a: Numbers, b: Numbers) -> Numbers:
     """Quotient; 0 where the divisor is 0."""
     return _where(b != 0, lambda: a / b)
 
 
-def power(a: Any, b: Any) -> Any:
+def power(a: Numbers, b: Numbers) -> Numbers:
     """Power; 0 where a negative base has an exponent that is not whole."""
     return _where((a >= 0) | (b == np.floor(b)), lambda: np.power(a, b))
 
 
-def modulo(a: Any, b: Any) -> Any:
+def modulo(a: Numbers, b: Numbers) -> Numbers:
     """Remainder with the sign of the dividend."""
     return _where(b != 0, lambda: np.fmod(a, b))
 
 
-def wrapped(a: Any, high: Any, low: Any) -> Any:
+def wrapped(a: Numbers, high: Numbers, low: Numbers) -> Numbers:
     """Number in a range, past whose end it begins again."""
     span = high - low
     return np.where(span != 0, a - span * np.floor(divided(a - low, span)), low)
 
 
-def snapped(a: Any, step: Any) -> Any:
+def snapped(a: Numbers, step: Numbers) -> Numbers:
     """Multiple of a step at or below a number."""
     return np.floor(divided(a, step)) * step
 
 
-def _ping_pong(a: Any, b: Any) -> Any:
+def _ping_pong(a: Numbers, b: Numbers) -> Numbers:
     turns = divided(a - b, 2 * b)
     return _where(b != 0, lambda: np.abs((turns - np.floor(turns)) * 2 * b - b))
 
 
-def _smooth_minimum(a: Any, b: Any, width: Any) -> Any:
+def _smooth_minimum(a: Numbers, b: Numbers, width: Numbers) -> Numbers:
     share = _where(width != 0, lambda: np.maximum(width - np.abs(a - b), 0) / width)
     return np.minimum(a, b) - share**3 * width / 6
 
 
-def _logarithm(a: Any, base: Any) -> Any:
+def _logarithm(a: Numbers, base: Numbers) -> Numbers:
     return _where((a > 0) & (base > 0), lambda: divided(np.log(a), np.log(base)))
 
 
@@ -198,7 +199,7 @@ def _bent(sockets: Sockets, operation: str, a: Value, b: Value) -> Value:
 def _crossed(sockets: Sockets, a: Value, b: Value) -> Value:
     combined = sockets.math.baker.combined
 
-    def component(i: int, j: int) -> Any:
+    def component(i: int, j: int) -> Channel:
         return combined(lambda p, q, r, s: p * q - r * s, a[i], b[j], a[j], b[i])
 
     return component(1, 2), component(2, 0), component(0, 1)
@@ -231,7 +232,7 @@ def map_range(given: Arguments) -> Mapping[str, Value]:
     return {output: sockets.math.each(function, *values, steps)}
 
 
-def _remapped(how: str, clamped: bool, *arguments: Any) -> Any:
+def _remapped(how: str, clamped: bool, *arguments: Numbers) -> Numbers:
     value, low, high, start, end, steps = arguments
     share = divided(value - low, high - low)
     if how == "STEPPED":

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
@@ -19,6 +19,10 @@ from daguerre.shading.materialx.graph import Constant, Graph, Link, Node
 
 from .pictures import alpha_of, space_of
 from .tables import table_of
+
+if TYPE_CHECKING:
+    import bpy
+
 
 #: Most nodes of a material, groups taken apart; most groups inside each other, and most links
 #: through groups, reroutes and muted nodes that one socket is followed.
@@ -36,7 +40,7 @@ Stack = tuple[Any, ...]
 class _Place:
     """A node, and the group nodes around it from the outside in."""
 
-    node: Any
+    node: bpy.types.Node
     stack: Stack
 
     @property
@@ -55,7 +59,7 @@ class Networks:
         self._notes = notes
         self._links: dict[int, dict[tuple[str, str], Any]] = {}
 
-    def graph(self, material: Any) -> Graph | None:
+    def graph(self, material: bpy.types.Material) -> Graph | None:
         """Graph of a material (``bpy.types.Material``); None: nothing is linked to its surface.
 
         Raises:
@@ -81,7 +85,7 @@ class Networks:
             waiting += self._add(place, nodes, where)
         return Graph(nodes, surface.place.name)
 
-    def _noted(self, output: Any) -> None:
+    def _noted(self, output: bpy.types.Node) -> None:
         for name in ("Volume", "Displacement"):
             if output.inputs[name].is_linked:
                 self._notes.add(f"the {name.lower()} of a material is not supported")
@@ -104,7 +108,9 @@ class Networks:
         nodes[place.name] = Node(kind, "", inputs, f"{where}: node {place.name!r}")
         return before
 
-    def _source(self, place: _Place, socket: Any, where: str) -> _Found | Constant | None:
+    def _source(
+        self, place: _Place, socket: bpy.types.NodeSocket, where: str
+    ) -> _Found | Constant | None:
         """Node and output that feed a socket, or its value; None: neither."""
         stack = place.stack
         for _ in range(MAX_HOPS):
@@ -135,7 +141,7 @@ class Networks:
                 return _nothing(output)
         raise InputError(f"{where}: node {place.name!r}: wanted links without a cycle, got one")
 
-    def _link(self, socket: Any) -> Any | None:
+    def _link(self, socket: bpy.types.NodeSocket) -> bpy.types.NodeLink | None:
         """Link to a socket; None: none that passes anything."""
         tree = socket.id_data
         known = self._links.get(tree.as_pointer())
@@ -154,10 +160,10 @@ class _Found:
     """Output of a node."""
 
     place: _Place
-    output: Any
+    output: bpy.types.NodeSocket
 
 
-def output_of(tree: Any) -> Any | None:
+def output_of(tree: bpy.types.NodeTree | None) -> bpy.types.Node | None:
     """Active output of a material's tree; None: it has none."""
     if tree is None:
         return None
@@ -165,7 +171,7 @@ def output_of(tree: Any) -> Any | None:
     return next((output for output in found if output is not None), None)
 
 
-def default_of(socket: Any) -> Constant | None:
+def default_of(socket: bpy.types.NodeSocket) -> Constant | None:
     """Value of a socket without a link; None: it has none, as shaders."""
     value = getattr(socket, "default_value", None)
     if isinstance(value, str):
@@ -179,7 +185,7 @@ def default_of(socket: Any) -> Constant | None:
     return Constant(tuple(float(number) for number in value[:3]))
 
 
-def properties_of(node: Any) -> dict[str, Constant]:
+def properties_of(node: bpy.types.Node) -> dict[str, Constant]:
     """Choices of a node as texts, by ``.name``; its numbers, curves and ramp as tables."""
     import bpy
 
@@ -199,7 +205,7 @@ def properties_of(node: Any) -> dict[str, Constant]:
     return found
 
 
-def _special(node: Any) -> dict[str, Constant]:
+def _special(node: bpy.types.Node) -> dict[str, Constant]:
     """Values that a node keeps on its output, and its picture."""
     if node.bl_idname == "ShaderNodeValue":
         return {".value": Constant((float(node.outputs[0].default_value),))}
@@ -219,7 +225,7 @@ def _special(node: Any) -> dict[str, Constant]:
     }
 
 
-def _converted(found: _Found, socket: Any, nodes: dict[str, Node]) -> Link:
+def _converted(found: _Found, socket: bpy.types.NodeSocket, nodes: dict[str, Node]) -> Link:
     """Link to an output, through a node that makes a number of it if the socket takes one."""
     name, output = found.place.name, str(found.output.identifier)
     kind = {"RGBA": GREY, "VECTOR": MEAN}.get(str(found.output.type))
@@ -230,7 +236,7 @@ def _converted(found: _Found, socket: Any, nodes: dict[str, Node]) -> Link:
     return Link(between)
 
 
-def _through(node: Any, output: Any) -> Any | None:
+def _through(node: bpy.types.Node, output: bpy.types.NodeSocket) -> bpy.types.NodeSocket | None:
     """Input that a muted node passes to an output."""
     for link in node.internal_links:
         if link.to_socket.identifier == output.identifier:
@@ -238,18 +244,18 @@ def _through(node: Any, output: Any) -> Any | None:
     return None
 
 
-def _nothing(output: Any) -> Constant | None:
+def _nothing(output: bpy.types.NodeSocket) -> Constant | None:
     """Value of an output that nothing feeds."""
     if output.type == "SHADER":
         return None
     return Constant((0.0,) if output.type in _NUMBERS else (0.0, 0.0, 0.0))
 
 
-def _group_output(tree: Any) -> Any | None:
+def _group_output(tree: bpy.types.NodeTree | None) -> bpy.types.Node | None:
     outputs = [one for one in tree.nodes if one.bl_idname == "NodeGroupOutput"] if tree else []
     active = [one for one in outputs if one.is_active_output]
     return next(iter(active or outputs), None)
 
 
-def _named(sockets: Sequence[Any], identifier: str) -> Any | None:
+def _named(sockets: Sequence[Any], identifier: str) -> bpy.types.NodeSocket | None:
     return next((one for one in sockets if one.identifier == identifier), None)

@@ -7,14 +7,13 @@ surfaces".
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.shading.channels import Mapping as Lie
 from daguerre.shading.channels import Texel, Value
-from daguerre.shading.evaluate import Arguments
+from daguerre.shading.evaluate import Arguments, Operation
 
 from .sockets import Sockets
 
@@ -39,7 +38,7 @@ def normal_map(given: Arguments) -> Value:
     return (*slopes, *arithmetic.mix((1.0,), (z,), arithmetic.fraction(strength)))
 
 
-def bump(size_of: Callable[[str], float]) -> Any:
+def bump(size_of: Callable[[str], float]) -> Operation:
     """Bump: the node's operation.
 
     Args:

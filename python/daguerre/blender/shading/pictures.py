@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,10 @@ from daguerre.shading import udim
 from daguerre.shading.images import Textures
 from daguerre.shading.picture import Picture
 from daguerre.shading.picture_bytes import bytes_of, decoded
+
+if TYPE_CHECKING:
+    import bpy
+
 
 #: Limit of all pictures of a scene, as decoded; at most that share of free memory.
 MAX_BYTES, _SHARE = 8 << 30, 0.6
@@ -45,13 +49,13 @@ _SPACES = {
 _UNREAD = {"SEQUENCE": "an image sequence", "MOVIE": "a movie", "VIEWER": "a viewer's image"}
 
 
-def space_of(image: Any) -> str:
+def space_of(image: bpy.types.Image) -> str:
     """Name of an image's colour space."""
     name = str(image.colorspace_settings.name)
     return _SPACES.get(name, name)
 
 
-def _is_open(image: Any) -> bool:
+def _is_open(image: bpy.types.Image) -> bool:
     """Whether Blender names no other colours than linear ones, so that the file's primaries count.
 
     Blender converts pictures itself, but tiles are read from their files.
@@ -59,7 +63,7 @@ def _is_open(image: Any) -> bool:
     return space_of(image) == "lin_rec709"
 
 
-def alpha_of(image: Any) -> str:
+def alpha_of(image: bpy.types.Image) -> str:
     """How an image means opacity; that of data is a channel like the others."""
     if image.colorspace_settings.is_data and image.alpha_mode != "NONE":
         return "CHANNEL_PACKED"
@@ -123,7 +127,7 @@ class Pictures(Textures):
             return None
         return Picture(freeze_in_place(pixels), str(image.name))
 
-    def _tiled(self, place: str, image: Any) -> Picture | None:
+    def _tiled(self, place: str, image: bpy.types.Image) -> Picture | None:
         tiles = {}
         for number, name, data in _tiles(place, image):
             tiles[number], colors = decoded(data, name, f"{place}: {name}")
@@ -148,7 +152,7 @@ class Pictures(Textures):
             raise InputError(f"{place}: wanted at most {most} of decoded pictures, got more")
 
 
-def _pixels(image: Any) -> NDArray[Any] | None:
+def _pixels(image: bpy.types.Image) -> NDArray[Any] | None:
     """Pixels (H, W, C) with row 0 on top; None: the image cannot be loaded.
 
     Colours of floats are divided by their opacity, which Blender has multiplied them with.
@@ -170,7 +174,7 @@ def _pixels(image: Any) -> NDArray[Any] | None:
     return np.ascontiguousarray(pixels)
 
 
-def _tiles(place: str, image: Any) -> Iterator[tuple[int, str, bytes]]:
+def _tiles(place: str, image: bpy.types.Image) -> Iterator[tuple[int, str, bytes]]:
     """Numbers, names and bytes of UDIM tiles; those without a file are left out."""
     import bpy
 

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daguerre.blender.arrays import read
 from daguerre.blender.atlas import unwrapped
+
+if TYPE_CHECKING:
+    import bpy
+
 
 Array = NDArray[Any]
 #: Name of texture coordinates that are made for patterns; no layer has it.
@@ -30,7 +34,7 @@ class Surface:
         flat: Whether maps do not overlap themselves, by name, as far as that is known.
     """
 
-    mesh: Any
+    mesh: bpy.types.Mesh
     points: Array
     vertices: Array
     triangles: Array

@@ -7,9 +7,14 @@ Source: Blender Python API 5.0, ``bpy.types.CurveMapping`` and ``ColorRamp``.
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    import bpy
+
 
 Table = tuple[float, ...]
 _STEPS = 1025
@@ -19,7 +24,7 @@ _JUMP = 1e-6
 _FAR = (-100.0, 100.0)
 
 
-def table_of(node: Any) -> dict[str, Table]:
+def table_of(node: bpy.types.Node) -> dict[str, Table]:
     """Rows ``.x``, and ``.r``, ``.g``, ``.b`` and ``.a`` of a node's ramp or curves, if it has."""
     if node.bl_idname == "ShaderNodeValToRGB":
         return _ramp(node.color_ramp)
@@ -32,7 +37,7 @@ def table_of(node: Any) -> dict[str, Table]:
     return {}
 
 
-def _ramp(ramp: Any) -> dict[str, Table]:
+def _ramp(ramp: bpy.types.ColorRamp) -> dict[str, Table]:
     stops = np.array([float(one.position) for one in ramp.elements])
     edges = np.concatenate([stops, stops - _JUMP, stops + _JUMP])
     rows = np.unique(np.clip(np.concatenate([np.linspace(0, 1, _STEPS), edges]), 0, 1))
@@ -40,7 +45,7 @@ def _ramp(ramp: Any) -> dict[str, Table]:
     return {".x": _table(rows), **{f".{c}": _table(colors[:, i]) for i, c in enumerate("rgba")}}
 
 
-def _curves(mapping: Any, chains: list[tuple[int, ...]]) -> dict[str, Table]:
+def _curves(mapping: bpy.types.CurveMapping, chains: list[tuple[int, ...]]) -> dict[str, Table]:
     """Tables of chains of curves: the values of the first pass through the second."""
     mapping.initialize()
     points = [float(p.location[0]) for curve in mapping.curves for p in curve.points]
@@ -53,11 +58,11 @@ def _curves(mapping: Any, chains: list[tuple[int, ...]]) -> dict[str, Table]:
     return found
 
 
-def _chained(mapping: Any, chain: tuple[int, ...], x: float) -> float:
+def _chained(mapping: bpy.types.CurveMapping, chain: tuple[int, ...], x: float) -> float:
     for index in chain:
         x = float(mapping.evaluate(mapping.curves[index], x))
     return x
 
 
-def _table(values: Any) -> Table:
+def _table(values: Iterable[float]) -> Table:
     return tuple(float(value) for value in values)

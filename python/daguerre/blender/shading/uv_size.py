@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+if TYPE_CHECKING:
+    import bpy
+
+
 Array = NDArray[Any]
 
 
-def uv_size(material: Any) -> float:
+def uv_size(material: bpy.types.Material) -> float:
     """Length in scene units: root of the area in space over that in texture coordinates.
 
     The first mesh that has both counts, in the size of its object; without one the length is 1.
@@ -24,7 +28,7 @@ def uv_size(material: Any) -> float:
     return 1.0
 
 
-def _meshes(material: Any) -> Iterator[tuple[Any, list[int], float]]:
+def _meshes(material: bpy.types.Material) -> Iterator[tuple[Any, list[int], float]]:
     """Meshes that use a material, the numbers of its slots, and the scale of their objects."""
     import bpy
 
@@ -41,7 +45,7 @@ def _meshes(material: Any) -> Iterator[tuple[Any, list[int], float]]:
             yield one.data, slots, float(abs(x * y * z)) ** (1 / 3)
 
 
-def _areas(mesh: Any, slots: list[int]) -> tuple[float, float]:
+def _areas(mesh: bpy.types.Mesh, slots: list[int]) -> tuple[float, float]:
     """Areas of the faces of some slots, in space and in texture coordinates."""
     count = len(mesh.polygons)
     space, slot = np.empty(count, np.float32), np.empty(count, np.int32)
