@@ -19,7 +19,7 @@ else:
     class cached_property(functools.cached_property):
         """Property that is computed at the first read and kept in the object."""
 
-        def __get__(self, instance: Any, owner: type[Any] | None = None) -> Any:
+        def __get__(self, instance: object, owner: type[Any] | None = None) -> Any:
             if instance is None:
                 return self
             kept = vars(instance)

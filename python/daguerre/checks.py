@@ -64,7 +64,7 @@ def optional_array(
 
 
 def to_numbers(
-    values: Any, where: str, what: str, wanted: str, error: type[DaguerreError] = InputError
+    values: object, where: str, what: str, wanted: str, error: type[DaguerreError] = InputError
 ) -> NDArray[Any]:
     """Converts to a numeric array; the error names the type of other values."""
     try:
@@ -78,7 +78,7 @@ def to_numbers(
     return numbers
 
 
-def integers(values: Any, where: str, what: str, below: int) -> NDArray[np.int64]:
+def integers(values: object, where: str, what: str, below: int) -> NDArray[np.int64]:
     """Checks whole numbers in 0 .. below - 1; returns int64 of the same shape.
 
     Raises:
@@ -95,7 +95,7 @@ def integers(values: Any, where: str, what: str, below: int) -> NDArray[np.int64
     return found.astype(np.int64)
 
 
-def doubles(values: Any, where: str, what: str, wanted: str) -> NDArray[np.float64]:
+def doubles(values: object, where: str, what: str, wanted: str) -> NDArray[np.float64]:
     """Converts a parameter to a contiguous array of doubles of any shape, for the core."""
     numbers = to_numbers(values, where, what, wanted, UsageError)
     return np.asarray(numbers, np.float64, order="C")
@@ -166,12 +166,12 @@ def freeze_in_place(values: NDArray[Any]) -> NDArray[Any]:
     return values
 
 
-def matrix(transform: Any, where: str) -> NDArray[np.float64]:
+def matrix(transform: object, where: str) -> NDArray[np.float64]:
     """Checks a finite transform (4, 4); None is the identity."""
     return np.eye(4) if transform is None else given_matrix(transform, where)
 
 
-def given_matrix(transform: Any, where: str) -> NDArray[np.float64]:
+def given_matrix(transform: object, where: str) -> NDArray[np.float64]:
     """Checks a finite transform (4, 4)."""
     numbers = to_numbers(transform, where, "transform", "shape (4, 4)").astype(np.float64)
     if numbers.shape != (4, 4):
@@ -249,7 +249,7 @@ def whole(value: Any, where: str, low: int, high: int, bounds: str | None = None
     return result
 
 
-def short(value: Any, length: int = 60) -> str:
+def short(value: object, length: int = 60) -> str:
     """Formats a value as text that fits into a message."""
     try:
         text = " ".join(repr(value).split())
@@ -258,7 +258,7 @@ def short(value: Any, length: int = 60) -> str:
     return text if len(text) <= length else text[: length - 3] + "..."
 
 
-def shown(value: Any) -> str:
+def shown(value: object) -> str:
     """Formats any value for a message: plain values as they are, others by their type."""
     if isinstance(value, np.ndarray):
         return f"an array {value.shape} of {value.dtype}"

@@ -95,7 +95,7 @@ def guarded(
     return function
 
 
-def _shut(cls: type, name: str, member: Any, arrays: bool, but: tuple[str, ...]) -> None:
+def _shut(cls: type, name: str, member: object, arrays: bool, but: tuple[str, ...]) -> None:
     """Adds checks to a method of a class, which may be inherited, unless it has them."""
     if hasattr(getattr(member, "__func__", member), "has_door"):
         return
@@ -135,7 +135,7 @@ def _with_door(function: Any, name: str, arrays: bool, but: tuple[str, ...]) -> 
     return door
 
 
-def _refusal(kind: Kind, value: Any, function: str, parameter: str) -> UsageError:
+def _refusal(kind: Kind, value: object, function: str, parameter: str) -> UsageError:
     return UsageError(f"{function}: {parameter}: wanted {kind.words}, got {shown(value)}")
 
 

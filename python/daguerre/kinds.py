@@ -53,7 +53,7 @@ def unseen(name: str) -> type[Unseen]:
     return type(name, (Unseen,), {})
 
 
-def of(hint: Any, *, none: bool = False) -> Kind | None:
+def of(hint: object, *, none: bool = False) -> Kind | None:
     """Kind that an annotation names; None: anything, or a kind that is not checked."""
     parts = typing.get_args(hint) if _is_union(hint) else (hint,)
     none = none or None in parts or types.NoneType in parts
@@ -67,7 +67,7 @@ def of(hint: Any, *, none: bool = False) -> Kind | None:
         return known[0]
     words = " or ".join(dict.fromkeys([k.words for k in known] + ["None"] * none))
 
-    def take(value: Any) -> Any:
+    def take(value: object) -> Any:
         if value is None and none:
             return None
         for kind in known:
@@ -79,11 +79,11 @@ def of(hint: Any, *, none: bool = False) -> Kind | None:
     return Kind(words, take, any(kind.arrays for kind in known))
 
 
-def _is_union(hint: Any) -> bool:
+def _is_union(hint: object) -> bool:
     return isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union
 
 
-def _single(hint: Any) -> Kind | None:
+def _single(hint: object) -> Kind | None:
     if hasattr(hint, "__value__"):  # a `type` alias, as NDArray of NumPy 2.5
         return of(hint.__value__)
     origin = typing.get_origin(hint) or hint
@@ -112,7 +112,7 @@ def _protocol(name: str, members: Iterable[str]) -> Kind:
     """Kind of objects of any class with the members of a protocol."""
     asked = [m for m in members if m == "__call__" or not m.startswith("_")]
 
-    def take(value: Any) -> Any:
+    def take(value: object) -> Any:
         fits = not isinstance(value, type) and all(hasattr(value, m) for m in asked)
         return value if fits else REFUSED
 
@@ -125,7 +125,7 @@ def _object(cls: type) -> Kind:
     name = cls.__name__
     article = "an" if name[0] in "AEIOU" else "a"
 
-    def take(value: Any) -> Any:
+    def take(value: object) -> Any:
         if isinstance(value, cls):
             return value
         named = issubclass(cls, Unseen) and any(c.__name__ == name for c in type(value).__mro__)
@@ -134,14 +134,14 @@ def _object(cls: type) -> Kind:
     return Kind(f"{article} {name}", take)
 
 
-def _parts(origin: Any, args: tuple[Any, ...]) -> Kind:
+def _parts(origin: object, args: tuple[Any, ...]) -> Kind:
     """Kind of tuples, or other sequences of values of one kind."""
     fixed = origin is tuple and bool(args) and args[-1] is not Ellipsis
     inner = [of(arg) for arg in args if arg is not Ellipsis]
     words = _words_of_parts(inner, fixed)
     lazy = origin is collections.abc.Iterable
 
-    def take(value: Any) -> Any:
+    def take(value: object) -> Any:
         if type(value) is not tuple and type(value) is not list:  # these are the usual ones
             if isinstance(value, _NO_ROWS):
                 return REFUSED
@@ -207,17 +207,17 @@ def _whole(value: Any) -> Any:
     return plain if -_WHOLE <= plain < _WHOLE else REFUSED
 
 
-def _flag(value: Any) -> Any:
+def _flag(value: object) -> Any:
     if isinstance(value, bool | np.bool_):
         return bool(value)
     return bool(value) if type(value) is int and value in (0, 1) else REFUSED
 
 
-def _text(value: Any) -> Any:
+def _text(value: object) -> Any:
     return value if isinstance(value, str) else REFUSED
 
 
-def _path(value: Any) -> Any:
+def _path(value: object) -> Any:
     """Accepts a path that the system can have: text without a zero byte or half a character."""
     if isinstance(value, os.PathLike) and not isinstance(value, PurePath):
         value = os.fspath(value)
@@ -234,7 +234,7 @@ def is_path(text: str) -> bool:
     return _path(text) is not REFUSED
 
 
-def _array(value: Any) -> Any:
+def _array(value: object) -> Any:
     """Accepts numbers of any shape."""
     if not isinstance(value, np.ndarray):
         if isinstance(value, str | bytes | bytearray | np.bool_ | bool):

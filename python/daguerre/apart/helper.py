@@ -86,7 +86,7 @@ class Helper:
         _all.add(self)
 
     def ask(
-        self, task: str, request: Any, limits: Limits, *, where: str, heard: Heard | None = None
+        self, task: str, request: object, limits: Limits, *, where: str, heard: Heard | None = None
     ) -> Any:
         """Runs a task in the helper that answers with plain values; see :meth:`answer`.
 
@@ -96,7 +96,7 @@ class Helper:
         return self.answer(task, request, limits, where=where, heard=heard).value()
 
     def answer(
-        self, task: str, request: Any, limits: Limits, *, where: str, heard: Heard | None = None
+        self, task: str, request: object, limits: Limits, *, where: str, heard: Heard | None = None
     ) -> Answer:
         """Runs a task in the helper.
 
@@ -231,7 +231,7 @@ def _is_worn(process: Process) -> bool:
     return True
 
 
-def _no_class(name: Any, state: Any) -> NoReturn:
+def _no_class(name: object, state: object) -> NoReturn:
     raise ValueError("a value of a class")
 
 

@@ -95,7 +95,7 @@ def _answer(link: Link, blocks: list[Any]) -> tuple[bytes, list[Any], Any]:
         return FAULT, told, None
 
 
-def packed(value: Any) -> list[Any]:
+def packed(value: object) -> list[Any]:
     """Blocks of a message: a packed value, and its large arrays, by the number of their block."""
     numbers = itertools.count(1)
     made = pack(value, lambda array: str(next(numbers)))

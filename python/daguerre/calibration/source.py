@@ -84,7 +84,7 @@ def read_bytes(path: Path) -> bytes:
     return reading.read_bytes(path, MAX_JSON_BYTES if is_json else MAX_BYTES)
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     """Converts arrays and tuples to lists, as in a file."""
     if isinstance(value, dict):
         return {str(name): _plain(one) for name, one in value.items()}

@@ -379,7 +379,7 @@ class Camera(Value):
         """Former name of :meth:`evaluated_at`."""
         return self.evaluated_at(time)
 
-    def with_(self, **changes: Any) -> Camera:
+    def with_(self, **changes: object) -> Camera:
         """Returns a copy with some parameters changed.
 
         Values that the change makes obsolete are dropped: the focal length of an ideal lens if a

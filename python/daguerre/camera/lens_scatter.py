@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import daguerre._core as _core
 from daguerre.checks import number, numbers, short
@@ -45,7 +44,7 @@ class LensScatter:
     surface_lobe: tuple[float, float] = (0.01, -1.5)
 
 
-def core_parts(given: Any) -> _core.LensScatter:
+def core_parts(given: object) -> _core.LensScatter:
     """Checks the values and makes the core's record; None: the defaults.
 
     Raises:

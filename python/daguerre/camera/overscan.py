@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import astuple, dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,7 +52,7 @@ NONE = Overscan()
 
 
 def check_overscan(
-    value: Any, resolution: tuple[int, int], where: str = "overscan"
+    value: object, resolution: tuple[int, int], where: str = "overscan"
 ) -> Overscan | None:
     """Parses overscan: pixels for all sides, ``"10%"``, ``"64px"``, or one number for each side.
 

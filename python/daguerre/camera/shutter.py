@@ -195,7 +195,7 @@ def _curve(camera: Camera) -> _core.OpeningCurve:
     return _points(curve, where, wanted)
 
 
-def _points(curve: Any, where: str, wanted: str) -> _core.OpeningCurve:
+def _points(curve: object, where: str, wanted: str) -> _core.OpeningCurve:
     try:
         points = np.array(curve, np.float64)
     except (TypeError, ValueError):

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from typing import Any
 
 from daguerre.checks import number, short
 from daguerre.doors import guarded
@@ -51,7 +50,7 @@ KINDS: dict[str, Callable[..., Chart]] = {
 
 
 @guarded
-def make(name: str, **parameters: Any) -> Chart:
+def make(name: str, **parameters: object) -> Chart:
     """Makes a chart.
 
     Args:

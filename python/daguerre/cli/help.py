@@ -52,7 +52,7 @@ class InOrder:
 class HelpGroup(OwnValues, InOrder, typer.core.TyperGroup):
     """The program, whose help has its commands in groups."""
 
-    def format_commands(self, ctx: Any, formatter: Any) -> None:
+    def format_commands(self, ctx: object, formatter: object) -> None:
         """Writes the commands."""
         groups: dict[str, Rows] = {}
         for name, command in self.commands.items():
@@ -91,16 +91,16 @@ class HelpCommand(OwnValues, InOrder, typer.core.TyperCommand):
             _write(formatter, title, _rows(ctx, members))
         _write(formatter, OTHER if groups else "Options", _rows(ctx, other))
 
-    def _of_kind(self, kind: str, ctx: Any) -> list[Any]:
+    def _of_kind(self, kind: str, ctx: object) -> list[Any]:
         return [one for one in self.get_params(ctx) if one.param_type_name == kind]
 
 
-def _panel(one: Any) -> str:
+def _panel(one: object) -> str:
     """Heading above a flag or a command."""
     return getattr(one, "rich_help_panel", None) or OTHER
 
 
-def _rows(ctx: Any, parameters: Iterable[Any]) -> Rows:
+def _rows(ctx: object, parameters: Iterable[Any]) -> Rows:
     """Names and texts of the parameters to show."""
     return [row for one in parameters if (row := one.get_help_record(ctx)) is not None]
 

@@ -22,7 +22,7 @@ class Silent:
     def update(self, status: AnyStatus) -> None:
         """Shows the newest status."""
 
-    def event(self, name: str, **facts: Any) -> None:
+    def event(self, name: str, **facts: object) -> None:
         """Reports a single event: done, checkpoint, interrupted."""
 
     def start(self) -> None:
@@ -76,7 +76,7 @@ class JsonLines(Silent):
             self._next = time.monotonic() + self.period_s
             self.event("progress", **asdict(status))
 
-    def event(self, name: str, **facts: Any) -> None:
+    def event(self, name: str, **facts: object) -> None:
         """Prints one object."""
         try:
             print(json.dumps({"event": name, **self._which, **facts}), flush=True)

@@ -19,7 +19,7 @@ _TYPES = {bool: "a flag", str: "a text", int: "a whole number", float: "a number
 class OwnValues:
     """Commands that make the values of their flags and arguments themselves."""
 
-    def get_params(self, ctx: Any) -> list[Any]:
+    def get_params(self, ctx: object) -> list[Any]:
         """Returns the flags and arguments."""
         found: list[Any] = super().get_params(ctx)  # type: ignore[misc]
         for one in found:
@@ -29,7 +29,7 @@ class OwnValues:
         return found
 
 
-def _type(annotation: Any) -> Any:
+def _type(annotation: object) -> Any:
     """The type of a value, or of each value of a list."""
     return get_args(annotation)[0] if get_origin(annotation) is list else annotation
 

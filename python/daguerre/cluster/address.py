@@ -104,7 +104,7 @@ def _local(count: int) -> Iterator[Any]:
 
 
 @contextlib.contextmanager
-def _client(address: str, security: Any) -> Iterator[Any]:
+def _client(address: str, security: object) -> Iterator[Any]:
     from distributed import Client
 
     try:

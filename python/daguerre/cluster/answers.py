@@ -155,13 +155,13 @@ def answer_of(data: bytes | memoryview) -> Answer:
         raise InputError(f"damaged answer: {str(error)[:200]}") from None
 
 
-def head_line(**head: Any) -> bytes:
+def head_line(**head: object) -> bytes:
     """Line of JSON, filled up so that the words after it lie aligned."""
     text = json.dumps(head, separators=(",", ":")).encode()
     return text + b" " * (-(len(text) + 1) % 8) + b"\n"
 
 
-def _facts(facts: Any) -> dict[str, Any]:
+def _facts(facts: object) -> dict[str, Any]:
     """Facts by name: numbers of at least 0, and the result of a pilot render."""
     if not isinstance(facts, dict):
         raise TypeError(f"wanted facts by name, got {short(facts)}")
@@ -193,7 +193,7 @@ def _parts(facts: Any, data: memoryview) -> Iterator[tuple[str, Columns]]:
         yield name, Columns(tuple(shape), np.require(kept, requirements="A"), words)
 
 
-def _is_shape(shape: Any) -> bool:
+def _is_shape(shape: object) -> bool:
     """Whether a value can be the shape of a part's words."""
     return (
         isinstance(shape, list)

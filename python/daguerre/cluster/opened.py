@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
-from typing import Any
 
 from daguerre.checks import short
 from daguerre.errors import UsageError
@@ -18,7 +17,7 @@ from .workers import Tell, is_client
 
 @contextmanager
 def opened(
-    cluster: Any, *, insecure: bool = False, mixed: bool = False, tell: Tell = lambda text: None
+    cluster: object, *, insecure: bool = False, mixed: bool = False, tell: Tell = lambda text: None
 ) -> Iterator[Crew]:
     """Opens a cluster and waits for its first worker.
 
@@ -47,7 +46,7 @@ def opened(
 
 
 @contextmanager
-def work_on(cluster: Any) -> Iterator[WorkOf]:
+def work_on(cluster: object) -> Iterator[WorkOf]:
     """Opens a cluster for one picture; see :func:`opened`."""
     with opened(cluster) as crew:
         yield work_of(crew)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Unpack
+from typing import Unpack
 
 from daguerre.camera.camera import Camera
 from daguerre.checks import short
@@ -51,7 +51,7 @@ class ClusterSession(Session):
         scene: Scene,
         camera: Camera | str | None = None,
         *,
-        client: Any,
+        client: object,
         settings: RenderSettings | None = None,
         built: BuiltScene | None = None,
         **keywords: Unpack[SettingsKeywords],

@@ -20,7 +20,7 @@ class Values:
         self._names: dict[int, tuple[Any, str]] = {}  # hashes of arrays, which stay alive here
         self._sent: dict[tuple[str, str], float] = {}  # when, by worker and hash
 
-    def keep(self, value: Any) -> str:
+    def keep(self, value: object) -> str:
         """Keeps a value until :meth:`forget`; returns its hash."""
         packed = pack(value, self._name)
         name = hash_of(packed.data)

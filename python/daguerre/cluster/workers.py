@@ -22,7 +22,7 @@ REACH_S = 2.0
 Tell = Callable[[str], None]
 
 
-def is_client(value: Any) -> bool:
+def is_client(value: object) -> bool:
     """Whether a value can be a client of Dask; its class is none."""
     return hasattr(value, "submit") and not isinstance(value, type)
 

@@ -68,7 +68,7 @@ def read_shot(path: str | os.PathLike[str], demosaic: Demosaic = USUAL) -> Chann
     )
 
 
-def white_of_shot(path: Any, file: RawFile, tags: Mapping[str, Any]) -> XY:
+def white_of_shot(path: object, file: RawFile, tags: Mapping[str, Any]) -> XY:
     """Returns the white balance of a raw file, without developing it.
 
     Args:
@@ -85,7 +85,7 @@ def _grey(white: XY) -> FloatArray:
     return np.asarray(np.diag(1 / illuminants.xyz_of_xy(white)))
 
 
-def _camera_from_xyz(path: Any, file: RawFile, tags: Mapping[str, Any]) -> Matrix:
+def _camera_from_xyz(path: object, file: RawFile, tags: Mapping[str, Any]) -> Matrix:
     """Interpolates a DNG's two matrices by reciprocal temperature; else LibRaw's for daylight."""
     known = [
         (_ILLUMINANTS.get(int(_number(tags.get(f"CalibrationIlluminant{k}"), 21)), 6504.0), table)
@@ -125,7 +125,7 @@ def _white(neutral: FloatArray, matrix: Matrix) -> XY:
     return white
 
 
-def _matrix(value: Any) -> FloatArray | None:
+def _matrix(value: object) -> FloatArray | None:
     """Matrix of 9 rationals; None: absent or singular."""
     if not isinstance(value, tuple | list) or len(value) != 18:
         return None
@@ -159,7 +159,7 @@ def tags_of(path: str | os.PathLike[str]) -> dict[str, Any]:
         log.setLevel(level)
 
 
-def _baseline(path: Any, tags: Mapping[str, Any]) -> float:
+def _baseline(path: object, tags: Mapping[str, Any]) -> float:
     """Exposure by which a DNG is brightened, EV."""
     stops = _number(tags.get("BaselineExposure"), 0.0)
     if not abs(stops) <= MOST_STOPS:

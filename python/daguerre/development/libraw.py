@@ -197,7 +197,7 @@ def _three(factors: Any) -> tuple[float, ...]:
     return tuple(float(factor) for factor in factors[:3])
 
 
-def _picture(opened: Any, file: RawFile, request: dict[str, Any]) -> NDArray[np.uint16]:
+def _picture(opened: object, file: RawFile, request: dict[str, Any]) -> NDArray[np.uint16]:
     """Demosaics an opened file, in the helper."""
     check_colors(file, request["where"])
     demosaic = Demosaic(**request["demosaic"])

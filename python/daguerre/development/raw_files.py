@@ -34,7 +34,7 @@ def write_dng(path: str | os.PathLike[str], raw: Raw) -> None:
         put_dng(temp, binned, preview_of(binned))
 
 
-def as_dng(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
+def as_dng(path: str | os.PathLike[str], raw: Raw, **look: object) -> None:
     """Writes the undeveloped values as DNG.
 
     Raises:

@@ -128,7 +128,7 @@ def develop(source: Raw | Frame | Channels, **keywords: Unpack[RecipeKeywords]) 
     return Picture(pixels, recipe.colour_space, dict(source.metadata))
 
 
-def _check_camera(source: Any) -> None:
+def _check_camera(source: object) -> None:
     """Checks that a source has colours of a camera.
 
     Raises:
@@ -155,7 +155,7 @@ def _renamed(keywords: Any) -> dict[str, Any]:
     return given
 
 
-def _exposed(source: Any, recipe: Recipe) -> tuple[Any, Recipe]:
+def _exposed(source: object, recipe: Recipe) -> tuple[Any, Recipe]:
     """A frame in the mode of a recipe, and what is left of the recipe."""
     from daguerre.frame.frame import Frame
 
@@ -169,7 +169,7 @@ def _exposed(source: Any, recipe: Recipe) -> tuple[Any, Recipe]:
     return source, recipe
 
 
-def _channels(source: Any, demosaic: Demosaic) -> Channels:
+def _channels(source: object, demosaic: Demosaic) -> Channels:
     from daguerre.frame.frame import Frame
     from daguerre.frame.raw import Raw
 
@@ -183,7 +183,7 @@ def _channels(source: Any, demosaic: Demosaic) -> Channels:
 
 
 @guarded
-def save_raw(path: str | os.PathLike[str], raw: Raw, **look: Any) -> None:
+def save_raw(path: str | os.PathLike[str], raw: Raw, **look: object) -> None:
     """Writes a raw picture, as ``.dng`` or developed; see ``Raw.save``."""
     formats.write("raw", path, raw, **look)
 

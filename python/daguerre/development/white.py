@@ -17,7 +17,7 @@ FloatArray = NDArray[np.float64]
 _BLOCK = 8  # px, of means that "auto" looks at: edges have colours that demosaicing made
 
 
-def white_of(source: Channels, wanted: Any) -> XY:
+def white_of(source: Channels, wanted: object) -> XY:
     """Returns the chromaticity of the white.
 
     Args:
@@ -34,7 +34,7 @@ def white_of(source: Channels, wanted: Any) -> XY:
     return illuminants.white_xy(numbers_of(wanted), "develop: wb")
 
 
-def numbers_of(wanted: Any) -> Any:
+def numbers_of(wanted: object) -> Any:
     """Parses K or (x, y) from text; returns other values unchanged."""
     if not isinstance(wanted, str):
         return wanted

@@ -84,7 +84,7 @@ def _reach(view: RectifiedView, place: Any, where: str) -> Overscan:
 
 
 def overscan_of(
-    wanted: Any,
+    wanted: object,
     camera: Camera,
     resolution: tuple[int, int],
     scene: Scene | None,

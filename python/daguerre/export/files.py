@@ -99,7 +99,7 @@ def write(path: str | Path, data: dict[str, Any]) -> None:
     write_bytes(path, code(data, Path(path).suffix.lower()).encode())
 
 
-def _coefficients(part: Any) -> int:
+def _coefficients(part: object) -> int:
     """Number of coefficients in a part of a fit."""
     if isinstance(part, dict):
         if "coefficients" in part:

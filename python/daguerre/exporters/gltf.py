@@ -71,14 +71,14 @@ class Glb:
         items.append(item)
         return len(items) - 1
 
-    def add_view(self, data: bytes, **extra: Any) -> int:
+    def add_view(self, data: bytes, **extra: object) -> int:
         """Adds bytes as a bufferView."""
         self.binary += b"\0" * (-len(self.binary) % 4)
         view = {"buffer": 0, "byteOffset": len(self.binary), "byteLength": len(data), **extra}
         self.binary += data
         return self.add("bufferViews", view)
 
-    def add_accessor(self, array: ArrayLike, kind: str, component: int, **view: Any) -> int:
+    def add_accessor(self, array: ArrayLike, kind: str, component: int, **view: object) -> int:
         """Adds an array, one row per element; `view` goes to its bufferView."""
         data = np.ascontiguousarray(array, dtype=DTYPES[component])
         item = {
@@ -118,7 +118,7 @@ class Glb:
         return self.add("materials", {"name": name, **properties})
 
     def primitive(
-        self, shape: Shape, material: int, more: dict[str, int] | None = None, **primitive: Any
+        self, shape: Shape, material: int, more: dict[str, int] | None = None, **primitive: object
     ) -> dict[str, Any]:
         """Makes a primitive of a mesh, with `more` attributes by their accessors."""
         attributes = {
@@ -141,7 +141,7 @@ class Glb:
         shape: Shape,
         material: int,
         more: dict[str, int] | None = None,
-        **primitive: Any,
+        **primitive: object,
     ) -> int:
         """Adds a mesh of one primitive, with `more` attributes by their accessors."""
         return self.add_primitive(name, **self.primitive(shape, material, more, **primitive))

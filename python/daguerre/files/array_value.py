@@ -13,7 +13,7 @@ class ArrayValue:
 
     _array: ClassVar[str]
 
-    def __init_subclass__(cls, *, array: str = "", **more: Any) -> None:
+    def __init_subclass__(cls, *, array: str = "", **more: object) -> None:
         super().__init_subclass__(**more)
         cls._array = array or cls._array
 

@@ -145,7 +145,7 @@ def readable(kind: Kind) -> str:
 
 
 def read(
-    kind: Kind, path: str | os.PathLike[str], notes: Notes | None = None, **options: Any
+    kind: Kind, path: str | os.PathLike[str], notes: Notes | None = None, **options: object
 ) -> Any:
     """Reads a file in the format of its suffix.
 
@@ -176,7 +176,7 @@ def takes(kind: Kind, path: str | os.PathLike[str], option: str) -> bool:
     return row is not None and row.takes is not None and option in row.takes
 
 
-def time_of_code(path: str | os.PathLike[str], code: float, **options: Any) -> float:
+def time_of_code(path: str | os.PathLike[str], code: float, **options: object) -> float:
     """Converts a time code of a scene file to s.
 
     Raises:
@@ -189,7 +189,7 @@ def time_of_code(path: str | os.PathLike[str], code: float, **options: Any) -> f
     return float(_ready(row, row.time_of, path, options)(path, code, **options))
 
 
-def write(kind: Kind, path: str | os.PathLike[str], value: Any, **options: Any) -> None:
+def write(kind: Kind, path: str | os.PathLike[str], value: object, **options: object) -> None:
     """Writes a value atomically, in the format of the file's suffix.
 
     Raises:

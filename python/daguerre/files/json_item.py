@@ -60,7 +60,7 @@ class Item:
             item = item.parent
         return _at_place, (self.value, tuple(reversed(place)))
 
-    def holding(self, value: Any) -> Item:
+    def holding(self, value: object) -> Item:
         """Returns another value at the same place."""
         return Item(value, self.key, self.parent)
 
@@ -235,7 +235,7 @@ class Item:
         return None if extensions is None else extensions.get(name)
 
 
-def _at_place(value: Any, place: tuple[str | int, ...]) -> Item:
+def _at_place(value: object, place: tuple[str | int, ...]) -> Item:
     """Restores a pickled value, whose parents are only known by their keys."""
     parent: Item | None = None
     for key in place[:-1]:

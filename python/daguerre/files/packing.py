@@ -66,7 +66,7 @@ def hash_of(data: Any) -> str:
 
 
 def pack(
-    value: Any, name: Callable[[NDArray[Any]], str] = hash_of, *, large: float = LARGE
+    value: object, name: Callable[[NDArray[Any]], str] = hash_of, *, large: float = LARGE
 ) -> Packed:
     """Packs a value.
 
@@ -184,7 +184,7 @@ class _Writer:
         self._numbers: dict[int, Any] = {}
         self._alive: list[Any] = []  # so that no id is used twice
 
-    def of(self, value: Any) -> Any:
+    def of(self, value: object) -> Any:
         """JSON of a value: itself, or its parts with the key of their kind."""
         if value is None or isinstance(value, bool | str) or type(value) is int:
             return value
@@ -216,7 +216,7 @@ class _Writer:
         self.facts.append([plain.dtype.str, plain.shape, name])
         return len(self.facts) - 1
 
-    def _part(self, value: Any) -> None:
+    def _part(self, value: object) -> None:
         number = len(self.parts)
         self._numbers[id(value)] = {"part": number}
         self.parts.append(None)  # its own parts may refer to it
@@ -244,7 +244,7 @@ _SEQUENCES = {kind: kind.__name__ for kind in (list, set, frozenset)}
 _MAPPINGS = {kind: kind.__name__ for kind in (dict, OrderedDict)}
 
 
-def _state_of(value: Any) -> dict[str, Any]:
+def _state_of(value: object) -> dict[str, Any]:
     """Attributes that a pickle would keep."""
     if isinstance(value, Value):
         return value.__getstate__()
@@ -278,7 +278,7 @@ class _Reader:
         self._parts, self._arrays, self._make_value = parts, arrays, make
         self._made: dict[int, Any] = {}
 
-    def of(self, given: Any) -> Any:
+    def of(self, given: object) -> Any:
         """Value of its JSON."""
         if not isinstance(given, dict):
             return given
@@ -339,7 +339,7 @@ class _Reader:
             vars(made).update(state)
 
 
-def _item(value: Any, place: tuple[str | int, ...]) -> Item:
+def _item(value: object, place: tuple[str | int, ...]) -> Item:
     """An item at its place."""
     item = Item(None, place[0])
     for key in place[1:]:

@@ -73,7 +73,7 @@ class BriefRecord:
         return f"{type(self).__name__}({told})"
 
 
-def same(a: Any, b: Any) -> bool:
+def same(a: object, b: object) -> bool:
     """Whether two values are equal: numbers by value, NaN equals NaN, arrays by elements.
 
     Types without their own comparison are compared by their pickled state.
@@ -107,7 +107,7 @@ def _compares(kind: type[Any]) -> bool:
     return any("__eq__" in vars(base) for base in kind.__mro__[:-1])
 
 
-def _pickled_alike(a: Any, b: Any, seen: _Seen) -> bool:
+def _pickled_alike(a: object, b: object, seen: _Seen) -> bool:
     if isinstance(a, type | types.FunctionType):
         return False
     try:
@@ -131,7 +131,7 @@ def _default(field: Field[Any]) -> Any:
     return field.default if made is MISSING else made()
 
 
-def _brief(value: Any) -> str:
+def _brief(value: object) -> str:
     if isinstance(value, np.ndarray):
         if value.ndim != 1 or value.size > _FEW or value.dtype.kind not in "iuf":
             return f"<array {value.shape}>"

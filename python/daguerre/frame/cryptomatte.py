@@ -73,7 +73,7 @@ class Cryptomatte(Value):
         return f"<Cryptomatte {width}x{height}, {ranks} ranks, {len(self.manifest)} names>"
 
 
-def check_layers(value: Any, where: str) -> tuple[str, ...]:
+def check_layers(value: object, where: str) -> tuple[str, ...]:
     """Returns the chosen layers, in the order of ``LAYERS``.
 
     Args:

@@ -252,7 +252,7 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
         *,
         seed: int = 0,
         ev: float | None = None,
-        white_balance: Any = None,
+        white_balance: object = None,
         temperature: float | None = None,
     ) -> Raw:
         """Exposes a sensor to the frame: returns a raw picture with photon and sensor noise.

@@ -112,7 +112,7 @@ class Raw(ArrayValue, array="mosaic"):
 
         return develop(self, **look)
 
-    def save(self, path: str | os.PathLike[str], **look: Any) -> None:
+    def save(self, path: str | os.PathLike[str], **look: object) -> None:
         """Writes the raw picture atomically; the suffix chooses the format.
 
         Args:

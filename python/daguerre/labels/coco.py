@@ -139,7 +139,7 @@ def _box3(box: Box3) -> dict[str, Any]:
     }
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     """Converts numbers to JSON, rounded to nine digits; text stays unchanged."""
     if isinstance(value, str):
         return value

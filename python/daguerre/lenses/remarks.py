@@ -79,5 +79,5 @@ def _limit(surface: dict[str, Any]) -> float:
     return float(abs(radius) / math.sqrt(1 + conic))
 
 
-def _is_number(value: Any) -> bool:
+def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)

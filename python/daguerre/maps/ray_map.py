@@ -93,7 +93,7 @@ def raymap(
     scene: Scene | None = None,
     gt_time: str = "mid",
     frame: str = "camera",
-    overscan: Any = None,
+    overscan: object = None,
 ) -> RayMap:
     """Returns the ray of each pixel of any camera.
 

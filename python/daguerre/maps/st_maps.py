@@ -121,7 +121,7 @@ def stmaps(
     resolution: tuple[int, int],
     *,
     scene: Scene | None = None,
-    overscan: Any = None,
+    overscan: object = None,
 ) -> StMaps:
     """Returns the STMaps of any camera, at mid-exposure.
 

@@ -33,7 +33,7 @@ class Flat:
     rest: list[Any] = field(default_factory=list)
 
 
-def flat(value: Any) -> Flat:
+def flat(value: object) -> Flat:
     """Flattens a number, tuple, array or dataclass."""
     numbers: list[float] = []
     taken = Flat(value, np.zeros(0))
@@ -42,7 +42,7 @@ def flat(value: Any) -> Flat:
     return taken
 
 
-def _take(value: Any, numbers: list[float], into: Flat) -> None:
+def _take(value: object, numbers: list[float], into: Flat) -> None:
     if isinstance(value, np.ndarray) and value.size <= _MAX_ARRAY and value.dtype.kind in "iuf":
         if value.shape == (4, 4):  # rotation and position have separate scales
             _add(value[:3, :3].ravel().tolist(), numbers, into)

@@ -42,7 +42,7 @@ class Blending(Protocol):
     def form(self) -> tuple[Any, ...]:
         """Form that all keys must share."""
 
-    def blended(self, other: Any, share: float) -> Any:
+    def blended(self, other: object, share: float) -> Any:
         """Interpolates toward another value of the same form, by this fraction."""
 
 
@@ -280,12 +280,12 @@ def at(value: Any, time: float, depth: int = 0) -> Any:
     return value
 
 
-def moves(value: Any) -> bool:
+def moves(value: object) -> bool:
     """Whether a value is dynamic, or contains a dynamic value."""
     return next(iter(_dynamics(value)), None) is not None
 
 
-def is_dynamic(value: Any) -> bool:
+def is_dynamic(value: object) -> bool:
     """Whether a value itself is dynamic."""
     kind = type(value)
     return hasattr(kind, "at") and hasattr(kind, "breaks")
@@ -320,7 +320,7 @@ def _pairs(pairs: Any) -> list[tuple[int, tuple[Any, Any]]]:
     return list(enumerate(listed))
 
 
-def _value(value: Any, where: str, interpolation: str | None) -> Any:
+def _value(value: object, where: str, interpolation: str | None) -> Any:
     """Normalizes the value of a key: a number, tuple of floats, read-only array, name or flag."""
     if _blends(value):
         return value
@@ -341,11 +341,11 @@ def _value(value: Any, where: str, interpolation: str | None) -> Any:
     return matrix(value, where) if numbers.shape == (4, 4) else as_readonly(numbers)
 
 
-def _time(value: Any, where: str) -> float:
+def _time(value: object, where: str) -> float:
     return number(value, where, -MAX_TIME, MAX_TIME, error=InputError)
 
 
-def _blends(value: Any) -> bool:
+def _blends(value: object) -> bool:
     return hasattr(type(value), "blended")
 
 

@@ -20,7 +20,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 Rows = Table | Mapping[str, Parameter]
 
 
-def takes(rows: Rows, keywords: Any) -> Callable[[Function], Function]:
+def takes(rows: Rows, keywords: object) -> Callable[[Function], Function]:
     """Puts the keywords of a TypedDict into the signature and the docstring of a function.
 
     They replace ``**keywords`` in the signature and ``{keywords}`` in the docstring.

@@ -180,7 +180,7 @@ class Parameter:
         parts = value if isinstance(value, tuple) else (value,)
         return " x ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in parts)
 
-    def read(self, value: Any, where: str, error: type[InputError | UsageError]) -> Any:
+    def read(self, value: object, where: str, error: type[InputError | UsageError]) -> Any:
         """Parses a text or a JSON value.
 
         Args:
@@ -197,7 +197,7 @@ class Parameter:
             raise error(f"{where}: wanted {self.wanted}, got {short(value)}{near}")
         return result
 
-    def check(self, value: Any, where: str) -> None:
+    def check(self, value: object, where: str) -> None:
         """Checks a Python value; None means not given.
 
         Raises:
@@ -206,7 +206,7 @@ class Parameter:
         if value is not None or self.required:
             self.check_given(value, where)
 
-    def check_given(self, value: Any, where: str) -> None:
+    def check_given(self, value: object, where: str) -> None:
         """Checks a Python value, which must not be None."""
         match self.kind:
             case "number":
@@ -224,13 +224,13 @@ class Parameter:
                 for part in checks.numbers(value, where, self.count, self.wanted):
                     self._check_number(part, where)
 
-    def _check_whole(self, value: Any, where: str) -> None:
+    def _check_whole(self, value: object, where: str) -> None:
         low, high = int(self.low), int(self.high)
         result = checks.whole(value, where, low, high, self.wants or None)
         if self.odd and result % 2 == 0:
             raise UsageError(f"{where}: wanted {self.wanted}, got {result}")
 
-    def _check_number(self, value: Any, where: str) -> None:
+    def _check_number(self, value: object, where: str) -> None:
         if self.kind == "number" and self.wants:
             result = checks.number(value, where)
             if not self.low <= result <= self.high:

@@ -130,7 +130,7 @@ class Table:
                 got = "both" if len(both) == 2 else len(both)
                 raise UsageError(f"{flags}: wanted one of them, got {got}")
 
-    def check(self, values: Any, where: str) -> None:
+    def check(self, values: object, where: str) -> None:
         """Checks the values of all parameters.
 
         Args:

@@ -79,7 +79,7 @@ def _lens_tags(metadata: Mapping[str, Any]) -> Tags:
     return tags
 
 
-def _focal_lengths(camera: Any) -> tuple[float, float] | None:
+def _focal_lengths(camera: object) -> tuple[float, float] | None:
     """Shortest and longest focal length of a lens with a prescription, mm; None: no such lens."""
     if not isinstance(camera, Mapping) or not camera.get("lens_sha256"):
         return None

@@ -51,7 +51,7 @@ def read_tags(path: Path) -> ShotTags:
     return _tags(exif, blocks.get("xmp", b""))
 
 
-def _tags(exif: dict[str, Any], packet: Any) -> ShotTags:
+def _tags(exif: dict[str, Any], packet: object) -> ShotTags:
     if not isinstance(packet, bytes) or not packet:
         return ShotTags(exif)
     xmp = xmp_tags(packet)

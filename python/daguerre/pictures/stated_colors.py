@@ -159,7 +159,7 @@ def _said(facts: Mapping[str, Any]) -> tuple[dict[str, Encoding], list[str]]:
     return found, remarks
 
 
-def _name(value: Any, by: str, found: dict[str, Encoding], remarks: list[str]) -> None:
+def _name(value: object, by: str, found: dict[str, Encoding], remarks: list[str]) -> None:
     """Adds the encoding of a named space, or a remark that its name is unknown."""
     if not isinstance(value, str) or not value.strip():
         return
@@ -173,7 +173,7 @@ def _name(value: Any, by: str, found: dict[str, Encoding], remarks: list[str]) -
         found[f"{by} {short(value)}"] = encoding
 
 
-def _of_corners(value: Any) -> Encoding:
+def _of_corners(value: object) -> Encoding:
     if not isinstance(value, tuple) or len(value) != 8:
         raise ValueError("wanted 8 numbers")
     r, g, b, w = ((float(value[i]), float(value[i + 1])) for i in range(0, 8, 2))

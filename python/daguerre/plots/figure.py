@@ -39,7 +39,7 @@ class Plot(Shown, Figure):  # type: ignore[misc]  # ``show`` needs no pyplot
         return out.getvalue()
 
 
-def drawn(draw: Callable[[Any, Any], None], result: Any, size: tuple[float, float]) -> Plot:
+def drawn(draw: Callable[[Any, Any], None], result: object, size: tuple[float, float]) -> Plot:
     """Draws a result in a new figure of a size in inches."""
     with rc_context(SINGLE):
         figure = Plot(figsize=size, dpi=110, layout="constrained")

@@ -17,7 +17,7 @@ from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 class HasIndex(Protocol):
     """Interface of a glass, such as ``dg.lenses.glasses.find("N-BK7")``."""
 
-    def index(self, wavelength_nm: Any, /) -> Any:
+    def index(self, wavelength_nm: object, /) -> Any:
         """Returns the index relative to air at wavelengths, nm."""
 
 

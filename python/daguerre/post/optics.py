@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeGuard
+from typing import TYPE_CHECKING, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
@@ -143,9 +143,9 @@ def stop_remark_of(values: Values) -> str | None:
     return stop_remark(lenses.load(values["lens"]), values["f_stop"], values.get("zoom"))
 
 
-def _finite(pair: Any) -> TypeGuard[tuple[float, float]]:
+def _finite(pair: object) -> TypeGuard[tuple[float, float]]:
     return isinstance(pair, tuple) and len(pair) == 2 and all(math.isfinite(v) for v in pair)
 
 
-def _positive(pair: Any) -> TypeGuard[tuple[float, float]]:
+def _positive(pair: object) -> TypeGuard[tuple[float, float]]:
     return isinstance(pair, tuple) and len(pair) == 2 and all(0 < v < math.inf for v in pair)

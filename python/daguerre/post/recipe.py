@@ -113,7 +113,7 @@ def _files(planned: Planned, folder: Folder) -> dict[str, str]:
 
 
 def plan(
-    name: Any, given: Values, where: str, error: type[InputError | UsageError] = UsageError
+    name: object, given: Values, where: str, error: type[InputError | UsageError] = UsageError
 ) -> Planned:
     """Returns an effect of the catalogue with values for all its parameters."""
     if not isinstance(name, str) or name not in EFFECTS:

@@ -165,12 +165,12 @@ class _Meter:
         openings = f"f/{self._widest():.3g} .. f/{most:g}"
         return openings if self.mode == "S" else f"{times} and {openings}"
 
-    def _with(self, **changes: Any) -> Prepared:
+    def _with(self, **changes: object) -> Prepared:
         """Prepares the meter's picture with other parameters of the camera."""
         camera = self.one.camera.with_(**changes)
         return prepare(self.scene, camera, self.settings, self.one.built)
 
-    def _lux_s(self, **changes: Any) -> float:
+    def _lux_s(self, **changes: object) -> float:
         """Luminance exposure of a value of 1 by the camera with other parameters, lux s."""
         one = self._with(**changes) if changes else self.one
         return luminance_exposure(camera_metadata(one.camera, one.setup, one.size[0]))

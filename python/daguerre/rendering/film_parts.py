@@ -47,7 +47,7 @@ class FilmPart:
         film: _core.Film,
         corner: tuple[int, int],
         which: tuple[Any, ...],
-        progress: Any,
+        progress: object,
     ) -> tuple[bool, _core.RenderCounters]:
         """Draws samples; returns whether all of them were drawn, and the counters.
 

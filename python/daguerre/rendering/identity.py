@@ -153,5 +153,5 @@ def _sample_facts(session: Drawn) -> dict[str, Any]:
     }
 
 
-def _hash_json(value: Any) -> str:
+def _hash_json(value: object) -> str:
     return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()

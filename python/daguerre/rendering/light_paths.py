@@ -76,7 +76,7 @@ def _path_counts(parts: Sequence[Any], most: int) -> list[float] | None:
     return numbers if fit else None
 
 
-def _pair(value: Any) -> Sequence[Any]:
+def _pair(value: object) -> Sequence[Any]:
     return value if isinstance(value, list | tuple) else [value]
 
 

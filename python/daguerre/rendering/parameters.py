@@ -40,7 +40,7 @@ class Setting(Parameter):
     _: KW_ONLY
     normal: Callable[[Any, str], Any] | None = None
 
-    def check(self, value: Any, where: str) -> Any:
+    def check(self, value: object, where: str) -> Any:
         """Checks a value and returns it in the form that settings keep; None: not given.
 
         Raises:
@@ -56,7 +56,7 @@ class Setting(Parameter):
 
 
 def _switch(words: str) -> Callable[[Any, str], bool]:
-    def check(value: Any, where: str) -> bool:
+    def check(value: object, where: str) -> bool:
         if not isinstance(value, bool | np.bool_):
             raise UsageError(f"{where}: wanted {words}, got {short(value)}")
         return bool(value)
@@ -64,22 +64,22 @@ def _switch(words: str) -> Callable[[Any, str], bool]:
     return check
 
 
-def _seed(value: Any, where: str) -> int:
+def _seed(value: object, where: str) -> int:
     return whole(value, where, 0, MAX_SEED, "0 .. 2^64 - 1")  # a float cannot hold the limit
 
 
-def _order(value: Any, where: str) -> int:
+def _order(value: object, where: str) -> int:
     if not isinstance(value, int | np.integer) or value not in (2, 4):
         raise UsageError(f"{where}: wanted 2 or 4, got {short(value)}")
     return int(value)
 
 
-def _paths(value: Any, where: str) -> str | float:
+def _paths(value: object, where: str) -> str | float:
     found = check_paths(value, where)
     return "auto" if found is None else "off" if value == "off" else found
 
 
-def _light_paths(value: Any, where: str) -> str | tuple[float, float]:
+def _light_paths(value: object, where: str) -> str | tuple[float, float]:
     found = check_light_paths(value, where)
     return "auto" if found is None else "off" if value == "off" else found
 

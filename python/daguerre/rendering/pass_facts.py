@@ -17,19 +17,19 @@ from daguerre.pictures.exr import write as exr
 from daguerre.pictures.exr.facts import are_texts, is_number
 
 
-def _are_numbers(value: Any, count: int) -> bool:
+def _are_numbers(value: object, count: int) -> bool:
     return isinstance(value, list) and len(value) == count and all(map(is_number, value))
 
 
-def _is_whole(value: Any, low: int, high: int) -> bool:
+def _is_whole(value: object, low: int, high: int) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and low <= value <= high
 
 
-def _is_pair(value: Any) -> bool:
+def _is_pair(value: object) -> bool:
     return is_number(value) or _are_numbers(value, 2)
 
 
-def _is_matrix(value: Any) -> bool:
+def _is_matrix(value: object) -> bool:
     return (
         isinstance(value, list) and len(value) == 4 and all(_are_numbers(row, 4) for row in value)
     )
@@ -48,7 +48,7 @@ def _is_crop(value: Any) -> bool:
     return bool(x0 < x1 and y0 < y1)
 
 
-def _are_mattes(value: Any) -> bool:
+def _are_mattes(value: object) -> bool:
     if not (isinstance(value, dict) and _is_whole(value.get("ranks"), 1, MAX_RANKS)):
         return False
     layers = value.get("layers")
@@ -59,7 +59,7 @@ def _are_mattes(value: Any) -> bool:
     )
 
 
-def _is_layer(value: Any) -> bool:
+def _is_layer(value: object) -> bool:
     if not (isinstance(value, dict) and are_texts(value.get("names"))):
         return False
     of, most = value.get("of"), len(value["names"]) - 1
@@ -101,7 +101,7 @@ def bad_fact(metadata: Mapping[str, Any]) -> str | None:
     return None
 
 
-def are_ranges(value: Any) -> bool:
+def are_ranges(value: object) -> bool:
     """Whether a value is a list of [begin, end) that rise and do not overlap."""
     if not isinstance(value, list) or not value:
         return False

@@ -207,14 +207,14 @@ def _difference(name: str, first: Pass, other: Pass) -> str:
     return f"{WORDS.get(name, name)} ({got}, wanted {wanted})"
 
 
-def _value(fact: Any) -> str:
+def _value(fact: object) -> str:
     """Returns a setting as text; a setting missing from the header is off."""
     if fact is None:
         return "off"
     return ",".join(map(str, fact)) if isinstance(fact, list | tuple) else str(fact)
 
 
-def _words(part: Layout, count: Any) -> NDArray[np.uint32]:
+def _words(part: Layout, count: object) -> NDArray[np.uint32]:
     """Inverse of :func:`_words_part`: the words (H, W, count) of a part."""
     names = [f"words.{color}" for color in "RGBA"]
     if sorted(names) != list(part.channels) or set(part.channels.values()) != {"uint32"}:
@@ -257,7 +257,7 @@ def _field(path: Path, header: Facts, name: str, check: Callable[[Any], bool]) -
 
 
 def _round(path: Path, header: Facts, words: NDArray[np.uint32]) -> Round:
-    def is_facts(value: Any) -> bool:
+    def is_facts(value: object) -> bool:
         return (
             isinstance(value, dict)
             and all(isinstance(value.get(name), int | float) for name in ROUND_FACTS)
@@ -292,10 +292,10 @@ def _check_crop(path: Path, facts: Pass, words: NDArray[np.uint32]) -> None:
 
 
 def _header(path: Path, header: Facts) -> Pass:
-    def are_strings(value: Any) -> bool:
+    def are_strings(value: object) -> bool:
         return isinstance(value, dict) and bool(value) and all(map(is_text, value.values()))
 
-    def is_text(value: Any) -> bool:
+    def is_text(value: object) -> bool:
         return isinstance(value, str)
 
     metadata = _field(path, header, "metadata", lambda value: isinstance(value, dict))

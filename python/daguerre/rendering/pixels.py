@@ -90,7 +90,7 @@ def crop_within(crop: CropLike | None, region: Box, where: str = "crop") -> Box:
     return box
 
 
-def parse_filter(value: Any, where: str = "filter") -> tuple[str, float]:
+def parse_filter(value: object, where: str = "filter") -> tuple[str, float]:
     """Parses a filter such as ``gaussian`` or ``gaussian:1.5``: name, radius (px; 0: default)."""
     kind, _, radius = str(value).replace("-", "_").partition(":")
     if kind not in FILTERS:
@@ -108,7 +108,7 @@ def parse_filter(value: Any, where: str = "filter") -> tuple[str, float]:
     return kind, number
 
 
-def check_filter(value: Any, where: str = "filter") -> str:
+def check_filter(value: object, where: str = "filter") -> str:
     """Checks a filter and returns it as text."""
     parse_filter(value, where)
     return str(value)

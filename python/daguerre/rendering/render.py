@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Unpack
 
 from daguerre.camera.camera import Camera
 from daguerre.doors import guarded
@@ -38,7 +38,7 @@ def render(
     settings: RenderSettings | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
-    cluster: Any = None,
+    cluster: object = None,
     **keywords: Unpack[RenderKeywords],
 ) -> Frame:
     """Renders a picture.
@@ -96,7 +96,7 @@ class _Watch(Reporter, Control):
             self.stops = 1
 
 
-def _on_cluster(cluster: Any) -> AbstractContextManager[WorkOf]:
+def _on_cluster(cluster: object) -> AbstractContextManager[WorkOf]:
     """Context of the work of a cluster."""
     from daguerre.cluster.opened import work_on
 

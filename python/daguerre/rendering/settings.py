@@ -145,7 +145,7 @@ class RenderSettings(Value):
         check_together(self.values())
 
     @classmethod
-    def of(cls, **values: Any) -> RenderSettings:
+    def of(cls, **values: object) -> RenderSettings:
         """Makes settings from parameters by name, of any group."""
         return cls().with_(**values)
 
@@ -222,7 +222,7 @@ def names_in(group: Any) -> tuple[str, ...]:
 
 
 def refuse_unknown(
-    given: Any, known: Iterable[str], where: str, error: type[Exception] = UsageError
+    given: object, known: Iterable[str], where: str, error: type[Exception] = UsageError
 ) -> None:
     """Refuses unknown names, and values that are not mappings."""
     if not isinstance(given, Mapping):

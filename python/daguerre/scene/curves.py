@@ -138,7 +138,7 @@ def moving_curves(path: Dynamic, curves: Curves, layout: Layout) -> MovingCurves
     return MovingCurves(path, layout, vertices_of(curves), f"curves {curves.name!r}")
 
 
-def layout_of(counts: Any, basis: str, wrap: str, where: str) -> Layout:
+def layout_of(counts: object, basis: str, wrap: str, where: str) -> Layout:
     """Checks what the layout of curves follows from.
 
     Raises:
@@ -169,7 +169,7 @@ def _layout(counts: NDArray[np.int64], basis: str, wrap: str) -> Layout:
     return Layout(freeze_in_place(counts), basis, wrap)
 
 
-def _counts(counts: Any, where: str, basis: str, wrap: str) -> NDArray[np.int64]:
+def _counts(counts: object, where: str, basis: str, wrap: str) -> NDArray[np.int64]:
     from .curve_bases import are_counts, wanted_count
 
     numbers = to_numbers(counts, where, "counts", "shape (C,)")
@@ -195,7 +195,7 @@ def _positions(form: BezierForm, points: FloatArray, where: str) -> FloatArray:
     return freeze_in_place(placed)
 
 
-def _radii(widths: Any, where: str, counts: NDArray[np.int64], form: BezierForm) -> FloatArray:
+def _radii(widths: object, where: str, counts: NDArray[np.int64], form: BezierForm) -> FloatArray:
     """Half of the widths at the points of the segments, shape (P,)."""
     wanted = "a width, or shape (C,) or (N,)"
     numbers = to_numbers(widths, where, "widths", wanted)

@@ -141,7 +141,7 @@ class Medium(Value):
         return float(grid.values.max()) * edge * (_most(self.absorption) + _most(self.scattering))
 
 
-def check_medium(medium: Any, where: str) -> None:
+def check_medium(medium: object, where: str) -> None:
     """Checks that a value is a medium or None; a medium has checked itself.
 
     Raises:
@@ -151,7 +151,7 @@ def check_medium(medium: Any, where: str) -> None:
         raise InputError(f"{where}: wanted a Medium or None, got {short(medium)}")
 
 
-def check_media(interior: Any, exterior: Any, where: str) -> None:
+def check_media(interior: object, exterior: object, where: str) -> None:
     """Checks the media on both sides of a surface.
 
     Raises:
@@ -185,7 +185,7 @@ def _most(value: Color | Spectrum) -> float:
     return max(value.values if isinstance(value, Spectrum) else value)
 
 
-def _coefficient(value: Any, where: str) -> Color | Spectrum:
+def _coefficient(value: object, where: str) -> Color | Spectrum:
     return value if isinstance(value, Spectrum) else color(value, where)
 
 

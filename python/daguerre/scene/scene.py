@@ -593,7 +593,7 @@ class Scene(Value):
         self.motion.environment = _motion_of(given)
 
     @staticmethod
-    def _index(value: Any, count: int, where: str) -> int:
+    def _index(value: object, count: int, where: str) -> int:
         if isinstance(value, bool | str | np.ndarray) or not hasattr(value, "__index__"):
             raise InputError(f"{where}: wanted an index, got {short(value)}")
         index = operator.index(value)
@@ -643,7 +643,7 @@ def _counted(count: int, name: str) -> str:
     return f"{count} {name}" + ("" if count == 1 else "es" if name == "mesh" else "s")
 
 
-def _steps(steps: Any, where: str) -> Dynamic:
+def _steps(steps: object, where: str) -> Dynamic:
     from .point_cache import steps_of
 
     return steps_of(steps, where)
@@ -653,12 +653,12 @@ def _dynamic(value: Any) -> Dynamic | None:
     return value if is_dynamic(value) else None
 
 
-def _motion_of(value: Any) -> Dynamic | None:
+def _motion_of(value: object) -> Dynamic | None:
     """Returns the value over time, or None if it does not change."""
     return _dynamic(value) or (Composite(value) if moves(value) else None)
 
 
-def _are_keys(transform: Any) -> bool:
+def _are_keys(transform: object) -> bool:
     """Whether a value looks like [(time, matrix), ...]."""
     return (
         isinstance(transform, list | tuple)
@@ -670,7 +670,7 @@ def _are_keys(transform: Any) -> bool:
     )
 
 
-def _motions(given: Any, count: int, where: str) -> Sequence[Dynamic]:
+def _motions(given: object, count: int, where: str) -> Sequence[Dynamic]:
     """Checks values over time, as many as transforms; none if None is given.
 
     Raises:

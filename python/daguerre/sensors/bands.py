@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,7 @@ LEAST_BANDS, MOST_BANDS = 3, 64
 MOST_CHANNELS = 4
 
 
-def check_bands(value: Any, where: str = "bands") -> int:
+def check_bands(value: object, where: str = "bands") -> int:
     """Checks a number of bands; 0: none."""
     if value is None or (isinstance(value, int) and value == 0):
         return 0

@@ -107,7 +107,7 @@ def _iso(sensor: SensorData, where: str) -> None:
 
 
 def _within(
-    where: str, what: str, value: Any, low: float, high: float, *, above: float | None = None
+    where: str, what: str, value: object, low: float, high: float, *, above: float | None = None
 ) -> None:
     number(value, f"{where}: {what}", low, high, above=above, error=InputError)
 

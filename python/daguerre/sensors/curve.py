@@ -57,7 +57,7 @@ def table(where: str, wavelengths: Any, values: Any, most: float = 1.0) -> Float
     return numbers
 
 
-def rising(where: str, wavelengths: Any) -> FloatArray:
+def rising(where: str, wavelengths: object) -> FloatArray:
     """Checks that there are at least two wavelengths, nm, in ascending order.
 
     Raises:

@@ -194,7 +194,7 @@ class Sensor(Response):
         """Returns the fitted matrix from XYZ to a frame's channels, (C, 3); exact for D65."""
         return fit.channels_from_xyz(self)
 
-    def colour_matrix(self, white: Any = None) -> FloatArray:
+    def colour_matrix(self, white: object = None) -> FloatArray:
         """Returns DNG's ColorMatrix: the matrix from XYZ to raw values under a white, (C, 3).
 
         It is scaled so that the strongest channel of D65 white is 1, and includes crosstalk. The
@@ -207,12 +207,12 @@ class Sensor(Response):
         """
         return fit.colour_matrix(self, illuminants.white_xy(white))
 
-    def neutral(self, white: Any = None) -> FloatArray:
+    def neutral(self, white: object = None) -> FloatArray:
         """Returns the raw values of a white surface in a light, strongest channel 1, shape (C,)."""
         xy = illuminants.white_xy(white)
         raw = fit.colour_matrix(self, xy) @ illuminants.xyz_of_xy(xy)
         return np.asarray(raw / raw.max())
 
-    def rgb_from_channels(self, white: Any = None) -> FloatArray:
+    def rgb_from_channels(self, white: object = None) -> FloatArray:
         """Returns the matrix from channels to linear Rec.709, (3, C); white becomes (1, 1, 1)."""
         return fit.rgb_from_channels(self, illuminants.white_xy(white))

@@ -65,7 +65,7 @@ class _Digest:
         self._sha = hashlib.sha256()
         self._pending: list[str] = []
 
-    def add(self, value: Any) -> None:
+    def add(self, value: object) -> None:
         kind: Any = type(value)
         if isinstance(value, np.ndarray):
             self._pending.append(f"{value.dtype}{value.shape}")

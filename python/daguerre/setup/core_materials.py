@@ -37,7 +37,7 @@ def common_values(material: Material, profile: int) -> dict[str, Any]:
     return {name: _plain(getattr(material, name)) for name in _COMMON} | {"profile": profile}
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     if isinstance(value, TextureSlot):
         return value.texture, value.uv_set, tuple(value.transform)
     if isinstance(value, Spectrum):

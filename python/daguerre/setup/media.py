@@ -68,6 +68,6 @@ def _core_medium(medium: Medium) -> tuple[Any, ...]:
     return *(_core_color(value) for value in values), list(medium.lobes), density
 
 
-def _core_color(value: Any) -> Any:
+def _core_color(value: object) -> Any:
     """A triple, or wavelengths and values."""
     return (value.wavelengths_nm, value.values) if isinstance(value, Spectrum) else value

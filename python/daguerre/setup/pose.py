@@ -139,7 +139,7 @@ def changes(camera: Camera, begin: float, end: float) -> dict[str, Change]:
     return found
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     """Converts a value to JSON."""
     return value.facts() if isinstance(value, Projection) else np.asarray(value).tolist()
 

@@ -114,7 +114,7 @@ def add_environment(builder: _core.SceneBuilder, scene: Scene, interval: Interva
     _set_environment(builder, environment)
 
 
-def _pose(environment: Environment, image: Any) -> tuple[tuple[float, ...], float]:
+def _pose(environment: Environment, image: object) -> tuple[tuple[float, ...], float]:
     """Factor on the environment's light, and its rotation about +y, rad."""
     if environment.image is not image:
         raise InputError("environment: image: cannot change while the shutter is open")

@@ -168,7 +168,7 @@ def _largest(pictures: list[Texel]) -> tuple[int, int]:
     return max(heights), max(widths)
 
 
-def _finite(values: Any, size: tuple[int, int]) -> NDArray[np.float32]:
+def _finite(values: object, size: tuple[int, int]) -> NDArray[np.float32]:
     """Picture of values, 0 where they are not finite."""
     whole = np.broadcast_to(np.asarray(values, np.float32), size)
     finite = np.nan_to_num(whole, nan=0.0, posinf=0.0, neginf=0.0)

@@ -36,7 +36,7 @@ class Pictures(Protocol):
     def picture(self, place: str, path: str, *, is_data: bool = False) -> Any:
         """Decodes the picture of an asset path; None: it is missing."""
 
-    def keep(self, value: Any) -> None:
+    def keep(self, value: object) -> None:
         """Keeps an array alive, so that its identity stays a key."""
 
 

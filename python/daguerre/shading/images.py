@@ -58,7 +58,7 @@ class Textures:
         filter: str,
         min_filter: str = "linear_mipmap_linear",
         name: str,
-        key: Any = None,
+        key: object = None,
     ) -> int:
         """Adds pixels to the scene once; ``key`` stands for their content if they are new."""
         known = (id(pixels) if key is None else key, srgb, wrap, filter, min_filter)
@@ -75,12 +75,12 @@ class Textures:
         return self._textures[known]
 
     def known(
-        self, key: Any, srgb: bool, wrap: tuple[str, str], filter: str, min_filter: str
+        self, key: object, srgb: bool, wrap: tuple[str, str], filter: str, min_filter: str
     ) -> int | None:
         """Index of a texture that was added with this key."""
         return self._textures.get((key, srgb, wrap, filter, min_filter))
 
-    def keep(self, value: Any) -> None:
+    def keep(self, value: object) -> None:
         """Keeps an array alive, so that its identity stays a key."""
         self._kept.append(value)
 

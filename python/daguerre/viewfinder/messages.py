@@ -157,7 +157,7 @@ def parse(text: str | bytes) -> Message:
     return _READERS[name](value)
 
 
-def _turn(value: Any) -> Turn:
+def _turn(value: object) -> Turn:
     if not isinstance(value, dict):
         raise UsageError(f"turn: wanted dials by name, got {short(value)}")
     for name, text in value.items():
@@ -167,21 +167,21 @@ def _turn(value: Any) -> Turn:
     return Turn(value)
 
 
-def _save(value: Any) -> Save:
+def _save(value: object) -> Save:
     if value not in SAVED:
         raise UsageError(f"save: wanted one of {', '.join(SAVED)}, got {short(value)}")
     return Save(value)
 
 
-def _draw(value: Any) -> Draw:
+def _draw(value: object) -> Draw:
     return Draw(_whole(value, "draw", 1, 1 << 20))
 
 
-def _got(value: Any) -> Got:
+def _got(value: object) -> Got:
     return Got(_whole(value, "got", 0, 1 << 53))
 
 
-def _probe(value: Any) -> Probe:
+def _probe(value: object) -> Probe:
     part = 0
     if isinstance(value, list) and len(value) == 3:
         part = _whole(value.pop(), "probe: picture", 0, MOST_PARTS)
@@ -189,14 +189,14 @@ def _probe(value: Any) -> Probe:
     return Probe(int(x), int(y), part)
 
 
-def _section(value: Any) -> Section:
+def _section(value: object) -> Section:
     return Section(*_pair(value, "section"))
 
 
 def _plain(name: str, message: Message) -> Callable[[Any], Message]:
     """Reader of a message that says nothing but its name."""
 
-    def read(value: Any) -> Message:
+    def read(value: object) -> Message:
         if value is not True:
             raise UsageError(f"{name}: wanted true, got {short(value)}")
         return message
@@ -204,37 +204,37 @@ def _plain(name: str, message: Message) -> Callable[[Any], Message]:
     return read
 
 
-def _hold(value: Any) -> Hold:
+def _hold(value: object) -> Hold:
     if not isinstance(value, bool):
         raise UsageError(f"hold: wanted true or false, got {short(value)}")
     return Hold(value)
 
 
-def _show(value: Any) -> ShowOtherwise:
+def _show(value: object) -> ShowOtherwise:
     return ShowOtherwise(check_changes(value))
 
 
-def _drawing(value: Any) -> Drawing:
+def _drawing(value: object) -> Drawing:
     return Drawing(_lens(value, "drawing"))
 
 
-def _photograph(value: Any) -> Photograph:
+def _photograph(value: object) -> Photograph:
     return Photograph(_lens(value, "photograph"))
 
 
-def _lens(value: Any, where: str) -> str:
+def _lens(value: object, where: str) -> str:
     if not isinstance(value, str) or value not in lenses.names():
         raise UsageError(f"{where}: wanted a lens of the library, got {short(value)}")
     return value
 
 
-def _find(value: Any) -> Find:
+def _find(value: object) -> Find:
     if not isinstance(value, str) or len(value) > MOST:
         raise UsageError(f"find: wanted words of at most {MOST} characters, got {short(value)}")
     return Find(value)
 
 
-def _whole(value: Any, where: str, low: int, high: int) -> int:
+def _whole(value: object, where: str, low: int, high: int) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
         raise UsageError(f"{where}: wanted a whole number of {low} to {high}, got {short(value)}")
     return value

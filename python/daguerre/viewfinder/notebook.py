@@ -95,7 +95,7 @@ def view(
     camera: Camera | None = None,
     *,
     resolution: tuple[int, int] = _SIZE,
-    **settings: Any,
+    **settings: object,
 ) -> View:
     """Shows the viewfinder in a notebook: the picture of a camera, and its rings to turn.
 

@@ -196,7 +196,10 @@ def free_socket(host: str, port: int) -> socket.socket:
 
 
 async def serve(
-    sock: socket.socket, door: Door, hub_of: Callable[[asyncio.AbstractEventLoop], Hub], **more: Any
+    sock: socket.socket,
+    door: Door,
+    hub_of: Callable[[asyncio.AbstractEventLoop], Hub],
+    **more: Any,
 ) -> None:
     """Serves until it is cancelled."""
     from websockets.asyncio.server import serve as listen

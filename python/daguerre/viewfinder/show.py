@@ -48,7 +48,7 @@ class Show:
         return replace(self, **{**apart, **changes})
 
 
-def check_changes(value: Any) -> Mapping[str, Any]:
+def check_changes(value: object) -> Mapping[str, Any]:
     """Checks changes from a page.
 
     Returns:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import Any
 
 from daguerre.camera.ideal import WITH_IRIS
 from daguerre.camera.parameters.needs import GHOSTS, SCATTER, TRACED
@@ -25,7 +24,7 @@ COMPANIONS = {
 }
 
 
-def is_on(name: str, value: Any) -> bool:
+def is_on(name: str, value: object) -> bool:
     """Whether a value of a setting switches it on."""
     return value not in (DEFAULT[name], "0", 0.0, None)
 

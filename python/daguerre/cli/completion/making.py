@@ -106,5 +106,5 @@ def _summary(text: str) -> str:
     return shorten(phrase.rstrip("."), WIDTH, placeholder=" ...")
 
 
-def _line(row: Any) -> str:
+def _line(row: object) -> str:
     return json.dumps(row, ensure_ascii=False)

@@ -63,7 +63,7 @@ def field_type(row: Parameter, names: Table, panel: str | None) -> Any:
     return Annotated[kind | None, shown]
 
 
-def _is_given(value: Any) -> bool:
+def _is_given(value: object) -> bool:
     return value is not None and value != []
 
 

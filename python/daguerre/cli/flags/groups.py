@@ -40,7 +40,7 @@ def with_flags(**groups: type) -> Callable[[Callable[..., Any]], Callable[..., A
                 else [_parameter(one) for one in fields(group)]
             )
 
-        def run(**values: Any) -> Any:
+        def run(**values: object) -> Any:
             made = {
                 name: group(**{f.name: values.pop(f.name) for f in fields(group)})
                 for name, group in groups.items()

@@ -109,7 +109,7 @@ class SceneFlags(SceneFileFlags):
     def load(
         self,
         path: Path,
-        taken: Any = None,
+        taken: object = None,
         *,
         animated: bool = False,
         moments: tuple[float, float] | None = None,

@@ -1,7 +1,5 @@
 """Flags of render settings, from the rows with flags in the table of parameters."""
 
-from typing import Any
-
 from daguerre.errors import UsageError
 from daguerre.rendering.diffraction import Diffraction
 from daguerre.rendering.parameters import DEFAULT, FLAGS, of_flags
@@ -16,7 +14,7 @@ class SettingsFlags(TableFlags):
 
     crop: str | None
 
-    def settings(self, **more: Any) -> RenderSettings:
+    def settings(self, **more: object) -> RenderSettings:
         """Makes the settings, with parameters from other flags.
 
         Raises:

@@ -149,7 +149,7 @@ def _write_figures(
         console.show(dumps(_finite({**_facts(item, order), "bench": facts(made)}), indent=2))
 
 
-def _finite(value: Any) -> Any:
+def _finite(value: object) -> Any:
     if isinstance(value, dict):
         return {key: _finite(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):
@@ -209,7 +209,7 @@ def _facts(item: Lens, order: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _show(value: Any) -> str:
+def _show(value: object) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{key} {_show(inner)}" for key, inner in value.items())
     return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -29,7 +29,7 @@ def add_value(parent: Element, tag: str, name: str, value: object) -> Element:
     return add(parent, tag, name=name, value=text)
 
 
-def add_matrix(parent: Element, name: str, matrix: Any) -> None:
+def add_matrix(parent: Element, name: str, matrix: object) -> None:
     """Adds a transform, rows of a 4x4 matrix that acts on columns."""
     transform = add(parent, "transform", name=name)
     add(transform, "matrix", value=numbers(np.asarray(matrix, np.float64).reshape(-1).tolist()))

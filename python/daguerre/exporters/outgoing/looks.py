@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 from daguerre.scene.materials import (
     Boundary,
@@ -77,7 +76,7 @@ class Looks:
             vertex_colors=isinstance(material.kind, Diffuse),
         )
 
-    def surface(self, kind: Any) -> Surface:
+    def surface(self, kind: object) -> Surface:
         """Translates a kind of surface."""
         if isinstance(kind, Gltf):
             return gltf_look(kind, self._baker).surface
@@ -168,7 +167,7 @@ class Looks:
         return own[0] + rgb[0], own[1] + rgb[1], own[2] + rgb[2]
 
 
-def _slots(owner: Any) -> list[TextureSlot]:
+def _slots(owner: object) -> list[TextureSlot]:
     return [slot for slot in vars(owner).values() if isinstance(slot, TextureSlot)]
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
 
 import numpy as np
 
@@ -28,7 +27,7 @@ class Text:
         """Adds a directive: its name, a kind or a name in quotes, and parameters."""
         self.line(" ".join([name, f'"{kind}"', *parameters]))
 
-    def transform(self, matrix: Any) -> None:
+    def transform(self, matrix: object) -> None:
         """Sets the current transform, a 4x4 matrix that acts on columns; pbrt wants its columns."""
         columns = np.asarray(matrix, np.float64).T.reshape(-1).tolist()
         self.line(f"Transform [ {numbers(columns)} ]")

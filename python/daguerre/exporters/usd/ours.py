@@ -115,7 +115,7 @@ def _found(value: Lens | sensors.Sensor, name: str, load: Any) -> str:
     return found
 
 
-def _write_picture(output: Output, name: str, pixels: Any) -> None:
+def _write_picture(output: Output, name: str, pixels: object) -> None:
     if pixels is None:
         return
     grey = np.asarray(pixels, np.float32)

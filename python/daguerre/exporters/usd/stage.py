@@ -65,7 +65,7 @@ class Output:
         )
         return sorted({time for found in times for time in found})
 
-    def set(self, name: str, kind: str, value: Any) -> None:
+    def set(self, name: str, kind: str, value: object) -> None:
         """Sets a constant attribute; None: leaves it out."""
         if value is not None:
             self._attribute(name, kind).Set(_given(kind, value))

@@ -99,7 +99,7 @@ class Animations:
         return sorted(int(part[-1]) for part in self._parts if part[0] == kind)
 
 
-def played(part: Any, channels: Sequence[Channel], time: float) -> Any:
+def played(part: object, channels: Sequence[Channel], time: float) -> Any:
     """Returns a part of the file with its values at a time, s; the part itself is unchanged.
 
     Only objects and lists on the paths to the values are copied.
@@ -126,7 +126,7 @@ def breaks_of(channels: Sequence[Channel], begin: float, end: float) -> FloatArr
     return np.array(sorted({key for track in times for key in track.tolist()}), np.float64)
 
 
-def _write(target: Target, value: Any) -> None:
+def _write(target: Target, value: object) -> None:
     """Sets a value of the file that is being read."""
     holder: Any = target.holder
     has = isinstance(holder, list) or target.key in holder

@@ -62,7 +62,7 @@ def check_extensions(root: Item, notes: Notes) -> None:
             notes.add(f"extension {short(clean(name))} is not supported", counts.get(name, 0))
 
 
-def _count_uses(document: Any) -> dict[str, int]:
+def _count_uses(document: object) -> dict[str, int]:
     """Counts uses of each extension without recursion, in the order of the file."""
     counts: dict[str, int] = {}
     stack: list[Any] = [document]

@@ -123,7 +123,7 @@ def _is_mutable(tokens: list[str]) -> bool:
             return False
 
 
-def _target(holder: Any, tokens: list[str], use: Item) -> Target | None:
+def _target(holder: object, tokens: list[str], use: Item) -> Target | None:
     key = tokens[-1]
     if isinstance(holder, list) and tokens[-2] == "weights":  # in other lists, no single number
         return Target(holder, _index(key, holder, use), "weights", 1, _TYPES[:1])
@@ -139,7 +139,7 @@ def _target(holder: Any, tokens: list[str], use: Item) -> Target | None:
     return Target(holder, key, key, width, _TYPES if width is None else _TYPES[width - 1 : width])
 
 
-def _width(value: Any) -> int | None:
+def _width(value: object) -> int | None:
     """Count of numbers in a value; None: there is no value; 0: not numbers."""
     if value is None:
         return None
@@ -148,7 +148,7 @@ def _width(value: Any) -> int | None:
     return len(numbers) if fits and len(numbers) <= len(_TYPES) else 0
 
 
-def _step(holder: Any, token: str, use: Item) -> Any:
+def _step(holder: object, token: str, use: Item) -> Any:
     if isinstance(holder, list):
         return holder[_index(token, holder, use)]
     return holder.get(token) if isinstance(holder, dict) else None

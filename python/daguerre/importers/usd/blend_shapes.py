@@ -72,7 +72,7 @@ def _read(shape: UsdSkel.BlendShape, channel: int, count: int, clock: Clock) -> 
     return BlendShape(channel, points, np.array(order), offsets)
 
 
-def _offsets(value: Any, count: int, where: str) -> Array:
+def _offsets(value: object, count: int, where: str) -> Array:
     rows = None if value is None else as_rows(value, 3)
     if rows is None or len(rows) != count:
         got = "others" if rows is None else str(len(rows))

@@ -146,7 +146,7 @@ def _stop(read: Checked) -> dict[str, Any]:
     return {"f_stop": read.within("fStop", "f_stop", stop)}
 
 
-def _without_unset(focus: Any) -> Any:
+def _without_unset(focus: object) -> Any:
     """Focus distance without the moments at which it is unset; None: it is never set."""
     if not isinstance(focus, Keys):
         return focus or None
@@ -156,7 +156,7 @@ def _without_unset(focus: Any) -> Any:
     return keys(pairs, focus.interpolation) if pairs else None
 
 
-def _projected(values: dict[str, Any], projection: Any) -> dict[str, Any]:
+def _projected(values: dict[str, Any], projection: object) -> dict[str, Any]:
     """Values with a calibrated projection in the place of the lens and the film's height."""
     if projection is None:
         return values
@@ -211,7 +211,7 @@ def _pitched(
     return values | {"sensor_size": size}, left
 
 
-def _start(value: Any) -> Any:
+def _start(value: object) -> Any:
     """First value over time."""
     return value.values[0] if isinstance(value, Keys) else value
 

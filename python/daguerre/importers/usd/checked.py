@@ -37,7 +37,7 @@ class Checked:
         """Place of an attribute, for messages."""
         return f"{self.stage.file}: {path_text(self.prim.GetPath())}.{name}"
 
-    def fail(self, name: str, wanted: str, got: Any) -> NoReturn:
+    def fail(self, name: str, wanted: str, got: object) -> NoReturn:
         """Refuses the value of an attribute."""
         raise InputError(f"{self.place(name)}: wanted {wanted}, got {got}")
 
@@ -55,7 +55,7 @@ class Checked:
         value = attribute.Get(code) if attribute else None
         return None if value is None else _plain(attribute, value)
 
-    def finite(self, name: str, value: Any) -> float:
+    def finite(self, name: str, value: object) -> float:
         """Checks a finite number."""
         return self._number(name, value, -math.inf, None)
 
@@ -95,7 +95,7 @@ class Checked:
         """Finite number over time: a constant or keys, each converted; None: there is none."""
         attribute = self.prim.GetAttribute(name)
 
-        def each(value: Any) -> float:
+        def each(value: object) -> float:
             return convert(self._number(name, _plain(attribute, value), -math.inf, None))
 
         return self.stage.clock.value(attribute, each)
@@ -104,7 +104,7 @@ class Checked:
         """Finite numbers over time: a tuple or keys of tuples; None: there are none."""
         attribute = self.prim.GetAttribute(name)
 
-        def each(value: Any) -> tuple[float, ...]:
+        def each(value: object) -> tuple[float, ...]:
             return self._tuple(name, _plain(attribute, value), None)
 
         return self.stage.clock.value(attribute, each)
@@ -123,7 +123,7 @@ class Checked:
             self.fail(name, "an asset", short(value))
         return None if value is None else str(value.path) or None
 
-    def accepted(self, name: str, field: str, value: Any) -> Any:
+    def accepted(self, name: str, field: str, value: object) -> Any:
         """Checks a value, or each of its keys, as one of a parameter of ``Camera``."""
         for part in value.values if isinstance(value, Keys) else (value,):
             try:
@@ -132,7 +132,7 @@ class Checked:
                 raise InputError(str(error)) from None
         return value
 
-    def within(self, name: str, field: str, value: Any) -> Any:
+    def within(self, name: str, field: str, value: object) -> Any:
         """Checks a number, or each of its keys, by the limits of a parameter of ``Camera``."""
         row = CAMERA[field]
         for part in value.values if isinstance(value, Keys) else (value,):
@@ -143,7 +143,7 @@ class Checked:
             )
         return value
 
-    def _tuple(self, name: str, value: Any, count: int | None) -> tuple[float, ...]:
+    def _tuple(self, name: str, value: object, count: int | None) -> tuple[float, ...]:
         wanted = f"{count or 'some'} finite numbers"
         try:
             found = tuple(np.asarray(value, np.float64).ravel().tolist())
@@ -164,7 +164,7 @@ class Checked:
         return float(value)
 
 
-def _plain(attribute: Usd.Attribute, value: Any) -> Any:
+def _plain(attribute: Usd.Attribute, value: object) -> Any:
     """Plain value; one of single precision as the shortest decimal number that means it."""
     made = plain(value)
     if str(attribute.GetTypeName()) not in _SINGLE:

@@ -72,7 +72,7 @@ class Clips:
                 )
 
 
-def _is_number(value: Any) -> bool:
+def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not math.isnan(value)
 
 

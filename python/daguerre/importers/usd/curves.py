@@ -163,7 +163,7 @@ def _basis(schema: UsdGeom.BasisCurves, clock: Clock, notes: Notes) -> str:
     return _BASES.get(name, "linear")
 
 
-def _widths(schema: Any, layout: Layout, count: int, clock: Clock, notes: Notes) -> Array:
+def _widths(schema: object, layout: Layout, count: int, clock: Clock, notes: Notes) -> Array:
     found = read_widths(schema, count, clock, notes)
     spread = None if found is None else layout.spread(found.flat, found.interpolation)
     if spread is None:

@@ -190,7 +190,7 @@ class _Reader:
             raise InputError(f"{where}: numbers must be finite")
         return rows
 
-    def _each(self, attribute: Usd.Attribute, code: float, columns: int, default: Any) -> Array:
+    def _each(self, attribute: Usd.Attribute, code: float, columns: int, default: object) -> Array:
         """A row for each copy; where there are none, a default, or an error."""
         rows = self._rows(attribute, code, columns)
         if rows is not None and len(rows) > self._count:

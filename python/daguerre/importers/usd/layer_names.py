@@ -131,7 +131,7 @@ def _odd_assets(layer: Sdf.Layer, path: Sdf.Path) -> Iterator[str]:
                     yield name
 
 
-def asset_names(value: Any) -> list[str]:
+def asset_names(value: object) -> list[str]:
     """Names of files in a value, which is an asset or an array of them; other values have none."""
     if isinstance(value, Sdf.AssetPath):
         return [value.path]

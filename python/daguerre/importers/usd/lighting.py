@@ -205,7 +205,7 @@ class Lighting:
             self._notes.add("a cylinder light that may be treated as a line keeps its radius")
         self._mesh(visit, spots, lamp, cylinder(lamp.size("length"), lamp.size("radius")))
 
-    def _lamps(self, spots: Spots, make: Callable[[Any], Any], emission: Any) -> None:
+    def _lamps(self, spots: Spots, make: Callable[[Any], Any], emission: object) -> None:
         """Adds a lamp at each place."""
         if emission == _DARK:
             return
@@ -268,7 +268,7 @@ def glows(material: Material) -> bool:
     return max(*material.emission, *own) > 0
 
 
-def unlit(kind: Any) -> Any:
+def unlit(kind: object) -> Any:
     """The same kind of surface without emission."""
     return replace(kind, emissive=_DARK, emissive_texture=None) if isinstance(kind, Gltf) else kind
 

@@ -142,17 +142,17 @@ class Lamp:
         )
         return check(name, None) if found is None else found
 
-    def _number(self, name: str, value: Any) -> float:
+    def _number(self, name: str, value: object) -> float:
         if isinstance(value, int | float) and math.isfinite(value):
             return float(value)
         raise self._wrong(name, "a finite number", value)
 
-    def _color(self, name: str, value: Any) -> Color:
+    def _color(self, name: str, value: object) -> Color:
         if isinstance(value, tuple) and len(value) == 3 and np.isfinite(value).all():
             return value
         raise self._wrong(name, "three finite numbers", value)
 
-    def _wrong(self, name: str, wanted: str, got: Any) -> InputError:
+    def _wrong(self, name: str, wanted: str, got: object) -> InputError:
         place = f"{self._clock.file}: {self.prim.GetPath()}.{name}"
         return InputError(f"{place}: wanted {wanted}, got {str(got)[:60]}")
 

@@ -102,7 +102,7 @@ class Meshes:
     def index(
         self,
         source: str,
-        prim: Any,
+        prim: object,
         read: Callable[[], Points],
         choice: Choice,
         faces: NDArray[np.int64] | None = None,
@@ -122,7 +122,7 @@ class Meshes:
             self._made[key] = None if shape is None else self._add(shape, choice, faces)
         return self._made[key]
 
-    def _shape_of(self, source: str, prim: Any, read: Callable[[], Points]) -> Shape | None:
+    def _shape_of(self, source: str, prim: object, read: Callable[[], Points]) -> Shape | None:
         """Shape of a prim; the last one is kept, as parts of a prim follow each other.
 
         One that is made again, for another choice later on, has no new notes.
@@ -135,7 +135,7 @@ class Meshes:
             self._last = source, self._shape(prim, points, Notes() if again else self._notes)
         return self._last[1]
 
-    def _shape(self, prim: Any, both: Points, notes: Notes) -> Shape | None:
+    def _shape(self, prim: object, both: Points, notes: Notes) -> Shape | None:
         """The shape of a mesh; None, with a note, if it has no points."""
         mesh, (points, before) = UsdGeom.Mesh(prim), both
         here = np.asarray(_now(points, self._clock), np.float32)
@@ -293,7 +293,7 @@ def _now(points: Array | Dynamic, clock: Clock) -> Any:
     return points.at(clock.time) if is_dynamic(points) else points  # type: ignore[union-attr]
 
 
-def uv_names(wanted: Sequence[str], prim: Any) -> tuple[str, ...]:
+def uv_names(wanted: Sequence[str], prim: object) -> tuple[str, ...]:
     """Primvars of texture coordinates: those that a material reads, or a usual one."""
     if wanted:
         return tuple(wanted[:2])

@@ -44,7 +44,7 @@ _VECTORS = (
 class Clock(Protocol):
     """Time of a stage; :mod:`daguerre.importers.usd.values` has one."""
 
-    def value(self, attribute: Any) -> Any:
+    def value(self, attribute: object) -> Any:
         """Value of an attribute: a constant, or keys over time."""
 
 

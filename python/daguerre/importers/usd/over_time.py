@@ -83,7 +83,7 @@ def _extent(value: Dynamic) -> tuple[float, float]:
     return float(times[0]), float(times[-1])
 
 
-def miss_of_numbers(a: Any, middle: Any, b: Any) -> float:
+def miss_of_numbers(a: object, middle: object, b: object) -> float:
     """Relative error of the mean of two numbers, or tuples of such."""
     first, true, last = (np.asarray(v, np.float64) for v in (a, middle, b))
     error = np.abs(0.5 * (first + last) - true) / np.maximum(1, np.abs(true))

@@ -109,7 +109,7 @@ def _samples(attribute: Usd.Attribute, codes: list[float], clock: Clock) -> list
     return [_checked(attribute, attribute.Get(Usd.TimeCode(code)), clock) for code in codes]
 
 
-def _checked(attribute: Usd.Attribute, value: Any, clock: Clock) -> Array:
+def _checked(attribute: Usd.Attribute, value: object, clock: Clock) -> Array:
     if not _count(value):
         return np.zeros((0, 3), np.float32)
     rows = as_rows(value, 3)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from pxr import Usd, UsdGeom
 
@@ -39,7 +37,7 @@ def read_primvar(prim: Usd.Prim, name: str, columns: int, clock: Clock) -> Primv
     return Primvar(values, str(found.GetInterpolation()), indices)
 
 
-def as_rows(value: Any, columns: int) -> Array | None:
+def as_rows(value: object, columns: int) -> Array | None:
     """Converts a value of USD to an array (N, columns) of finite numbers; None for others."""
     try:
         rows = np.asarray(value, np.float32)

@@ -140,7 +140,7 @@ class Skeletons:
         if not len(chosen):
             return nothing
 
-        def rows(value: Any, attribute: Usd.Attribute, columns: int) -> NDArray[np.float64]:
+        def rows(value: object, attribute: Usd.Attribute, columns: int) -> NDArray[np.float64]:
             found = np.asarray([] if value is None else value, np.float64).reshape(-1, columns)
             if len(found) != len(names) or not np.isfinite(found).all():
                 got = len(found) if len(found) != len(names) else "others"
@@ -202,10 +202,10 @@ def _shared(prim: Usd.Prim) -> str:
     return str((prim.GetPrimInPrototype() if prim.IsInstanceProxy() else prim).GetPath())
 
 
-def _matrix(value: Any) -> Matrices:
+def _matrix(value: object) -> Matrices:
     return np.asarray(value, np.float64).T
 
 
-def _matrices(values: Any) -> Matrices:
+def _matrices(values: object) -> Matrices:
     rows: Matrices = np.asarray([] if values is None else values, np.float64)
     return rows.reshape(-1, 4, 4).transpose(0, 2, 1)

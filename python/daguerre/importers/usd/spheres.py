@@ -89,7 +89,7 @@ def read_spheres(
         placing.add(mesh, material, places, visit.name, visit.shown)
 
 
-def _radii(schema: Any, points: Array, clock: Clock, notes: Notes) -> Array:
+def _radii(schema: object, points: Array, clock: Clock, notes: Notes) -> Array:
     """Radius of each point, shape (N,)."""
     widths = read_widths(schema, len(points), clock, notes)
     if widths is not None and widths.interpolation != "constant" and len(widths) != len(points):

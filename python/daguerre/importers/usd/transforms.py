@@ -43,7 +43,7 @@ def joined(outer: Matrix | Transform, inner: Sequence[Any]) -> Matrix | Transfor
     return Transform(tuple(parts))
 
 
-def _is_still(part: Any) -> bool:
+def _is_still(part: object) -> bool:
     return isinstance(part, Operation) and not is_dynamic(part.value)
 
 
@@ -105,7 +105,7 @@ class _Numbers:
     where: str
     count: int
 
-    def __call__(self, value: Any) -> Any:
+    def __call__(self, value: object) -> Any:
         """The number, or the numbers.
 
         Raises:
@@ -146,7 +146,7 @@ class _Affine:
         self._where = where
         self.changed = False
 
-    def __call__(self, value: Any) -> Matrix:
+    def __call__(self, value: object) -> Matrix:
         """An affine matrix that acts on column vectors, shape (4, 4).
 
         Raises:

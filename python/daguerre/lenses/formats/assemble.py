@@ -41,7 +41,7 @@ def lens_file(
     configurations: list[Configuration],
     unread: Unread,
     nominal: dict[str, Any] | None = None,
-    **more: Any,
+    **more: object,
 ) -> dict[str, Any]:
     """Builds a lens file of the schema, with all configurations; the drafts have the first one's.
 

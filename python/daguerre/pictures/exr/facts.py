@@ -45,7 +45,7 @@ def read_facts(attributes: Mapping[str, Any]) -> dict[str, Any]:
     return found | {name: value for name, value in typed if value is not None}
 
 
-def _own(name: str, value: Any) -> Any:
+def _own(name: str, value: object) -> Any:
     """Decodes an own attribute: JSON, or a long integer stored as text; None: wrong type."""
     if name in exr.OWN_NUMBERS:
         number = _whole(value) if isinstance(value, str) else value
@@ -68,28 +68,28 @@ def _whole(text: str) -> int | None:
         return None
 
 
-def is_number(value: Any) -> bool:
+def is_number(value: object) -> bool:
     """Whether a value is a number, and not True or False."""
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _is_text(value: Any) -> bool:
+def _is_text(value: object) -> bool:
     return isinstance(value, str)
 
 
-def _is_fraction(value: Any) -> bool:
+def _is_fraction(value: object) -> bool:
     return isinstance(value, Fraction)
 
 
-def _are_two(value: Any) -> bool:
+def _are_two(value: object) -> bool:
     return isinstance(value, tuple) and len(value) == 2
 
 
-def _are_sixteen(value: Any) -> bool:
+def _are_sixteen(value: object) -> bool:
     return isinstance(value, tuple) and len(value) == 16
 
 
-def _are_places(value: Any) -> bool:
+def _are_places(value: object) -> bool:
     """Whether a value is a list of [column, row, sample]."""
     return isinstance(value, list) and all(
         isinstance(place, list) and len(place) == 3 and all(map(is_number, place))
@@ -97,12 +97,12 @@ def _are_places(value: Any) -> bool:
     )
 
 
-def are_texts(value: Any) -> bool:
+def are_texts(value: object) -> bool:
     """Whether a value is a list of texts."""
     return isinstance(value, list) and all(map(_is_text, value))
 
 
-def _is_balance(value: Any) -> bool:
+def _is_balance(value: object) -> bool:
     """Whether a value is a white: K, or x, y."""
     try:
         white_xy(value)
@@ -111,11 +111,11 @@ def _is_balance(value: Any) -> bool:
     return value is not None
 
 
-def _is_object(value: Any) -> bool:
+def _is_object(value: object) -> bool:
     return isinstance(value, dict)
 
 
-def _is_there(value: Any) -> bool:
+def _is_there(value: object) -> bool:
     return value is not None
 
 

@@ -202,7 +202,7 @@ def _write(
             raise OutputError(f"{path}: cannot write: {reason}") from error
 
 
-def without_infinity(value: Any) -> Any:
+def without_infinity(value: object) -> Any:
     """Replaces infinity, which JSON lacks, by the text "inf", which float() reads."""
     if isinstance(value, dict):
         return {key: without_infinity(inner) for key, inner in value.items()}
@@ -211,7 +211,7 @@ def without_infinity(value: Any) -> Any:
     return str(value) if isinstance(value, float) and math.isinf(value) else value
 
 
-def jsonable(value: Any) -> Any:
+def jsonable(value: object) -> Any:
     """Converts values that ``json`` does not know: arrays, numpy numbers, paths."""
     if isinstance(value, np.ndarray):
         return value.tolist()
@@ -240,7 +240,7 @@ def _plane(name: str, plane: NDArray[Any]) -> NDArray[np.float32] | NDArray[np.u
     return np.ascontiguousarray(plane, np.float32)
 
 
-def _pair(value: Any) -> NDArray[np.float32]:
+def _pair(value: object) -> NDArray[np.float32]:
     """Converts to a v2f; one number is used for both axes."""
     return np.ascontiguousarray(np.broadcast_to(np.asarray(value, np.float32), (2,)))
 

@@ -110,7 +110,7 @@ def _maker(entry: Entry) -> frozenset[str]:
     return frozenset(re.findall(r"[a-z]+", entry.maker.lower()))
 
 
-def _first(make: Any) -> str:
+def _first(make: object) -> str:
     """First word of a maker's name: ``nikon`` of NIKON CORPORATION."""
     words = str(make or "").lower().split()
     return words[0] if words else ""

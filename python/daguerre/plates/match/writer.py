@@ -69,7 +69,7 @@ def camera_members(camera: Camera) -> dict[str, Any]:
     }
 
 
-def _white(white: Any) -> Any:
+def _white(white: object) -> Any:
     return list(white) if isinstance(white, tuple) else white
 
 
@@ -120,5 +120,5 @@ def falloff_members(found: Falloff | None) -> dict[str, Any] | None:
     return {"k": list(found.terms), "lens_k": lens, "rest": found.rest}
 
 
-def _rounded(values: Any, digits: int) -> Any:
+def _rounded(values: object, digits: int) -> Any:
     return np.round(np.asarray(values, np.float64), digits).tolist()

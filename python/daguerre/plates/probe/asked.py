@@ -41,7 +41,7 @@ class Asked:
     notes: Notes = field(default_factory=Notes)
 
     @classmethod
-    def of(cls, photographs: Any, given: dict[str, Any]) -> Asked:
+    def of(cls, photographs: object, given: dict[str, Any]) -> Asked:
         """Checks and converts parameters, beyond the checks of the table.
 
         Raises:
@@ -106,7 +106,7 @@ def _several(given: Any, name: str) -> tuple[float, ...] | None:
     return numbers(given, f"light_probe: {name}", len(given), wanted)
 
 
-def _circle(given: Any, name: str) -> tuple[float, float, float] | None:
+def _circle(given: object, name: str) -> tuple[float, float, float] | None:
     if given is None:
         return None
     x, y, radius = numbers(given, f"light_probe: {name}", 3, "x, y and radius in px")
@@ -114,11 +114,11 @@ def _circle(given: Any, name: str) -> tuple[float, float, float] | None:
     return x, y, radius
 
 
-def _fov(given: Any) -> float | None:
+def _fov(given: object) -> float | None:
     return None if given is None else number(given, "light_probe: fov", 0, 179)
 
 
-def _reflectance(given: Any, ball: str | None) -> NDArray[np.float64]:
+def _reflectance(given: object, ball: str | None) -> NDArray[np.float64]:
     if given is None:
         given = 0.18 if ball == "grey" else 1.0
     found = _several(given, "reflectance") or ()

@@ -184,7 +184,7 @@ DEPTH_OF_FIELD = Effect(
 
 
 @guarded(arrays=False)
-def depth_of_field(image: Image, depth: NDArray[Any], **parameters: Any) -> Image:
+def depth_of_field(image: Image, depth: NDArray[Any], **parameters: object) -> Image:
     """Adds depth of field to a scene-linear pinhole picture, by the depth of its pixels.
 
     Near surfaces hide far ones by the share of the lens that they cover. The background behind

@@ -171,7 +171,7 @@ FAKE_FLARE = Effect(
 
 
 @guarded(arrays=False)
-def fake_flare(image: Image, **parameters: Any) -> Image:
+def fake_flare(image: Image, **parameters: object) -> Image:
     """Adds made-up lens flare to a scene-linear picture, from its highlights.
 
     Args:

@@ -238,7 +238,7 @@ PSF = Effect(
 
 
 @guarded(arrays=False)
-def bloom(image: Image, **parameters: Any) -> Image:
+def bloom(image: Image, **parameters: object) -> Image:
     """Adds bloom: a ``share`` of the light is spread, half of it within ``radius`` (px).
 
     Args:
@@ -249,7 +249,7 @@ def bloom(image: Image, **parameters: Any) -> Image:
 
 
 @guarded(arrays=False)
-def halo(image: Image, **parameters: Any) -> Image:
+def halo(image: Image, **parameters: object) -> Image:
     """Adds halation of film.
 
     Args:
@@ -261,7 +261,7 @@ def halo(image: Image, **parameters: Any) -> Image:
 
 
 @guarded(arrays=False)
-def glare(image: Image, **parameters: Any) -> Image:
+def glare(image: Image, **parameters: object) -> Image:
     """Adds veiling glare.
 
     Args:
@@ -273,7 +273,7 @@ def glare(image: Image, **parameters: Any) -> Image:
 
 
 @guarded(arrays=False)
-def diffract(image: Image, **parameters: Any) -> Image:
+def diffract(image: Image, **parameters: object) -> Image:
     """Adds diffraction at an iris.
 
     Args:
@@ -285,7 +285,7 @@ def diffract(image: Image, **parameters: Any) -> Image:
 
 
 @guarded(arrays=False)
-def star(image: Image, **parameters: Any) -> Image:
+def star(image: Image, **parameters: object) -> Image:
     """Adds only the diffraction star, with a ``share`` of the light.
 
     Args:
@@ -296,7 +296,7 @@ def star(image: Image, **parameters: Any) -> Image:
 
 
 @guarded(arrays=False)
-def spread_by(image: Image, **parameters: Any) -> Image:
+def spread_by(image: Image, **parameters: object) -> Image:
     """Convolves a picture with a point spread function from a file.
 
     Args:

@@ -115,7 +115,7 @@ GRAIN = Effect(
 
 
 @guarded(arrays=False)
-def grain(image: Image, **parameters: Any) -> Image:
+def grain(image: Image, **parameters: object) -> Image:
     """Adds film grain to a scene-linear picture; the mean of the light does not change.
 
     A pixel has the same grain in every crop of a picture.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -111,7 +110,7 @@ LATERAL_COLOR = Effect(
 
 
 @guarded(arrays=False)
-def lateral_colour(image: Image, **parameters: Any) -> Image:
+def lateral_colour(image: Image, **parameters: object) -> Image:
     """Adds lateral chromatic aberration: red and blue are scaled relative to green.
 
     Args:
@@ -125,6 +124,6 @@ def lateral_colour(image: Image, **parameters: Any) -> Image:
 
 
 @guarded(arrays=False)
-def remove_lateral_colour(image: Image, **parameters: Any) -> Image:
+def remove_lateral_colour(image: Image, **parameters: object) -> Image:
     """Removes the effect of :func:`lateral_colour` with the same parameters."""
     return on_array(LATERAL_COLOR, image, {**parameters, "inverse": True})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -155,7 +155,7 @@ LENS_PSF = Effect(
 
 
 @guarded(arrays=False)
-def through_lens(image: Image, **parameters: Any) -> Image:
+def through_lens(image: Image, **parameters: object) -> Image:
     """Blurs a picture by the point spread functions of a lens; distortion is not applied.
 
     Args:

@@ -175,7 +175,7 @@ MOTION_BLUR = Effect(
 
 @guarded(arrays=False)
 def motion_blur(
-    image: Image, motion: NDArray[Any], depth: NDArray[Any] | None = None, **parameters: Any
+    image: Image, motion: NDArray[Any], depth: NDArray[Any] | None = None, **parameters: object
 ) -> Image:
     """Adds motion blur to a scene-linear picture of one instant.
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from daguerre.color.spaces import LUMINANCE_709
@@ -62,7 +60,7 @@ SATURATION = Effect(
 
 
 @guarded(arrays=False)
-def vignette_saturation(image: Image, **parameters: Any) -> Image:
+def vignette_saturation(image: Image, **parameters: object) -> Image:
     """Reduces saturation toward the edge; luminance does not change.
 
     Args:
@@ -75,6 +73,6 @@ def vignette_saturation(image: Image, **parameters: Any) -> Image:
 
 
 @guarded(arrays=False)
-def unvignette_saturation(image: Image, **parameters: Any) -> Image:
+def unvignette_saturation(image: Image, **parameters: object) -> Image:
     """Removes the effect of :func:`vignette_saturation` with the same parameters."""
     return on_array(SATURATION, image, {**parameters, "inverse": True})

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -131,7 +130,7 @@ VIGNETTING = Effect(
 
 
 @guarded(arrays=False)
-def vignette(image: Image, **parameters: Any) -> Image:
+def vignette(image: Image, **parameters: object) -> Image:
     """Darkens a scene-linear picture toward its edge.
 
     Args:
@@ -144,6 +143,6 @@ def vignette(image: Image, **parameters: Any) -> Image:
 
 
 @guarded(arrays=False)
-def unvignette(image: Image, **parameters: Any) -> Image:
+def unvignette(image: Image, **parameters: object) -> Image:
     """Removes the effect of :func:`vignette` with the same parameters."""
     return on_array(VIGNETTING, image, {**parameters, "inverse": True})

@@ -137,7 +137,7 @@ def _turn(axis: int, angle: float) -> Matrix:
     return made
 
 
-def _of_quaternion(xyzw: Any) -> Matrix:
+def _of_quaternion(xyzw: object) -> Matrix:
     q = np.asarray(xyzw, np.float64)
     length = float(np.linalg.norm(q))
     unit = q / length if length > 0 else np.array([0.0, 0.0, 0.0, 1.0])

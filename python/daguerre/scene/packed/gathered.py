@@ -50,7 +50,7 @@ class Instances(list[Instance]):
     def __iter__(self) -> Iterator[Instance]:
         raise TypeError("a gathered scene has no single instances")
 
-    def __getitem__(self, key: Any) -> Any:
+    def __getitem__(self, key: object) -> Any:
         raise TypeError("a gathered scene has no single instances")
 
     def columns(self) -> dict[str, Any]:

@@ -48,7 +48,7 @@ def parted(camera: Camera, where: str) -> tuple[Camera, _Contents | None, _Conte
     return camera, lens, sensor
 
 
-def joined(camera: Camera, lens: Any, sensor: Any, where: str) -> Camera:
+def joined(camera: Camera, lens: object, sensor: object, where: str) -> Camera:
     """Gives a camera the lens and the sensor that :func:`parted` took.
 
     Raises:
@@ -106,7 +106,7 @@ def _sensor(given: Any, where: str) -> Sensor:
     return sensor_reader.read_text(text, f"{where}: sensor").with_(serial=given["serial"])
 
 
-def _text(value: Any, where: str, most: int = _LONGEST) -> str:
+def _text(value: object, where: str, most: int = _LONGEST) -> str:
     if not isinstance(value, str) or len(value) > most:
         raise InputError(
             f"{where}: wanted a string of at most {most} characters, got {short(value)}"

@@ -80,7 +80,7 @@ def _with_motion(values: list[Any], motion: dict[int, Any], what: str) -> list[A
     return [[one, _known(motion.get(i), f"{what}[{i}]")] for i, one in enumerate(values)]
 
 
-def _known(motion: Any, where: str) -> Any:
+def _known(motion: object, where: str) -> Any:
     kind = type(motion)
     if not isinstance(motion, Keys | Spin | Composite | None) and name_of(kind) not in NAMES:
         raise UsageError(
@@ -90,7 +90,7 @@ def _known(motion: Any, where: str) -> Any:
     return motion
 
 
-def _mesh(mesh: Mesh, motion: Any) -> dict[str, Any]:
+def _mesh(mesh: Mesh, motion: object) -> dict[str, Any]:
     found = {"name": mesh.name, **{name: getattr(mesh, name) for name in ARRAYS}}
     if isinstance(mesh, Curves):
         found["curves"] = {name: getattr(mesh, name) for name in OF_CURVES}

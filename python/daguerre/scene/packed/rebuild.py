@@ -72,7 +72,7 @@ class Rebuild:
         self._rest()
         return self.scene
 
-    def _array(self, value: Any, where: str) -> NDArray[Any]:
+    def _array(self, value: object, where: str) -> NDArray[Any]:
         """An array, within the budget of the file."""
         if not isinstance(value, np.ndarray):
             raise InputError(f"{where}: wanted an array, got {short(value)}")
@@ -81,13 +81,13 @@ class Rebuild:
             raise InputError(f"{where}: arrays are far larger than the file")
         return value
 
-    def _text(self, value: Any, where: str) -> str:
+    def _text(self, value: object, where: str) -> str:
         """A text."""
         if not isinstance(value, str):
             raise InputError(f"{where}: wanted a string, got {short(value)}")
         return value if self._verbatim else printable(value)
 
-    def _path(self, value: Any, where: str, shape: tuple[int, ...]) -> Dynamic:
+    def _path(self, value: object, where: str, shape: tuple[int, ...]) -> Dynamic:
         """Points over time, within the budget of the file."""
         if isinstance(value, Keys):
             for one in value.values:
@@ -133,7 +133,7 @@ class Rebuild:
         moving = None if motion is None else self._moving(motion, arrays, name, where)
         self.scene.add_mesh(**arrays, name=name, motion=moving)  # type: ignore[arg-type]
 
-    def _moving(self, given: Any, arrays: Mapping[str, Any], name: str, where: str) -> Dynamic:
+    def _moving(self, given: object, arrays: Mapping[str, Any], name: str, where: str) -> Dynamic:
         """Vertices of a mesh over time."""
         if not isinstance(given, Mapping):
             return _dynamic(given, where)
@@ -244,7 +244,7 @@ class Rebuild:
                 raise InputError(f"instances[{i}]: shown: keys must be True or False")
             scene.motion.shown[i] = motion
 
-    def _index(self, value: Any, where: str) -> int:
+    def _index(self, value: object, where: str) -> int:
         if type(value) is not int or not 0 <= value < len(self.scene.instances):
             raise InputError(f"{where}: wanted an instance, got {short(value)}")
         return value
@@ -333,13 +333,13 @@ def _camera(given: Any, where: str) -> Any:
     return joined(camera, lens, sensor, where)
 
 
-def _composite(motion: Any, where: str) -> Composite:
+def _composite(motion: object, where: str) -> Composite:
     if not isinstance(motion, Composite):
         raise InputError(f"{where}: motion: wanted values over time, got {short(motion)}")
     return motion
 
 
-def _transform(motion: Any, where: str) -> Dynamic:
+def _transform(motion: object, where: str) -> Dynamic:
     """Checks a transform over time."""
     if isinstance(motion, Keys) and not motion.moves_matrices:
         raise InputError(f"{where}: wanted transforms over time, got {short(motion)}")
@@ -354,7 +354,7 @@ def _dynamic(motion: Any, where: str) -> Dynamic:
     return found
 
 
-def _point(value: Any, where: str) -> NDArray[Any]:
+def _point(value: object, where: str) -> NDArray[Any]:
     """Checks a point, shape (3,)."""
     if not isinstance(value, np.ndarray) or value.shape != (3,) or value.dtype.kind != "f":
         raise InputError(f"{where}: position: wanted three numbers, got {short(value)}")

@@ -67,7 +67,7 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
 
 
-def _safe(part: Any) -> Any:
+def _safe(part: object) -> Any:
     if isinstance(part, tuple):
         return tuple(map(_safe, part))
     return printable(part) if isinstance(part, str) else part

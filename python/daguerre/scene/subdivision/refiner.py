@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -220,7 +218,7 @@ class Refiner(Value):
         return _numbers(values, self.where, what, columns, self._faces.count)
 
 
-def _level(level: Any, where: str) -> int:
+def _level(level: object, where: str) -> int:
     try:
         return whole(level, f"{where}: level", 1, MAX_LEVEL)
     except ValueError as error:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -130,7 +129,7 @@ def edges_of_chains(
     return np.stack([flat[first], flat[first + 1]], axis=1), each
 
 
-def choice(value: Any, known: tuple[str, ...], where: str) -> str:
+def choice(value: object, known: tuple[str, ...], where: str) -> str:
     """Checks one of several names.
 
     Raises:

@@ -47,27 +47,27 @@ def _endless(field: Field[Any]) -> bool:
     return isinstance(field.default, float) and math.isinf(field.default)
 
 
-def _number(value: Any, where: str) -> None:
+def _number(value: object, where: str) -> None:
     number(value, where, error=InputError)
 
 
-def _coefficient(value: Any, where: str) -> None:
+def _coefficient(value: object, where: str) -> None:
     """Checks a colour or a spectrum."""
     if not isinstance(value, Spectrum):
         color(value, where)
 
 
-def _index_of_refraction(value: Any, where: str) -> None:
+def _index_of_refraction(value: object, where: str) -> None:
     if not isinstance(value, Spectrum):
         _number(value, where)
 
 
-def _text(value: Any, where: str) -> None:
+def _text(value: object, where: str) -> None:
     if not isinstance(value, str):
         raise InputError(f"{where}: wanted a string, got {shown(value)}")
 
 
-def _slot(value: Any, where: str) -> None:
+def _slot(value: object, where: str) -> None:
     if not isinstance(value, TextureSlot | None):
         raise InputError(f"{where}: wanted a TextureSlot or None, got {short(value)}")
     if value is None:
@@ -77,12 +77,12 @@ def _slot(value: Any, where: str) -> None:
     numbers(value.transform, f"{where}: transform", 6, "six numbers")
 
 
-def _distribution(value: Any, where: str) -> None:
+def _distribution(value: object, where: str) -> None:
     if not isinstance(value, str) or value not in DISTRIBUTIONS:
         raise InputError(f"{where}: wanted {' or '.join(DISTRIBUTIONS)}, got {shown(value)}")
 
 
-def _base(value: Any, where: str) -> None:
+def _base(value: object, where: str) -> None:
     """Checks what lies under a coat."""
     if not isinstance(value, Diffuse | Conductor):
         raise InputError(f"{where}: wanted Diffuse or Conductor, got {short(value)}")
@@ -110,7 +110,7 @@ _CHECKS: Mapping[str, Check] = MappingProxyType(
 )
 
 
-def check_surface(surface: Any, where: str) -> None:
+def check_surface(surface: object, where: str) -> None:
     """Checks the values of a surface, one by one and together.
 
     Raises:
