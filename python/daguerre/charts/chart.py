@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     import os
 
     from daguerre.camera.camera import Camera
+    from daguerre.exporters.gltf import Glb
     from daguerre.scene.scene import Scene
 
 FloatArray = NDArray[np.float64]
@@ -186,7 +187,7 @@ class Chart:
         write_bytes(Path(path).with_suffix(".json"), json.dumps(truth, indent=1).encode() + b"\n")
 
 
-def _shining(glb: Any, rgb: Rgb, luminance: float) -> int:
+def _shining(glb: Glb, rgb: Rgb, luminance: float) -> int:
     return int(
         glb.add_material(
             f"{rgb}",
@@ -200,7 +201,7 @@ def _shining(glb: Any, rgb: Rgb, luminance: float) -> int:
     )
 
 
-def _paint(glb: Any, rgb: Rgb) -> int:
+def _paint(glb: Glb, rgb: Rgb) -> int:
     return int(
         glb.add_material(
             f"{rgb}",

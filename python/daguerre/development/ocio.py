@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -55,12 +56,13 @@ def check_view(view: str, space: str = "srgb") -> None:
 
 
 @cache
-def _config(ocio: Any) -> Any:
+def _config(ocio: ModuleType) -> Any:
     return ocio.Config.CreateFromFile(CONFIG)
 
 
-def _module() -> Any:
+def _module() -> ModuleType:
     extras.need("PyOpenColorIO", "develop: look: an OCIO view")
     import PyOpenColorIO
 
-    return PyOpenColorIO
+    found: ModuleType = PyOpenColorIO
+    return found

@@ -23,7 +23,7 @@ import importlib
 import json
 import math
 from collections import OrderedDict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path, PurePath
@@ -144,7 +144,11 @@ def damage() -> Iterator[None]:
         raise InputError(f"packed value: damaged: {type(error).__name__}: {what}") from None
 
 
-def _arrays(facts: Any, data: bytes, large: Callable[[str], bytes]) -> list[NDArray[Any]]:
+def _arrays(
+    facts: Iterable[tuple[str, Sequence[int], str | None]],
+    data: bytes,
+    large: Callable[[str], bytes],
+) -> list[NDArray[Any]]:
     """Arrays over packed bytes, not copied, and so read-only."""
     found, begin = [], 0
     for text, shape, name in facts:

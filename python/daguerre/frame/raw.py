@@ -106,11 +106,11 @@ class Raw(ArrayValue, array="mosaic"):
         """Index of the channel of every photosite, shape (H, W)."""
         return self.sensor.pattern.channel_map(self.height, self.width)
 
-    def develop(self, **look: Any) -> Picture:
+    def develop(self, **look: object) -> Picture:
         """Develops the raw picture; see ``daguerre.development.develop``."""
         from daguerre.development.recipe import develop
 
-        return develop(self, **look)
+        return develop(self, **dict[str, Any](look))
 
     def save(self, path: str | os.PathLike[str], **look: object) -> None:
         """Writes the raw picture atomically; the suffix chooses the format.

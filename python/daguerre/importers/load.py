@@ -22,7 +22,7 @@ def load(
     variant: str | Sequence[str] | None = None,
     allow_dirs: Sequence[str | Path] = (),
     strict: bool = False,
-    **options: Any,
+    **options: object,
 ) -> Scene:
     """Reads a scene (.glb, .gltf, .usd, .usda, .usdc, .usdz, .pbrt, .xml, or a registered format).
 
@@ -52,7 +52,9 @@ def load(
     """
     time = number(time, "time")
     options |= {"variant": variant, "allow_dirs": allow_dirs}
-    given = {name: value for name, value in options.items() if value not in (None, (), [])}
+    given: dict[str, Any] = {
+        name: value for name, value in options.items() if value not in (None, (), [])
+    }
     scene: Scene = formats.read("scene", path, time=time, **given)
     if strict and scene.warnings:
         more = f", and {len(scene.warnings) - 1} more" if len(scene.warnings) > 1 else ""

@@ -98,7 +98,7 @@ def annotate(
     camera: Camera | str | None = None,
     *,
     categories: Categories | str | Path | None = None,
-    **options: Any,
+    **options: object,
 ) -> Annotations:
     """Annotates the objects of a scene that a camera sees, without drawing a picture.
 
@@ -113,7 +113,8 @@ def annotate(
         categories = Categories.read(categories)
     if not isinstance(categories, Categories | None):
         raise UsageError(f"categories: wanted Categories or a file, got {short(categories)}")
-    session = Session(scene, camera, **{"light_paths": "off", **options})
+    given: dict[str, Any] = {"light_paths": "off", **options}
+    session = Session(scene, camera, **given)
     return annotations_of(session, categories)
 
 

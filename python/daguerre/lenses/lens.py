@@ -229,10 +229,10 @@ class Lens(Value):
         stop = self.first_order().f_number if f_stop is None else f_stop
         return float(stop / np.sqrt(self.axial_transmittance(wavelength_nm).mean()))
 
-    def rebuilt(self, surfaces: Sequence[LensSurface], **changes: Any) -> Lens:
+    def rebuilt(self, surfaces: Sequence[LensSurface], **changes: object) -> Lens:
         """Returns the lens with other surfaces, and other fields changed."""
         with reported(self.source):
-            return dataclasses.replace(self, surfaces=tuple(surfaces), **changes)
+            return dataclasses.replace(self, surfaces=tuple(surfaces), **dict[str, Any](changes))
 
     def with_gaps(self, gaps: Mapping[int, float]) -> Lens:
         """Returns the lens with other thicknesses after some surfaces, by index, mm."""

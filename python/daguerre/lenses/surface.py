@@ -77,9 +77,9 @@ class LensSurface:
     widened_from: float | None = None
     fitted: bool = False
 
-    def replaced(self, **changes: Any) -> LensSurface:
+    def replaced(self, **changes: object) -> LensSurface:
         """Returns a copy with some fields changed."""
-        return dataclasses.replace(self, **changes)
+        return dataclasses.replace(self, **dict[str, Any](changes))
 
     @property
     def core_glass(self) -> _core.Glass:

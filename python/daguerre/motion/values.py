@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +22,9 @@ from daguerre.checks import as_readonly, matrix, number, short, shown, to_number
 from daguerre.doors import guarded
 from daguerre.errors import InputError, core_errors, suggest
 from daguerre.files.value import Value
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeIs
 
 FloatArray = NDArray[np.float64]
 #: Interpolations of matrices, the default first; docs/motion.md explains them.
@@ -56,6 +59,10 @@ class Dynamic(Protocol):
         """Times inside of (begin, end), rising, s; between them the value changes smoothly."""
 
 
+#: Value of keys at a time.
+KeyValue = NDArray[np.float64] | tuple[Any, ...] | float | str | Blending
+
+
 @guarded
 @dataclass(frozen=True, eq=False)
 class Keys(Value):
@@ -84,17 +91,19 @@ class Keys(Value):
         matrices = np.array(self.values, np.float64)
         return _core.Motion.keys(self.times, matrices, self.interpolation, self.pivot or (0, 0, 0))
 
-    def at(self, time_s: float) -> Any:
+    def at(self, time_s: float) -> KeyValue:
         """Returns the value at a time, s; constant before the first key and after the last."""
         if self.moves_matrices and len(self.times) > 1:
             return np.asarray(self.motion.at(time_s))
         i = int(np.searchsorted(self.times, time_s, side="right")) - 1
+        a: KeyValue = self.values[max(i, 0)]
         if i < 0 or i == len(self.times) - 1:
-            return self.values[max(i, 0)]
-        a, b = self.values[i], self.values[i + 1]
+            return a
         if self.interpolation == "step" or time_s == self.times[i]:
             return a
-        return _lerp(a, b, float((time_s - self.times[i]) / (self.times[i + 1] - self.times[i])))
+        share = float((time_s - self.times[i]) / (self.times[i + 1] - self.times[i]))
+        mixed: KeyValue = _lerp(a, self.values[i + 1], share)
+        return mixed
 
     def breaks(self, begin: float, end: float) -> list[float]:
         """Times of the keys inside of (begin, end), s."""
@@ -285,7 +294,7 @@ def moves(value: object) -> bool:
     return next(iter(_dynamics(value)), None) is not None
 
 
-def is_dynamic(value: object) -> bool:
+def is_dynamic(value: object) -> TypeIs[Dynamic]:
     """Whether a value itself is dynamic."""
     kind = type(value)
     return hasattr(kind, "at") and hasattr(kind, "breaks")

@@ -91,10 +91,10 @@ def to_dict(fit: _core.LensFit) -> dict[str, Any]:
     }
 
 
-def from_dict(data: Any) -> _core.LensFit:
+def from_dict(data: object) -> _core.LensFit:
     """Makes a fit from the data of ``to_dict``."""
     form = data.get("format") if isinstance(data, dict) else None
-    if form != FORMAT:
+    if not isinstance(data, dict) or form != FORMAT:
         raise InputError(f"lens fit: format: wanted {FORMAT!r}, got {short(form)}")
     try:
         return _read(data)

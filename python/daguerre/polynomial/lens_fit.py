@@ -202,14 +202,14 @@ class LensFit:
         formats.write("fit", path, self.to_dict())
 
     @classmethod
-    def from_dict(cls, data: Any) -> LensFit:
+    def from_dict(cls, data: object) -> LensFit:
         """Makes a fit from the data of ``to_dict``.
 
         Raises:
             InputError: The data have another form; the message has the place.
         """
         core = from_dict(data)
-        setting = data.get("setting")
+        setting = data.get("setting") if isinstance(data, dict) else None
         return cls(core, None if setting is None else FitSetting.from_dict(setting))
 
     def to_bytes(self) -> bytes:

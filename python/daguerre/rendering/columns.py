@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,7 +60,7 @@ def columns_of(state: Mapping[str, Words]) -> dict[str, Columns]:
     return found
 
 
-def add_columns(film: Any, parts: Mapping[str, Columns], where: str) -> None:
+def add_columns(film: _core.Film, parts: Mapping[str, Columns], where: str) -> None:
     """Adds sums of another film of the same layout.
 
     Raises:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from importlib import import_module
 from importlib.metadata import version
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -184,7 +185,7 @@ def _run_fast(**images: Image) -> Image:
 
 
 def _filtered(images: Mapping[str, Image], quality: str, **device: int) -> Image:
-    library: Any = import_module(MODULE)
+    library: ModuleType = import_module(MODULE)
     given = {name: np.ascontiguousarray(image, np.float32) for name, image in images.items()}
     made = np.empty_like(next(iter(given.values())))
     try:

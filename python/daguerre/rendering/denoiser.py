@@ -80,7 +80,7 @@ def of_library(path: Path) -> Denoiser:
     return Denoiser(name, lambda **images: _filtered(library, images))
 
 
-def _filtered(library: Any, images: dict[str, Image]) -> Image:
+def _filtered(library: ctypes.CDLL, images: dict[str, Image]) -> Image:
     """Filters the picture by clean guides, or filters a guide."""
     given = {name: np.ascontiguousarray(image, np.float32) for name, image in images.items()}
     made = np.empty_like(next(iter(given.values())))

@@ -24,6 +24,7 @@ from daguerre.files.value import BriefRecord
 from daguerre.sensors.bands import MOST_BANDS, weights_of_bands
 
 if TYPE_CHECKING:
+    from daguerre import _core
     from daguerre.analysis.diffraction import Pupil
     from daguerre.camera.camera import Camera
     from daguerre.sensors import Sensor
@@ -137,7 +138,7 @@ class Developed(BriefRecord):
 
 
 def developed(
-    film: Any,
+    film: _core.Film,
     planned: Any,
     *,
     keep: bool = False,

@@ -16,13 +16,15 @@ from daguerre.frame.frame import Frame
 from .mattes import mattes_of
 
 if TYPE_CHECKING:
+    from daguerre import _core
+
     from .diffraction import Kernels
 
 #: Part of the sums that is lists: shape (H, entries of the longest row, 4).
 OBJECTS = "objects"
 
 
-def set_film_state(film: Any, state: Mapping[str, NDArray[np.uint32]], where: str) -> None:
+def set_film_state(film: _core.Film, state: Mapping[str, NDArray[np.uint32]], where: str) -> None:
     """Puts sums from ``film.state``, by part, into a film of the same size.
 
     Raises:
@@ -35,7 +37,7 @@ def set_film_state(film: Any, state: Mapping[str, NDArray[np.uint32]], where: st
             film.set_state(part, np.ascontiguousarray(words, np.uint32))
 
 
-def check_layout(film: Any, given: Mapping[str, tuple[int, ...]], where: str) -> None:
+def check_layout(film: _core.Film, given: Mapping[str, tuple[int, ...]], where: str) -> None:
     """Checks that sums have the shapes of a film's, by part.
 
     Raises:
@@ -53,7 +55,7 @@ def _shape(part: str, shape: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def frame_of(
-    film: Any,
+    film: _core.Film,
     metadata: dict[str, Any],
     *,
     aovs: bool,
@@ -107,7 +109,7 @@ def frame_of(
     )
 
 
-def _catchers(film: Any, alpha: NDArray[np.float32]) -> dict[str, NDArray[np.float32]]:
+def _catchers(film: _core.Film, alpha: NDArray[np.float32]) -> dict[str, NDArray[np.float32]]:
     """Layers of catchers, if the film has any."""
     parts = film.state_parts()
     made: dict[str, NDArray[np.float32]] = {}
@@ -120,7 +122,7 @@ def _catchers(film: Any, alpha: NDArray[np.float32]) -> dict[str, NDArray[np.flo
     return made
 
 
-def _mattes(film: Any, metadata: dict[str, Any]) -> dict[str, Any]:
+def _mattes(film: _core.Film, metadata: dict[str, Any]) -> dict[str, Any]:
     """Mattes by name, if the film has objects; metadata tell of pixels with too many."""
     facts = metadata.get("mattes")
     if facts is None or OBJECTS not in film.state_parts():
@@ -131,12 +133,12 @@ def _mattes(film: Any, metadata: dict[str, Any]) -> dict[str, Any]:
     return {"cryptomatte": found}
 
 
-def _halves(film: Any) -> NDArray[np.float32]:
+def _halves(film: _core.Film) -> NDArray[np.float32]:
     """Pictures of even and odd samples, by camera and by light paths, shape (H, W, 2, 2, 3)."""
     halves = [[film.half_rgb(odd, splats) for splats in (False, True)] for odd in (False, True)]
     return np.stack([np.stack(half, axis=2) for half in halves], axis=2)
 
 
-def _plane(film: Any, name: str) -> NDArray[Any]:
+def _plane(film: _core.Film, name: str) -> NDArray[Any]:
     """Returns a channel of a film; ids are integers and never means."""
     return np.asarray(film.object_ids() if name == "object_id" else film.aov(name))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, TypedDict
 
 from .diffraction import Diffraction
@@ -61,7 +61,7 @@ class RigKeywords(ViewKeywords, total=False):
     noise: float | None
 
 
-def settings_of(given: RenderSettings | None, keywords: Any) -> RenderSettings:
+def settings_of(given: RenderSettings | None, keywords: Mapping[str, Any]) -> RenderSettings:
     """Returns the settings, changed by the keywords."""
     made = RenderSettings() if given is None else given
     return made.with_(**keywords)

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from daguerre.errors import InputError, MismatchError, core_errors
 from daguerre.frame.frame import Frame
@@ -14,6 +14,10 @@ from daguerre.frame.frame import Frame
 from .film_frame import OBJECTS, frame_of, set_film_state
 from .passes import Pass, check_key, read_pass
 from .ranges import Range, join_ranges
+
+if TYPE_CHECKING:
+    from daguerre import _core
+
 
 #: Metadata that set the brightness and white of a picture, and not its light.
 _EXPOSURE = (
@@ -97,7 +101,7 @@ def _truth_facts(one: Pass) -> dict[str, Any]:
     return {k: v for k, v in one.metadata.items() if k in names}
 
 
-def film_of(one: Pass) -> Any:
+def film_of(one: Pass) -> _core.Film:
     """Makes a film of the core with the sums of a pass."""
     from daguerre._core import FILM_LAYERS, Film, FilmLayout
 

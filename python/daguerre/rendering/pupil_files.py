@@ -9,7 +9,7 @@ from __future__ import annotations
 import base64
 import math
 import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -31,7 +31,7 @@ def to_json(pupils: Sequence[Sequence[Pupil]]) -> dict[str, Any]:
     return {"iris": _iris(first.iris), "pupils": [[_pupil(p) for p in row] for row in pupils]}
 
 
-def from_json(value: Any) -> Pupils:
+def from_json(value: Mapping[str, Any]) -> Pupils:
     """Reads pupils from JSON.
 
     Raises:
@@ -60,7 +60,7 @@ def _iris(iris: Iris) -> dict[str, Any]:
     return out
 
 
-def _read_iris(value: Any) -> Iris:
+def _read_iris(value: Mapping[str, Any]) -> Iris:
     rasters = {name: _unpacked(value[name]) for name in ("picture", "mask") if name in value}
     half = value["mask_half"]
     iris = Iris(
@@ -85,7 +85,7 @@ def _pupil(pupil: Any) -> dict[str, Any]:
     }
 
 
-def _read_pupil(value: Any, iris: Iris) -> Pupil:
+def _read_pupil(value: Mapping[str, Any], iris: Iris) -> Pupil:
     if "f_number" in value:
         f_number = _finite(value["f_number"])
         if not 0.1 <= f_number <= 1e4:
@@ -101,7 +101,7 @@ def _read_pupil(value: Any, iris: Iris) -> Pupil:
     return LensPupil((low[0], low[1]), (high[0], high[1]), iris, fit, _unpacked(value["mounts"]))
 
 
-def _finite(value: Any) -> float:
+def _finite(value: float) -> float:
     number = float(value)
     if not math.isfinite(number):
         raise ValueError(f"pupils: wanted finite numbers, got {number}")
@@ -114,7 +114,7 @@ def _packed(raster: NDArray[np.float32]) -> dict[str, Any]:
     return {"size": list(grey.shape), "grey": words}
 
 
-def _unpacked(value: Any) -> NDArray[np.float32]:
+def _unpacked(value: Mapping[str, Any]) -> NDArray[np.float32]:
     height, width = (int(n) for n in value["size"])
     if not (2 <= height <= MOST_SIDE and 2 <= width <= MOST_SIDE):
         raise ValueError(f"pupils: wanted rasters of 2 to {MOST_SIDE} px a side")

@@ -149,7 +149,7 @@ class RenderSettings(Value):
         """Makes settings from parameters by name, of any group."""
         return cls().with_(**values)
 
-    def with_(self, **changes: Any) -> RenderSettings:
+    def with_(self, **changes: object) -> RenderSettings:
         """Returns a copy with some parameters changed, by name."""
         refuse_unknown(changes, TABLE, "settings", TypeError)
         groups: dict[str, Any] = {
@@ -157,7 +157,8 @@ class RenderSettings(Value):
             for group, kind in GROUPS.items()
             if (given := {name: changes[name] for name in names_in(kind) if name in changes})
         }
-        return replace(self, **groups, threads=changes.get("threads", self.threads))
+        groups["threads"] = changes.get("threads", self.threads)
+        return replace(self, **groups)
 
     def values(self) -> dict[str, Any]:
         """All parameters by name."""
@@ -216,7 +217,7 @@ GROUPS: dict[str, Any] = {
 }  # fmt: skip
 
 
-def names_in(group: Any) -> tuple[str, ...]:
+def names_in(group: type[Any]) -> tuple[str, ...]:
     """Names of the parameters of a group."""
     return tuple(item.name for item in fields(group))
 

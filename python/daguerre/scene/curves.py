@@ -96,7 +96,7 @@ class MovingCurves(Value):
 
 
 def curves_of(
-    points: Any, counts: Any, widths: Any, given: Mapping[str, Any], where: str
+    points: ArrayLike, counts: object, widths: object, given: Mapping[str, Any], where: str
 ) -> tuple[Curves, Layout]:
     """Makes curves from arrays.
 
@@ -221,7 +221,12 @@ def _radii(widths: object, where: str, counts: NDArray[np.int64], form: BezierFo
 
 
 def _values(
-    values: Any, where: str, what: str, columns: int, size: tuple[int, int], form: BezierForm
+    values: ArrayLike | None,
+    where: str,
+    what: str,
+    columns: int,
+    size: tuple[int, int],
+    form: BezierForm,
 ) -> FloatArray | None:
     """Values per curve as they are, or per control point as values per position."""
     if values is None:
@@ -239,7 +244,7 @@ def _values(
     return freeze_in_place((np.maximum(made, 0) if what == "colors" else made).astype(np.float32))
 
 
-def _rows(values: Any, where: str, what: str, columns: int, count: int) -> FloatArray:
+def _rows(values: ArrayLike, where: str, what: str, columns: int, count: int) -> FloatArray:
     rows = array(values, where, what, columns)
     if len(rows) != count:
         raise InputError(f"{where}: {what}: wanted {count} elements, got {len(rows)}")

@@ -7,6 +7,7 @@ an even medium. Source: Pharr, Jakob and Humphreys 2023, Physically Based Render
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any
@@ -189,7 +190,7 @@ def _coefficient(value: object, where: str) -> Color | Spectrum:
     return value if isinstance(value, Spectrum) else color(value, where)
 
 
-def _lobes(given: Any) -> tuple[tuple[float, float], ...]:
+def _lobes(given: Iterable[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
     wanted = f"medium: lobes: wanted 1 to {MAX_LOBES} pairs (g, weight)"
     try:
         pairs = [(g, weight) for g, weight in islice(given, MAX_LOBES + 1)]

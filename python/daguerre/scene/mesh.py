@@ -70,7 +70,7 @@ MESH = Table(
 
 
 def mesh_of(
-    positions: Any, indices: ArrayLike, attributes: Mapping[str, Any], where: str, name: str
+    positions: ArrayLike, indices: ArrayLike, attributes: Mapping[str, Any], where: str, name: str
 ) -> Mesh:
     """Makes a mesh from arrays; ``attributes`` are those in ``COLUMNS``, or None.
 

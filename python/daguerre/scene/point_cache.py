@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,7 +104,7 @@ class _Turn:
         return np.where(lengths > 1e-9, turned / np.maximum(lengths, 1e-9), v).astype(np.float32)
 
 
-def steps_of(steps: Any, where: str) -> Dynamic:
+def steps_of(steps: object, where: str) -> Dynamic:
     """Positions over time from the argument of ``add_mesh(steps=...)``.
 
     Raises:

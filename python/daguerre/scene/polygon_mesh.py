@@ -53,7 +53,7 @@ class Polygons:
 
 
 def polygons_of(
-    positions: Any,
+    positions: ArrayLike,
     indices: ArrayLike,
     sizes: ArrayLike | None,
     values: Mapping[str, Any],
@@ -263,7 +263,9 @@ def _surface_of(
     return mesh, over
 
 
-def _at(refiner: Refiner, value: Any, rows: IntArray) -> NDArray[np.float32] | None:
+def _at(
+    refiner: Refiner, value: NDArray[np.float32] | None, rows: IntArray
+) -> NDArray[np.float32] | None:
     return None if value is None else _single(refiner.vertex(value)[rows])
 
 

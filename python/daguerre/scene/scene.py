@@ -279,7 +279,7 @@ class Scene(Value):
         material: Material | Kind | None = None,
         *,
         motion: Dynamic | None = None,
-        **fields: Any,
+        **fields: object,
     ) -> int:
         """Adds a material; returns its index.
 
@@ -295,7 +295,7 @@ class Scene(Value):
                 raise UsageError(
                     f"material: unknown field {unknown[0]!r}{suggest(unknown[0], known)}"
                 )
-            material = Material(**fields)
+            material = Material(**dict[str, Any](fields))
         elif isinstance(material, Kind):
             material = Material(material)
         shown = at(material, self.time)
@@ -649,7 +649,7 @@ def _steps(steps: object, where: str) -> Dynamic:
     return steps_of(steps, where)
 
 
-def _dynamic(value: Any) -> Dynamic | None:
+def _dynamic(value: object) -> Dynamic | None:
     return value if is_dynamic(value) else None
 
 

@@ -81,7 +81,7 @@ class Sensor(Response):
         columns, rows = self.resolution
         return f"<Sensor {self.name}: {columns}x{rows}, {self.pattern.name}>"
 
-    def with_(self, **changes: Any) -> Sensor:
+    def with_(self, **changes: object) -> Sensor:
         """Returns a copy with other values, such as ``serial`` or ``infrared_cut=None``.
 
         ``pattern`` may be a name, ``read_noise`` one number for all ISO values.
@@ -94,14 +94,15 @@ class Sensor(Response):
         for name in changes:
             if name not in known:
                 raise UsageError(f"sensor: wanted one of {', '.join(known)}; got {name!r}")
-        if isinstance(changes.get("pattern"), str):
-            channels = changes.get("channels", self.channels)
-            changes["pattern"] = Mosaic.of(changes["pattern"], channels, self.where)
-        if "read_noise" in changes and np.ndim(changes["read_noise"]) == 0:
-            changes["read_noise"] = ((self.base_iso, changes["read_noise"]),)
-        if {"resolution", "pixel_pitch"} & set(changes) and "size" not in changes:
-            changes["size"] = (0.0, 0.0)
-        return dataclasses.replace(self, **changes)
+        given: dict[str, Any] = changes
+        if isinstance(given.get("pattern"), str):
+            channels = given.get("channels", self.channels)
+            given["pattern"] = Mosaic.of(given["pattern"], channels, self.where)
+        if "read_noise" in given and np.ndim(given["read_noise"]) == 0:
+            given["read_noise"] = ((self.base_iso, given["read_noise"]),)
+        if {"resolution", "pixel_pitch"} & set(given) and "size" not in given:
+            given["size"] = (0.0, 0.0)
+        return dataclasses.replace(self, **given)
 
     def sensitivity(self, nm: ArrayLike) -> FloatArray:
         """Returns the spectral weights of a frame's channels, shape (C, L).

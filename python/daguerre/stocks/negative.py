@@ -97,11 +97,11 @@ class Negative(ArrayValue, array="density"):
         rgb = (seen @ _rgb_from_layers(stock).T).astype(np.float32)
         return Frame(rgb=rgb, metadata={**self.metadata, "exposure_compensation": None})
 
-    def develop(self, **look: Any) -> Picture:
+    def develop(self, **look: object) -> Picture:
         """Develops the print or slide for a display; see ``daguerre.development.develop``."""
         from daguerre.development import develop
 
-        return develop(self.shown(), **look)
+        return develop(self.shown(), **dict[str, Any](look))
 
     def shown(self) -> Frame:
         """Returns the print or slide as a frame, lit so that its white develops to white."""

@@ -103,9 +103,9 @@ class Stock(Value):
     def __repr__(self) -> str:
         return f"<Stock {self.name}: {self.kind}, ISO {self.iso:g}>"
 
-    def with_(self, **changes: Any) -> Stock:
+    def with_(self, **changes: object) -> Stock:
         """Returns a copy with other values, such as ``balance=3200`` or ``halation=None``."""
-        return replace(self, **changes)
+        return replace(self, **dict[str, Any](changes))
 
     @property
     def channels(self) -> tuple[str, ...]:

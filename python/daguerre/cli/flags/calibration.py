@@ -6,7 +6,7 @@ Annotations must be real objects here (see ``groups.py``), so no ``annotations``
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from daguerre import units as q
 from daguerre.cached import cached_property
@@ -16,6 +16,11 @@ from daguerre.cli import console
 from daguerre.files.reading import exists
 
 from .groups import Text, option
+
+if TYPE_CHECKING:
+    from daguerre.calibration.calibration import Calibration
+    from daguerre.camera.camera import Camera
+
 
 _CALIBRATION = "Calibration"
 
@@ -126,7 +131,7 @@ class CalibrationFlags:
         return options
 
     def resolution(
-        self, calibration: Any, res: str | None, default: tuple[int, int]
+        self, calibration: "Calibration | None", res: str | None, default: tuple[int, int]
     ) -> tuple[int, int]:
         """Size of the picture, px: that of ``--res``, else of the calibration."""
         size = default if calibration is None else calibration.projection.size
@@ -163,7 +168,9 @@ class CalibrationFlags:
         if both:
             raise UsageError(f"--calibration and {both[0]}: wanted one of them, got both")
 
-    def camera(self, camera: Any, calibration: Any, changes: dict[str, Any]) -> Any:
+    def camera(
+        self, camera: "Camera", calibration: "Calibration | None", changes: dict[str, Any]
+    ) -> "Camera":
         """Returns the scene's camera, with the calibration (if not None) and changes."""
         if calibration is not None:
             pitch = self.pixel_pitch
@@ -180,7 +187,7 @@ class CalibrationFlags:
 
         return delayed(camera, calibration.delay_s)
 
-    def notes(self, camera: Any, calibration: Any) -> list[str]:
+    def notes(self, camera: "Camera", calibration: "Calibration | None") -> list[str]:
         """Decisions made on the user's behalf, a sentence each."""
         if calibration is None:
             return []

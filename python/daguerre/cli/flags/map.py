@@ -6,12 +6,17 @@ Annotations must be real objects here (see ``groups.py``), so no ``annotations``
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from daguerre.cli import console
 from daguerre.rendering.parameters import TRUTH
 
 from .groups import option
+
+if TYPE_CHECKING:
+    from daguerre.camera.camera import Camera
+    from daguerre.camera.overscan import Overscan
+    from daguerre.scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -91,10 +96,10 @@ class MapFlags:
 
     def write(
         self,
-        scene: Any,
-        camera: Any,
+        scene: "Scene",
+        camera: "Camera",
         size: tuple[int, int],
-        overscan: Any,
+        overscan: "Overscan",
         gt_time: str | None = None,
     ) -> None:
         """Writes the requested maps.
@@ -122,7 +127,11 @@ class MapFlags:
 
 
 def _write_stmaps(
-    scene: Any, camera: Any, size: tuple[int, int], overscan: Any, files: dict[str, Path]
+    scene: "Scene",
+    camera: "Camera",
+    size: tuple[int, int],
+    overscan: "Overscan",
+    files: dict[str, Path],
 ) -> None:
     from daguerre.distortion.rectified import RectifiedView
     from daguerre.maps.st_maps import StMaps

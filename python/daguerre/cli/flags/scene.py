@@ -6,7 +6,7 @@ Annotations must be real objects here (see ``groups.py``), so no ``annotations``
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from daguerre import units as q
 from daguerre.rendering.names import has_frame, numbered
@@ -14,6 +14,14 @@ from daguerre.scene.catcher import EFFECTS
 
 from .groups import Text, option
 from .scene_file import SceneFileFlags
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from daguerre.camera.camera import Camera
+    from daguerre.scene.scene import Scene
+
 
 _LIGHT = "Light and scene"
 
@@ -109,11 +117,11 @@ class SceneFlags(SceneFileFlags):
     def load(
         self,
         path: Path,
-        taken: object = None,
+        taken: "Camera | None" = None,
         *,
         animated: bool = False,
         moments: tuple[float, float] | None = None,
-    ) -> Any:
+    ) -> "Scene":
         """Reads the scene and adds environment, catchers and plate.
 
         Args:
@@ -165,7 +173,7 @@ class SceneFlags(SceneFileFlags):
                 raise InputError(f"frame {frame}: {path}: {fault}")
             note_read([path])
 
-    def throw_plate(self, scene: Any, taken: Any, frame: int = 0) -> None:
+    def throw_plate(self, scene: "Scene", taken: "Camera | None", frame: int = 0) -> None:
         """Sets the plate of the scene, in a sequence that of a frame.
 
         Args:
@@ -212,7 +220,7 @@ class SceneFlags(SceneFileFlags):
             raise UsageError(f"--env-lux: wanted at least 0, got {self.env_lux!r}")
         return lux
 
-    def _light(self, scene: Any, lux: float) -> None:
+    def _light(self, scene: "Scene", lux: float) -> None:
         from dataclasses import replace
 
         from daguerre.errors import UsageError
@@ -252,7 +260,7 @@ class SceneFlags(SceneFileFlags):
         return {}
 
     @staticmethod
-    def _panorama(path: Path) -> Any:
+    def _panorama(path: Path) -> "NDArray[np.float32]":
         from daguerre.cli import console
         from daguerre.files.notes import Notes
         from daguerre.pictures.light import read_environment
@@ -263,14 +271,14 @@ class SceneFlags(SceneFileFlags):
             console.note(sentence)
         return image
 
-    def _change(self, scene: Any) -> None:
+    def _change(self, scene: "Scene") -> None:
         from dataclasses import replace
 
         from daguerre.errors import UsageError
 
         if scene.environment is None:
             raise UsageError("--env-scale and --env-rotation need --env")
-        changes: dict[str, float] = {}
+        changes: dict[str, Any] = {}
         if self.env_scale is not None:
             changes["scale"] = self._scale()
         if self.env_rotation is not None:

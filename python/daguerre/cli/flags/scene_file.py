@@ -6,7 +6,7 @@ Annotations must be real objects here (see ``groups.py``), so no ``annotations``
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,6 +14,10 @@ from daguerre import units as q
 from daguerre.files import formats
 
 from .groups import Text, option
+
+if TYPE_CHECKING:
+    from daguerre.scene.scene import Scene
+
 
 _FILE = "Scene file"
 
@@ -127,7 +131,7 @@ class SceneFileFlags:
 
     def read(
         self, path: Path, *, animated: bool = False, moments: tuple[float, float] | None = None
-    ) -> Any:
+    ) -> "Scene":
         """Reads the scene.
 
         Args:

@@ -18,6 +18,7 @@ from .reporter import ConsoleReporter
 
 if TYPE_CHECKING:
     from daguerre.cluster.crew import Crew
+    from daguerre.rendering.session import Session
 
 INTERRUPTED = 75
 
@@ -41,7 +42,7 @@ def run(
 
         job.work_of = work_of(crew, job)
 
-    def opened(picture: Picture, session: Any) -> None:
+    def opened(picture: Picture, session: Session) -> None:
         maps = plan.maps_of(picture)
         if maps.files:
             how = (session.overscan, picture.settings.truth.moment)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Collection
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -83,7 +84,9 @@ def _is_told(output: Output, row: Plain) -> bool:
     return row.field in camera.motion or (value is not None and value != default)
 
 
-def _named(output: Output, name: str, value: Any, known: Any, load: Any) -> tuple[str, str, Any]:
+def _named(
+    output: Output, name: str, value: Any, known: Collection[str], load: Callable[[str], Any]
+) -> tuple[str, str, Any]:
     """Attribute of a lens or a sensor: a name of the library, or a file in the stage's folder."""
     place = f"{PREFIX}{name}:name"
     if value is None:
@@ -100,7 +103,7 @@ def _named(output: Output, name: str, value: Any, known: Any, load: Any) -> tupl
     return f"{PREFIX}{name}:file", "asset", f"./{path.relative_to(output.folder).as_posix()}"
 
 
-def _found(value: Lens | sensors.Sensor, name: str, load: Any) -> str:
+def _found(value: Lens | sensors.Sensor, name: str, load: Callable[[str], Any]) -> str:
     """Name in the library of a lens or a sensor that is in memory."""
     if isinstance(value, Lens):
         near = [entry.name for entry in lenses.entries() if entry.title == value.name]

@@ -109,7 +109,7 @@ def played(part: object, channels: Sequence[Channel], time: float) -> Any:
     return part
 
 
-def _with(holder: Any, way: tuple[str, ...], value: Any) -> Any:
+def _with(holder: Any, way: tuple[str, ...], value: object) -> Any:
     """Copies an object or list, with another value at the end of the path."""
     copy = holder.copy()
     key: Any = int(way[0]) if isinstance(holder, list) else way[0]

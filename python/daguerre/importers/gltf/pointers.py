@@ -38,7 +38,7 @@ class Target:
         is_flag: Whether the value is true or false.
     """
 
-    holder: Any
+    holder: dict[str, Any] | list[Any]
     key: str | int
     name: str
     width: int | None
@@ -81,7 +81,7 @@ class Pointers:
         """
         if not _is_mutable(tokens):
             return None
-        holder: Any = self._root.value
+        holder: dict[str, Any] | list[Any] = self._root.value
         for token in tokens[:-1]:
             if token == "weights" and isinstance(holder, dict) and "weights" not in holder:
                 self._write_weights(holder, tokens, use)

@@ -69,7 +69,7 @@ class Track(Value):
         first = np.searchsorted(self._keys, begin, side="right")
         return self._keys[first : np.searchsorted(self._keys, end, side="left")]
 
-    def at(self, time: float) -> Any:
+    def at(self, time: float) -> float | bool | list[float]:
         """Value at a time, s: a number, a list of numbers or a flag; constant beyond the keys."""
         value = self.many(np.array([time]))[0]
         if self._is_flag:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from pxr import UsdSkel
 
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
-from daguerre.motion.values import is_dynamic
+from daguerre.motion.values import Keys
 from daguerre.scene.over_time.shapes import BlendShape, BlendShapes
 from daguerre.scene.over_time.surfaces import Array
 
@@ -18,7 +16,11 @@ from .values import Clock
 
 
 def read_blend_shapes(
-    query: Any, animation: Any, count: int, clock: Clock, notes: Notes
+    query: UsdSkel.SkinningQuery,
+    animation: UsdSkel.AnimQuery,
+    count: int,
+    clock: Clock,
+    notes: Notes,
 ) -> BlendShapes | None:
     """Reads the blend shapes of a mesh with ``count`` points; None if nothing animates them.
 
@@ -30,7 +32,7 @@ def read_blend_shapes(
     weights = clock.value(
         source.GetBlendShapeWeightsAttr(), lambda v: np.asarray(v, np.float64), large=True
     )
-    stated = weights.values[0] if is_dynamic(weights) else weights
+    stated = weights.values[0] if isinstance(weights, Keys) else weights
     if weights is None or len(stated) != len(channels):
         notes.add("weights of blend shapes that differ in number from their names are left out")
         return None

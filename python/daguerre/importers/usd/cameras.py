@@ -171,7 +171,7 @@ def _projected(values: dict[str, Any], projection: object) -> dict[str, Any]:
     return left | {"projection": projection, "sensor_size": (width, height)}
 
 
-def _scaled(value: Any, factor: float) -> Any:
+def _scaled(value: float | Keys, factor: float) -> float | Keys:
     if not isinstance(value, Keys):
         return value * factor
     pairs = zip(value.times.tolist(), (v * factor for v in value.values), strict=True)

@@ -239,7 +239,7 @@ def _scatter(read: Checked) -> LensScatter | None:
     return LensScatter(**found) if found else None
 
 
-def _projection(read: Checked) -> Any:
+def _projection(read: Checked) -> Projection | Keys | None:
     """Projection that NVIDIA has no name for, or keys of it."""
     stem = PREFIX + PROJECTION
     model = read.text(stem + "model")
@@ -262,7 +262,7 @@ def _projection(read: Checked) -> Any:
     return keys([(time, made(time)) for time in times], "linear")
 
 
-def _curve(read: Checked) -> Any:
+def _curve(read: Checked) -> str | tuple[str, float] | list[tuple[float, float]] | None:
     """``box``, a trapezoid by its efficiency, or points (fraction of the time, opening)."""
     efficiency = read.number(PREFIX + EFFICIENCY)
     if efficiency is not None:

@@ -69,7 +69,7 @@ def read_exposure(read: Checked, named: str | None) -> dict[str, Any]:
     return found | ({"exposure": "manual"} if authored else {})
 
 
-def _ours(responsivity: Any) -> Any:
+def _ours(responsivity: float | Keys) -> float | Keys:
     """Our responsivity for USD's, to the digits that single precision has."""
     if not isinstance(responsivity, Keys):
         return float(f"{responsivity / RESPONSIVITY:.7g}")
@@ -96,7 +96,10 @@ def _over_time(camera: Camera, name: str) -> Any:
 
 
 def _is_same(
-    value: Any, camera: Camera, sources: tuple[str, ...], of: Callable[[Camera], float | None]
+    value: float | Keys | None,
+    camera: Camera,
+    sources: tuple[str, ...],
+    of: Callable[[Camera], float | None],
 ) -> bool:
     """Whether a value is that of a camera at each time: both keep still, or have the same keys."""
     if value is None:

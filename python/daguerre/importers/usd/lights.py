@@ -10,6 +10,7 @@ Source: OpenUSD, documentation of UsdLuxLightAPI; its pull requests 3182 (quanti
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -136,7 +137,7 @@ class Lamp:
             self._notes.add("a negative part of the colour of a light is left out")
         return made
 
-    def _over_time(self, name: str, check: Any) -> Any:
+    def _over_time(self, name: str, check: Callable[[str, object], Any]) -> Any:
         found = self._clock.value(
             self.prim.GetAttribute(name), lambda value: check(name, plain(value))
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,10 @@ from daguerre.scene.scene import Scene
 from .primvars import as_rows, note_length, read_primvar
 from .topology import read_faces, surface_of
 from .values import Clock
+
+if TYPE_CHECKING:
+    from pxr import Usd
+
 
 #: Limit faces of all subdivision surfaces of a stage that decide the level of each.
 _DETAIL = 1_500_000
@@ -63,7 +67,7 @@ class Shape:
         rest: Points before a skin moved them, to which the normals of the file belong; or None.
     """
 
-    prim: Any
+    prim: Usd.Prim
     points: Array | Dynamic
     surface: Surface
     flipped: bool
@@ -289,8 +293,8 @@ def _flipped(uv: Array | None) -> Array | None:
     return uv
 
 
-def _now(points: Array | Dynamic, clock: Clock) -> Any:
-    return points.at(clock.time) if is_dynamic(points) else points  # type: ignore[union-attr]
+def _now(points: Array | Dynamic, clock: Clock) -> Array:
+    return points.at(clock.time) if is_dynamic(points) else points
 
 
 def uv_names(wanted: Sequence[str], prim: object) -> tuple[str, ...]:

@@ -90,7 +90,9 @@ def miss_of_numbers(a: object, middle: object, b: object) -> float:
     return float(error.max(initial=0.0))
 
 
-def miss_of_poses(a: Any, middle: Any, b: Any) -> float:
+def miss_of_poses(
+    a: NDArray[np.float64], middle: NDArray[np.float64], b: NDArray[np.float64]
+) -> float:
     """Error of a pose halfway between two others: m, and radians."""
     (place_a, turn_a), (place, turn), (place_b, turn_b) = (pose(m) for m in (a, middle, b))
     half = turn_a + (turn_b if np.dot(turn_a, turn_b) >= 0 else -turn_b)

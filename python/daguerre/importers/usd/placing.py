@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,7 +102,7 @@ class Placing:
                 f"{self._file}: {place}: too many instances: the limit is {MAX_INSTANCES}"
             )
 
-    def add(self, mesh: int, material: int, spots: Spots, name: str, shown: Any) -> None:
+    def add(self, mesh: int, material: int, spots: Spots, name: str, shown: bool | Dynamic) -> None:
         """Places a mesh.
 
         Args:

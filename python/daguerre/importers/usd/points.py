@@ -6,7 +6,7 @@ Source: OpenUSD, UsdGeomPointBased, "Applying Timesampled Velocities to Geometry
 from __future__ import annotations
 
 import itertools
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pxr import Usd
@@ -20,11 +20,15 @@ from daguerre.scene.over_time.surfaces import Array
 from .primvars import as_rows
 from .values import Clock
 
+if TYPE_CHECKING:
+    from pxr import UsdGeom
+
+
 #: Maximum number of coordinates in all time samples of an attribute.
 _MAX_NUMBERS = 1 << 30
 
 
-def read_points(schema: Any, clock: Clock, notes: Notes) -> Array | Dynamic:
+def read_points(schema: UsdGeom.PointBased, clock: Clock, notes: Notes) -> Array | Dynamic:
     """Reads the points of a mesh, of curves or of points.
 
     Args:
@@ -63,7 +67,7 @@ def read_points(schema: Any, clock: Clock, notes: Notes) -> Array | Dynamic:
     return keys(zip(times, samples, strict=True), how)
 
 
-def _ballistic(schema: Any, clock: Clock) -> Ballistic | None:
+def _ballistic(schema: UsdGeom.PointBased, clock: Clock) -> Ballistic | None:
     """Points along velocities, which count if their samples are those of the points."""
     points, velocities = schema.GetPointsAttr(), schema.GetVelocitiesAttr()
     codes = clock.codes(points, single=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 from pxr import Usd, UsdGeom
 
@@ -97,7 +96,9 @@ class Walk:
         """
         return self._below(Visit(top, world, True, True, 0))
 
-    def whole(self, top: Usd.Prim, world: Matrix | Transform, shown: Any = True) -> Iterator[Visit]:
+    def whole(
+        self, top: Usd.Prim, world: Matrix | Transform, shown: bool | Shown = True
+    ) -> Iterator[Visit]:
         """Visits a prim and those below it; the prim keeps its own transform."""
         visit = replace(self._child(Visit(top, world, shown, True, 0), top), depth=0)
         yield visit

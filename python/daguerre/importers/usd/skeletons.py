@@ -16,7 +16,7 @@ from pxr import Usd, UsdSkel
 from daguerre.checks import short
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
-from daguerre.motion.values import Dynamic, is_dynamic
+from daguerre.motion.values import Dynamic, Keys
 from daguerre.motion.values import at as value_at
 from daguerre.scene.over_time.joints import JointPoses, Matrices, Skinned
 from daguerre.scene.over_time.quaternions import moving_turns
@@ -40,7 +40,7 @@ class Skeletons:
 
     clock: Clock
     notes: Notes
-    _cache: Any = field(default_factory=UsdSkel.Cache)
+    _cache: UsdSkel.Cache = field(default_factory=UsdSkel.Cache)
     _queries: dict[str, tuple[Any, Usd.Prim]] = field(default_factory=dict)
     _poses: dict[str, JointPoses] = field(default_factory=dict)
 
@@ -92,7 +92,7 @@ class Skeletons:
         made = Skinned(points, shapes, joints, influences, bind)
         return made if made.moves else made.at(self.clock.time)
 
-    def _skeleton(self, prim: Usd.Prim) -> Any:
+    def _skeleton(self, prim: Usd.Prim) -> UsdSkel.SkeletonQuery:
         query = self._cache.GetSkelQuery(UsdSkel.Skeleton(prim))
         if not query:
             raise InputError(
@@ -107,7 +107,7 @@ class Skeletons:
             self._poses[key] = self._read_joints(self._skeleton(prim), prim)
         return self._poses[key]
 
-    def _read_joints(self, query: Any, prim: Usd.Prim) -> JointPoses:
+    def _read_joints(self, query: UsdSkel.SkeletonQuery, prim: Usd.Prim) -> JointPoses:
         where = f"{self.clock.file}: {prim.GetPath()}"
         order = list(query.GetJointOrder())
         bind = _matrices(query.GetJointWorldBindTransforms())
@@ -127,7 +127,7 @@ class Skeletons:
         return JointPoses(*parts, animated, rest, parents, inverse)
 
     def _animation(
-        self, animation: Any, order: list[str]
+        self, animation: UsdSkel.AnimQuery, order: list[str]
     ) -> tuple[NDArray[np.int64], tuple[Any, Any, Any]]:
         """Animated joints, and their translations, rotations and scales."""
         nothing = np.zeros(0, np.int64), (None, None, None)
@@ -155,12 +155,14 @@ class Skeletons:
             return rows(None, attribute, columns) if value is None else value
 
         turns = part(source.GetRotationsAttr(), 4)
-        if is_dynamic(turns):
+        if isinstance(turns, Keys):
             turns = moving_turns(turns)
         parts = part(source.GetTranslationsAttr(), 3), turns, part(source.GetScalesAttr(), 3)
         return np.array([places[names[i]] for i in chosen], np.int64), parts
 
-    def _influences(self, query: Any, skeleton: Usd.Prim, count: int) -> Influences:
+    def _influences(
+        self, query: UsdSkel.SkinningQuery, skeleton: Usd.Prim, count: int
+    ) -> Influences:
         order = [str(name) for name in self._skeleton(skeleton).GetJointOrder()]
         where = f"{self.clock.file}: {query.GetPrim().GetPath()}"
         indices, weights = query.ComputeVaryingJointInfluences(count, self.clock.code) or ([], [])

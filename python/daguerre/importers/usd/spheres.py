@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from pxr import UsdGeom
 
@@ -28,7 +26,9 @@ from .values import Clock
 _MAX_MOVING = 200_000
 
 
-def read_widths(schema: Any, count: int, clock: Clock, notes: Notes) -> Primvar | None:
+def read_widths(
+    schema: UsdGeom.PointBased, count: int, clock: Clock, notes: Notes
+) -> Primvar | None:
     """Reads the widths of points or curves; None if there are none that can be used."""
     api = UsdGeom.PrimvarsAPI(schema.GetPrim())
     primvar = api.GetPrimvar("widths")

@@ -13,8 +13,8 @@ from pxr import Usd, UsdGeom
 from daguerre.checks import short
 from daguerre.errors import InputError
 from daguerre.files.notes import Notes
+from daguerre.motion.values import Keys, is_dynamic
 from daguerre.motion.values import at as value_at
-from daguerre.motion.values import is_dynamic
 from daguerre.scene.over_time.operations import Matrix, Operation, Rigid, Transform
 from daguerre.scene.over_time.quaternions import moving_turns
 from daguerre.scene.transforms import without_scale
@@ -84,7 +84,7 @@ def _operation(op: UsdGeom.XformOp, clock: Clock, notes: Notes) -> Operation | N
     value = clock.value(attribute, affine if kind == "transform" else numbers)
     if value is None:
         return None
-    if kind == "orient" and is_dynamic(value):
+    if kind == "orient" and isinstance(value, Keys):
         value = moving_turns(value)
     if affine.changed:
         notes.add(_BENT)
@@ -105,7 +105,7 @@ class _Numbers:
     where: str
     count: int
 
-    def __call__(self, value: object) -> Any:
+    def __call__(self, value: object) -> float | tuple[float, ...]:
         """The number, or the numbers.
 
         Raises:
@@ -118,7 +118,8 @@ class _Numbers:
             raise InputError(f"{self.where}: wanted {wanted}, got {short(str(value))}")
         if not all(math.isfinite(one) for one in numbers):
             raise InputError(f"{self.where}: wanted finite numbers, got NaN or infinity")
-        return made
+        found: float | tuple[float, ...] = made
+        return found
 
 
 def _check(made: Operation, where: str, time: float) -> None:

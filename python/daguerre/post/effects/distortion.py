@@ -90,7 +90,9 @@ def distort(
 
 
 @guarded(arrays=False)
-def undistort(image: Image, model: Distortion | Sequence[Distortion], **parameters: Any) -> Image:
+def undistort(
+    image: Image, model: Distortion | Sequence[Distortion], **parameters: object
+) -> Image:
     """Undistorts a picture; takes the parameters of :func:`distort` except ``inverse``."""
     known = inspect.signature(distort).parameters
     for name in parameters:
@@ -98,7 +100,7 @@ def undistort(image: Image, model: Distortion | Sequence[Distortion], **paramete
             raise UsageError(
                 f"undistort: wanted a parameter of distort, got {name!r}{suggest(name, known)}"
             )
-    return distort(image, model, **parameters, inverse=True)
+    return distort(image, model, **dict[str, Any](parameters), inverse=True)
 
 
 def pair_px(focal_px: float | tuple[float, float]) -> tuple[float, float]:

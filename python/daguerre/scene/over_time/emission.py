@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from daguerre.files.value import Value
 from daguerre.motion.values import Keys, is_dynamic
 from daguerre.motion.values import at as value_at
 
 from .blackbody import Color, blackbody
+
+if TYPE_CHECKING:
+    from daguerre.motion.values import Dynamic
+
 
 WHITE = (1.0, 1.0, 1.0)
 #: Largest luminance; its product with an area still fits into single precision.
@@ -46,10 +50,10 @@ class Emission(Value):
         factor: Constant factor, such as one over the area.
     """
 
-    intensity: Any = 1.0
-    exposure: Any = 0.0
-    color: Any = WHITE
-    temperature: Any = None
+    intensity: float | Dynamic = 1.0
+    exposure: float | Dynamic = 0.0
+    color: Color | Dynamic = WHITE
+    temperature: float | Dynamic | None = None
     shown: bool | Shown = True
     factor: float = 1.0
 

@@ -39,9 +39,9 @@ class JointPoses(Value):
         inverse_bind: Joint from skeleton in the bind pose, shape (J, 4, 4).
     """
 
-    translations: Any
-    rotations: Any
-    scales: Any
+    translations: NDArray[np.floating] | Dynamic
+    rotations: NDArray[np.floating] | Dynamic
+    scales: NDArray[np.floating] | Dynamic
     animated: NDArray[np.int64]
     rest: Matrices
     parents: NDArray[np.int64]

@@ -51,7 +51,7 @@ class Operation(Value):
             made = _MAKERS[self.kind](numbers, self.axes)
         return np.asarray(np.linalg.inv(made), np.float64) if self.inverse else made
 
-    def breaks(self, begin: float, end: float) -> Sequence[float]:
+    def breaks(self, begin: float, end: float) -> Sequence[float] | NDArray[np.float64]:
         """Times of the keys of its value, s."""
         return self.value.breaks(begin, end) if is_dynamic(self.value) else []
 

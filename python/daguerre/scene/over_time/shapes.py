@@ -7,7 +7,7 @@ interpolated; beyond the outermost ones they are extrapolated.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,10 @@ from numpy.typing import NDArray
 from daguerre.files.value import Value
 from daguerre.motion.values import at as value_at
 from daguerre.motion.values import is_dynamic
+
+if TYPE_CHECKING:
+    from daguerre.motion.values import Dynamic
+
 
 Array = NDArray[np.float32]
 
@@ -54,7 +58,7 @@ class BlendShapes(Value):
         shapes: The shapes.
     """
 
-    weights: Any
+    weights: NDArray[np.floating] | Dynamic
     shapes: tuple[BlendShape, ...]
 
     def shifted(self, points: Array, time_s: float) -> Array:

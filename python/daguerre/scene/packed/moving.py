@@ -55,5 +55,7 @@ def make(name: str, state: Mapping[str, Any]) -> Any:
     return found(**state)
 
 
-def _refiner(kind: Any, *, _faces: Any, scheme: Any, level: Any, rules: Any, where: Any) -> Any:
+def _refiner(
+    kind: Any, *, _faces: Any, scheme: object, level: object, rules: object, where: object
+) -> Any:
     return kind(_faces.count, _faces.sizes, _faces.vertices, scheme, level, rules, where)

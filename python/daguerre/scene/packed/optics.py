@@ -6,6 +6,7 @@ A packed scene names no file, so it holds their contents, which are read like a 
 from __future__ import annotations
 
 import json
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -48,7 +49,9 @@ def parted(camera: Camera, where: str) -> tuple[Camera, _Contents | None, _Conte
     return camera, lens, sensor
 
 
-def joined(camera: Camera, lens: object, sensor: object, where: str) -> Camera:
+def joined(
+    camera: Camera, lens: Mapping[str, Any] | None, sensor: Mapping[str, Any] | None, where: str
+) -> Camera:
     """Gives a camera the lens and the sensor that :func:`parted` took.
 
     Raises:
@@ -61,7 +64,7 @@ def joined(camera: Camera, lens: object, sensor: object, where: str) -> Camera:
     return camera
 
 
-def _is_one_of(value: Any, known: Any) -> bool:
+def _is_one_of(value: object, known: Collection[str]) -> bool:
     return isinstance(value, str) and value in known
 
 
@@ -83,7 +86,7 @@ def _of_lens(lens: Lens, where: str) -> _Contents:
     )
 
 
-def _lens(given: Any, where: str) -> Lens:
+def _lens(given: Mapping[str, Any], where: str) -> Lens:
     name, notes, configuration = (given[key] for key in ("name", "notes", "configuration"))
     name = _text(name, f"{where}: lens: name")
     if configuration is not None:
@@ -101,7 +104,7 @@ def _of_sensor(sensor: Sensor) -> _Contents:
     return {"text": json.dumps(members(sensor)), "serial": sensor.serial}
 
 
-def _sensor(given: Any, where: str) -> Sensor:
+def _sensor(given: Mapping[str, Any], where: str) -> Sensor:
     text = _text(given["text"], f"{where}: sensor", lens_reader.MAX_BYTES)
     return sensor_reader.read_text(text, f"{where}: sensor").with_(serial=given["serial"])
 

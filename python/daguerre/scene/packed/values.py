@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -38,8 +38,11 @@ from daguerre.sensors import names as sensor_names
 
 from . import moving
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
-def make(name: Any, state: Any) -> Any:
+
+def make(name: object, state: Mapping[str, Any]) -> Any:
     """Makes a value from the name of its class and its attributes, whose texts become printable.
 
     Raises:
@@ -49,7 +52,7 @@ def make(name: Any, state: Any) -> Any:
     return make_verbatim(name, {key: _safe(part) for key, part in state.items()})
 
 
-def make_verbatim(name: Any, state: Any) -> Any:
+def make_verbatim(name: object, state: Mapping[str, Any]) -> Any:
     """Makes a value like :func:`make`, with its texts as they are."""
     given = {key: part for key, part in state.items() if key != MADE_BY}
     if isinstance(name, str) and name in moving.NAMES:
@@ -73,7 +76,9 @@ def _safe(part: object) -> Any:
     return printable(part) if isinstance(part, str) else part
 
 
-def _keys(times: Any, values: Any, interpolation: str, pivot: Any = None) -> Keys:
+def _keys(
+    times: ArrayLike, values: Iterable[Any], interpolation: str, pivot: ArrayLike | None = None
+) -> Keys:
     pairs = zip(np.asarray(times).tolist(), values, strict=True)
     return keys(pairs, interpolation, pivot)
 
@@ -97,7 +102,7 @@ def _camera(**given: Any) -> Camera:
     return Camera(**given)
 
 
-def _listed(what: str, name: Any, names: Any, near: Callable[[str], str]) -> None:
+def _listed(what: str, name: object, names: Collection[str], near: Callable[[str], str]) -> None:
     if name is not None and not (isinstance(name, str) and name in names):
         raise InputError(
             f"camera: {what}: refused: wanted the name of a {what} in the library, got "

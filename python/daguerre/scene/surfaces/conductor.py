@@ -44,7 +44,7 @@ class Conductor(BriefRecord):
     distribution: Distribution = "ggx"
 
     @classmethod
-    def of_metal(cls, name: str, **fields: Any) -> Conductor:
+    def of_metal(cls, name: str, **fields: object) -> Conductor:
         """A metal by its measured index of refraction.
 
         Args:
@@ -63,4 +63,4 @@ class Conductor(BriefRecord):
                 f"or use dg.Conductor"
             )
         eta, k = metals.load(name)
-        return cls(**fields, eta=eta, k=k)
+        return cls(**dict[str, Any](fields), eta=eta, k=k)
