@@ -49,6 +49,7 @@ struct Aim {
     double fit_error = 0;       // largest |error| of m on fresh rays
     double iris_error = 0;      // largest error on the iris, in units of its scale
     int fallback_segments = 0;  // radial segments or cells that sample boxes of slopes instead
+    bool covered = true;
 };
 
 /// Radius of the iris at its largest enlargement, mm.
