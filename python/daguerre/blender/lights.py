@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,6 +48,18 @@ _RAYS = {
 }  # fmt: skip
 
 
+class _Shining(NamedTuple):
+    """How an area lamp shines.
+
+    Attributes:
+        metres_per_unit: Length of Blender's unit, m.
+        glow: :func:`glow_of`, constant or over time.
+    """
+
+    metres_per_unit: float
+    glow: Color | Dynamic
+
+
 def add_light(
     scene: Scene,
     matrix: Matrix | Dynamic,
@@ -80,7 +92,7 @@ def add_light(
     _note_the_rest(light, notes)
     lit = glow_of(light, notes) if glow is None else glow
     if light.type == "AREA":
-        _add_area(scene, matrix, light, name, notes, (metres_per_unit, lit))
+        _add_area(scene, matrix, light, name, notes, _Shining(metres_per_unit, lit))
         return
     factor = _factor(light, metres_per_unit)
     placed = without_scale(world) if isinstance(matrix, np.ndarray) else Rigid(matrix)
@@ -155,9 +167,8 @@ def _add_area(
     light: bpy.types.Light,
     name: str,
     notes: Notes,
-    shining: tuple[float, Any],
+    shining: _Shining,
 ) -> None:
-    metres_per_unit, lit = shining
     width = light.size
     height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else width
     if not width * height > 0:
@@ -168,13 +179,13 @@ def _add_area(
         return
     positions, triangles = (ellipse if light.shape in _ROUND else rectangle)(width, height)
     world = np.asarray(value_at(matrix, scene.time), np.float64)
-    size = area_in(world, width, height, light.shape in _ROUND) / metres_per_unit**2
+    size = area_in(world, width, height, light.shape in _ROUND) / shining.metres_per_unit**2
     factor = LUMENS_PER_WATT / math.pi / (size if light.normalize else 1.0)
     material = scene.add_material(
         Material(
             _BLACK,
             name=name,
-            emission=_scaled(lit, factor),
+            emission=_scaled(shining.glow, factor),
             profile=spread_profile(light.spread),
         )
     )

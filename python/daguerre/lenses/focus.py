@@ -135,7 +135,7 @@ def path_of(lens: Lens) -> Path | None:
     ways = [(p, near) for p in (low, high) if (near := _near(lens, p, found))]
     if not ways:
         return None
-    known = [_waypoints(*way) for way in ways]
+    known = [_waypoints(position, near) for position, near in ways]
     nearest = max((near for _, near in ways), key=len)
     printed = sum(not c.fitted for c in nearest)
     base = Zoom(lens).at(lens.zoom_mm) if lens.zoom_mm is not None else lens.with_gaps(low.gaps)

@@ -6,6 +6,7 @@ Points are (z, y) or (z, x), mm.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -72,10 +73,9 @@ def element_outlines(lens: Lens, section: Section = "y") -> list[tuple[Points, f
         j = i + 1
         while _inside_glass(lens, j):
             j += 1
-        front, back = heights[i][1], heights[j][0]
-        outline = _element(
-            (surface, float(z[i]), front), (lens.surfaces[j], float(z[j]), back), section
-        )
+        front = _Placed(surface, float(z[i]), heights[i][1])
+        back = _Placed(lens.surfaces[j], float(z[j]), heights[j][0])
+        outline = _element(front, back, section)
         out.append((outline, n))
     return out
 
@@ -88,14 +88,31 @@ def _inside_glass(lens: Lens, i: int) -> bool:
     return all(before.index(nm) == here.core_glass.index(nm) > 1.01 for nm in (486.1, 656.3))
 
 
-def _element(
-    front: tuple[LensSurface, float, float],
-    back: tuple[LensSurface, float, float],
-    section: Section,
-) -> Points:
+@dataclass(frozen=True)
+class _Placed:
+    """A surface of an element.
+
+    Attributes:
+        surface: The surface.
+        z: Position of its vertex, mm.
+        height: Clear height, mm.
+    """
+
+    surface: LensSurface
+    z: float
+    height: float
+
+    def profile(self, section: Section) -> Points:
+        """Points (z, y) from bottom to top."""
+        y = np.linspace(-self.height, self.height, 49)
+        z = self.z + sag(self.surface, y, section)
+        return list(zip(z.tolist(), y.tolist(), strict=True))
+
+
+def _element(front: _Placed, back: _Placed, section: Section) -> Points:
     """Outline of both surfaces; a flat ring widens the smaller one if the edge has thickness."""
-    first, last = _profile(*front, section), _profile(*back, section)
-    outer = max(front[2], back[2])
+    first, last = front.profile(section), back.profile(section)
+    outer = max(front.height, back.height)
     (zf, _), (zb, _) = first[-1], last[-1]
     if zb > zf:  # positive edge thickness: flat rings up to the larger diameter
         first, last = _widened(first, outer), _widened(last, outer)
@@ -105,12 +122,6 @@ def _element(
 def _widened(profile: Points, outer: float) -> Points:
     z, y = profile[-1]
     return [(z, -outer), *profile, (z, outer)] if y < outer * (1 - 1e-9) else profile
-
-
-def _profile(surface: LensSurface, z: float, height: float, section: Section) -> Points:
-    """Points (z, y) of a surface from bottom to top."""
-    y = np.linspace(-height, height, 49)
-    return list(zip((z + sag(surface, y, section)).tolist(), y.tolist(), strict=True))
 
 
 def _within(surface: LensSurface, height: float) -> float:

@@ -114,8 +114,8 @@ class MapFlags:
         from daguerre.maps.ray_map import rays_of
 
         if self.export_raymap is not None:
-            how = (gt_time or "mid", self.raymap_frame, overscan)
-            rays_of(camera, size, scene, None, *how).save(self.export_raymap)
+            rays = rays_of(camera, size, scene, None, gt_time or "mid", self.raymap_frame, overscan)
+            rays.save(self.export_raymap)
             console.note(f"wrote {self.export_raymap}")
         both = {
             "undistort": self.export_stmap_undistort,

@@ -110,8 +110,9 @@ def _output(
         raise UsageError(
             "--scatter-barrel, --scatter-blades and --scatter-surface-nm need --scatter"
         )
-    asked = (flags.bracket, flags.look)
-    photograph = photograph_of(cameras.changes, *asked, settings.sampling.seed, cameras.plate)
+    photograph = photograph_of(
+        cameras.changes, flags.bracket, flags.look, settings.sampling.seed, cameras.plate
+    )
     is_pass = flags.samples is not None
     noisy = tuple(flags.noisy or ())
     photograph = replace(photograph, colorspace=flags.colorspace)

@@ -45,9 +45,13 @@ def run(
     def opened(picture: Picture, session: Session) -> None:
         maps = plan.maps_of(picture)
         if maps.files:
-            how = (session.overscan, picture.settings.truth.moment)
+            settings = picture.settings
             maps.write(
-                session.scene, session.focused_camera, picture.settings.film.resolution, *how
+                session.scene,
+                session.focused_camera,
+                settings.film.resolution,
+                session.overscan,
+                settings.truth.moment,
             )
 
     def skipped(picture: Picture) -> None:
