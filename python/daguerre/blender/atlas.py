@@ -1,7 +1,7 @@
-"""Texture coordinates for a mesh whose own ones overlap, or are missing.
+"""Texture coordinates for a mesh without coordinates, or with overlapping coordinates.
 
-Faces that are joined and look along the same axis are one chart, which is seen along that axis;
-charts stand in rows. A face that lies over another of its chart is a chart of its own.
+Connected faces with the same dominant axis form a chart, projected along that axis; the atlas packs
+charts in rows. A face that overlaps another face of its chart becomes a separate chart.
 """
 
 from __future__ import annotations

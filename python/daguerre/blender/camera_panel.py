@@ -1,9 +1,9 @@
-"""Daguerre's own properties of a camera or a scene, ``daguerre``, which the extension declares.
+"""Daguerre's properties of a camera or a scene, ``daguerre``, which the extension declares.
 
 A property counts if the user set it, or if the user chose a lens: then the panel shows all values
-that rule. ``BLENDER`` as the lens is no choice, whoever set it. Properties of a scene always count,
-as its panel shows them. What does not count has Blender's own value. Without the extension nothing
-counts.
+in use. ``BLENDER`` as the lens is no choice, whoever set it. Properties of a scene always count, as
+its panel shows them. Properties that do not count have Blender's values. Without the extension no
+property counts.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class CameraPanel:
 
     Args:
         data: ``bpy.types.Camera`` or ``bpy.types.Scene``, or None.
-        always: Whether all properties count, as those of a scene.
+        always: Whether all properties count, as for a scene.
     """
 
     def __init__(self, data: bpy.types.ID | None, *, always: bool = False) -> None:

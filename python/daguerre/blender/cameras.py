@@ -141,7 +141,7 @@ def _glass(
 
 
 def _stretched(focal: float, film: Film) -> Projection:
-    """A pinhole whose pixels are not square; ``focal`` in mm."""
+    """A pinhole with pixels that are not square; ``focal`` in mm."""
     across, down = (side / count for side, count in zip(film.size, film.resolution, strict=True))
     (columns, rows), (right, up) = film.resolution, film.shift
     principal = ((columns - 1) / 2 - right / across, (rows - 1) / 2 + up / down)
@@ -149,7 +149,7 @@ def _stretched(focal: float, film: Film) -> Projection:
 
 
 def _movements(film: Film, panel: CameraPanel | None) -> dict[str, Any]:
-    """Shift of the film, and tilt of the lens if it has one."""
+    """Shift of the film and tilt of the lens, where they are not 0."""
     found: dict[str, Any] = {"shift": film.shift} if any(film.shift) else {}
     if panel is not None:
         tilt = tuple(float(panel.chosen(name) or 0.0) for name in ("tilt_x", "tilt_y"))

@@ -4,8 +4,8 @@ Blender fits one side of the sensor to one side of the picture: the width if ``s
 horizontal, the height if it is vertical, and if it is automatic the sensor's width to the longer
 side. A shift is a share of that side, right and up.
 
-Source: Blender manual, Cameras: sensor fit and shift; ``bpy_extras.object_utils`` is what
-``tests/blender/test_cameras.py`` holds against.
+Source: Blender manual, Cameras: sensor fit and shift; ``tests/blender/test_cameras.py`` compares
+with ``bpy_extras.object_utils``.
 """
 
 from __future__ import annotations

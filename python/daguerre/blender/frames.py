@@ -1,4 +1,4 @@
-"""The frame of Blender (z-up, in units of the scene) and that of a ``Scene`` (y-up, metres)."""
+"""Frames of Blender (z-up, in units of the scene) and of a ``Scene`` (y-up, metres)."""
 
 from __future__ import annotations
 

@@ -106,7 +106,7 @@ class Hair:
 
 
 def _wrap(basis: str, closed: bool) -> str:
-    """Ends of curves: those of Catmull-Rom splines reach their first and last points."""
+    """Ends of curves: Catmull-Rom splines reach their first and last points."""
     if closed:
         return "periodic"
     return "nonperiodic" if basis == "linear" else "pinned"

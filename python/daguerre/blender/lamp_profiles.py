@@ -3,8 +3,8 @@
 Source: measured in pictures by Cycles 5.0; ``tests/blender/test_lights.py`` repeats that. With c
 the cosine of the angle to the axis, and h half of the cone, a spot has the factor 3 t^2 - 2 t^3,
 where t = (c - cos h) / ((1 - cos h) blend) within 0 and 1. An area lamp with a spread of 2 h has
-max(tan h - tan theta, 0) / (tan h - h): a grid of cells whose walls hide light, which keeps the
-power of the lamp.
+max(tan h - tan theta, 0) / (tan h - h): a grid of cells with walls that block light, normalized to
+the power of the lamp.
 """
 
 from __future__ import annotations

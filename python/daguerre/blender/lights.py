@@ -1,8 +1,8 @@
 """Reads lamps of Blender as lights, and area lamps as meshes that emit.
 
 A lamp of P watts has a radiant intensity of P / (4 pi) W/sr, whether it is a point or a spot; an
-area lamp a radiance of P / (pi A); a sun an irradiance of its strength in W/m2. Those lamps whose
-power is not normalized have a radiance of strength / pi, a sun of its strength. A watt is
+area lamp a radiance of P / (pi A); a sun an irradiance of its strength in W/m2. Lamps with a power
+that is not normalized have a radiance of strength / pi, a sun of its strength. A watt is
 ``LUMENS_PER_WATT`` lumens (``settings.py``).
 
 Source: Blender manual, Light Objects, for the units; factors and falloffs are measured in pictures
@@ -80,7 +80,7 @@ def add_light(
         name: Name of the object.
         notes: Receives notes on unsupported content.
         metres_per_unit: Length of Blender's unit, m.
-        glow: :func:`glow_of` over time; default: that of ``light``.
+        glow: :func:`glow_of` over time; default: the glow of ``light``.
     """
     world = np.asarray(value_at(matrix, scene.time), np.float64)
     if without_scale(world) is None:
@@ -102,7 +102,7 @@ def add_light(
 def glow_of(light: bpy.types.Light, notes: Notes) -> Color:
     """Power of a lamp by colour: energy x colour x temperature x 2^exposure, and its node if any.
 
-    The unit is that of the lamp's energy: W, or W/m2 of a sun.
+    The unit is the unit of the lamp's energy: W, or W/m2 for a sun.
     """
     tint = tuple(light.temperature_color) if light.use_temperature else (1.0, 1.0, 1.0)
     stops = min(max(light.exposure, -_STOPS), _STOPS)

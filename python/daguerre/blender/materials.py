@@ -39,10 +39,10 @@ if TYPE_CHECKING:
     import bpy
 
 
-#: Texels of all canvases on which patterns are computed, and the share of what is left of them that
-#: one may have.
+#: Most texels of all canvases on which patterns are computed; a canvas may have at most 1 / _SHARE
+#: of the texels left.
 MAX_TEXELS, _SHARE = 1 << 25, 8
-#: Bytes of the pictures that the patterns of one material may need.
+#: Most bytes of the pictures for the patterns of a material.
 _LIMIT = 1 << 30
 #: Colour of surfaces without a material in Blender.
 _PLAIN = (0.8, 0.8, 0.8)
@@ -51,7 +51,7 @@ _BLACK: Value = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class _Made:
-    """A material of the scene, and what its meshes must hold."""
+    """A material of the scene, and the layers that its meshes must have."""
 
     index: int
     uv_sets: tuple[str, ...] = ()
@@ -82,7 +82,7 @@ class Materials:
         self._texels = MAX_TEXELS
 
     def index(self, material: bpy.types.Material | None) -> int:
-        """Index of a material (``bpy.types.Material``) in the scene; None: a plain grey one.
+        """Index of a material (``bpy.types.Material``) in the scene; None: a plain grey material.
 
         Raises:
             InputError: A tree of nodes or a picture is wrong; the message names the node.
@@ -111,7 +111,7 @@ class Materials:
     def binding(
         self, material: bpy.types.Material | None, world: NDArray[np.float64]
     ) -> Any | None:
-        """Key of what a material depends on besides the mesh; None: it is the same on all meshes.
+        """Key of a material's dependencies besides the mesh; None: it is the same on all meshes.
 
         Args:
             material: ``bpy.types.Material`` or None.
@@ -125,7 +125,7 @@ class Materials:
         return str(material.name_full), np.asarray(world).tobytes() if reads.world else b""
 
     def painted(self, material: bpy.types.Material, surface: Surface) -> tuple[int, Needs]:
-        """Index of a material whose patterns are computed for a surface, and layers that it reads.
+        """Index of a material with patterns computed for a surface, and the layers that it reads.
 
         Raises:
             InputError: A tree of nodes or a picture is wrong; the message names the node.

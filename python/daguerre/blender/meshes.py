@@ -26,7 +26,7 @@ Matrix = NDArray[np.float64]
 #: Times (S,) in s, and points of all vertices at each, shape (S, N, 3).
 Steps = tuple[Sequence[float], NDArray[np.float32]]
 Parts = list[tuple[int, int]]
-#: Mesh, slot, and the material that was made for the mesh; None: that of the slot.
+#: Mesh, slot, and the material that was made for the mesh; None: the slot's material.
 Added = list[tuple[int, int, int | None]]
 
 
@@ -37,9 +37,9 @@ class Needs(NamedTuple):
     """Layers of a mesh that a material reads, by name.
 
     Attributes:
-        uv: UV maps of texture coordinates 0 and 1; "" stands for the one that renders use.
-        color: Colour attribute that tints the material; "" stands for the one that renders use;
-            None: none.
+        uv: UV maps of texture coordinates 0 and 1; "": the active render map.
+        color: Colour attribute that tints the material; "": the active render attribute; None: no
+            attribute.
     """
 
     uv: tuple[str, ...] = ("",)
@@ -56,7 +56,7 @@ class Materials(Protocol):
         """Layers of a mesh that a material reads."""
 
     def binding(self, material: bpy.types.Material | None, world: Matrix) -> Any | None:
-        """Key of what a material depends on besides the mesh; None: it is the same on all."""
+        """Key of a material's dependencies besides the mesh; None: it is the same on all."""
 
     def painted(self, material: bpy.types.Material | None, surface: Surface) -> tuple[int, Needs]:
         """Index of a material that is made for a surface, and layers that it reads."""
@@ -95,7 +95,7 @@ def source_of(mesh: bpy.types.Mesh, slots: int) -> Source:
 
     Args:
         mesh: ``bpy.types.Mesh``, evaluated.
-        slots: Number of material slots; faces of later ones have the last.
+        slots: Number of material slots; faces with a later slot have the last.
     """
     mesh.calc_loop_triangles()
     triangles = read(mesh.loop_triangles, "loops", 3, np.uint32).view(np.int32)
@@ -147,7 +147,7 @@ class Meshes:
 
         Args:
             thing: ``bpy.types.Object``, evaluated.
-            steps: Points over time. Copies share those of the first.
+            steps: Points over time. Copies share the points of the first.
             world: World from the object in Blender's frame, shape (4, 4).
         """
         slots = slots_of(thing)
@@ -161,7 +161,7 @@ class Meshes:
         ]
 
     def _plan(self, material: bpy.types.Material | None, world: Matrix) -> tuple[Any, Needs | None]:
-        """Key of a material that is made for the mesh, or what one for all meshes needs."""
+        """Key of a material made for the mesh, or the layers of a material for all meshes."""
         key = self._materials.binding(material, world)
         return (key, None) if key is not None else (None, self._materials.needs(material))
 

@@ -1,7 +1,7 @@
-"""Motion while the shutter is open, from the scene at sub-frames; only of what moves.
+"""Motion while the shutter is open, from the scene at sub-frames; only of moving objects.
 
-Each moment is looked at once. Matrices and points that have the bits of the scene's own frame at
-all moments do not move, and take no memory.
+Each moment is read once. Matrices and points with the same bits at all moments as at the scene's
+frame do not move, and take no memory.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ if TYPE_CHECKING:
     import bpy
 
 
-#: Goes to a frame and a fraction of one: ``Scene.frame_set`` or ``RenderEngine.frame_set``.
+#: Goes to a frame and a fraction: ``Scene.frame_set`` or ``RenderEngine.frame_set``.
 FrameSet = Callable[[int, float], None]
-#: Reads what else changes with a thing, such as a light; None: nothing.
+#: Reads further values of an object that change, such as of a light; None: no values.
 Probe = Callable[[Seen], Any]
 #: The shutter's parts are 2 to the power of the steps of an object; Blender allows up to 7 steps.
 USUAL_STEPS, MOST_STEPS = 1, 7
@@ -46,8 +46,8 @@ def exposure_of(
 
     Args:
         scene: ``bpy.types.Scene``.
-        camera: Camera object, whose panel takes precedence over Blender's shutter; None: there is
-            none, and Blender's counts.
+        camera: Camera object; its panel takes precedence over Blender's shutter. None: Blender's
+            shutter counts.
     """
     panel = CameraPanel(None if camera is None else camera.data)
     shutter = Camera(**shutter_of(scene.render, panel, Silence()))
@@ -171,13 +171,13 @@ def motion_of(
     notes: Notes,
     frame_set: FrameSet | None = None,
 ) -> Motion:
-    """Finds what moves; the frame is the same afterwards.
+    """Finds moving objects; the frame is the same afterwards.
 
     Args:
         depsgraph: Evaluated ``bpy.types.Depsgraph``.
         shutter: When the shutter opens and closes, s from the frame.
         time: Time of the frame, s.
-        probe: Reads what else may change.
+        probe: Reads further values that may change.
         notes: Receives notes on motion that is left out.
         frame_set: Goes to a frame; default: the scene does.
     """
@@ -200,7 +200,7 @@ def motion_of(
 
 
 def _thinned(seen: Look, now: Look) -> Look:
-    """Shares arrays that have the bits of those of the frame itself."""
+    """Shares arrays with the same bits as at the frame."""
     for mine, base in ((seen.matrices, now.matrices), (seen.points, now.points)):
         _share(mine, base)
     return seen

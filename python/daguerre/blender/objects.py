@@ -1,4 +1,4 @@
-"""Walks over what Blender draws: objects, copies by instancers, and instances of geometry nodes."""
+"""Walks over all that Blender draws: objects, copies, and instances of geometry nodes."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Seen:
 def walk(depsgraph: bpy.types.Depsgraph) -> Iterator[Seen]:
     """Everything that renders show, in the order of the dependency graph.
 
-    The graph of a render holds nothing else. That of the viewport also holds what renders hide.
+    The graph of a render has nothing else. The viewport's graph also has objects hidden in renders.
 
     Args:
         depsgraph: Evaluated ``bpy.types.Depsgraph``.
@@ -84,7 +84,7 @@ def _hides(thing: bpy.types.Object, owner: bpy.types.Object) -> bool:
 
 
 def _is_pattern(thing: bpy.types.Object) -> bool:
-    """Whether an object is there to be copied: one above it copies what is below itself."""
+    """Whether an object exists to be copied: an ancestor instances its children."""
     above = thing.parent
     while above is not None:
         if above.instance_type in ("VERTS", "FACES"):

@@ -1,10 +1,10 @@
 """Projections of Blender's panoramic cameras.
 
 The shift of a panorama is a share of the picture's width and height. An equidistant fisheye fits
-its field to both of them; the others have one scale.
+its field to both sides; other models have a single scale.
 
-An image circle of a fisheye lies within the picture; what is beyond it is black in Cycles, and
-here drawn as far as the model sees.
+The image circle of a fisheye is within the picture; pixels beyond it are black in Cycles, and drawn
+here as far as the model sees.
 
 Source: Blender manual, Cameras, panoramic lens types; checked against pictures by Cycles.
 """
@@ -100,7 +100,7 @@ def _shifted(
     focal: tuple[float, float],
     middle: tuple[float, float] | None = None,
 ) -> Projection:
-    """A projection whose axis meets the picture in ``middle``, px, but for the camera's shift."""
+    """A projection with its principal point at ``middle``, px, moved by the camera's shift."""
     columns, rows = film.resolution
     x, y = middle or ((columns - 1) / 2, (rows - 1) / 2)
     principal = (x - data.shift_x * columns, y + data.shift_y * rows)

@@ -28,8 +28,8 @@ class ParticleHair:
     Args:
         scene: Receives the curves.
         materials: Materials by slot.
-        notes: Receives notes on what is left out.
-        rendering: Whether strands have the detail of renders, and not that of the viewport.
+        notes: Receives notes on unsupported content.
+        rendering: Whether strands have the detail of renders, not of the viewport.
     """
 
     def __init__(

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 Picture = NDArray[np.float32]
-#: Colour spaces whose bytes are linear.
+#: Colour spaces with linear bytes.
 LINEAR = ("Non-Color", "Linear Rec.709", "Linear", "Raw")
 
 

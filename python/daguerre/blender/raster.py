@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-#: Most texels of small triangles that are tested at once, and the least of a large one.
+#: Most texels of small triangles that are tested at once, and fewest texels of a large triangle.
 _MOST, _LARGE = 1 << 18, 1 << 12
 #: Distance from the edges, in texels, beyond which two triangles on one texel overlap.
 _CLEAR = np.float32(0.25)
@@ -110,7 +110,7 @@ def rasterized(corners: NDArray[np.float64], size: tuple[int, int]) -> Raster:
 
 
 def _planes(corners: NDArray[np.float64], size: tuple[int, int]) -> _Planes:
-    """Planes of triangles; one without area has no box."""
+    """Planes of triangles; a triangle without area has no box."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     area = _cross(b - a, c - a)
     limit = np.array([size[1], size[0]])

@@ -35,7 +35,7 @@ def factor_of(scene: bpy.types.Scene) -> float:
 
 
 def settings_of(scene: bpy.types.Scene, camera: bpy.types.Object | None = None) -> RenderSettings:
-    """Render settings of a scene; those of the panels of scene and camera take precedence.
+    """Render settings of a scene; the panels of scene and camera take precedence.
 
     Args:
         scene: Scene of Blender.

@@ -1,4 +1,4 @@
-"""Shutter of a camera: that of Daguerre's panel, else of Blender's motion blur.
+"""Shutter of a camera: from Daguerre's panel, else from Blender's motion blur.
 
 Blender's shutter is a share of a frame that begins, is centred or ends at the frame; its curve is
 the opening over that time. Source: Blender manual, Motion Blur.

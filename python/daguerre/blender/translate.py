@@ -1,4 +1,4 @@
-"""Translates what Blender draws to a ``Scene``: joins geometry, materials, lights and cameras."""
+"""Translates Blender's scene to a ``Scene``: joins geometry, materials, lights and cameras."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Rooms:
 
 
 def rooms(unit_m: float) -> Rooms:
-    """Translators of this room, for scenes whose unit has this length, m."""
+    """Translators of this package, for scenes with a unit of this length, m."""
     lamps = partial(add_light, metres_per_unit=unit_m)
     return Rooms(materials.Materials, lamps, set_world, camera_of)
 
@@ -74,12 +74,12 @@ def scene_of(
         time: Time of the frame, s.
         shutter: When the shutter opens and closes, s from the frame, for motion between; both 0:
             nothing moves. Default: the exposure of the scene's camera.
-        frame_set: Goes to a frame and a fraction of one; default: ``Scene.frame_set``. Inside of a
-            render pass ``RenderEngine.frame_set``.
-        by: Translators of parts; default: those of this room.
+        frame_set: Goes to a frame and a fraction; default: ``Scene.frame_set``. Inside of a render
+            pass ``RenderEngine.frame_set``.
+        by: Translators of parts; default: the translators of this package.
 
     Returns:
-        The scene; its warnings tell what is left out.
+        The scene; its warnings name the unsupported content.
 
     Raises:
         InputError: Something has numbers that cannot be drawn; the message names it.
@@ -195,7 +195,7 @@ class _Translation:
     def _note_effects(self, seen: Seen) -> None:
         thing = seen.object
         if thing.type == "LIGHT":
-            return  # its flags choose the shadows that catchers take, not what it looks like
+            return  # its flags choose the shadows that catchers take, not its appearance
         if thing.is_holdout:
             self._effects[seen.name] = "holdout"
         elif thing.is_shadow_catcher:

@@ -99,7 +99,7 @@ class Calibration(BriefRecord):
 
 
 def delayed(camera: Camera, seconds: float) -> Camera:
-    """Returns a calibrated camera whose shutter opens later, s."""
+    """Returns a calibrated camera with a later shutter opening; the delay is in s."""
     if not seconds or camera.projection is None:
         return camera
     opens = shutter.interval(camera, 0.0, camera.projection.size)[0]

@@ -1,7 +1,7 @@
 """Reads COLMAP's binary models: ``cameras.bin`` and ``images.bin``, little-endian.
 
 Source: COLMAP, "Output Format" and src/colmap/scene/reconstruction_io.cc; numbers of models are
-those of src/colmap/sensor/models.h.
+from src/colmap/sensor/models.h.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """``sensor.yaml`` of a camera in a data set of EuRoC's layout (ASL), also of TUM-VI.
 
-The conventions are OpenCV's. ``T_BS`` places the camera on the body that carries it, not by the
-other cameras, whose files are apart; so each is drawn at the place of the scene's camera.
+The conventions are OpenCV's. ``T_BS`` is the pose of the camera on the body that carries it, not
+relative to the other cameras, which have separate files; so each camera is drawn at the place of
+the scene's camera.
 
 Source: Burri et al. 2016, "The EuRoC micro aerial vehicle datasets", and its files.
 """

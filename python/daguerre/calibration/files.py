@@ -137,7 +137,7 @@ def read_all(
 ) -> dict[str, Calibration]:
     """Reads all cameras of a calibration file, by name; a single camera has the file's name.
 
-    Args: those of :func:`read`.
+    Args: as for :func:`read`.
     """
     kind = format_of(source) if format is None else _format(format, FORMATS)
     pair = kind == "opencv" and stereo.is_stereo(load(source))
@@ -181,7 +181,7 @@ def read_all(
 
 
 def _one_named_by_its_file(found: dict[str, Calibration], source: Source) -> dict[str, Calibration]:
-    """Gives a single camera without a name that of its file."""
+    """Names a single camera without a name by its file."""
     if list(found) != ["camera"] or not isinstance(source, str | os.PathLike):
         return found
     return {Path(source).stem: found["camera"]}
@@ -189,7 +189,7 @@ def _one_named_by_its_file(found: dict[str, Calibration], source: Source) -> dic
 
 @guarded
 def pick(cameras: dict[str, Calibration], name: str | None, where: str) -> Calibration:
-    """Picks one of several cameras; None: the first; with # in the name a take of numbered ones.
+    """Picks a camera by name; None: the first; with # in the name, a take of numbered cameras.
 
     Raises:
         UsageError: The name is unknown; the message suggests the nearest.

@@ -1,4 +1,4 @@
-"""Names the files of other programs that are no calibration read here, and the way to one."""
+"""Recognizes calibration files of other programs that are not read, and names a way to convert."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ READ = (
 _START = 1 << 16
 #: Members of samples, of which OpenTrackIO has lists.
 _SAMPLE = re.compile(rb'"(timing|protocol|static|lens)"')
-#: Signs in the first bytes of a file, its name, and a way to one that is read.
+#: Pattern in the first bytes of a file, name of its program, and how to convert the file.
 _SIGNS = (
     (rb'"projection_type"', "OpenSfM", "`opensfm export_colmap` writes a folder of COLMAP"),
     (
@@ -50,10 +50,10 @@ _SIGNS = (
 
 
 def refuse(source: object) -> None:
-    """Refuses a file with a sign of another program; others, and what is no file, pass.
+    """Refuses a file with a pattern of another program; accepts other files and other sources.
 
     Raises:
-        InputError: The message names program, way, and the formats that are read.
+        InputError: The message names the program, how to convert, and the formats that are read.
     """
     if not isinstance(source, str | os.PathLike) or not is_file(Path(source)):
         return

@@ -1,10 +1,10 @@
-"""Kalibr's camera chains: several cameras, each of which stands by the one before it.
+"""Kalibr's camera chains: several cameras, each with a pose relative to the previous camera.
 
-The conventions are OpenCV's. ``T_cn_cnm1`` takes points of the camera before into this one's frame,
-so a camera stands, seen from the first, at the inverse of the product of them all. It follows also
-from the poses of two cameras by the IMU, ``T_cam_imu`` or its inverse ``T_imu_cam``. The time of
-the IMU is that of a camera and ``timeshift_cam_imu``: of two pictures with the same stamp that of
-the camera with the larger shift was taken later.
+The conventions are OpenCV's. ``T_cn_cnm1`` takes points from the previous camera's frame into the
+camera's frame, so the pose of a camera in the first camera's frame is the inverse of the product of
+these matrices. The IMU's extrinsics of two cameras, ``T_cam_imu`` or the inverse ``T_imu_cam``,
+give the same pose. IMU time is camera time plus ``timeshift_cam_imu``: of two pictures with the
+same stamp, the picture of the camera with the larger shift was taken later.
 
 Source: Kalibr's wiki, "YAML formats" and "Supported models".
 """
@@ -83,7 +83,7 @@ def read_kalibr(source: Source) -> dict[str, Calibration]:
 
 
 def _from_before(item: Item, before: Item, notes: list[str]) -> FloatArray:
-    """Pose of a camera seen from the one before: as given, else by way of the IMU."""
+    """Pose of a camera in the previous camera's frame: as given, else by way of the IMU."""
     chained = item.get("T_cn_cnm1")
     here, there = _camera_from_imu(item), _camera_from_imu(before)
     by_imu = None if here is None or there is None else here @ np.linalg.inv(there)

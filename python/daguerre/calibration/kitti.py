@@ -48,8 +48,8 @@ def read_kitti(
     Args:
         source: The file.
         size: Width and height of the pictures, px, where the file does not have them.
-        rectified: Whether to read the rectified pictures of ``calib_cam_to_cam``; those of other
-            files always are.
+        rectified: Whether to read the rectified pictures of ``calib_cam_to_cam``; pictures of other
+            files are always rectified.
 
     Raises:
         InputError: The file cannot be used; the message has the place in it.

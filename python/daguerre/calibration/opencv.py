@@ -1,7 +1,7 @@
 """Calibrations as OpenCV's ``FileStorage`` has them: YAML, XML and JSON.
 
-The names are those of OpenCV's calibration sample, and the ones that people write by hand. Pixel
-centres are at integers; the distortion maps ideal points to those of the picture; p1 belongs to y.
+The names are from OpenCV's calibration sample, and as people write them by hand. Pixel centres are
+at integers; the distortion maps ideal points to points of the picture; p1 belongs to y.
 
 Source: OpenCV 5, samples/cpp/tutorial_code/calib3d/camera_calibration, and ``cv::calibrateCamera``
 and ``cv::fisheye::calibrate`` for the order of the coefficients.
@@ -96,7 +96,7 @@ def model_of(root: Item, model: str | None = None) -> str:
 
 
 def size_of(root: Item, given: tuple[int, int] | None) -> tuple[int, int]:
-    """Size of the picture, px, from the file, else the given one."""
+    """Size of the picture, px, from the file, else the given size."""
     return agreed(root, "image_width and image_height", _size(root), given)
 
 

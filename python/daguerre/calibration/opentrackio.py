@@ -1,16 +1,15 @@
-"""OpenTrackIO samples (SMPTE RIS OSVP): a camera as it is tracked on a stage, one moment of it.
+"""OpenTrackIO samples (SMPTE RIS OSVP): a tracked camera of a stage at a moment.
 
 Lengths of the lens are mm, distances m. OpenLensIO's coefficients belong to points of the sensor in
-mm from the centre, y down; in its list they alternate: of the numerator and of the denominator of
-the rational polynomial. Which way they map is in the name of the model: ``Brown-Conrady D-U`` takes
-points of the picture to ideal ones, which is what a list without a name means; ``U-D`` is OpenCV's
-way.
+mm from the centre, y down; its list alternates coefficients of the numerator and the denominator of
+the rational polynomial. The name of the model has the direction: ``Brown-Conrady D-U``, the
+default, takes distorted points to undistorted points; ``U-D`` is OpenCV's direction.
 
-Offsets are from the middle of the sensor, which in calibrations' pixels lies at (W - 1) / 2.
+Offsets are from the middle of the sensor, (W - 1) / 2 in calibrations' pixels.
 
-SMPTE's note on OpenCV differs in two places, where OpenLensIO's own equations are followed: it has
-the middle at W / 2, half a pixel off, and tangential terms p / F^2, though a term in mm of squares
-of mm is p / F of the term in focal lengths.
+SMPTE's note on OpenCV differs from OpenLensIO's equations, which are used here, in two places: it
+has the middle at W / 2, half a pixel off, and tangential terms p / F^2, though a coefficient for
+points in mm is p / F for a coefficient p in focal lengths.
 
 Sources: OpenLensIO 1.0.1, equations 4 and 17; the schema of OpenTrackIO 1.0 for units, axes and the
 order of rotations; "Conversion of OpenCV to OpenTrackIO (OpenLensIO) lens calibration parameters".

@@ -1,7 +1,7 @@
 """ROS ``camera_info``: the YAML of ``camera_info_manager``, and messages as they are echoed.
 
-Cameras draw the raw picture, by K and D, or the rectified one, by P. R and P say where the
-camera stands in a stereo rig. The conventions are OpenCV's.
+Cameras draw the raw picture, by K and D, or the rectified picture, by P. R and P have the pose of
+the camera in a stereo rig. The conventions are OpenCV's.
 
 Source: sensor_msgs/CameraInfo (also for regions and binning), and REP 104.
 """
@@ -43,7 +43,7 @@ def read_ros(source: Source, *, rectified: bool = False) -> Calibration:
 
     Args:
         source: YAML or JSON file, or its values as a dict.
-        rectified: Whether to read the rectified camera, by P, instead of the raw one, by K and D.
+        rectified: Whether to read the rectified camera, by P, not the raw camera, by K and D.
 
     Raises:
         InputError: The file cannot be used; the message has the place in it.
@@ -71,14 +71,14 @@ def _raw(root: Item) -> Numbers:
     named = choice(needed(root, "a model", "distortion_model"), MODELS)
     model, counts = MODELS[named]
     found = needed(root, "coefficients", *COEFFICIENTS)
-    # Some drivers write a shape that is not that of the numbers.
+    # Some drivers write a shape that does not fit the numbers.
     data = found.need("data") if isinstance(found.value, dict) else found
     values = row(data, counts)
     return model if values else "rectilinear", focal, principal, values
 
 
 def _length_notes(root: Item, count: int) -> tuple[str, ...]:
-    """Notes on coefficients whose number is not that of their model or shape."""
+    """Notes on coefficients where the model or the shape has another number of them."""
     notes = []
     if root.need("distortion_model").value == "plumb_bob" and count > _MOST_OF_PLUMB_BOB:
         notes.append(f"plumb_bob has {count} coefficients: they are read as rational_polynomial")
@@ -104,8 +104,9 @@ def _read_out(
 ) -> tuple[tuple[int, int], Pair, Pair, tuple[str, ...]]:
     """Size and intrinsics of the picture after region of interest and binning; K and P are before.
 
-    First the region is cut, then b x b pixels are averaged to one, whose centre lies (b - 1) / 2
-    beyond that of its first pixel. (``image_geometry`` only scales K and lacks this offset.)
+    The region is cut first, then blocks of b x b pixels are averaged to single pixels, with centres
+    (b - 1) / 2 beyond the centres of the first pixels of their blocks. (``image_geometry`` only
+    scales K and lacks this offset.)
     """
     corner, size = [0, 0], [*sides]
     roi = root.get("roi")
@@ -136,7 +137,7 @@ def _or_0(item: Item, name: str, most: int) -> int:
 
 
 def _rig_from_camera(root: Item, *, rectified: bool) -> FloatArray:
-    """Pose of the camera in the rig, whose frame is that of the first camera after rectification.
+    """Pose of the camera in the rig; the rig's frame is the first camera's after rectification.
 
     A point X of the raw camera is R X in it, and P's last column is -fx times the shift to the
     right.

@@ -153,13 +153,13 @@ def row(item: Item, counts: Iterable[int]) -> tuple[float, ...]:
 def agreed(
     item: Item, names: str, told: tuple[int, int] | None, given: tuple[int, int] | None
 ) -> tuple[int, int]:
-    """Size of the picture, px, from the file, else the given one; both must agree.
+    """Size of the picture, px, from the file, else the given size; both must agree.
 
     Args:
         item: Item of the file, for messages.
         names: Names of the size in the file.
         told: Size in the file.
-        given: Size given by the caller.
+        given: Size from the caller.
     """
     size = told or given
     if size is None:

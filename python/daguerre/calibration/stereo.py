@@ -1,9 +1,9 @@
-"""Stereo pairs as OpenCV calibrates them: two cameras, and how the second stands by the first.
+"""Stereo pairs as OpenCV calibrates them: two cameras, and the second's pose from the first.
 
 ``R`` and ``T`` of ``cv::stereoCalibrate`` take points of the first camera into the second's frame;
 ``R1`` and ``R2`` of ``cv::stereoRectify`` turn points of each raw camera onto common rows, where
-``P1`` and ``P2`` project them. Lengths are those of the board: metres only if its squares were
-given in metres.
+``P1`` and ``P2`` project them. Lengths have the unit of the board's squares: metres only if these
+were given in metres.
 
 Source: OpenCV 5, calib3d, ``stereoCalibrate`` and ``stereoRectify``; samples/cpp/stereo_calib.cpp,
 which writes two files, ``intrinsics.yml`` and ``extrinsics.yml``.
@@ -54,7 +54,7 @@ def read_stereo(
             from ``extrinsics`` beside it.
         model: opencv or fisheye; None: the file's, else opencv.
         size: Size of the picture, px, if the file does not say it.
-        rectified: The pictures after rectification, by P1 and P2, instead of the raw ones.
+        rectified: Read the pictures after rectification, by P1 and P2, not the raw pictures.
         unit_m: Length of the file's unit, m.
 
     Raises:
@@ -96,7 +96,7 @@ def _raw(root: Item, number: int, pixels: tuple[int, int], model: str | None) ->
 
 
 def _with_pose(root: Item, source: Source, *, rectified: bool) -> Item:
-    """File with the pose: this one, or ``extrinsics`` beside it."""
+    """File with the pose: this file, or ``extrinsics`` beside it."""
     wanted = ("R1", "R2", "P1", "P2") if rectified else ("R", "T")
     if all(root.get(name) is not None for name in wanted):
         return root

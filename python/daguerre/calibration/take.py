@@ -31,7 +31,7 @@ CHANGING = ("projection", "transform", "f_stop", "focus_distance")
 @guarded
 @dataclass(frozen=True)
 class Take(Calibration):
-    """Calibrations of one camera over time; as a ``Calibration`` it is the first one.
+    """Calibrations of a camera over time; as a ``Calibration`` it is the first of them.
 
     Attributes:
         samples: Times, s, ascending, and the calibration at each; with a pattern frame numbers.

@@ -1,4 +1,4 @@
-"""Reads several OpenTrackIO samples: a camera whose parameters and pose change."""
+"""Reads several OpenTrackIO samples: a camera with changing parameters and pose."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def read_track(
 ) -> Camera:
     """The camera of several samples, keyed at their times; see :func:`read_take`.
 
-    Args: those of :meth:`Camera.from_opentrackio`.
+    Args: as for :meth:`Camera.from_opentrackio`.
     """
     return read_take(samples, size=size).camera(camera, pixel_pitch)
 

@@ -65,7 +65,7 @@ def read_transforms(
 
 
 def _projection(item: Item, root: Item, size: tuple[int, int] | None) -> Projection:
-    """Projection of a picture; its own values take precedence over those of the whole file."""
+    """Projection of a picture; its own values take precedence over values of the whole file."""
 
     def told(name: str) -> Item | None:
         found = item.get(name)

@@ -45,11 +45,11 @@ def __getattr__(name: str) -> Any:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs a command line; returns its exit code, with which the program also ends.
+    """Runs a command line; returns the exit code of the program.
 
     Args:
-        arguments: Words after the program's name; None: those of this process, which is the program
-            and ends with its command.
+        arguments: Words after the program's name; None: the arguments of this process, which ends
+            with the command.
     """
     if arguments is not None:
         return _run(arguments)

@@ -47,7 +47,7 @@ def _empty() -> typer.Typer:
 
 
 def _function(name: str) -> Any:
-    """The function of a command, whose name has underscores."""
+    """The function of a command, named like it with underscores."""
     return getattr(import_module(COMMANDS[name].module, __package__), name.replace("-", "_"))
 
 

@@ -65,7 +65,7 @@ def calibrate(
 ) -> int:
     """Fits a projection model of camera calibration to a lens.
 
-    The models are those of OpenCV and fisheyes; the fit uses the chief rays of the lens.
+    The models are OpenCV's and fisheyes; the fit uses the chief rays of the lens.
     """
     from daguerre.analysis.calibrate import calibrate as fit
     from daguerre.analysis.calibrate import calibrate_all

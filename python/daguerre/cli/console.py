@@ -52,7 +52,7 @@ def say(text: str) -> None:
 
 
 def nobody_reads(stream: TextIO) -> None:
-    """Discards further output of a stream whose reader has gone; the render goes on."""
+    """Discards further output of a stream after its reader has gone; the render goes on."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, stream.fileno())
     os.close(nowhere)
@@ -61,9 +61,9 @@ def nobody_reads(stream: TextIO) -> None:
 def open_streams() -> None:
     r"""Opens streams that were closed before the start, on the null device.
 
-    Otherwise the next file to be opened would get the number of one, and messages would go into it.
-    Letters that the encoding of a stream lacks become ``\xe9`` and the like: a name with an accent
-    must not end a command whose terminal has ASCII alone.
+    Otherwise the next file to be opened would get the number of a stream, and messages would go
+    into that file. Letters that the encoding of a stream lacks become ``\xe9`` and the like: a name
+    with an accent must not end a command on a terminal that has ASCII alone.
     """
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:

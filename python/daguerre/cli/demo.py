@@ -55,7 +55,7 @@ def demo(
 
 
 def _cannot_denoise() -> str:
-    """Reason why there is no denoiser; empty: there is one."""
+    """Reason why no denoiser is available; empty: a denoiser is available."""
     from daguerre.rendering.denoise import check_available
 
     if extras.missing("mitsuba_oidn"):

@@ -1,4 +1,4 @@
-"""Exposure mode of ``daguerre develop``: the file's, or that of its flags."""
+"""Exposure mode of ``daguerre develop``: from its flags, else from the file."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def in_mode(
 
     Args:
         frame: The frame.
-        source: Its file.
+        source: File of the frame.
         used: Flags of the sensor or film.
-        wanted: Flags of development, of which those of exposure are taken out.
+        wanted: Flags of development; flags of exposure are taken out.
 
     Raises:
         UsageError: Flags exclude each other.

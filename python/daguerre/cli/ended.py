@@ -21,7 +21,7 @@ def by_signals() -> None:
 
 
 def told() -> str:
-    """Says by what the command was interrupted."""
+    """Names the signal that interrupted the command."""
     return f"interrupted by {_got[-1]}" if _got else "interrupted"
 
 

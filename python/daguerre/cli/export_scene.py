@@ -44,8 +44,8 @@ def export_scene(
 ) -> int:
     """Writes a scene for pbrt-v4 or Mitsuba 3, so that its picture can be checked against theirs.
 
-    Flags change the camera before it is written, as in `render`. Notes say what these renderers
-    lack.
+    Flags change the camera before it is written, as in `render`. Notes name features that these
+    renderers lack.
     """
     import daguerre
     from daguerre.files.atomic import check_writable

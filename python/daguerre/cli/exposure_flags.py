@@ -10,7 +10,7 @@ from daguerre.errors import UsageError
 
 
 def check_mode(changes: dict[str, Any]) -> None:
-    """Refuses flags that set what the exposure mode chooses.
+    """Refuses flags of values that the exposure mode chooses.
 
     Raises:
         UsageError: The message names both.
@@ -25,5 +25,5 @@ def check_mode(changes: dict[str, Any]) -> None:
 
 
 def before_1_0(flag: str) -> str:
-    """Note on a flag or command whose pictures are in ``light`` since version 1.0."""
+    """Note on a flag or command that gives pictures in ``light`` since version 1.0."""
     return f"in light; before 1.0 {flag} exposed the picture: add --exposure manual for that"

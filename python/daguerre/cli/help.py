@@ -50,7 +50,7 @@ class InOrder:
 
 
 class HelpGroup(OwnValues, InOrder, typer.core.TyperGroup):
-    """The program, whose help has its commands in groups."""
+    """The program; its help shows commands in groups."""
 
     def format_commands(self, ctx: object, formatter: object) -> None:
         """Writes the commands."""
@@ -63,7 +63,7 @@ class HelpGroup(OwnValues, InOrder, typer.core.TyperGroup):
 
 
 class HelpCommand(OwnValues, InOrder, typer.core.TyperCommand):
-    """A command whose help has its flags in groups."""
+    """A command; its help shows flags in groups."""
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """Writes the arguments and the flags."""

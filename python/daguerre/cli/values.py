@@ -12,7 +12,7 @@ from typing import Any, get_args, get_origin
 
 import typer
 
-#: Types of values, and how messages name them; Typer makes those of other types.
+#: Types of values with their names in messages; Typer converts other types.
 _TYPES = {bool: "a flag", str: "a text", int: "a whole number", float: "a number", Path: "a path"}
 
 

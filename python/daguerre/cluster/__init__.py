@@ -1,1 +1,1 @@
-"""Cluster: one picture or sequence, drawn by many machines with the bits of one."""
+"""Cluster: many machines draw a picture or a sequence, bit for bit as a single machine."""

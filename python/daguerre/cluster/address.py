@@ -1,4 +1,4 @@
-"""Addresses of clusters: a local one, a scheduler, or a file that says how to reach one."""
+"""Addresses of clusters: ``local``, a scheduler, or a file with a scheduler's address."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def check_address(address: str, *, insecure: bool, flag: str = "--cluster") -> s
     """Checks the address of a scheduler, and returns its host.
 
     Raises:
-        UsageError: It is none, or that of another machine without TLS.
+        UsageError: It is not an address, or names another machine without TLS.
     """
     try:
         parts = urlsplit(address)

@@ -31,18 +31,18 @@ _RETRY_S = 5
 
 @dataclass(eq=False)
 class Flight:
-    """A task under way.
+    """A task that was sent to the workers.
 
     Attributes:
         task: The task.
-        future: Its answer to be.
-        parts: Flights whose answers it adds; none: it draws.
-        failed_on: Workers on which it failed.
-        only: Workers that may draw it; empty: all.
-        alone: Whether the client must take its answer itself.
-        home: Worker that should draw it, if it can; empty: any.
-        answer: Its answer, if that is known already.
-        began: When it was sent, by ``time.monotonic``, s.
+        future: Dask's future of the answer.
+        parts: Flights with answers that this task adds; empty: the task draws.
+        failed_on: Workers on which the task failed.
+        only: Workers that may draw the task; empty: all.
+        alone: Whether the client must take the answer itself, unfolded.
+        home: Preferred worker; empty: any.
+        answer: The answer, once it is fetched.
+        began: Time at which the task was sent, by ``time.monotonic``, s.
     """
 
     task: Task
@@ -57,22 +57,22 @@ class Flight:
 
     @property
     def landed(self) -> bool:
-        """Whether its answer is there, or will never be."""
+        """Whether the task ended: with an answer, an error, or lost."""
         return str(self.future.status) != "pending"
 
     @property
     def has_sums(self) -> bool:
-        """Whether its sums are there: see ``task.draw``."""
+        """Whether the answer has sums; see ``task.draw``."""
         return str(self.future.status) == "finished" and self.future.type is memoryview
 
     @property
     def has_words(self) -> bool:
-        """Whether its answer is there, and is no sums."""
+        """Whether the answer is a message without sums."""
         return str(self.future.status) == "finished" and self.future.type is not memoryview
 
     @property
     def tasks(self) -> int:
-        """Number of tasks whose answers it has."""
+        """Number of drawing tasks in the answer."""
         return sum(part.tasks for part in self.parts) or 1
 
 
@@ -148,7 +148,7 @@ class Crew:
         but: Iterable[str] = (),
         home: str = "",
     ) -> Flight:
-        """Sends a task to the workers, if possible to others than some, best to its home."""
+        """Sends a task to the workers, preferably to its home and not where it failed."""
         good, avoided = self.workers.good, {*failed_on, *but}
         free = avoided.isdisjoint(good) and self.workers.all_are_good
         only = frozenset() if free else frozenset(good - avoided or good)
@@ -159,7 +159,7 @@ class Crew:
         return flight
 
     def fold(self, flights: Sequence[Flight]) -> Flight:
-        """Has a worker add the answers of flights that lie side by side."""
+        """Has a worker add the answers of flights with adjacent samples."""
         task = replace(flights[0].task, end=flights[-1].task.end)
         only = frozenset() if self.workers.all_are_good else frozenset(self.workers.good)
         future = self._submit(only, on_worker.fold, task.to_text(), *(f.future for f in flights))
@@ -196,12 +196,12 @@ class Crew:
         return None
 
     def piloted(self, flight: Flight) -> Plan | None:
-        """Result of the pilot render of the worker whose sums have landed; None: none is known."""
+        """Result of the worker's pilot render, from a flight that landed; None: not known."""
         flight.answer = self._answer(flight)
         return flight.answer.piloted if isinstance(flight.answer, Sums) else None
 
     def is_late(self, flight: Flight) -> bool:
-        """Whether a task takes much longer than it should, by the speed of workers."""
+        """Whether a task takes much longer than the speed of the workers predicts."""
         should = (flight.task.end - flight.task.begin) / self.per_second if self.per_second else inf
         return time.monotonic() - flight.began > max(LATE * should, LATE_S)
 
@@ -232,7 +232,7 @@ class Crew:
         return sorted(own, key=lambda one: one.task.begin)
 
     def holders(self) -> dict[str, set[str]]:
-        """Keys of the tasks that each worker draws, or that wait at it; empty: nobody knows."""
+        """Keys of the tasks that each worker draws or queues; empty: not known."""
         try:
             found = self.client.processing()
         except (OSError, RuntimeError):  # the scheduler is gone; look() waits for it
@@ -243,7 +243,7 @@ class Crew:
     def _submit(
         self, only: Iterable[str], function: Callable[..., Any], *given: Any, home: str = ""
     ) -> Any:
-        """Future of a function that runs on one of some workers; none: on any, best at home."""
+        """Future of a function that runs on a worker of a list (empty: any), best at home."""
         where = sorted(only) or ([home] if home else None)
         loose = bool(home) and not only
         while True:

@@ -64,8 +64,8 @@ def run_worker(
     Args:
         address: Address of the scheduler.
         threads: Number of threads; 0: all cores.
-        memory: Memory limit, such as "8GB"; "auto": that of the machine.
-        host: Address to listen on; None: that which the scheduler sees.
+        memory: Memory limit, such as "8GB"; "auto": the machine's memory.
+        host: Address to listen on; None: the address that the scheduler sees.
         certificates: For TLS.
         tell: Called with a sentence when the scheduler is lost.
 
@@ -108,7 +108,7 @@ def run_worker(
 
 
 def _run(serve: Callable[[asyncio.Event], Coroutine[Any, Any, None]]) -> None:
-    """Runs a server whose event is set when a signal asks this process to end."""
+    """Runs a server; sets its event when a signal asks this process to end."""
 
     async def main() -> None:
         stop = asyncio.Event()
@@ -122,7 +122,7 @@ def _run(serve: Callable[[asyncio.Event], Coroutine[Any, Any, None]]) -> None:
 
 
 async def _first(*waits: Callable[[], Awaitable[Any]]) -> None:
-    """Waits for whatever comes first."""
+    """Waits until the first of several awaitables is done."""
     tasks = [asyncio.ensure_future(wait()) for wait in waits]
     await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     for one in tasks:
@@ -130,7 +130,7 @@ async def _first(*waits: Callable[[], Awaitable[Any]]) -> None:
 
 
 def _security(certificates: Certificates | None) -> Any:
-    """Certificates for Dask; none: those of its configuration."""
+    """Certificates for Dask; None: the certificates of Dask's configuration."""
     return None if certificates is None else certificates.security()
 
 

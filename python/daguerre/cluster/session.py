@@ -1,4 +1,4 @@
-"""A session whose samples a cluster draws."""
+"""Session with samples drawn by a cluster."""
 
 from __future__ import annotations
 
@@ -28,9 +28,10 @@ Progress = Callable[[float], bool]
 @guarded(init=True)
 @takes(TABLE, SettingsKeywords)
 class ClusterSession(Session):
-    """A session whose samples the workers of a Dask cluster draw; the rest is as in ``Session``.
+    """A session with samples drawn by the workers of a Dask cluster; the rest is as in ``Session``.
 
-    The result has the bits of one machine. ``frame`` returns the picture of what has arrived.
+    The result is bit for bit as on a single machine. ``frame`` returns the picture of the samples
+    that have arrived.
 
     Args:
         scene: The scene.

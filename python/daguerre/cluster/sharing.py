@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
     from .answers import Sums
 
-#: Tasks that wait at each worker while it draws one.
+#: Tasks queued at each worker beside the task that it draws.
 AHEAD = 2
-#: Length of a task, s, once it is known how fast workers are; and at most, if its sums take long.
+#: Length of a task once the workers' speed is known, and longest task if answers take long, s.
 TASK_S, LONG_S = 15.0, 240.0
-#: A task takes at least so many times as long as the work with its answer; and toward the end.
+#: Least ratio of the time of a task to the time for its answer; and the ratio toward the end.
 WORTH, LAST_WORTH = 40.0, 10.0
 #: Time that a step waits for results, s.
 STEP_S = 0.5
@@ -62,7 +62,7 @@ class Sharing:
         return min(most - pending, FAN_IN * most - len(flights))
 
     def size(self, left: float) -> float:
-        """Samples of the next task, by what is known of workers; fewer toward the end."""
+        """Samples of the next task, by the measured speed of workers; fewer toward the end."""
         if not self.crew.per_second:
             return 1.0
         share = left / max(1, len(self.crew.workers.good))
@@ -74,7 +74,7 @@ class Sharing:
         """A task that has landed and its sums, after waiting a little; None: none.
 
         Args:
-            first: Where the next answer begins that is wanted; None: any.
+            first: First sample of the wanted answer; None: any.
 
         Raises:
             GivenUp: A task failed on several workers.
@@ -98,7 +98,7 @@ class Sharing:
 
     @contextmanager
     def adding(self, samples: float, sums: Sums) -> Iterator[None]:
-        """Context in which sums are added; learns how long that takes, and how fast workers are."""
+        """Context in which sums are added; measures the time of that, and the workers' speed."""
         began = time.process_time()
         yield
         self._add_s = self._take_s + time.process_time() - began
@@ -116,7 +116,7 @@ class Sharing:
 
     @property
     def group(self) -> int:
-        """Number of tasks in an answer that the client takes, so that it keeps up with workers."""
+        """Number of tasks to fold into each answer, so that the client keeps up with workers."""
         if not self._task_s:
             return 1
         busy = self._add_s * len(self.crew.workers.good) / self._task_s
@@ -125,23 +125,23 @@ class Sharing:
     def _ready(self, flights: list[Flight], first: int | None) -> Flight | None:
         """Flight whose answer the client takes now."""
         group = self.group
-        landed = [one for one in flights if one.landed]
-        rest = group < FAN_IN or len(landed) == len(flights)  # take them as they are
-        for one in landed:
-            fits = first is None or one.task.begin == first
-            if fits and (rest or one.alone or one.tasks >= group):
-                return one
+        landed = [flight for flight in flights if flight.landed]
+        rest = group < FAN_IN or len(landed) == len(flights)  # no more folding
+        for flight in landed:
+            fits = first is None or flight.task.begin == first
+            if fits and (rest or flight.alone or flight.tasks >= group):
+                return flight
         return None
 
     def _folded(self, flights: list[Flight]) -> list[Flight]:
-        """Has workers add answers that lie side by side, if there are too many for the client."""
+        """Has workers add adjacent answers, if there are too many for the client."""
         group = self.group
         if group < FAN_IN:
             return flights
-        few = [one for one in flights if one.has_sums and not one.alone and one.tasks < group]
-        least = FAN_IN if any(not one.landed for one in flights) else 2
+        small = [f for f in flights if f.has_sums and not f.alone and f.tasks < group]
+        least = FAN_IN if any(not f.landed for f in flights) else 2
         folded = False
-        for row in _rows(few):
+        for row in _rows(small):
             while len(row) >= least:
                 self.crew.fold(row[:FAN_IN])
                 row, folded = row[FAN_IN:], True
@@ -160,7 +160,7 @@ class Sharing:
         return [one for one in flights if one not in late]
 
     def _draw_late_ones_again(self) -> None:
-        """Has idle workers draw tasks that take much longer than they should; gives up folds."""
+        """Has idle workers draw late tasks a second time; gives up late folds."""
         if time.monotonic() - self._waited < STEP_S:
             return
         self._waited = time.monotonic()

@@ -1,6 +1,6 @@
-"""Spread of a job over workers: a picture to each, then what is left of all to idle ones.
+"""Spread of a job over workers: a picture for each worker, then idle workers help with the rest.
 
-A worker that draws a picture alone sets it up once, and adds its answers where they are.
+A worker that draws a whole picture sets it up once, and adds its answers without sending them.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ if TYPE_CHECKING:
 
     from .sharing import Sharing
 
-#: Pictures of each worker beyond the one under way, whose sums may wait.
+#: Pictures of each worker beyond the picture under way with sums that may wait at the worker.
 PICTURES_AHEAD = 2
 #: Time between two looks for sums, s.
 WAIT_S = 0.02
 
 
 class Spread:
-    """Tasks of the picture under way, and of those of its job to come.
+    """Tasks of the picture under way, and of later pictures of its job.
 
     Args:
         crew: Workers.
-        job: The job; None: there is but one picture.
+        job: The job; None: a single picture.
     """
 
     def __init__(self, crew: Crew, job: Job | None = None) -> None:
@@ -57,13 +57,13 @@ class Spread:
             self._places = {0: self._kept(*shown, session.light_plan.piloted)}
             return self._places[0]
         self._now = self.job.done
-        for number in [one for one in self._places if one < self._now]:
+        for number in [n for n in self._places if n < self._now]:
             for name in astuple(self._places.pop(number)):
                 self.crew.values.forget(name)
         return self._place(self._now, session)
 
     def piloted(self, picture: Picture) -> Plan | None:
-        """Result of the pilot render of a picture, after waiting for a worker; None: none draws."""
+        """Result of a picture's pilot render, after waiting for a worker; None: no worker draws."""
         assert self.job is not None
         place, control = self._places.get(self.job.pictures.index(picture)), self.job.control
         while place is not None and not control.stops:
@@ -141,16 +141,16 @@ class Spread:
         return found
 
     def _choice(self, worker: str, free: dict[int, list[Range]]) -> int | None:
-        """Picture of which a worker draws next: its own, a new one, or one of another."""
-        open_ones = [number for number, ranges in free.items() if ranges]
-        for number in open_ones:
+        """Picture that a worker draws next: its own, else a new picture, else another worker's."""
+        unfinished = [number for number, ranges in free.items() if ranges]
+        for number in unfinished:
             if self._homes.get(number) == worker:
                 return number
-        for number in open_ones:
-            if self._homes.get(number) not in self.crew.workers.good:  # nobody's
+        for number in unfinished:
+            if self._homes.get(number) not in self.crew.workers.good:  # without a worker
                 self._homes[number] = worker
                 return number
-        return open_ones[0] if open_ones else None
+        return unfinished[0] if unfinished else None
 
     def _place(self, number: int, session: Session | None = None) -> Place:
         """Place of a picture; with its session, workers need no pilot render."""
@@ -165,6 +165,6 @@ class Spread:
     def _kept(
         self, scene: Scene, camera: Camera, settings: RenderSettings, piloted: Plan | None
     ) -> Place:
-        """Place of a picture whose values the crew keeps."""
+        """Place of a picture; the crew keeps its values."""
         keep = self.crew.values.keep
         return Place(keep(scene), keep((camera, settings, piloted)))

@@ -14,7 +14,7 @@ from daguerre.files.atomic import write_bytes
 from daguerre.files.limited_folder import drop_oldest
 from daguerre.files.packing import hash_of, large_of, unpack
 
-#: Environment variable with the folder; default: one in the system's temporary folder.
+#: Environment variable with the folder; default: a folder in the system's temporary folder.
 FOLDER = "DAGUERRE_CLUSTER_CACHE"
 #: Size at which the values used longest ago are removed, bytes.
 LIMIT = 8 << 30
@@ -25,8 +25,8 @@ class Store:
     """Packed values in a folder, by their hash.
 
     Args:
-        folder: The folder; None: that of the environment.
-        limit: Its size, bytes; the newest value may exceed it.
+        folder: The folder; None: the folder of the environment variable.
+        limit: Most bytes in the folder; the newest value may exceed it.
     """
 
     def __init__(self, folder: Path | None = None, limit: int = LIMIT) -> None:
@@ -92,7 +92,7 @@ def _own_folder() -> Path:
     """Folder of this user among temporary files, in which nobody else can plant values.
 
     Raises:
-        OutputError: There is one, of another user.
+        OutputError: A folder of this name belongs to another user.
     """
     if not hasattr(os, "getuid"):  # Windows: temporary files are the user's own
         return Path(tempfile.gettempdir()) / "daguerre-cluster"
@@ -104,7 +104,7 @@ def _private(folder: Path, *, link: bool = True) -> Path:
 
     Args:
         folder: The folder.
-        link: Whether it may be a link to one.
+        link: Whether it may be a link to a folder.
 
     Raises:
         OutputError: It is of another user, or others can write to it.

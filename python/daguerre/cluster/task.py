@@ -71,7 +71,7 @@ def draw(text: str) -> bytes | memoryview:
 
 
 def fold(text: str, *answers: memoryview) -> bytes | memoryview:
-    """Adds answers of tasks that lie side by side; returns one answer for all.
+    """Adds answers of tasks with adjacent samples; returns a single answer for all.
 
     If one of them is no sums, the new answer has failed, and the client looks at each by itself.
     """
@@ -93,7 +93,7 @@ def worker_build() -> str:
 
 
 def _answered(task: Task, act: Callable[[Task], memoryview]) -> bytes | memoryview:
-    """Answer of an act, whatever happens in it: nothing that a worker made is unpickled.
+    """Answer of an act, also if it raises: the client unpickles nothing that a worker made.
 
     Dask tells its client the type of a result before the client fetches it.
     """
@@ -159,7 +159,7 @@ def _packed(session: Session, facts: dict[str, Any]) -> memoryview:
     return found
 
 
-#: Facts whose sum is that of several tasks.
+#: Facts that add up over tasks.
 _ADDED = ("seconds", "set_up_s", "pack_s", "rays", "tasks")
 #: Time that the last sums took to be packed, s.
 _pack_s = 0.0
@@ -173,7 +173,7 @@ def _scene(name: str) -> Any:
 def _session(scene: str, view: str, threads: int) -> Session:
     """Session of a picture; the newest is kept.
 
-    The next one has its memory, and its scene in the form of the core, if it shows the same scene.
+    The next session reuses its memory, and its built scene if it shows the same scene.
     """
     global _last, _kept
     _kept = _kept or _core.KeptFilms()
@@ -187,9 +187,9 @@ def _session(scene: str, view: str, threads: int) -> Session:
     return _last[1]
 
 
-#: The newest session and what it shows.
+#: The newest session, with its scene, view and number of threads.
 _last: tuple[tuple[str, str, int], Session] | None = None
-#: Keeps the memory of films for the next ones.
+#: Keeps the memory of films for the next session.
 _kept: Any = None
 
 

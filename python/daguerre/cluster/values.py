@@ -41,10 +41,10 @@ class Values:
 
         Args:
             client: ``distributed.Client``.
-            worker: Its address.
+            worker: Address of the worker.
             names: Hashes of the values.
-            since: When the task began that needs them, by ``time.monotonic``, s. What was sent
-                later is there: tasks that wait at one worker ask for the same.
+            since: When the task began that needs them, by ``time.monotonic``, s. Values sent later
+                have arrived: tasks that wait at the same worker ask for the same values.
 
         Raises:
             OSError: The worker, or the scheduler, is gone.
@@ -63,7 +63,7 @@ class Values:
         return ""
 
     def _name(self, array: Any) -> str:
-        """Hash of an array; that of a read-only one is computed once."""
+        """Hash of an array; computed once for a read-only array."""
         if array.flags.writeable:
             return hash_of(array)
         known = self._names.get(id(array))

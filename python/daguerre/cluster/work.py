@@ -63,7 +63,7 @@ class ClusterRange(Range):
         return float(task.end - task.begin)
 
     def draw(self, progress: Callable[[float], bool]) -> bool:
-        """Adds what arrived."""
+        """Adds the sums that arrived."""
         if self._arrived is not None:
             (task, sums), self._arrived = self._arrived, None
             with self._sharing.adding(task.end - task.begin, sums):
@@ -81,7 +81,7 @@ class ClusterRange(Range):
             raise self._failure()  # nothing but failures: the rest would be more of them
 
     def _failure(self) -> InputError:
-        """One error for all tasks that were given up."""
+        """Raises a single error for all tasks that were given up."""
         first = next(iter(self._given_up.values()))
         if len(self._given_up) == 1:
             return first
@@ -163,7 +163,7 @@ class ClusterParts:
 
 
 class ClusterRounds(Rounds):
-    """Adaptive sampling, whose rounds are planned here and drawn by a cluster."""
+    """Adaptive sampling with rounds planned here and drawn by a cluster."""
 
     def __init__(
         self, session: Session, noise: float, ceiling: int, judge: Judge | None, crew: Crew
@@ -191,7 +191,7 @@ def work_of(crew: Crew, job: Job | None = None) -> WorkOf:
 
     Args:
         crew: Workers.
-        job: Job whose pictures it draws; None: each by itself.
+        job: Job of the pictures; None: each picture alone.
     """
     spread = Spread(crew, job)
     if job is not None:

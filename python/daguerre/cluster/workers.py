@@ -45,7 +45,7 @@ class Workers:
 
     @property
     def good(self) -> set[str]:
-        """Addresses of those that may draw, at the last look."""
+        """Addresses of workers that may draw, at the last look."""
         return self._there - self._refused.keys()
 
     @property

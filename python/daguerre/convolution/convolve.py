@@ -1,7 +1,7 @@
 """Convolution of linear pictures with large kernels: bloom, stars, diffraction, PSFs of lenses.
 
-Each pixel spreads its light (it does not gather). A kernel whose sum is 1 keeps all light except
-what leaves the frame, which is lost as in a camera. FFTs work on tiles that overlap when they are
+Each pixel spreads its light (it does not gather). A kernel with sum 1 keeps all light except light
+that leaves the frame, which is lost as in a camera. FFTs work on tiles that overlap when they are
 added, or on bands of rows that overlap when they are read (overlap-add, overlap-save: Stockham
 1966, High-speed convolution and correlation).
 """
@@ -43,7 +43,7 @@ class Spreader:
         kernels: Shape (Y, X, h, w, J, I), from channel i to j, on a regular grid from edge to edge
             of the frame (a single kernel: at its centre); blended linearly between grid points.
         picture: Rows and columns of the picture.
-        threads: Number of threads; 0: one for each core.
+        threads: Number of threads; 0: the number of cores.
         banded: Whether to compute ``block`` rows at a time; else the whole picture at once.
     """
 
@@ -62,7 +62,7 @@ class Spreader:
             light: Shape (h, W, I); all rows of the picture that reach ``wanted``.
             first: First row of ``light`` in the picture.
             wanted: Rows to compute.
-            out: Array to overwrite with the result; None: a new one.
+            out: Array to overwrite with the result; None: a new array.
 
         Returns:
             Shape (rows, W, J), float32; values that are not finite stay (if J = I).
@@ -84,12 +84,12 @@ class Spreader:
 
 
 class EachSpreader:
-    """Spreads each channel by its own kernel, one channel after the other.
+    """Spreads each channel by its own kernel, channel by channel.
 
     Args:
         kernel: Shape (h, w, C), or (h, w, 1) for all channels.
         picture: Rows and columns of the picture.
-        threads: Number of threads; 0: one for each core.
+        threads: Number of threads; 0: the number of cores.
         banded: Whether light comes in bands of rows; see ``Spreader``.
     """
 
@@ -138,9 +138,10 @@ def convolve(image: ArrayLike, kernel: ArrayLike, *, threads: int = 0) -> Real:
 
     Args:
         image: Linear, shape (H, W) or (H, W, C). NaN and infinite values spread no light and stay.
-        kernel: Shape (h, w): the same for all channels; (h, w, C): one for each; (h, w, C, C): from
-            each channel (last axis) to each (axis 2). Its centre is at (h // 2, w // 2).
-        threads: Number of threads; 0: one for each core.
+        kernel: Shape (h, w): a kernel for all channels; (h, w, C): a kernel for each channel;
+            (h, w, C, C): from each channel (last axis) to each (axis 2). The centre is at
+            (h // 2, w // 2).
+        threads: Number of threads; 0: the number of cores.
 
     Returns:
         float32, the shape of the image.
@@ -163,8 +164,8 @@ def spread(planes: Real, kernels: Real, *, threads: int = 0, out: Real | None = 
     Args:
         planes: Shape (H, W, I).
         kernels: Shape (Y, X, h, w, J, I); see ``Spreader``.
-        threads: Number of threads; 0: one for each core.
-        out: Array to overwrite with the result; None: a new one.
+        threads: Number of threads; 0: the number of cores.
+        out: Array to overwrite with the result; None: a new array.
 
     Returns:
         Shape (H, W, J), float32; values that are not finite stay (if J = I).

@@ -50,12 +50,12 @@ def _transformed(
 
 
 def thread_count(threads: int) -> int:
-    """Returns the number of threads to use; for 0, that of the cores this process may use."""
+    """Returns the number of threads; for 0, the number of cores that this process may use."""
     return threads or len(os.sched_getaffinity(0))
 
 
 def in_parallel(threads: int, count: int, work: Callable[[slice], Any]) -> None:
-    """Runs ``work`` on slices that cover range(count), one for each thread."""
+    """Runs ``work`` on slices that cover range(count), a slice for each thread."""
     edges = np.linspace(0, count, threads + 1).astype(int)
     parts = [slice(int(a), int(b)) for a, b in pairwise(edges) if b > a]
     if len(parts) < 2:
@@ -140,7 +140,7 @@ class Fft2:
         in_parallel(self.threads, self.shape[0], lines)
 
     def inverse(self, spectrum: Complex, rows: slice, space: Real) -> Real:
-        """Inverts a spectrum, which is overwritten; returns rows, whose numbers wrap around.
+        """Inverts a spectrum, which is overwritten; returns rows, with indices that wrap around.
 
         The result is a view of ``space``, which has the transform's shape.
         """

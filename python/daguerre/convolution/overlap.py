@@ -2,7 +2,7 @@
 
 A float32 FFT has an error of about 1e-7 of the brightest lamp all over its tile. So a large kernel
 is split in two: its centre uses small tiles, where the error stays next to the lamp, and the faint
-rest uses large ones.
+rest uses large tiles.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Size = tuple[int, int]
 
 
 def parts_of(kernels: Real, picture: Size, threads: int, *, banded: bool) -> list[Part]:
-    """Returns the transformed kernels, large ones as two parts: their centre and the rest."""
+    """Returns the transformed kernels; a large kernel gives two parts, its centre and the rest."""
     h, w = kernels.shape[2:4]
     if min(h, w) < 4 * MIDDLE:
         return [Part(kernels, picture, threads, banded=banded)]
@@ -215,7 +215,7 @@ class Plan(NamedTuple):
 def plan(
     picture: Size, kernel: Size, zones: Size, channels: Size, *, most_rows: int | None = None
 ) -> Plan:
-    """Chooses the cut with the least work whose spectra fit into memory.
+    """Chooses the cut with the least work and spectra that fit into memory.
 
     Args:
         picture: Rows and columns of the picture.
@@ -256,7 +256,7 @@ class _Cut(NamedTuple):
 
 
 def _cuts(extent: int, reach: int, zones: int, most: int) -> list[_Cut]:
-    """Returns ways to cut an axis, from the narrowest useful tiles to one for the whole axis."""
+    """Returns ways to cut an axis, from the narrowest useful tiles to a single tile."""
     sizes = [n for n in fast_sizes(4 * (extent + reach)) if n % 2 == 0]
     weights = hats(extent, zones) > 0
     found: list[_Cut] = []

@@ -38,19 +38,20 @@ class Annotation(BriefRecord):
     """Annotation of one object in a picture.
 
     Attributes:
-        name: Name of its node.
-        category: Its category.
-        instances: Indices of its instances in the scene.
-        area: Number of pixels in which it is visible.
-        box: Box around those pixels; None: it is hidden.
-        full_box: Box around all of it, with hidden parts, clipped to the picture.
-        truncation: Share of its whole box that lies outside of the picture; None: unknown, as some
-            of it has no image point, such as parts behind the camera.
-        visibility: Share of the pixels whose chief ray meets it in which the ray meets it first.
-        box3: 3D box around it in the world, m, at the picture's ``time``.
+        name: Name of the object's node.
+        category: Category of the object.
+        instances: Indices of the object's instances in the scene.
+        area: Number of pixels in which the object is visible.
+        box: Box around the visible pixels; None: the object is hidden.
+        full_box: Box around the whole object, with hidden parts, clipped to the picture.
+        truncation: Share of the unclipped box outside of the picture; None: unknown, as parts of
+            the object have no image point, such as parts behind the camera.
+        visibility: Share of the pixels with a chief ray through the object in which the ray meets
+            no other object before.
+        box3: 3D box around the object in the world, m, at the picture's ``time``.
         camera_box3: 3D box in the camera's frame, x right, y down, z ahead.
         camera_from_node: Transform from the node's frame to the camera's, shape (4, 4), m: pose and
-            scale; for several instances that of the first.
+            scale, of the first of several instances.
     """
 
     name: str
@@ -74,7 +75,7 @@ class Annotations(BriefRecord):
         things: Annotations of objects in the picture, hidden or not, in the order of the scene.
         categories: All categories, whether in the picture or not.
         labels: Object that each pixel shows, as index + 1 in ``things``, shape (H, W); 0: none.
-        time: Time of the 3D boxes, s; with a rolling shutter, that of the middle line.
+        time: Time of the 3D boxes, s; with a rolling shutter, the time of the middle line.
         world_from_camera: Pose of the camera, x right, y down, z ahead, shape (4, 4), m.
         intrinsics: ``model``, ``camera_matrix`` (3, 3) and ``parameters`` as in OpenCV, with pixel
             centres at integers, if the camera has such a form.
@@ -120,7 +121,7 @@ def annotate(
 
 @core_errors(InputError, "render")
 def annotations_of(session: Session, categories: Categories | None = None) -> Annotations:
-    """Annotates what a session's camera sees, at ``gt_time`` or else at mid-exposure."""
+    """Annotates the objects that a session's camera sees, at ``gt_time`` or at mid-exposure."""
     chosen = categories or Categories()
     truth = session.ground_truth
     moment = truth.moment(0)

@@ -39,7 +39,7 @@ class Box3(BriefRecord):
         return np.asarray(half @ self.rotation.T + self.center)
 
     def seen_from(self, frame: FloatArray) -> Box3:
-        """Returns the box in another frame, whose pose in the world is a rigid matrix (4, 4)."""
+        """Returns the box in another frame with a rigid pose in the world, shape (4, 4)."""
         turn = frame[:3, :3]
         center = (self.center - frame[:3, 3]) @ turn
         return Box3(center, self.size, turn.T @ self.rotation)
@@ -49,9 +49,9 @@ def box_of(scene: Scene, instances: Sequence[int], used: dict[int, Balls] | None
     """Computes the box around instances that have a surface, with the axes of the first.
 
     Args:
-        scene: Scene, at whose time the vertices are taken.
+        scene: Scene; the vertices are taken at its time.
         instances: Indices of instances, at least one.
-        used: Cache of what the meshes consist of, by index of the mesh.
+        used: Cache of the meshes' surface points, by index of the mesh.
     """
     used = {} if used is None else used
     axes = rotation_of(scene.instances[instances[0]].transform)

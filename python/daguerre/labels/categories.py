@@ -180,7 +180,7 @@ def _category(item: Item) -> Category | None:
 
 
 def _numbered(root: Item, known: dict[str, Category]) -> dict[str, Category]:
-    """Assigns free ids from 1 on to categories without one, in the order of the file."""
+    """Assigns free ids from 1 on to categories without id, in the order of the file."""
     taken: dict[int, str] = {}
     for category in known.values():
         if category.id and taken.setdefault(category.id, category.name) != category.name:

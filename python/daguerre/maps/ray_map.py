@@ -1,8 +1,8 @@
 """Raymaps: the ray of each pixel, for programs without lens models.
 
 A ray is the chief ray of the pixel's centre, as for ground truth (docs/ground-truth.md): it runs
-through the middle of what the pixel sees. Its time is that of the pixel; a rolling shutter gives
-each line its own.
+through the middle of the pixel's field of view. Its time is the pixel's exposure time; with a
+rolling shutter, it differs by line.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""STMaps of a camera: to undistort its pictures, and to distort straight ones.
+"""STMaps of a camera: to undistort its pictures, and to distort rectilinear pictures.
 
 ``daguerre.post.effects.stmap`` and docs/darkroom.md explain ``s`` and ``t``.
 """
@@ -79,7 +79,7 @@ class StMaps:
     def needed(self) -> dict[str, Overscan | None]:
         """Overscan of the source that each map needs to fill the display window.
 
-        ``undistort`` reads the camera's picture, ``redistort`` the undistorted one. None: no
+        ``undistort`` reads the camera's picture, ``redistort`` the undistorted picture. None: no
         overscan suffices, as the source is unbounded or the camera does not show parts of it.
         """
         try:
@@ -125,8 +125,8 @@ def stmaps(
 ) -> StMaps:
     """Returns the STMaps of any camera, at mid-exposure.
 
-    The undistorted picture is that of a pinhole with the same focal length near the axis and the
-    same principal point. The maps are exact for points in the plane of focus.
+    The undistorted picture has a pinhole's projection, with the same focal length near the axis and
+    the same principal point. The maps are exact for points in the plane of focus.
 
     Args:
         camera: Pinhole, thin, thick, exact, polynomial or projection.

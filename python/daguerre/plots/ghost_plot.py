@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from daguerre.analysis.ghosts import Ghosts
 
 DECADES = 4
-#: Titles and pictures, such as those of ``Ghosts.picture``.
+#: Titles and pictures, such as from ``Ghosts.picture``.
 Panels = Sequence[tuple[str, NDArray[np.float64]]]
 
 

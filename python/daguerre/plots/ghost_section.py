@@ -10,7 +10,7 @@ _COLOR = "#c0392b"
 
 
 def ghost_section(ghosts: Ghosts, ghost: Ghost) -> Drawing:
-    """Draws the lens with the rays of one ghost instead of those of the image."""
+    """Draws the lens with the rays of a ghost instead of the image's rays."""
     bench = ghosts.bench
     plain = section(bench.lens, bench.film_z, bench.field_mm)
     shapes = [s for s in plain.shapes if not (isinstance(s, Line) and s.width == RAY_WIDTH)]

@@ -50,7 +50,7 @@ def sag(surface: LensSurface, height: ArrayLike, section: Section = "y") -> Floa
 def clear_heights(lens: Lens) -> list[tuple[float, float]]:
     """Clear semi-diameters of each surface on the side before and behind it, mm.
 
-    Default for surfaces without one: the largest known, else that of the entrance pupil, else 10.
+    Surfaces without a semi-diameter have the largest known, else the entrance pupil's, else 10 mm.
     """
     known = [s.semi_diameter for s in lens.surfaces if s.semi_diameter is not None]
     pupil = 0.5 * lens.first_order().entrance_pupil.diameter

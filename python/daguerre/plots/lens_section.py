@@ -73,8 +73,8 @@ def section(
 
     Args:
         lens: The lens, with the gaps of its zoom and focus.
-        film_z: Position of the film, mm; default: that of the prescription.
-        half_image: Radius of the image circle, mm; default: the lens's, else that of 36 x 24 mm.
+        film_z: Position of the film, mm; default: the prescription's.
+        half_image: Radius of the image circle, mm; default: the lens's, else for 36 x 24 mm.
         light: Light of up to three points of the meridional plane; default: of three fields.
     """
     heights = [max(pair) for pair in clear_heights(lens)]

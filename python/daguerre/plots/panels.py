@@ -78,7 +78,7 @@ def layout(axes: Axes, made: Figures) -> None:
 
 
 def facts(axes: Axes, made: Figures) -> None:
-    """Draws first-order data beside those of the source, and figures of merit."""
+    """Draws first-order data beside the source's values, and figures of merit."""
     axes.set_axis_off()
     rows = fact_rows(made)
     step = 1 / max(len(rows), 17)

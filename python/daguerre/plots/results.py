@@ -1,4 +1,4 @@
-"""Plots of results of the bench, each in one axes: what ``result.plot()`` draws."""
+"""Plots of results of the bench, each in a single axes, drawn by ``result.plot()``."""
 
 from __future__ import annotations
 

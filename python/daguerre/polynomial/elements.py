@@ -49,7 +49,7 @@ def refract(
 
     Args:
         form: ``sphere(50)``, ``plane()``, ``conic``, ``asphere``, ``cylinder`` ...
-        n1: Index in front: a number, one for each wavelength, or a glass.
+        n1: Index in front: a number, a number for each wavelength, or a glass.
         n2: Index behind, likewise.
         degree: Degree, 1 to 15.
         wavelength: Wavelength nodes, nm, shape () or (W,); default: numbers hold for any
@@ -93,8 +93,8 @@ def place(
 ) -> System:
     """Returns the change into a frame that is moved, then turned, or back out of it.
 
-    The axis is no longer the base ray there: what follows is expanded ``about=`` the ``image`` of
-    what comes before, so that no constants arise::
+    The axis is no longer the base ray there: expand each system ``about=`` the ``image`` of the
+    preceding system, so that no constants arise::
 
         into = po.place((0, 1, 0), (2, 0, 0))
         bend = po.refract(po.sphere(40), 1.0, 1.5, about=into.image) @ into
@@ -128,7 +128,7 @@ def checked(degree: int) -> int:
 
 
 def _about(about: ArrayLike, nodes: list[float]) -> tuple[list[float], list[list[float]]]:
-    """Base rays for the core: one, or one for each node."""
+    """Base rays for the core: a single ray, or a ray for each node."""
     rays = np.atleast_2d(doubles(about, "polynomial system", "about", "a ray (x, y, dx, dy)"))
     if rays.ndim != 2 or rays.shape[1] != 4 or len(rays) not in (1, len(nodes)):
         raise UsageError(

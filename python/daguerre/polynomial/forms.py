@@ -68,7 +68,7 @@ def asphere(radius: float, terms: Mapping[int, float], k: float = 0.0) -> Form:
 
 
 def cylinder(radius: float, axis: Literal["x", "y"] = "x", k: float = 0.0) -> Form:
-    """Returns a cylinder whose axis lies along x or y; it has power across its axis.
+    """Returns a cylinder with its axis along x or y; it has power across its axis.
 
     Args:
         radius: Radius, mm.

@@ -53,9 +53,9 @@ class GhostPolynomial(BriefRecord):
     direction: tuple[float, float]
 
     def points(self, places: FloatArray, *, to_iris: bool = True) -> FloatArray:
-        """Points on the film where light lands that enters at places of the plane z = 0.
+        """Points on the film of light that enters at places of the plane z = 0.
 
-        The direction is constant, so the polynomials are first reduced to those of x and y.
+        The direction is constant, so the polynomials are first reduced to polynomials of x and y.
 
         Args:
             places: Places x, y, mm, shape (N, 2).

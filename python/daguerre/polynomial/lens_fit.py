@@ -88,7 +88,7 @@ class LensFit:
     """A lens as polynomials that map film rays to scene rays.
 
     A film ray is a point on the film (mm; the image is upside down) and a slope (dx/dz, dy/dz) in
-    the lens frame, whose z points from the scene to the film.
+    the lens frame, with z from the scene to the film.
     """
 
     def __init__(self, core: _core.LensFit, setting: FitSetting | None = None) -> None:
@@ -172,7 +172,7 @@ class LensFit:
             film_points: Film points over the whole film, mm, shape (N, 2); several for each
                 coefficient.
             slopes: Slopes dx/dz and dy/dz, shape (N, 2).
-            wavelength_nm: Wavelength, nm, one or shape (N,).
+            wavelength_nm: Wavelength, nm, a number or shape (N,).
             origins: A point on each scene ray, mm, shape (N, 3).
             directions: Unit vectors toward the scene, shape (N, 3).
         """
@@ -243,7 +243,7 @@ def _rows(given: ArrayLike, name: str, columns: int) -> FloatArray:
 
 
 def _each(wavelength_nm: ArrayLike, count: int) -> FloatArray:
-    """Wavelengths of ``count`` rays, from one for all or one for each."""
+    """Wavelengths of ``count`` rays, from a number for all rays or a number for each."""
     found = wavelengths(wavelength_nm, "lens fit: wavelength_nm")
     if found.shape not in ((), (1,), (count,)):
         raise UsageError(

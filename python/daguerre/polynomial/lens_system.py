@@ -38,7 +38,7 @@ def from_lens(
         {keywords}
 
     Returns:
-        The expansion; x and y are those of the lens frame on all planes, in both directions.
+        The expansion; x and y are in the lens frame on all planes, in both directions.
 
     Raises:
         InputError: The base ray is stopped, or a surface is not smooth where it meets it; the

@@ -13,7 +13,7 @@ SEGMENTS = (1, 2, 4)
 
 
 def fewest(fitted: Callable[[int], LensFit]) -> LensFit:
-    """Returns the first fit without a weak region, else that of the most zones.
+    """Returns the first fit without a weak region, else the fit with the most zones.
 
     Args:
         fitted: Makes the fit of a number of zones.

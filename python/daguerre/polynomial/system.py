@@ -99,7 +99,7 @@ class System:
         return np.asarray(out).reshape(*np.shape(rays), 4)
 
     def __matmul__(self, first: System) -> System:
-        """Composes systems: ``first``, then this one."""
+        """Composes systems: ``first``, then this system."""
         if not isinstance(first, System):
             return NotImplemented
         return System(_said(self.core.after, first.core), self._pupil_before(first))
@@ -127,9 +127,9 @@ class System:
         """Returns the third-order aberrations of the point on the last plane, by name.
 
         Args:
-            wavelength: Wavelength, nm; default: the only one, else 587.56 nm.
+            wavelength: Wavelength, nm; default: the system's only wavelength, else 587.56 nm.
             pupil: Distance of the entrance pupil ahead of the first plane, mm; default: the known
-                one, else 0.
+                distance, else 0.
             object_distance: Distance of the object from that pupil, mm.
 
         Raises:

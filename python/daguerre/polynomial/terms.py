@@ -19,7 +19,7 @@ TOLERANCE = 1e-9
 @guarded
 @dataclass(frozen=True)
 class SeidelTerms:
-    """The third-order part of where a ray meets the last plane, mm.
+    """Third-order part of a ray's position on the last plane, mm.
 
     With the point p where it crosses the entrance pupil (mm) and the field t, the tangent of the
     angle under which the object point is seen from the pupil's centre::
@@ -28,9 +28,9 @@ class SeidelTerms:
             +  field_curvature p |t|^2  +  distortion t |t|^2
 
     so that ``spherical`` is in mm per mm^3, ``coma`` in mm per mm^2, ``astigmatism`` and
-    ``field_curvature`` (the sagittal one) in mm per mm, ``distortion`` in mm. On a plane that is
-    not the image of the object the coma of p (p.t) is not quite twice that of t |p|^2; stated is
-    the latter.
+    ``field_curvature`` (sagittal) in mm per mm, ``distortion`` in mm. On a plane that is not the
+    image of the object, the coefficient of p (p.t) is not quite twice the coefficient of t |p|^2;
+    ``coma`` is the latter.
     """
 
     spherical: float
@@ -113,7 +113,7 @@ KINDS = ((3, 0, 0, 0), (1, 1, 0, 1), (0, 2, 1, 0), (1, 0, 0, 2), (0, 1, 1, 1), (
 
 
 def _shifted(kinds: FloatArray, h: float) -> FloatArray:
-    """Factors of the kinds of (p, d) as those of the kinds of (q, d), p = q + h d."""
+    """Changes factors of the kinds of (p, d) to factors of the kinds of (q, d), p = q + h d."""
     k0, k1, k2, k3, k4, k5 = kinds
     return np.array(
         [

@@ -21,7 +21,7 @@ class HasIndex(Protocol):
         """Returns the index relative to air at wavelengths, nm."""
 
 
-#: Refractive index: a number, one for each wavelength, or a glass.
+#: Refractive index: a number, a number for each wavelength, or a glass.
 Index = float | Sequence[float] | HasIndex
 
 
@@ -67,7 +67,7 @@ def nodes_of(wavelength: ArrayLike | None) -> list[float]:
 
 
 def with_glass(nm: list[float], *indices: Index) -> list[float]:
-    """Returns the nodes; if there are none and a glass needs one, the helium d line."""
+    """Returns the nodes; without nodes and with a glass, the helium d line."""
     return nm or (
         [DESIGN_WAVELENGTH_NM]
         if any(hasattr(n, "index") and not isinstance(n, (Sequence, np.ndarray)) for n in indices)
@@ -76,10 +76,10 @@ def with_glass(nm: list[float], *indices: Index) -> list[float]:
 
 
 def index_at(n: Index, nm: list[float]) -> list[float]:
-    """Returns the index at each node, or one for all.
+    """Returns the index at each node, or a single index for all.
 
     Raises:
-        UsageError: The number of indices is not that of the wavelengths.
+        UsageError: The numbers of indices and wavelengths differ.
     """
     if hasattr(n, "index") and not isinstance(n, (Sequence, np.ndarray)):
         return [float(n.index(x)) for x in nm]

@@ -23,11 +23,11 @@ MODELS = ("exact", "polynomial", "thin", "pinhole")
 
 @dataclass(frozen=True)
 class Other:
-    """The second picture.
+    """The second picture of a comparison.
 
     Attributes:
-        shot: Its shot.
-        labels: Lens and stop of the first picture and of this one.
+        shot: Shot of the second picture.
+        labels: Lens and stop of the first and of the second picture.
     """
 
     shot: Shot
@@ -35,9 +35,10 @@ class Other:
 
 
 def other_of(stage: Stage, first: Shot, change: Mapping[str, str]) -> Other:
-    """Returns the picture beside the first one, at the same size and exposure.
+    """Returns the picture beside the first picture, at the same size and exposure.
 
-    Another lens focuses as far away as the first, and has its f-stop, or its own widest one.
+    Another lens focuses as far away as the first lens, at the same f-stop or, if it opens less, at
+    its widest f-stop.
 
     Args:
         stage: Stage of the first picture.

@@ -81,7 +81,7 @@ def _program(name: str) -> str:
 
 
 def _of_desktop() -> str:
-    """Description of the desktop's browser: its name, and its file where there is one."""
+    """Paths of the desktop entries of the desktop's default browser; empty: not found."""
     if which("xdg-settings") is None:
         return ""
     command = ["xdg-settings", "get", "default-web-browser"]
@@ -95,7 +95,7 @@ def _of_desktop() -> str:
 
 
 def _applications() -> list[Path]:
-    """Folders of descriptions of programs, those of sandboxes first."""
+    """Folders of desktop entries, with sandboxed programs first."""
     return [
         Path("/var/lib/snapd/desktop/applications"),
         Path("/var/lib/flatpak/exports/share/applications"),

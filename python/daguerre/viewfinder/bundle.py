@@ -1,4 +1,4 @@
-"""Bundle: modules of the page joined into one, as each request of a page takes time."""
+"""Bundle: joins the page's modules into a single file, as each request of a page takes time."""
 
 from __future__ import annotations
 

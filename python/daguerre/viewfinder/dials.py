@@ -1,4 +1,4 @@
-"""Dials: what a user turned, as texts of the command line's flags.
+"""Dials: settings that a user changed, as texts of the command line's flags.
 
 One value serves the page (as JSON), the command line that repeats the picture, and the camera. The
 rows that parse the flags parse the texts of dials, so all three mean the same, to the bit.
@@ -44,7 +44,7 @@ DIALS = Table(
 )
 
 
-#: Dials whose flags also take files: the texts that a page may give.
+#: Dials with flags that also take files: the texts that a page may give.
 _FROM_LIBRARY: dict[str, Callable[[str], bool]] = {
     "lens": lambda text: text in IDEAL or text in lenses.names(),
     "sensor": lambda text: not text.lower().endswith(".json"),
@@ -70,16 +70,16 @@ class Dials:
         return cls(dict(texts), dict(texts))
 
     def turned(self, changes: Mapping[str, str | None]) -> Dials:
-        """Returns the dials after a turn; None puts one back to the scene's value.
+        """Returns the dials after a turn; None resets a dial to the scene's value.
 
-        A dial that excludes another one takes it back; an exposure mode, what it chooses; a lens
-        without an iris, the stop; one without surfaces, the light that surfaces add.
+        A turned dial resets the dials that it excludes. An exposure mode resets the values that it
+        chooses; a lens without an iris, the stop; a lens without surfaces, ghosts and flare.
 
         Raises:
             UsageError: No such dial, or a text that its flag would not accept.
         """
         texts = dict(self.texts)
-        # Those that go back come first, so that they cannot take back what is turned.
+        # Resets come first, so that they cannot undo a dial turned in the same call.
         for name, text in sorted(changes.items(), key=lambda change: change[1] is not None):
             row = DIALS.find(name, "view", UsageError)
             if text is not None:

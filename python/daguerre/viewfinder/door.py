@@ -1,8 +1,8 @@
-"""Door: who may connect, and what a browser may do with the page.
+"""Access control: allowed hosts, origins and tokens, and the page's content security policy.
 
-A page of another origin can send requests to this machine, and a name that its owner points here
-("DNS rebinding") makes them look local. So Host and Origin must equal addresses that the server
-listens on, and a WebSocket must first send the token, which only the printed URL has.
+A page of another origin can send requests to this machine, and a host name that its owner points
+here ("DNS rebinding") makes them look local. So Host and Origin must equal addresses that the
+server listens on, and a WebSocket must first send the token, which only the printed URL has.
 """
 
 from __future__ import annotations

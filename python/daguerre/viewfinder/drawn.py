@@ -16,15 +16,15 @@ from .stage import Stage
 
 @dataclass(frozen=True)
 class Wish:
-    """A picture that someone waits for.
+    """A picture that a page waits for.
 
     Attributes:
-        number: Number of the turn that made it; a higher one is newer.
+        number: Number of the turn that asked for the picture; a higher number is newer.
         stage: Scene, camera and settings.
         dials: Positions of the dials.
-        shot: The picture that they ask for.
-        models: Whether it compares models of the lens.
-        beside: Dial that differs in a second picture, and its text; None: there is one picture.
+        shot: The shot at those positions.
+        models: Whether the picture compares models of the lens.
+        beside: Dial that differs in a second picture, and its text; None: no second picture.
     """
 
     number: int
@@ -35,7 +35,7 @@ class Wish:
     beside: Mapping[str, str] | None = None
 
     def is_lit_as(self, other: Wish) -> bool:
-        """Whether the samples of another wish certainly show this one, too."""
+        """Whether the samples of another wish are certainly samples of this wish, too."""
         same = self.shows_as(other) and self.shot.is_lit_as(other.shot)
         return same and self._is_lit and other._is_lit
 
@@ -45,7 +45,7 @@ class Wish:
 
     @property
     def asks(self) -> tuple[Dials, bool, Mapping[str, str] | None]:
-        """All that a page can ask of it: dials, models, and what is beside it."""
+        """All that a page can ask for: dials, models, and the dial of a second picture."""
         return self.dials, self.models, self.beside
 
     @property
@@ -75,19 +75,19 @@ class Panel:
 
 @dataclass(frozen=True)
 class Drawn:
-    """A picture of a wish, on its way to rest.
+    """A picture of a wish, with more samples or pixels to come until it rests.
 
     Attributes:
         wish: The wish.
         shot: Scene, camera and settings, at the size of this picture.
-        session: Session that drew it.
-        frame: Its linear values.
+        session: Session that drew the picture.
+        frame: Linear values.
         samples: Samples per pixel.
-        rests: Whether nothing better follows.
-        whole: Whether it has its full size.
-        panels: Pictures to show instead, side by side; empty: this one.
-        sharp: The frame larger, to be shown with sharp ghosts; None: there is no such frame.
-        note: Why there is no picture beside it, though one was asked for.
+        rests: Whether no better picture follows.
+        whole: Whether the picture has its full size.
+        panels: Pictures to show side by side instead; empty: this picture.
+        sharp: The frame upsampled, with sharp ghosts; None: no such frame.
+        note: Why the second picture that was asked for is missing.
     """
 
     wish: Wish

@@ -17,7 +17,7 @@ from daguerre.exposure.lux_seconds import display_gain
 from daguerre.frame.frame import Frame
 from daguerre.sensors.iso_speed import GREY
 
-#: Zones reach so many stops below and above middle grey; the last ones have all beyond, too.
+#: Stops below and above middle grey that have zones; the end zones have everything beyond, too.
 REACH = 6
 _DARKEST, _LIGHTEST = 0.17, 0.97
 #: Chroma toward blue and yellow just beside grey and at the ends, as far as sRGB reaches.

@@ -15,10 +15,10 @@ from daguerre.frame.frame import Frame
 from daguerre.rendering.live_ghosts import LiveGhosts
 from daguerre.rendering.session import Session
 
-#: Longest time to draw a layer, s; the second one of a lens, which finds what is kept, takes twice
-#: as long as the first.
+#: Longest time to draw a layer, s. The second layer of a lens also builds the caches, and takes
+#: twice as long as the first.
 MOST_S = 1.0
-#: Time without layers by a lens after one that took longer, s.
+#: Pause in the layers of a lens after a layer that took longer, s.
 PAUSE_S = 10.0
 
 
@@ -105,7 +105,7 @@ def _along(values: NDArray[np.float32], axis: int, after: int) -> NDArray[np.flo
 
 @lru_cache(16)
 def _taps(before: int, after: int) -> tuple[NDArray[np.intp], NDArray[np.float32]]:
-    """Pixels that each new one is made of, and their weights, both (taps, after)."""
+    """Source pixels of each new pixel, and their weights, both (taps, after)."""
     reach = max(1.0, before / after)
     centres = (np.arange(after) + 0.5) * (before / after) - 0.5
     places = np.floor(centres - reach).astype(int) + np.arange(1, math.ceil(2 * reach) + 1)[:, None]

@@ -40,13 +40,13 @@ def glass_at(session: Session, x: float, y: float) -> dict[str, Any]:
     """Section with the rays of a pixel's point, and the spread of its light.
 
     Args:
-        session: Session whose camera sees the point.
+        session: Session with a camera that sees the point.
         x: Pixel of the whole picture, from the left.
-        y: The same, from the top.
+        y: Pixel of the whole picture, from the top.
 
     Returns:
         ``svg``: The section. ``spread``: 48 x 48 values of 0 to 255, as in the picture.
-        ``width_um``: Width of that square on the film. ``pixel_um``: Pixel pitch. ``distance_m``:
+        ``width_um``: Width of the spread on the film. ``pixel_um``: Pixel pitch. ``distance_m``:
         Distance of the point; None: infinity.
 
     Raises:
@@ -83,7 +83,7 @@ def _lit(bench: Bench, film: tuple[float, float], distance_mm: float | None) -> 
 
 
 def _upright(image: NDArray[np.float64], light: Pencil) -> list[int]:
-    """Turns a spread from its sagittal and tangential axes to those of the picture."""
+    """Turns a spread from its sagittal and tangential axes to the picture's axes."""
     n = len(image)
     # A row of the picture runs right, a column down; on the film both are turned over.
     middle = (n - 1) / 2

@@ -19,11 +19,11 @@ class Line(Protocol):
 
 @dataclass(eq=False)
 class Guest:
-    """A page that is connected.
+    """A connected page.
 
     Attributes:
-        line: Its connection.
-        turns: Whether it may turn the dials.
+        line: Connection to the page.
+        turns: Whether the page may turn the dials.
         busy: Number of the picture that is on its way; None: none.
         sent: Number of the newest picture that was sent.
     """
@@ -38,7 +38,7 @@ class Guest:
         await self.line.send(json.dumps(message))
 
     async def offer(self, sheet: Sheet | None) -> None:
-        """Sends the page a picture, unless it has it or another one is on its way."""
+        """Sends the page a picture, unless it has this picture or another is on its way."""
         if sheet is None or self.busy is not None or self.sent == sheet.number:
             return
         self.busy = self.sent = sheet.number
@@ -46,22 +46,22 @@ class Guest:
 
 
 class Guests(list[Guest]):
-    """All pages, in the order in which they came."""
+    """All pages, in the order of their connection."""
 
     def join(self, line: Line) -> Guest:
-        """Lets a page in; the first one turns."""
+        """Adds a page; the first page may turn the dials."""
         guest = Guest(line, not any(other.turns for other in self))
         self.append(guest)
         return guest
 
     async def leave(self, guest: Guest) -> None:
-        """Forgets a page; if it turned, the next one does."""
+        """Forgets a page; if it turned the dials, the next page does."""
         self.remove(guest)
         if guest.turns and self:
             self[0].turns = True
             await self[0].tell({"role": "turns"})
 
     async def tell(self, message: dict[str, Any], heard: Guest | None = None) -> None:
-        """Sends all pages a message, which answers what one of them asked for."""
+        """Sends all pages a message; for the page ``heard``, it is the answer to a request."""
         answer = message | {"heard": True}
-        await asyncio.gather(*(one.tell(answer if one is heard else message) for one in self))
+        await asyncio.gather(*(guest.tell(answer if guest is heard else message) for guest in self))

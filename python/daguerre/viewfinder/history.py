@@ -59,14 +59,14 @@ class History:
 
 
 def _without_tail(past: tuple[Dials, ...], now: Dials) -> tuple[Dials, ...]:
-    """Steps without the last ones that changed nothing: a ring was turned and turned back."""
+    """Drops the last steps that changed nothing, as when a ring is turned and turned back."""
     while past and past[-1] == now:
         past = past[:-1]
     return past
 
 
 class Steps:
-    """Numbers of steps: one for all turns of the same dials without a pause, or in one gesture."""
+    """Numbers of steps: turns of the same dials without a pause, or in a gesture, share a step."""
 
     def __init__(self) -> None:
         self._number = 0

@@ -1,4 +1,4 @@
-"""Hub: one who turns, any number who watch, and the painter between them."""
+"""Hub: connects the page that turns the dials, the pages that only watch, and the painter."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ class Hub:
         return self._guests.join(line)
 
     async def leave(self, guest: Guest) -> None:
-        """Forgets a page; if it turned, the next one does."""
+        """Forgets a page; if it turned the dials, the next page does."""
         if guest.turns:
             self._steps.let_go(self._loop.time())
         await self._guests.leave(guest)
@@ -129,7 +129,7 @@ class Hub:
         await guest.offer(self._sheet)
 
     async def hear(self, guest: Guest, text: str | bytes) -> None:
-        """Acts on a message of a page; a wrong one is answered by its reason."""
+        """Acts on a message of a page; answers a wrong message by the reason."""
         message = None
         try:
             message = parse(text)
@@ -205,13 +205,13 @@ class Hub:
         *,
         guest: Guest,
     ) -> None:
-        """Turns dials; those of the names tell steps apart."""
+        """Turns dials; ``names`` are the dials that tell undo steps apart."""
         dials = self.dials.turned(changes)
         step = self._steps.of_turn(names or changes, self._loop.time())
         await self._go(self._history.turned(dials, step), guest)
 
     async def _go_back(self, history: History | None, nothing: str, guest: Guest) -> None:
-        """Undoes or redoes a step; one that cannot be drawn any more is forgotten."""
+        """Undoes or redoes a step; forgets a step that cannot be drawn any more."""
         if history is None:
             raise UsageError(nothing)
         try:
@@ -257,7 +257,7 @@ class Hub:
         await self._tell_state(guest)
 
     def _newest(self, use: str) -> Sheet:
-        """The picture that is there, for a use that needs one."""
+        """The newest picture; ``use`` begins the error when there is none yet."""
         if self._sheet is None:
             raise UsageError(f"{use}: the picture is not drawn yet; try again in a moment")
         return self._sheet
@@ -345,7 +345,7 @@ class Hub:
             self._start(self._tell_state())
 
     def _hand_out_preview(self, drawn: Drawn, image: Image, show: Show) -> None:
-        """Hands out a preview, unless the picture rests or another one is asked for."""
+        """Hands out a preview, unless the picture rests or a page asked for another."""
         newest = None if self._sheet is None else self._sheet.drawn
         if newest is None or newest.rests or show is not self._show:
             return
@@ -360,7 +360,7 @@ class Hub:
         return Sheet.of(self._sheets, drawn, image, show, denoised=denoised)
 
     def _report(self, wish: Wish, text: str) -> None:
-        """Says why a wish cannot be drawn, and goes back to what could: dials, models, beside."""
+        """Reports why a wish cannot be drawn, and goes back to the last wish that could."""
         if wish.number != self.number:
             return
         before = None if self._sheet is None else self._sheet.drawn.wish
@@ -390,5 +390,5 @@ class Hub:
         task.add_done_callback(self._tasks.discard)
 
     async def _tell_state(self, heard: Guest | None = None) -> None:
-        """Tells all pages the state of the moment: one from before a turn would undo it there."""
+        """Tells all pages the present state; an older state would undo a turn on the page."""
         await self._guests.tell(self._state(), heard)

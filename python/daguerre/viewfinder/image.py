@@ -18,10 +18,10 @@ from .tint import DEPTH, NONE, Tint, joined, tint_of
 
 #: JPEG quality of pictures on their way to the page.
 QUALITY = 88
-#: That of tinted ones, whose colours are read.
+#: Quality of tinted pictures, in which people read colours.
 TINT_QUALITY = 95
-#: Pictures of so few pixels go as they are: a browser decodes others in a thread that may have to
-#: wait for a core.
+#: Pictures of at most so many pixels are sent uncompressed: a browser decodes a JPEG in a thread
+#: that may have to wait for a core.
 FEW = 40_000
 _BINS = 128
 #: Pixels across a block of JPEG.
@@ -34,12 +34,12 @@ class Image:
 
     Attributes:
         kind: ``rgb`` or ``jpeg``.
-        bytes: Its pixels, or its file.
+        bytes: Pixels, or a JPEG file.
         size: Width and height, px.
         histogram: Share of pixels in each of 128 equal steps of brightness, for red, green, blue.
-        tint: Kind and note of a tint; ``bytes`` of it follow those of the picture; None: none.
-        part: Width of one of several pictures side by side, px; each begins with a block of JPEG.
-            The histogram is that of the one that the dials show.
+        tint: Kind and note of a tint, with its bytes after the picture's bytes; None: no tint.
+        part: Width of each of several pictures side by side, px; each begins with a block of JPEG.
+            The histogram shows the picture at the dials.
     """
 
     kind: str

@@ -1,4 +1,4 @@
-"""Lenses to choose from, ideal ones and the library's: facts, photographs, what a search finds."""
+"""Lenses to choose from, ideal and from the library: facts, photographs and search."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ def offered() -> list[dict[str, str]]:
 
 @cache
 def facts() -> list[dict[str, Any]]:
-    """Facts of all lenses by which a page shows and filters them, ideal ones first.
+    """Facts of all lenses by which a page shows and filters them, ideal lenses first.
 
     ``focal_mm`` and ``f_number`` are the values in a lens's name, by which people look for it;
-    ``shown`` has the computed ones.
+    ``shown`` has computed values.
     """
     ideal = [{"name": name, "kinds": [IDEAL_KIND], "makers": []} for name in IDEAL]
     makers = _makers()

@@ -1,4 +1,4 @@
-"""Light meter: chooses exposures, and takes a picture only where it would see another one."""
+"""Light meter: chooses exposures, and draws a new picture only where it would differ."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _KEPT = 8
 
 @dataclass(frozen=True)
 class _Taken:
-    """A picture of the meter, and what it saw."""
+    """A picture of the meter, and its reading."""
 
     scene: Scene
     camera: Camera
@@ -51,7 +51,7 @@ class LightMeter:
         Args:
             shot: The shot.
             built: The scene built for another picture.
-            fresh: Whether to look anew at what moved; if not, the last picture will do.
+            fresh: Whether to draw anew after motion; if not, the last picture will do.
         """
         from daguerre.rendering.auto_exposure import choose
 

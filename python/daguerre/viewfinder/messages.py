@@ -32,19 +32,19 @@ class Turn:
 
 @dataclass(frozen=True)
 class Got:
-    """Picture that the page has shown, so that the next one may follow."""
+    """Number of a picture that the page has shown, so that the next may follow."""
 
     picture: int
 
 
 @dataclass(frozen=True)
 class Probe:
-    """Pixel of the whole picture whose values the page asks for.
+    """Asks for the values of a pixel of the whole picture.
 
     Attributes:
-        x: From the left.
-        y: From the top.
-        part: Number of the picture, of those side by side.
+        x: Pixel from the left.
+        y: Pixel from the top.
+        part: Number of the picture among pictures side by side.
     """
 
     x: int
@@ -85,7 +85,7 @@ class Hold:
 
 @dataclass(frozen=True)
 class Section:
-    """Point of the picture whose rays through the lens, and spread, the page asks for."""
+    """Asks for a point's rays through the lens and its spread on the film."""
 
     x: float
     y: float
@@ -105,7 +105,7 @@ class ShowOtherwise:
 
 @dataclass(frozen=True)
 class Drawing:
-    """Name of a lens of the library whose drawing the page asks for."""
+    """Asks for the drawing of a lens of the library."""
 
     lens: str
 
@@ -117,7 +117,7 @@ class Facts:
 
 @dataclass(frozen=True)
 class Photograph:
-    """Name of a lens of the library whose photograph a page without a server asks for."""
+    """Asks for the photograph of a lens of the library, from a page without a server."""
 
     lens: str
 

@@ -24,7 +24,7 @@ def offers(stage: Stage, first: Dials, shot: Shot) -> dict[str, Any]:
     Args:
         stage: Scene, camera and settings.
         first: Dials of the command line.
-        shot: The present one.
+        shot: The present shot.
     """
     scene, settings = stage.scene, stage.settings
     return {

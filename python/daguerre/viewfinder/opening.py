@@ -16,13 +16,13 @@ from .stage import Stage
 
 
 def opened(stage: Stage, dials: Dials) -> tuple[Dials, str]:
-    """Dials in ``manual``, at a given ISO or at one that a meter chooses once.
+    """Dials in ``manual``, at a given ISO or at an ISO that a meter chooses once.
 
-    A mode that is given or that the file has stays, and so does ``light`` where a picture can be
-    nothing else.
+    An exposure mode from the command line or the file stays, and so does ``light`` where a picture
+    can have no other mode.
 
     Returns:
-        The dials, and what the user should know about them; empty: nothing.
+        The dials, and a note on them for the user; empty: no note.
     """
     shot = stage.shot(dials)
     if "exposure" in dials.texts or shot.camera.exposure != LIGHT or _only_light(shot):

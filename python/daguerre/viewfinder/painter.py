@@ -40,10 +40,10 @@ class Painter:
     ) -> None:
         self._show, self._fail, self._ready = show, fail, ready
         self._changed = threading.Condition()
-        self._wish: Wish | None = None  # the next one
-        self._taken: Wish | None = None  # the one before
-        self._taken_at = -TURNING_S  # time at which that one came, s
-        self._keeps_turning = False  # whether the user does
+        self._wish: Wish | None = None  # next wish
+        self._taken: Wish | None = None  # previous wish
+        self._taken_at = -TURNING_S  # time at which the previous wish came, s
+        self._keeps_turning = False  # whether the user keeps turning a dial
         self._token = CancelToken()
         self._closed = False
         self._work: Work | None = None
@@ -61,7 +61,7 @@ class Painter:
             self._changed.notify()
 
     def rest(self) -> None:
-        """Ends the work on the wish, and draws nothing until the next one."""
+        """Ends the work on the wish, and draws nothing until the next wish."""
         with self._changed:
             self._wish = None
             self._token.cancel()
@@ -114,7 +114,7 @@ class Painter:
         self._token.throw_if_cancelled()
 
     def _begun(self, wish: Wish) -> Iterator[Drawn]:
-        """Pictures of a wish, of whose light some may be drawn already."""
+        """Pictures of a wish, which reuse samples already drawn where they show the same light."""
         if self._work is None or not self._expose(self._work, wish):
             self._work = Work(wish)
             self._pictures = self._work.pictures(self._do)
@@ -127,7 +127,7 @@ class Painter:
         return fits
 
     def _do(self, step: Callable[[], Any]) -> Any:
-        """Has the other thread do a step; meanwhile shows what is there as new wishes ask."""
+        """Does a step in the other thread; meanwhile re-exposes the picture for new wishes."""
         token, work = self._token, self._work
         assert work is not None
         done = self._hand.submit(under, token, step)

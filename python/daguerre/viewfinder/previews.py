@@ -20,20 +20,20 @@ from .drawn import Drawn
 NICE = 19
 #: Longest time to denoise a picture, s: a quarter of the time between two pictures.
 MOST_S = 0.25
-#: Time without previews after one that took longer, s.
+#: Pause in the previews after a preview that took longer, s.
 PAUSE_S = 60.0
 
 
 class Previews:
     """A thread that denoises the newest picture, at most once per doubling of samples.
 
-    It needs the extra ``denoise`` and a core beside the one that draws.
+    Previews need the extra ``denoise`` and a second core beside the drawing thread's.
     """
 
     def __init__(self) -> None:
         able = (os.cpu_count() or 1) >= 2 and not extras.missing(MODULE)
         self._pause_end = -math.inf if able else math.inf
-        self._turn, self._samples = -1, 0  # of the last one
+        self._turn, self._samples = -1, 0  # of the last preview
         self._newest: deque[tuple[Drawn, Callable[[Frame], None]]] = deque(maxlen=1)
         self._thread = background_thread("viewfinder previews", NICE)
 
@@ -58,7 +58,7 @@ class Previews:
             drawn, show = self._newest.pop()
         except IndexError:  # another picture came instead
             return
-        if time.monotonic() < self._pause_end:  # the one before was slow
+        if time.monotonic() < self._pause_end:  # the last preview was slow
             return
         if drawn.wish.number == self._turn and drawn.samples < 2 * self._samples:
             return

@@ -76,9 +76,9 @@ def _distances(session: Session, facts: Facts) -> dict[str, float | None]:
 
 
 def closest_m(lens: ResolvedLens, *, from_sensor: bool, breathes: bool) -> float | None:
-    """Closest distance of the focus ring, m; None: no end.
+    """Closest distance of the focus ring, m; None: no limit.
 
-    Ideal lenses whose film moves reach 1:1; the others focus anywhere.
+    Ideal lenses that focus by moving the film reach 1:1; other ideal lenses focus anywhere.
     """
     if lens.glass is not None:
         return closest_focus_m(lens.glass.lens, from_sensor=from_sensor)
@@ -108,9 +108,9 @@ def _warnings(drawn: Drawn) -> list[str]:
 
 
 def _meter(drawn: Drawn) -> dict[str, float] | None:
-    """Light that a meter reads: of the scene, and of a lamp on it by the same exposure value.
+    """Light that a meter reads: luminance of the scene, and illuminance at the same EV100.
 
-    Lux are those of an incident meter with the constant C = 250 (ISO 2720): E = 2.5 * 2^EV100.
+    Lux are for an incident meter with the constant C = 250 (ISO 2720): E = 2.5 * 2^EV100.
     ``over`` is the distance of the picture from the meter, EV, as ``render`` prints it.
     """
     whole = drawn.wish.shot.settings.film.resolution

@@ -1,4 +1,4 @@
-"""Reasons: what pages show of an error."""
+"""Reasons: texts of errors for pages."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from daguerre.lenses.errors import LensError
 
 
 def reason_of(error: Exception) -> str:
-    """Message of an error; one that a user cannot correct says whose fault it is."""
+    """Message of an error; an error that a user cannot correct names the place to report it."""
     match error:
         case LensError(code="lens-focus-near"):
             return "The lens does not focus that near: focus farther away, or move the camera back."

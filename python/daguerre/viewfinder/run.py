@@ -27,11 +27,11 @@ class Listening:
 
     Attributes:
         host: Address to listen on.
-        port: Port; if it is in use, the next free one.
-        token: Token of the page; None: a new random one.
+        port: Port; if it is in use, the next free port.
+        token: Token of the page; None: a new random token.
         browser: Whether to open a browser.
         proxies: Addresses of proxies that lead here, such as ``https://hub.example``.
-        tev: Address of a tev that gets the pictures, too; None: none.
+        tev: Address of a tev that also gets the pictures; None: no tev.
     """
 
     host: str = "127.0.0.1"

@@ -1,4 +1,4 @@
-"""Rungs: what is drawn for a wish, one after another: small pictures, then the whole one."""
+"""Rungs: steps of progressive drawing, from small pictures to the full size."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ BESIDE = 3
 
 @dataclass(frozen=True)
 class Rung:
-    """Pictures that are drawn together.
+    """Pictures of the same size that are drawn together.
 
     Attributes:
-        shots: One, or several to show side by side.
-        names: Names of those side by side; empty: there is one.
-        last: Whether it is drawn with all samples, until it rests; others have one.
-        main: Number of the shot that the dials show.
-        ghosts: Layers of live ghosts, one for each shot; empty: there are none.
-        note: Why the picture beside it that was asked for is not there.
+        shots: A shot, or several to show side by side.
+        names: Names of pictures side by side; empty: a single picture.
+        last: Whether the rung is drawn with all samples; earlier rungs have one sample per pixel.
+        main: Number of the shot at the dials.
+        ghosts: Layer of live ghosts of each shot; empty: no layers.
+        note: Why the second picture that was asked for is missing.
     """
 
     shots: tuple[Shot, ...]
@@ -42,7 +42,7 @@ class Rung:
     note: str = ""
 
     def is_lit_as(self, other: Rung) -> bool:
-        """Whether the samples of another rung show this one, too."""
+        """Whether samples of another rung are samples of this rung, too."""
         if (self.names, len(self.ghosts)) != (other.names, len(other.ghosts)):
             return False
         return all(a.is_lit_as(b) for a, b in zip(self.shots, other.shots, strict=False))

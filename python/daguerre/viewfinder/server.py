@@ -36,13 +36,13 @@ KINDS = {
 SOCKET = "/live"
 #: Seconds within which a page sends its token.
 PATIENCE_S = 5.0
-#: Seconds that a page has to answer when the server ends; one that is stuck never does.
+#: Seconds that a page has to answer when the server ends; a page that hangs never answers.
 GOODBYE_S = 1.0
 #: Pages at once.
 MOST_GUESTS = 16
 #: Connections at once, with those that have not sent a token yet.
 MOST_LINES = 64
-#: Ports to try after one that is in use.
+#: Ports to try after a port that is in use.
 TRIES = 20
 
 
@@ -118,7 +118,7 @@ class Server:
 
 
 class _Line:
-    """Connection of the hub to a page; one that has closed takes messages and drops them."""
+    """Connection of the hub to a page; a closed connection drops messages."""
 
     def __init__(self, connection: ServerConnection) -> None:
         self._connection = connection
@@ -173,7 +173,7 @@ def _with_headers(answer: Response) -> Response:
 
 
 def free_socket(host: str, port: int) -> socket.socket:
-    """Opens a listening socket at a port, or at the next one that is free.
+    """Opens a listening socket at a port, or at the next free port.
 
     Raises:
         UsageError: None of the next ports is free, or the host is not of this machine.

@@ -18,9 +18,9 @@ from .switches import on_in, suited
 if TYPE_CHECKING:
     from daguerre.rendering.auto_exposure import Chosen
 
-#: A rung's picture has at least so many pixels on its shorter side, if the whole one has them.
+#: Fewest pixels on the shorter side of a rung's picture, unless the full size has fewer.
 _LEAST = 40
-#: A layer of ghosts has at most so many pixels.
+#: Most pixels of a layer of ghosts.
 _LAYER = 480 * 270
 
 
@@ -45,7 +45,7 @@ class Shot:
     chosen: Chosen | None = None
 
     def is_lit_as(self, other: Shot) -> bool:
-        """Whether the samples of another shot show this one, too, if no meter changes them."""
+        """Whether samples of another shot are samples of this shot, if no meter changes them."""
         if self.scene is not other.scene or self.settings != other.settings:
             return False
         return without_brightness(self.camera) == without_brightness(other.camera)
@@ -67,7 +67,7 @@ class Shot:
         return self._preview((max(1, round(width * share)), max(1, round(height * share))))
 
     def through(self, other: Shot) -> Shot:
-        """Returns the shot by the camera of another one, which may have another size."""
+        """Returns this shot by the camera of another shot, which may have another size."""
         size = self.settings.film.resolution
         return replace(self, camera=other._camera_at(size), chosen=other.chosen)
 

@@ -1,4 +1,4 @@
-"""Sight: how far what the camera sees is, by its chief rays."""
+"""Sight: distances of visible surfaces along chief rays of the camera."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ def distance_at(session: Session, x: float, y: float) -> float:
     """Distance at which the focus ring makes a point sharp, m; infinite: nothing is there.
 
     Args:
-        session: Session whose camera sees the point.
+        session: Session with a camera that sees the point.
         x: Pixel of its picture, from the left.
-        y: The same, from the top.
+        y: Pixel of its picture, from the top.
     """
     setup = session.prepared.setup
     (width, height), size = setup.resolution, setup.frame_size_mm
@@ -48,7 +48,7 @@ def depth_m(session: Session, toward: NDArray[np.float64]) -> float:
     """Depth of the surface that a ray from the pupil meets, m; infinite: it meets none.
 
     Args:
-        session: Session whose camera looks.
+        session: Session of the camera.
         toward: Unit direction in the camera's frame.
     """
     setup = session.prepared.setup

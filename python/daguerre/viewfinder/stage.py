@@ -1,4 +1,4 @@
-"""Stage: the scene, camera and settings of a viewfinder, and what dials make of them."""
+"""Stage: scene, camera and settings of a viewfinder, and the shots that dials make from them."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ class Stage:
         settings: Render settings before any dial.
         photograph: Sensor and development before any dial.
         tone: Tone curve of pictures that are not developed.
-        load: Loads the scene again; None: it cannot be.
+        load: Loads the scene again; None: the scene cannot be loaded again.
         built: Scene built for the core, kept between shots.
         meter: Light meter for automatic modes.
         layers: Draws layers of live ghosts for pictures on the way.
-        moment: The scene at the time of the last shot, if that is another one than the scene's.
+        moment: The scene at the time of the last shot, if that differs from the scene's time.
         metering: Held while the meter is used.
     """
 
@@ -93,14 +93,15 @@ class Stage:
         return shot
 
     def exposed(self, shot: Shot, *, fresh: bool = True) -> Shot:
-        """Returns a shot with the exposure that its mode chooses, if it is an automatic one.
+        """Returns a shot with the exposure that its mode chooses, if the mode is automatic.
 
         Args:
             shot: The shot.
-            fresh: Whether the meter must look anew at what moved; if not, what it saw last will do.
+            fresh: Whether the meter must measure anew after motion; if not, its last reading will
+                do.
 
         Raises:
-            DaguerreError: The mode chooses what the lens does not have.
+            DaguerreError: The mode chooses a setting that the lens does not have.
         """
         if not is_automatic(shot.camera.exposure):
             return shot
@@ -119,7 +120,7 @@ class Stage:
         return self._prepared(shot).setup.lens
 
     def try_out(self, dials: Dials) -> None:
-        """Sets up a small picture, so that what cannot be drawn is an error before anyone looks.
+        """Sets up a small picture, so that an error appears before any page opens.
 
         Raises:
             DaguerreError: The scene, the lens or a setting cannot be drawn.
@@ -137,7 +138,7 @@ class Stage:
         return one
 
     def _scene_at(self, time: float | None) -> Scene:
-        """The scene at a time, s, kept with what was built of it; None: at its own time."""
+        """The scene at a time, s, kept with its built parts; None: at the scene's time."""
         if time is None:
             return self.scene
         if self.moment is None or self.moment.time != time:
@@ -146,10 +147,10 @@ class Stage:
 
 
 def _check_mode(camera: Camera, turned: Collection[str]) -> None:
-    """Checks that nothing holds what the exposure mode chooses.
+    """Checks that no setting is fixed that the exposure mode chooses.
 
     Raises:
-        UsageError: Something does.
+        UsageError: A setting that the mode chooses is fixed.
     """
     mode, _ = split_mode(camera.exposure)
     for name in chosen_by(mode):

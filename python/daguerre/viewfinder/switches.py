@@ -45,7 +45,7 @@ def stranded(lit: Collection[str]) -> list[str]:
 
 
 def without(settings: RenderSettings, off: Collection[str]) -> RenderSettings:
-    """Returns the settings with switches off, and without what needs them."""
+    """Returns the settings with switches off, and without the settings that need them."""
     names = [*off, *stranded({*on_in(settings)} - {*off})]
     return settings.with_(**{name: DEFAULT[name] for name in names if name in DEFAULT})
 

@@ -16,10 +16,10 @@ from .false_colour import REACH, false_colour, zone_colours
 from .sight import depths_m, ring_offset_m
 
 NONE, FALSE_COLOUR, DEPTH = TINTS = ("none", "false-colour", "depth")
-#: Colours of what is before, within and behind the depth of field. All kinds of colour blindness
-#: tell them apart: orange and blue differ in hue, white in lightness.
+#: Colours of surfaces before, within and behind the depth of field. They differ in all kinds of
+#: colour blindness: orange and blue in hue, white in lightness.
 NEAR, SHARP, FAR = (255, 150, 30), (255, 255, 255), (70, 130, 255)
-#: Brightness of what is not sharp; black pixels are lifted so far that they have a colour, too.
+#: Brightness of unsharp pixels; black pixels are lifted so far that they have a colour, too.
 _DIM, _LIFT = 0.75, 0.2
 
 
@@ -68,7 +68,7 @@ def tint_of(
 def joined(
     tints: Sequence[Tint | None], join: Callable[[list[NDArray[np.uint8]]], NDArray[np.uint8]]
 ) -> Tint | None:
-    """Tint of pictures side by side; if one has none, the note on it."""
+    """Tint of pictures side by side; if a picture has none, the note on it."""
     found = [tint for tint in tints if tint is not None]
     pixels = [tint.pixels for tint in found if tint.pixels is not None]
     if not found or len(pixels) < len(found):

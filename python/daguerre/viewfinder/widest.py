@@ -27,11 +27,11 @@ def opened_as_wide(wish: Wish, error: Exception, before: Dials) -> Dials | None:
 
     Args:
         wish: The wish that cannot be drawn.
-        error: Why it cannot.
+        error: Error of the wish.
         before: Dials of the picture that is shown.
 
     Returns:
-        The dials; None: the error is another one, or the stop itself was turned.
+        The dials; None: the error has another cause, or the stop itself was turned.
     """
     stops = [[dials.texts.get(name) for name in _STOPS] for dials in (before, wish.dials)]
     if not isinstance(error, LensError) or error.code != "lens-f-stop" or stops[0] != stops[1]:

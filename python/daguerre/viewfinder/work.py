@@ -33,15 +33,15 @@ class Do(Protocol):
     """Does a step of work; ``Work.expose`` may be called while it lasts."""
 
     def __call__(self, step: Callable[[], Any]) -> Any:
-        """Returns what the step returns."""
+        """Returns the result of the step."""
 
 
 class Work:
     """Work on a wish.
 
     Attributes:
-        wish: The wish, or a later one for the same light.
-        drawn: Its newest picture; None: there is none yet.
+        wish: The wish, or a later wish for the same light.
+        drawn: Newest picture of the wish; None: not drawn yet.
     """
 
     def __init__(self, wish: Wish) -> None:
@@ -56,7 +56,7 @@ class Work:
         """Goes on for another wish if that asks for the same light; returns whether it does."""
         if not wish.shows_as(self.wish):
             return False
-        if self._rung is None:  # the first one is being set up
+        if self._rung is None:  # the first rung is being set up
             fits = wish.is_lit_as(self.wish)
         else:
             rung = rung_of(wish, self._index)
@@ -97,7 +97,7 @@ class Work:
         self._index, self._rung, self._sessions, self._layers = index, rung, sessions, layers
 
     def _layers_of(self, rung: Rung, stage: Stage) -> list[Layer | None]:
-        """Layers of live ghosts, one for each shot: those of the rung before if they fit."""
+        """Layer of live ghosts of each shot; reuses the previous rung's layers if they fit."""
         before = () if self._rung is None else self._rung.ghosts
         pairs = zip_longest(rung.ghosts, before[: len(rung.ghosts)])
         if rung.ghosts and all(old and new.is_lit_as(old) for new, old in pairs):
@@ -142,7 +142,7 @@ def _with_ghosts(frame: Frame, layer: Layer | None) -> View:
 
 
 def _session(stage: Stage, shot: Shot) -> Session:
-    """Session of a shot; the built scene is kept for the next one."""
+    """Session of a shot; keeps the built scene for the next shot."""
     session = Session(shot.scene, shot.camera, settings=shot.settings, built=stage.built)
     stage.built = session.built
     session.metering = _metering(shot)

@@ -1,7 +1,7 @@
-"""Points scattered over a grid, one in each cell, and distances to them.
+"""Random feature points on a grid, a point in each cell, and distances to them.
 
 Source: S. Worley 1996, "A cellular texture basis function"; Cycles, ``kernel/svm/voronoi.h``
-(Apache-2.0, MIT): order of the cells, and what is a hash of what.
+(Apache-2.0, MIT): order of the cells, and the hashes.
 """
 
 from __future__ import annotations

@@ -97,7 +97,7 @@ def hetero_terrain(point: Point, octaves: Octaves) -> Array:
 
 
 def hybrid_multifractal(point: Point, octaves: Octaves) -> Array:
-    """Terrain whose octaves weigh what lies below them."""
+    """Hybrid multifractal terrain: each octave is weighted by the sum of the coarser octaves."""
     value: Numbers = np.zeros_like(point[0])
     weight: Numbers = np.ones_like(point[0])
     for share, size, noise in octaves.noises(point):

@@ -18,10 +18,10 @@ _LEAST = 1 << 12
 
 
 class Kept:
-    """Results of functions by what they were made of; those that nobody asked for longest go first.
+    """Cache of function results by arguments; drops the least recently used results.
 
     Args:
-        most: Bytes of all results.
+        most: Most bytes of all results.
     """
 
     def __init__(self, most: int = MOST) -> None:

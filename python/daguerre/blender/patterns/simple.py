@@ -19,7 +19,7 @@ from .hashes import Numbers
 Array = NDArray[np.float32]
 _TURN = np.float32(2 * np.pi)
 _HALF = np.float32(0.5)
-#: Phase of a wave for one unit of its coordinates, and of a diagonal one.
+#: Phase of a wave for a unit of its coordinate, and of a diagonal wave.
 _PHASE, _DIAGONAL = np.float32(20), np.float32(10)
 #: Shift and factor that keep whole coordinates off the edge of a cell.
 _SHIFT, _SHRINK = np.float32(0.000001), np.float32(0.999999)
@@ -153,7 +153,7 @@ class Bricks:
         height: Height of a row.
         offset: Shift of every ``offset_rows``-th row, in bricks.
         offset_rows: See ``offset``; 0: no row is shifted or squashed.
-        squash: Factor on the width in the rows that are not every ``squash_rows``-th one.
+        squash: Factor on the width in all rows but every ``squash_rows``-th row.
         squash_rows: See ``squash``.
     """
 

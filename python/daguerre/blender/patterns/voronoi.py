@@ -52,7 +52,7 @@ class Cells:
         return octaves_of(self.detail, self.roughness, self.lacunarity)
 
     def widest(self, axes: int) -> Numbers:
-        """Distance by which the nearest one is divided."""
+        """Largest distance to the nearest point, for normalization."""
         half = np.asarray(0.5 + 0.5 * self.randomness, np.float32)
         return self.metric([half] * axes, self.exponent) if axes > 1 else half
 
@@ -145,7 +145,7 @@ def smooth(point: Point, cells: Cells) -> Found:
         there = grid.scattered(offset)
         distance = _distance(there, grid, cells)
         here = [distance, *grid.color(offset), *there]
-        if not values:  # the first one has all the weight
+        if not values:  # the first point has all the weight
             values = here
             continue
         nearer = np.float32(0.5) + np.float32(0.5) * (values[0] - distance) / width
@@ -166,7 +166,7 @@ def _step(t: Array) -> Array:
 
 
 def sphere_radius(point: Point, cells: Cells) -> Array:
-    """Half the distance between the nearest point and the one that is nearest to it."""
+    """Half the distance between the nearest point and that point's nearest neighbour."""
     grid = Grid.around(point, cells.randomness)
     cell, _ = _ranked(grid, Cells(), both=False)
     least = np.full(point[0].shape, np.inf, np.float32)

@@ -1,8 +1,8 @@
-"""Texels of a surface, and the coordinates of each: what patterns are computed on.
+"""Canvas: texels of a surface and their coordinates, at which patterns are computed.
 
-A pattern of texture coordinates alone needs the range of these that a surface uses. Any other
-needs the place on the surface at each texel, so that its texture must lie on the surface without
-overlap.
+A pattern of texture coordinates alone needs the range of coordinates that a surface uses. Any other
+pattern needs the position on the surface at each texel, so its texture must cover the surface
+without overlap.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from daguerre.shading.lookup import looked_up
 from .surfaces import Surface
 
 Array = NDArray[Any]
-#: Longer side of the canvas on which a material is tried; only such a one is measured.
+#: Longer side of the trial canvas of a material; only trial canvases are measured.
 TRIAL = 128
-#: Share of the steps between texels that the size of a canvas is made for.
+#: Quantile of the steps between texels that sets the size of a canvas.
 _MOST_STEPS = 80
 #: Least extent of a range of coordinates.
 _LEAST = 1e-6

@@ -1,8 +1,8 @@
-"""Light that a tree of shaders sends back: what covers the surface, and what it emits.
+"""Closures of a tree of shaders: coverage, surface parameters and emission.
 
-Blender's shaders are sums of scattered light with weights; the renderer has one layered surface.
-So a mix becomes one surface with mixed parameters, which is exact for diffuse and glossy light and
-for anything with a transparent or a glowing surface.
+Blender's shaders are weighted sums of closures; the renderer has a single layered surface. So a mix
+becomes a surface with mixed parameters, which is exact for diffuse and glossy light, and for
+mixes with a transparent or an emissive surface.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def is_mirror(surface: Surface) -> bool:
 
 
 def mixed(math: Arithmetic, a: Closure, b: Closure, share: Value) -> tuple[Closure, bool]:
-    """Mix of two closures, the share being that of the second; and whether it is exact."""
+    """Mix of two closures by the share of the second, and whether the mix is exact."""
     cover = math.mix(a.cover, b.cover, share)
     if a.cover == (0.0,):
         share = (1.0,)
@@ -99,9 +99,9 @@ def _one_surface(
 
 
 def _glossed(math: Arithmetic, diffuse: Surface, gloss: Surface, share: Value) -> Surface:
-    """Diffuse light under gloss: (1 - share) of the one, share of the other.
+    """Diffuse light under gloss: (1 - share) of the diffuse lobe, share of the glossy lobe.
 
-    The renderer dims what lies below gloss of the reflectance f by 1 - f, which is undone.
+    The renderer dims layers below gloss of reflectance f by 1 - f, which is undone here.
     """
     specular = math.multiply(gloss.specular, share)
     rest = math.divide(math.subtract((1.0,), share), math.subtract((1.0,), specular))
@@ -138,7 +138,7 @@ def as_metal(math: Arithmetic, surface: Surface) -> Surface:
 
 
 def parameters_mixed(math: Arithmetic, a: Surface, b: Surface, share: Value) -> Surface:
-    """Surface with mixed parameters; those that are no values come from the heavier one."""
+    """Surface with mixed parameters; the heavier surface gives parameters that are no values."""
     a, b = _with_layers(a, b), _with_layers(b, a)
     heavier = b if _mean(share) > 0.5 else a
     if not is_set(a.specular) and is_set(b.specular):
@@ -154,7 +154,7 @@ def parameters_mixed(math: Arithmetic, a: Surface, b: Surface, share: Value) -> 
 
 
 def _with_layers(surface: Surface, other: Surface) -> Surface:
-    """Surface whose layers without weight have the parameters of the other's."""
+    """Surface with parameters of the other surface in its layers without weight."""
     taken = {
         name: getattr(other, name)
         for weight, names in _LAYERS.items()

@@ -43,7 +43,7 @@ def modulo(a: Numbers, b: Numbers) -> Numbers:
 
 
 def wrapped(a: Numbers, high: Numbers, low: Numbers) -> Numbers:
-    """Number in a range, past whose end it begins again."""
+    """Wraps a number into the range [low, high)."""
     span = high - low
     return np.where(span != 0, a - span * np.floor(divided(a - low, span)), low)
 
@@ -112,7 +112,7 @@ _MATH: dict[str, tuple[int, Callable[..., Any]]] = {
 }
 #: Operations that keep a picture as it is, or coordinates affine.
 _AFFINE = {"ADD": "add", "SUBTRACT": "subtract", "MULTIPLY": "multiply", "DIVIDE": "divide"}
-#: Operations of vectors that work on each channel as those of numbers, by the latter's name.
+#: Operations of vectors that work on each channel, with the names of the operations of numbers.
 _EACH = {
     **{name: name for name in ("POWER", "SIGN", "ABSOLUTE", "MINIMUM", "MAXIMUM", "FLOOR")},
     **{name: name for name in ("CEIL", "MODULO", "WRAP", "SNAP", "SINE", "COSINE", "TANGENT")},

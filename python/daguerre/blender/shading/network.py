@@ -226,7 +226,7 @@ def _special(node: bpy.types.Node) -> dict[str, Constant]:
 
 
 def _converted(found: _Found, socket: bpy.types.NodeSocket, nodes: dict[str, Node]) -> Link:
-    """Link to an output, through a node that makes a number of it if the socket takes one."""
+    """Link to an output, through a node that converts it if the socket takes a number."""
     name, output = found.place.name, str(found.output.identifier)
     kind = {"RGBA": GREY, "VECTOR": MEAN}.get(str(found.output.type))
     if kind is None or socket.type not in _NUMBERS:

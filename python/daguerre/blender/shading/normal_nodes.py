@@ -32,7 +32,7 @@ def normal_map(given: Arguments) -> Value:
     normal = arithmetic.add(arithmetic.multiply(color, (2.0,)), (-1.0,))
     if strength == (1.0,):
         return normal
-    # From the normal of the surface to that of the map, by the strength.
+    # The strength interpolates from the surface's normal to the map's.
     x, y, z = normal
     slopes = arithmetic.multiply((x, y), arithmetic.clamp(strength, (0.0,), (np.inf,)))
     return (*slopes, *arithmetic.mix((1.0,), (z,), arithmetic.fraction(strength)))
@@ -61,7 +61,7 @@ def bump(size_of: Callable[[str], float]) -> Operation:
 
 
 def _bumped(sockets: Sockets, height: Texel, scale: float, strength: float) -> Value:
-    """Normal of a height: (-dh/du, -dh/dv, 1), mixed with that of the surface by the strength."""
+    """Normal of a height, (-dh/du, -dh/dv, 1), mixed with the surface's by the strength."""
     lie = height.mapping
 
     def component(index: int) -> Callable[[Array], Array]:
@@ -86,7 +86,7 @@ def _normal(values: Array, lie: Lie, scale: float, strength: float) -> tuple[Arr
 
 
 def _difference(values: Array, axis: int, wrap: str) -> Array:
-    """Central difference along an axis; that of one side at the border of a clamped picture."""
+    """Central difference along an axis; one-sided at the border of a clamped picture."""
     if wrap == "repeat":
         return np.asarray((np.roll(values, -1, axis) - np.roll(values, 1, axis)) / 2, np.float32)
     if values.shape[axis] == 1:

@@ -28,7 +28,7 @@ PATTERNS = tuple(
     f"ShaderNodeTex{name}"
     for name in ("Noise", "Voronoi", "WhiteNoise", "Wave", "Gradient", "Magic", "Brick", "Checker")
 )
-#: Patterns whose coordinates are 0 without a link, and not those of the surface.
+#: Patterns that have coordinates 0 without a link, not the surface's coordinates.
 _UNPLACED = ("ShaderNodeTexWhiteNoise",)
 _COORDINATES, _GEOMETRY = "ShaderNodeTexCoord", "ShaderNodeNewGeometry"
 _ON_SURFACE = ("Generated", "Object")
@@ -131,7 +131,7 @@ def canvas_of(reads: Reads, surface: Surface, side: int) -> Canvas | None:
 
 
 def _span(surface: Surface, primvar: str) -> Array | None:
-    """Least and largest texture coordinates; None: there are none, or not finite ones."""
+    """Least and largest texture coordinates; None: missing or not finite."""
     if surface.layer(primvar) is None:
         return None
     corners = surface.uv(primvar).reshape(-1, 2).astype(np.float64)

@@ -46,11 +46,12 @@ def vector_of(sockets: Sockets, unlinked: Value | None = None) -> Value | None:
 
 
 class Pattern:
-    """Reads what all patterns share: coordinates and their number.
+    """Reads inputs that all patterns share: coordinates and their number.
 
     Args:
         given: Inputs of the node.
-        dimensions: Number of axes, "1D" .. "4D"; the last of "4D" and that of "1D" is ``W``.
+        dimensions: Number of axes, "1D" .. "4D"; the last axis of "4D" and the axis of "1D" is
+            ``W``.
     """
 
     def __init__(self, given: Arguments, dimensions: str = "3D") -> None:
@@ -62,7 +63,7 @@ class Pattern:
         """Coordinates times the scale; None: they are not known for each texel.
 
         Args:
-            unlinked: Coordinates without a link; default: "Generated" ones.
+            unlinked: Coordinates without a link; default: "Generated".
             scaled: Whether they are multiplied with the scale.
         """
         found: Value = ()

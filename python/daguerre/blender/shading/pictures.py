@@ -1,6 +1,6 @@
 """Pictures of Blender: packed, of files, generated, and UDIM tiles.
 
-Source: Blender Python API 5.0, ``bpy.types.Image``: numbers of 8 bits are those of the file, floats
+Source: Blender Python API 5.0, ``bpy.types.Image``: numbers of 8 bits are as in the file, floats
 are light in the working space.
 """
 
@@ -56,7 +56,7 @@ def space_of(image: bpy.types.Image) -> str:
 
 
 def _is_open(image: bpy.types.Image) -> bool:
-    """Whether Blender names no other colours than linear ones, so that the file's primaries count.
+    """Whether Blender names only linear colours, so that the file's primaries count.
 
     Blender converts pictures itself, but tiles are read from their files.
     """
@@ -64,7 +64,7 @@ def _is_open(image: bpy.types.Image) -> bool:
 
 
 def alpha_of(image: bpy.types.Image) -> str:
-    """How an image means opacity; that of data is a channel like the others."""
+    """Alpha mode of an image; alpha of data is a channel without meaning."""
     if image.colorspace_settings.is_data and image.alpha_mode != "NONE":
         return "CHANNEL_PACKED"
     return str(image.alpha_mode)

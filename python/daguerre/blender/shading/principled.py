@@ -20,7 +20,7 @@ from .closures import WHITE, Closure
 from .sockets import Sockets
 
 _COAT_IOR = 1.5
-#: Distance between the anisotropies 1 and that of endless stretching (Burley 2012).
+#: Factor on the anisotropy in the aspect ratio sqrt(1 - 0.9 anisotropic) (Burley 2012).
 _STRETCH = 0.9
 
 
@@ -62,7 +62,7 @@ def emitted(sockets: Sockets, prefix: str = "") -> Value:
 
 
 def normal_of(sockets: Sockets, name: str = "Normal") -> Value | None:
-    """Normal in the frame of the texture coordinates; None: that of the mesh."""
+    """Normal in the frame of the texture coordinates; None: the mesh's normal."""
     found = sockets.linked(name)
     if found is None or len(found) != 3:
         return None

@@ -63,7 +63,7 @@ def glossy(sockets: Sockets) -> Closure:
 
 
 def metallic(sockets: Sockets) -> Closure:
-    """Metallic BSDF: the colour at normal incidence, or that of complex indices."""
+    """Metallic BSDF: by the colour at normal incidence, or by complex indices."""
     surface = Surface(metallic=(1.0,), double_sided=True)
     surface.roughness = sockets.math.fraction(sockets.one("Roughness"))
     if sockets.text("fresnel_type") == "PHYSICAL_CONDUCTOR":
@@ -87,7 +87,7 @@ def _conductor(n: object, k: object) -> object:
 
 
 def glass(sockets: Sockets) -> Closure:
-    """Glass BSDF: each interface tints what it reflects and what it lets through."""
+    """Glass BSDF: each interface tints reflected and transmitted light."""
     surface = _clear(sockets)
     surface.specular_color = surface.base_color
     if "Thin Film Thickness" in sockets.given.node.inputs:

@@ -10,7 +10,7 @@ from daguerre.shading.materialx.graph import Constant, Link
 class Sockets:
     """Reads the sockets and properties of a node.
 
-    A socket whose node is not supported has the value that it shows without the link. Values that
+    A socket linked to an unsupported node has the value that it shows without the link. Values that
     are not finite are an ``InputError``.
     """
 

@@ -132,7 +132,7 @@ def texture_coordinates(given: Arguments) -> Mapping[str, Value]:
 
 
 def _on_canvas(sockets: Sockets, canvas: Canvas, name: str) -> Value | None:
-    """Coordinates at the texels of a canvas; those of another object are read in the world."""
+    """Coordinates at the texels of a canvas; another object's are computed from the world."""
     place = sockets.given.node.inputs.get(".object_matrix")
     if name != "Object" or not isinstance(place, Constant) or not isinstance(place.value, tuple):
         return canvas.vector(name)

@@ -44,7 +44,7 @@ class _Flag(NamedTuple):
 
 
 class _Read(NamedTuple):
-    """Words between a command and the cursor: flags, the one without its value, arguments."""
+    """Words between a command and the cursor: flags, a last flag without value, arguments."""
 
     given: list[_Flag]
     arguments: int
@@ -56,8 +56,8 @@ def answer(before: list[str], current: str) -> Answer:
     """Finds what can stand at the cursor.
 
     Args:
-        before: Words before that at the cursor, without the name of the program.
-        current: Part of the word at the cursor that stands before it.
+        before: Words before the word at the cursor, without the name of the program.
+        current: Part of the word at the cursor, up to the cursor.
     """
     if before and before[-1] in REDIRECT:
         return Answer("", current, suffixes=())

@@ -1,8 +1,8 @@
 """Installs the script of a shell for one user, and removes it.
 
 bash-completion and fish find scripts in folders of the user. For zsh, and for bash without
-bash-completion, a line at the end of the start-up file reads the script. The files themselves note
-what was made for them, so that removing leaves everything as it was.
+bash-completion, a line at the end of the start-up file reads the script. The files themselves list
+the folders and files made for them, so that ``remove`` restores the earlier state.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _STARTS_OF_BASH = ("/etc/bash.bashrc", "/etc/bashrc")
 
 
 def of_user(shell: str | None) -> str:
-    """The shell that was named, else that of the user.
+    """The shell that was named, else the user's shell.
 
     Raises:
         UsageError: There is no completion for it.
@@ -50,7 +50,7 @@ def script(shell: str) -> str:
 
 
 def install(shell: str) -> list[str]:
-    """Installs the script of a shell; returns what was done.
+    """Installs the script of a shell; returns a sentence for each change.
 
     Raises:
         OutputError: It cannot be written, or another file has its place.
@@ -68,7 +68,7 @@ def install(shell: str) -> list[str]:
 
 
 def remove(shell: str) -> list[str]:
-    """Removes the script of a shell; returns what was done.
+    """Removes the script of a shell; returns a sentence for each change.
 
     Raises:
         OutputError: It cannot be removed.
@@ -130,7 +130,7 @@ def _make_folders(folder: Path) -> int:
 
 
 def _add_line(shell: str, path: Path) -> list[str]:
-    """Adds the line that reads the script to a start-up file, if the shell needs one."""
+    """Adds a line that reads the script to a start-up file, if the shell needs the line."""
     start = _start(shell)
     if shell == "fish" or (shell == "bash" and _loads_bash_completion(start)):
         return []

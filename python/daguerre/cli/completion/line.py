@@ -55,7 +55,7 @@ def split(line: str, breaks: str) -> Line:
 
 
 def _without_redirections(words: list[str]) -> list[str]:
-    """Words without redirections, but for one at the end whose file is missing."""
+    """Words without redirections; keeps a redirection at the end without a file yet."""
     kept: list[str] = []
     for i, word in enumerate(words):
         redirected = i > 0 and words[i - 1] in REDIRECT

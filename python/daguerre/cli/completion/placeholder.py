@@ -1,9 +1,9 @@
-"""Placeholders of flags and arguments, such as ``LENS|thin|pinhole``, say what can be typed there.
+"""Placeholders of flags and arguments, such as ``LENS|thin|pinhole``, and the words they allow.
 
-Alternatives stand between bars. Lower-case ones are typed as they are, those in capitals are names
-of kinds: some kinds have words or files (``kinds`` in ``words.json``), others are free text.
-``FILE.svg|png`` are files of these suffixes. ``AOV,...`` and ``render,proxy`` are lists, with
-commas. ``EFFECT:KEY=VALUE,...`` has keys after its word. Brackets enclose what may be left out.
+Bars separate alternatives. Lower-case alternatives are typed as they are; alternatives in capitals
+are names of kinds: some kinds have words or files (``kinds`` in ``words.json``), others are free
+text. ``FILE.svg|png`` are files of these suffixes. ``AOV,...`` and ``render,proxy`` are lists, with
+commas. ``EFFECT:KEY=VALUE,...`` has keys after its word. Brackets enclose optional parts.
 """
 
 from __future__ import annotations

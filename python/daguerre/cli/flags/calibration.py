@@ -133,7 +133,7 @@ class CalibrationFlags:
     def resolution(
         self, calibration: "Calibration | None", res: str | None, default: tuple[int, int]
     ) -> tuple[int, int]:
-        """Size of the picture, px: that of ``--res``, else of the calibration."""
+        """Size of the picture, px: from ``--res``, else from the calibration, else the default."""
         size = default if calibration is None else calibration.projection.size
         if not res:
             return size

@@ -1,4 +1,4 @@
-"""Flags of the camera, for every command that uses one."""
+"""Flags of the camera, for every command with a camera."""
 
 from typing import Any
 

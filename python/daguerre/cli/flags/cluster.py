@@ -46,7 +46,7 @@ class ClusterFlags:
 
     @contextlib.contextmanager
     def crew(self, tell: Any) -> Iterator[Any]:
-        """Opens the cluster, if there is one, with a first worker; None: there is none."""
+        """Opens the cluster of ``--cluster``, with a first worker; None without the flag."""
         if self.cluster is None:
             yield None
             return

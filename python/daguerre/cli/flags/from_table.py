@@ -36,7 +36,7 @@ def made_of(
     Args:
         table: Rows of the flags, in the order of help.
         names: Table of the parameters that help texts refer to; None: the same.
-        panel: Section of help that shows them; None: that of each row.
+        panel: Section of help that shows the flags; None: each row's section.
     """
 
     def make(base: type[Flags]) -> type[Flags]:

@@ -1,4 +1,4 @@
-"""Groups of flags that several commands share: data classes whose fields are the flags.
+"""Groups of flags that several commands share: data classes with the flags as fields.
 
 A command has a group as one of its parameters, and :func:`with_flags` puts the group's fields into
 the signature that Typer reads. Annotations must be real objects here, so no ``annotations`` future.

@@ -1,6 +1,6 @@
 """Texts generated from tables: flags on pages, docstrings of records, words of completion.
 
-``script/docs/make-cli-reference`` writes them; a test fails if one is stale.
+``script/docs/make-cli-reference`` writes these texts; a test fails if a text is stale.
 """
 
 from collections.abc import Iterable

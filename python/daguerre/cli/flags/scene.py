@@ -155,7 +155,7 @@ class SceneFlags(SceneFileFlags):
 
         Raises:
             UsageError: There are no frames.
-            InputError: One is missing; the message names the first frame and its file.
+            InputError: A plate is missing; the message names its frame and its file.
         """
         from daguerre.errors import InputError, UsageError
         from daguerre.files.in_use import note_read
@@ -174,11 +174,11 @@ class SceneFlags(SceneFileFlags):
             note_read([path])
 
     def throw_plate(self, scene: "Scene", taken: "Camera | None", frame: int = 0) -> None:
-        """Sets the plate of the scene, in a sequence that of a frame.
+        """Sets the plate of the scene; in a sequence, the plate of a frame.
 
         Args:
             scene: The scene, at the time of the frame.
-            taken: Camera of ``--like-plate``; None: there is none.
+            taken: Camera of ``--like-plate``; None: not given.
             frame: Number of the frame.
         """
         from daguerre.cli import console

@@ -13,7 +13,7 @@ PORT = 8321
 
 @dataclass(frozen=True)
 class ServerFlags:
-    """Where the viewfinder listens, who gets in, and what else gets its pictures."""
+    """Address of the viewfinder, its token and proxies, and a tev that also gets its pictures."""
 
     host: Annotated[
         str, option("--host", metavar="ADDRESS", help="Address to listen on [127.0.0.1].")

@@ -1,4 +1,4 @@
-"""``daguerre lens --flare --polynomial``: ghosts as Taylor polynomials beside exact ones."""
+"""``daguerre lens --flare --polynomial``: ghosts as Taylor polynomials beside exact ghosts."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class PolynomialReport:
         ]
 
     def added_to(self, facts: dict[str, Any]) -> dict[str, Any]:
-        """Facts of the ghosts with those of their polynomials; None: the film is dark."""
+        """Facts of the ghosts and of their polynomials; None: the film is dark."""
         for ghost in facts["ghosts"]:
             error = self._of.get(tuple(ghost["surfaces"]))
             ghost["polynomial"] = error.facts() if error else None

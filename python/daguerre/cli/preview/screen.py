@@ -64,7 +64,7 @@ class Screen(Silent):
         self._next = 0.0
 
     def picture(self, pixels: Pixels) -> None:
-        """Draws the picture in place of the last one, or below the present text."""
+        """Draws the picture in place of the last picture, or below the present text."""
         cells = Cells.of(self._out)
         height, width = pixels.shape[:2]
         columns, rows = cells.box(width, height)

@@ -50,7 +50,7 @@ class Labels:
         self.file.add(seen, next(plain, files[0]), picture.facts)
 
     def write(self) -> None:
-        """Writes the file, if there is one."""
+        """Writes the file, if labels were asked for."""
         if self.file is not None:
             self.file.write()
             console.note(f"wrote {self.file.path}")

@@ -13,7 +13,7 @@ _RANGE = re.compile(r"\s*(-?\d{1,9})(?:-(-?\d{1,9})(?:x(\d{1,9}))?)?\s*")
 
 
 def frame_numbers(flag: str, text: str) -> list[int]:
-    """Parses ``1-48``, ``1-48x2`` (every second one), ``7``, or several of them between commas."""
+    """Parses ``1-48``, ``1-48x2`` (every second frame), ``7``, or several with commas between."""
     wanted = "frames such as 1-48, 1-48x2 or 1,5,9-12"
     found: dict[int, None] = {}
     for part in text.split(","):

@@ -29,7 +29,7 @@ def photograph_of(
     seed: int,
     plate: PlateCamera | None = None,
 ) -> Photograph:
-    """Makes the photograph from flags; ``plate``: camera whose look pictures imitate.
+    """Makes the photograph from flags; pictures imitate the look of the camera ``plate``.
 
     Raises:
         UsageError: A flag is wrong, or excludes another.

@@ -71,7 +71,7 @@ def plan_of(
         rows: Flags of the settings.
         maps: Flags of the maps.
         cameras: Flags of the cameras.
-        scene: The scene, whose file may name the size of a picture; None: it is not read yet.
+        scene: The scene; its file may name the size of a picture. None: it is not read yet.
 
     Raises:
         UsageError: A value is wrong, or excludes another; the message names the flag.
@@ -120,7 +120,7 @@ def _output(
 
 
 def _output_of(output: Output, view: View, settings: RenderSettings) -> Output:
-    """Makes the output of one camera, whose picture may have another size."""
+    """Makes the output of a camera, which may have another picture size."""
     if DISPARITY in output.aovs and not view.shift:
         raise UsageError("--aov disparity needs --stereo")
     return replace(output, baseline=2 * abs(view.shift))
@@ -142,7 +142,7 @@ def missing_moments(pictures: Iterable[Picture], scene: Scene) -> tuple[float, f
     """Begin and end of the time that a scene must be read for, s after frame 0.
 
     Args:
-        pictures: The pictures to draw, whose cameras the scene has.
+        pictures: The pictures to draw, with cameras of the scene.
         scene: The scene at the time of frame 0.
 
     Returns:

@@ -24,7 +24,7 @@ _WITH = {
 
 
 def read_plate(path: Path | None) -> PlateCamera | None:
-    """Reads the camera file of the flag, if given, and notes what it lacks."""
+    """Reads the camera file of the flag, if given, and prints notes on missing data."""
     if path is None:
         return None
     from daguerre.plates.composite.remarks import of_camera
@@ -39,15 +39,15 @@ def read_plate(path: Path | None) -> PlateCamera | None:
 def over_plate(
     plate: PlateCamera | None, given: dict[str, Any], *, calibrated: bool
 ) -> dict[str, Any]:
-    """Parameters of the camera: those of the plate, overridden by given ones.
+    """Parameters of the camera: the plate's, overridden by given parameters.
 
     Args:
-        plate: The matched camera; None: there is none.
+        plate: The matched camera; None: no plate.
         given: Parameters from flags.
         calibrated: Whether a calibration replaces the lens.
 
     Raises:
-        UsageError: A given exposure mode chooses what the plate sets.
+        UsageError: A given exposure mode chooses a value that the plate sets.
     """
     if plate is None:
         return given

@@ -124,7 +124,7 @@ class ConsoleReporter(Reporter):
             )
 
     def stopped(self, result: Stopped) -> None:
-        """Reports a stopped picture: what is kept, how to resume, and an event."""
+        """Reports a stopped picture: the saved checkpoint, how to resume, and an event."""
         kept = "nothing was saved"
         if result.checkpoint is not None:
             kept = f"{'saved in' if result.saved else 'the last checkpoint is'} {result.checkpoint}"

@@ -26,7 +26,7 @@ INTERRUPTED = 75
 def run(
     plan: Plan, scene: Scene, path: Path, labels: Labels, launched: float, crew: Crew | None = None
 ) -> int:
-    """Draws the pictures one after the other; returns the exit code.
+    """Draws the pictures in turn; returns the exit code.
 
     Args:
         plan: Plan with the pictures.
@@ -78,7 +78,7 @@ def run(
 
 
 def describe(plan: Plan, scene: Scene, path: Path) -> int:
-    """Prints what would be drawn: the first frame of a sequence, each camera of a rig."""
+    """Prints the pictures without drawing: the first frame of a sequence, each camera of a rig."""
     from daguerre.pictures.exr.write import jsonable, without_infinity
 
     job, frame = _job(plan, scene, path), plan.pictures[0].frame

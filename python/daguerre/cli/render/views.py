@@ -1,6 +1,6 @@
-"""Cameras of a call: one, or those of a rig, and the names of their files.
+"""Cameras of a call, a single camera or a rig, and the names of their files.
 
-All of them use the same random numbers, so each picture is bit-identical to a call with that camera
+All cameras use the same random numbers, so each picture is bit-identical to a call with that camera
 alone.
 """
 
@@ -74,8 +74,8 @@ class Cameras:
         names: Value of ``--camera``.
         flags: Calibrations that replace lenses.
         changes: Parameters that the command line changes.
-        placement: Where it puts the camera.
-        plate: Camera of a photograph, whose size is the default; None: there is none.
+        placement: Position and direction from the command line.
+        plate: Camera of a photograph, which has the default size; None: no photograph.
         start: Time of frame 0, s.
     """
 
@@ -87,8 +87,8 @@ class Cameras:
     start: float = 0.0
 
     def views(self, stereo: str | None) -> list[View]:
-        """Views of the cameras, with those of a stereo pair."""
-        found = {name: one.starting(self.start) for name, one in self.flags.found.items()}
+        """Views of the cameras, with both views of a stereo pair."""
+        found = {name: c.starting(self.start) for name, c in self.flags.found.items()}
         views = views_of(self.names, found, stereo)
         if self.placement.given and len({view.camera for view in views}) > 1:
             raise UsageError("--position, --look-at, --roll: wanted one --camera, got several")
@@ -111,7 +111,7 @@ class Cameras:
         """Checks that tracked cameras have a pose at all frames.
 
         Raises:
-            InputError: One has none; the message names the frame.
+            InputError: A camera has no pose at a frame; the message names the frame.
         """
         calibrated = {view.name: view.calibration for view in self.views(stereo)}
         rates: dict[str, float] = {}
@@ -122,7 +122,7 @@ class Cameras:
                 found.check(one.frame, scene.time + (one.frame or 0) / fps, fps)
 
     def size(self, view: View, res: str | None, scene: Scene | None = None) -> tuple[int, int]:
-        """Size of a camera's picture, px; None: the scene, whose file may name it, is not read yet.
+        """Size of a camera's picture, px; None: the scene's file, which may set it, is not read.
 
         Raises:
             InputError: The scene has no such camera.
