@@ -96,7 +96,7 @@ class Bench(BriefRecord, Sectioned):
         """Traces rays exactly, in double precision.
 
         Args:
-            origins: Points before the first surface (or behind the last one), shape (N, 3), mm.
+            origins: Points before the first surface (or behind the last), shape (N, 3), mm.
             directions: Directions toward the lens, shape (N, 3).
             wavelength_nm: One wavelength, nm.
             to_film: Whether rays run from the object to the film; else from film to object.
@@ -139,7 +139,7 @@ class Bench(BriefRecord, Sectioned):
 
     @property
     def projection(self) -> str:
-        """Nominal projection of the lens: ``rectilinear``, or that of a fisheye."""
+        """Nominal projection of the lens: ``rectilinear``, or a fisheye's."""
         return self.lens.nominal.projection or "rectilinear"
 
     @property
@@ -167,7 +167,7 @@ def set_up(
         zoom_mm: Focal length of a zoom, mm.
         by: Position of the film: ``best``: where the spot on the axis is smallest; ``paraxial``:
             where rays close to the axis meet.
-        field_mm: Half of the image circle, mm; None: that of the lens.
+        field_mm: Half of the image circle, mm; None: the lens's.
 
     Raises:
         InputError: The lens does not have this focus, zoom or f-stop.

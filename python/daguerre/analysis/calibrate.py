@@ -89,7 +89,7 @@ class ProjectionFit(BriefRecord, Plotted):
 
     @property
     def residuals(self) -> FloatArray:
-        """Pixels of the model less those of the lens, px, shape (N, 2)."""
+        """Pixels of the model less pixels of the lens, px, shape (N, 2)."""
         return self.projection.project(self.directions) - self.pixels
 
     @property
@@ -137,7 +137,7 @@ def calibrate_all(
 ) -> list[ProjectionFit]:
     """Fits every model that covers the field of the lens; returns the best (by RMS) first.
 
-    Args: those of :func:`calibrate`; ``opencv`` is fitted with 4, 5, 8 and 12 parameters.
+    Args: as for :func:`calibrate`; ``opencv`` is fitted with 4, 5, 8 and 12 parameters.
 
     Raises:
         UsageError: A number is out of range.
@@ -305,8 +305,8 @@ def fit_projection(
 def directions_seen(bench: Bench, rays: ChiefRays) -> FloatArray:
     """Directions to points in focus on chief rays, from the paraxial entrance pupil.
 
-    The pupil is the camera's position. The points lie on the plane in focus; for fisheyes, whose
-    field is too wide for a plane, on a sphere with that radius.
+    The pupil is the camera's position. The points are on the plane in focus; for fisheyes, with a
+    field too wide for a plane, on a sphere of the same distance.
 
     Returns:
         Unit directions, x right, y down, z ahead, shape (N, 3); NaN where there is no chief ray.
@@ -337,7 +337,7 @@ def _grid(
     rows = max(3, round((ACROSS - 1) * height / width) + 1)
     x, y = np.linspace(-0.5, width - 0.5, ACROSS), np.linspace(-0.5, height - 0.5, min(rows, 101))
     pixels = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-    # The image on the film, whose y is up, is upside down.
+    # The image on the film is upside down; y is up.
     film = (pixels - axis) * pitch * (-1, 1)
     if bench.is_fisheye:  # outside its image circle is only the barrel
         inside = np.hypot(*film.T) <= bench.field_mm * (1 + 1e-9)

@@ -15,7 +15,7 @@ from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM
 
 from .bench import Bench, FloatArray
 
-STEPS = 8  # from the axis to the film point; each step starts from the one before
+STEPS = 8  # from the axis to the film point; each step starts from the previous solution
 NEWTON = 6  # most iterations of a step
 ON_THE_WAY = 1e-3  # tolerance of all steps but the last, of the iris radius
 EXACT = 1e-11  # tolerance of the last step, of the iris radius
@@ -23,7 +23,7 @@ EXACT = 1e-11  # tolerance of the last step, of the iris radius
 
 @dataclass(frozen=True, repr=False)
 class ChiefRays(BriefRecord):
-    """Rays through the centre of the stop, one for each film point; NaN where there is none.
+    """Rays through the centre of the stop from each film point; NaN where no chief ray arrives.
 
     Attributes:
         film: Film points, mm, shape (N, 2).

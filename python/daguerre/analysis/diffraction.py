@@ -113,11 +113,11 @@ class Pattern:
     """Samples of the light around a film point, with distances in wavelengths.
 
     Attributes:
-        light: Samples, columns along x, rows from the top. A perfect wave, whose light is equal at
-            (x, y) and (-x, -y), has only those from x = -TAPS: shape (2 reach + 1, reach + 1 +
+        light: Samples, columns along x, rows from the top. A perfect wave has the same light at
+            (x, y) and (-x, -y), and only samples from x = -TAPS on: shape (2 reach + 1, reach + 1 +
             TAPS).
         spacing: Distance of samples, wavelengths.
-        total: Sum of the samples of a whole period, which is all light.
+        total: Sum of the samples of a whole period: the total power.
     """
 
     light: Floats
@@ -160,7 +160,7 @@ def light_of(right: Floats) -> float:
 def pattern_of(
     pupil: Pupil, wavelength_nm: float, pitch_mm: float, size: int, *, threads: int = 1
 ) -> Pattern | None:
-    """Computes the pattern of a pupil, for a window at this wavelength and at longer ones.
+    """Computes the pattern of a pupil, for a window at this wavelength and at longer wavelengths.
 
     Args:
         pupil: Pupil of one film point.
@@ -202,7 +202,7 @@ def far_field(pupil: Pupil, wavelength_nm: float, pitch_mm: float, size: int) ->
         pupil: Pupil of one film point.
         wavelength_nm: Wavelength, nm.
         pitch_mm: Pixel pitch, mm.
-        size: Pixels across, odd: the point is in the middle one.
+        size: Pixels across, odd: the point is in the middle pixel.
 
     Returns:
         Share of the light in each pixel, rows from the top, shape (size, size).

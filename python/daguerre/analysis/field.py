@@ -43,7 +43,7 @@ def field_curvature(
 ) -> FieldCurve:
     """Computes sagittal and tangential foci over the field from rays close to the chief ray.
 
-    The result is that of Coddington's equations; differences of exact rays extend it to all kinds
+    The result agrees with Coddington's equations; differences of exact rays extend it to all kinds
     of surfaces.
 
     Args:
@@ -75,13 +75,13 @@ def narrow(bench: Bench, height: float) -> Pencil | None:
 
 @dataclass(frozen=True, repr=False)
 class Distortion(BriefRecord, Plotted):
-    """Real image heights, and those of the lens's nominal projection.
+    """Real image heights, and image heights of the lens's nominal projection.
 
     Attributes:
         height_mm: Real image heights, mm, shape (N,).
         angle_deg: Angle of the chief ray in front of the lens, degrees, shape (N,).
         ideal_mm: Image heights of the nominal projection, mm, shape (N,).
-        law: Nominal projection: ``rectilinear``, or that of a fisheye.
+        law: Nominal projection: ``rectilinear``, or a fisheye's.
     """
 
     height_mm: FloatArray
@@ -131,7 +131,7 @@ def _object_height(bench: Bench, height: float) -> float:
 def lateral_colour(
     bench: Bench, heights_mm: ArrayLike, wavelengths_nm: Sequence[float] = FDC_NM
 ) -> FloatArray:
-    """Distances on the film from the chief ray of 587.56 nm to those of others, outward, mm.
+    """Distances on the film from the chief ray of 587.56 nm to other chief rays, outward, mm.
 
     Args:
         bench: The lens.
@@ -168,7 +168,7 @@ def _through_the_middle(light: Pencil, nm: float) -> FloatArray:
 
 @guarded
 def axial_colour(bench: Bench, wavelengths_nm: ArrayLike) -> FloatArray:
-    """Paraxial focus of each wavelength relative to that of 587.56 nm, mm, shape (L,).
+    """Paraxial focus of each wavelength relative to the focus of 587.56 nm, mm, shape (L,).
 
     The object is at the focus distance; positive is away from the lens.
     """

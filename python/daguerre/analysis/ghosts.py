@@ -39,10 +39,10 @@ class Ghost(BriefRecord):
 
     Attributes:
         surfaces: Indices of the reflecting surfaces, in the order in which light meets them;
-            those of the body follow those of the lens.
-        light: Light of the ghost on the film, over that of the image of the same source straight
+            surfaces of the body follow surfaces of the lens.
+        light: Light of the ghost on the film, relative to the image of the same source straight
             ahead.
-        everywhere: Light on the whole plane of the film, over the same.
+        everywhere: Light on the whole plane of the film, relative to the same image.
         center: Centre of the light on the film, x and y, mm.
         radius: RMS radius of the light on the film about its centre, mm.
         points: Points where rays land, x, y (mm), and their shares, shape (N, 3).

@@ -33,13 +33,13 @@ _BATCHES = 10
 class VeilingGlare:
     """The veiling glare index, and its parts from ghosts and from scatter.
 
-    Random walks run from the film backward through the lens. Those that end in the direction of
-    the patch are its image, all others are glare. The surround is far away, white up to 90 degrees
-    from the axis and lit by D65; wavelengths are weighted by the eye's sensitivity.
+    Random walks run from the film backward through the lens. Walks that end in the direction of
+    the patch are its image, all other walks are glare. The surround is far away, white up to 90
+    degrees from the axis and lit by D65; wavelengths are weighted by the eye's sensitivity.
 
     Args:
         bench: The lens.
-        scatter: Scatter of the parts of the lens; None: that of a well-made lens.
+        scatter: Scatter of the parts of the lens; None: a well-made lens's.
         stack: Reflecting parts of the body; None: none.
         patch_mm: Diameter of the patch's image, on the axis, mm; None: a tenth of the image
             circle's.
@@ -48,9 +48,9 @@ class VeilingGlare:
 
     Attributes:
         index: Veiling glare index, %.
-        ghosts: Light of ghosts, without scatter, over that of the image; its standard error is
+        ghosts: Light of ghosts, without scatter, relative to the image; its standard error is
             ``ghosts_error``.
-        scatter: Light scattered by barrel, blades or surfaces, over that of the image.
+        scatter: Light scattered by barrel, blades or surfaces, relative to the image.
 
     Raises:
         InputError: No light reaches the film, the barrel is unknown, or a part is invalid.

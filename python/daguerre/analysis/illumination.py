@@ -43,7 +43,7 @@ class Illumination(BriefRecord, Plotted):
 
     @property
     def relative(self) -> FloatArray:
-        """Irradiance over that of the axis, shape (N,); NaN if the axis is dark."""
+        """Irradiance relative to the axis, shape (N,); NaN if the axis is dark."""
         axis = self.irradiance[0]
         return np.asarray(self.irradiance / axis if axis else np.full_like(self.irradiance, np.nan))
 

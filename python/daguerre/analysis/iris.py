@@ -34,7 +34,7 @@ class Iris:
         curvature: Curvature of their edges: 1 is round, 0 straight.
         picture: Picture of the iris's transmittance instead, row 0 on top, shape (H, W).
         mask: Transmittance of dust and scratches, shape (H, W); None: clean.
-        mask_half: Half of the width that the mask covers; None: that of the whole opening.
+        mask_half: Half of the width that the mask covers; None: the whole opening's.
     """
 
     blades: int = 0

@@ -43,8 +43,8 @@ class LensPupil(BriefRecord):
             points on the iris, shape (D, D, 2), rows of y.
         mounts: Share of light that mounts let pass, on a raster of the cosines, rows of y
             (upward), shape (M, M).
-        paths: Coefficients (D, D) of W in mm by wavelength (nm), like those of ``to_iris``; empty:
-            a perfect wave.
+        paths: Coefficients (D, D) of W in mm by wavelength (nm), in the basis of ``to_iris``;
+            empty: a perfect wave.
     """
 
     low: tuple[float, float]
@@ -156,7 +156,7 @@ def zone_pupils(
         center_mm: Film point of the frame's centre, mm.
 
     Returns:
-        Rows of pupils. A point without light has the pupil of the centre, or the first lit one.
+        Rows of pupils. A point without light has the centre's pupil, or the first lit pupil.
     """
     share = np.linspace(-0.5, 0.5, zones) if zones > 1 else np.zeros(1)
     found = [

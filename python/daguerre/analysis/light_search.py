@@ -76,7 +76,7 @@ def passes(
 
 
 def _rays(bench: Bench, film: FloatArray, cosines: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Origins and directions of rays; the cosines are those of the light, which runs back."""
+    """Origins and directions of rays from the film; the cosines are of the light, toward it."""
     z = np.sqrt(np.maximum(1 - (cosines**2).sum(axis=1), 1e-9))
     directions = -np.column_stack([cosines, z])
     return np.broadcast_to([*film, bench.film_z], directions.shape), directions
@@ -102,7 +102,7 @@ def _last_surface(bench: Bench, film: FloatArray) -> tuple[FloatArray, FloatArra
 def _toward_iris(
     bench: Bench, film: FloatArray, nm: float, low: FloatArray, size: FloatArray
 ) -> tuple[IntArray, FloatArray]:
-    """Cells whose images may overlap the iris, as multiples of their size, and that size."""
+    """Cells with images that may overlap the iris, as multiples of their size, and the size."""
     cells = np.stack(np.meshgrid(*2 * [np.arange(START)]), -1).reshape(-1, 2)
     for halvings in range(DEEPEST + 1):
         if halvings:

@@ -96,7 +96,7 @@ def pencil(
     *,
     distance_mm: float | None = None,
 ) -> Pencil | None:
-    """Finds the light of the object point whose chief ray meets a film point.
+    """Finds the light of the object point with its chief ray through a film point.
 
     Args:
         bench: The lens.

@@ -32,7 +32,7 @@ class Psf(BriefRecord, ArrayValue, Plotted, array="image"):
 
     Attributes:
         image: Share of the light in each pixel, rows along the tangential axis (upward from row
-            0), columns along the sagittal one; shape (n, n). Their sum is the share in the window.
+            0), columns along the sagittal axis; shape (n, n). The sum is the share in the window.
         half_mm: Half of the window's width, mm.
         center: Centre of the window, sagittal and tangential, mm from the chief ray's film point.
         diffraction: Whether diffraction is included.
@@ -180,7 +180,7 @@ def psf_of(
 
 @guarded
 def strehl_ratio(wave: Wavefront) -> float:
-    """Peak of the PSF over that of a perfect wave through the same pupil.
+    """Peak of the PSF relative to a perfect wave through the same pupil.
 
     The peak is the brightest point within about an Airy radius of the wave's image point.
     """
@@ -218,7 +218,7 @@ def _intensity(wave: Wavefront, x: FloatArray) -> FloatArray:
 def point_spread(light: Pencil, *, max_grid: int = MAX_GRID, **options: object) -> Psf:
     """Computes the PSF of waves, or of rays if the blur needs more than ``max_grid`` directions.
 
-    Options are those of ``diffraction_psf``.
+    Options are as for ``diffraction_psf``.
     """
     waves = diffraction_psf(light, max_grid=max_grid, **options)  # type: ignore[arg-type]
     return waves if waves is not None else geometric_psf(light, **options)  # type: ignore[arg-type]

@@ -117,8 +117,8 @@ def best_film_z(spots: Sequence[Spot], film_z: float) -> float:
     """Finds the film position (mm) with the smallest mean square size of several spots.
 
     Args:
-        spots: Spots on the film at ``film_z``, one for each field point.
-        film_z: Position of that film, mm.
+        spots: Spots of the field points on the film at ``film_z``.
+        film_z: Position of the film, mm.
 
     Raises:
         UsageError: No spot has rays with different slopes.

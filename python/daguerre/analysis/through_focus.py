@@ -36,10 +36,10 @@ class Step(BriefRecord):
 
 
 def series(light: Pencil, count: int = 9) -> list[Step]:
-    """Computes the PSF on films around that of the bench.
+    """Computes the PSF on films around the bench's film.
 
-    From one film to the next, the blur changes by about the size of the sharpest PSF. All PSFs are
-    of waves, or all of rays if the fringes of the widest blur are too fine to be drawn.
+    From film to film, the blur changes by about the size of the sharpest PSF. All PSFs are of
+    waves, or all of rays if the fringes of the widest blur are too fine to be drawn.
 
     Args:
         light: From ``pencil``.

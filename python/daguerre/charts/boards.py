@@ -1,7 +1,7 @@
 """Boards for camera calibration: checkerboards, ChArUco boards, grids of markers.
 
-Corners are listed in the order in which OpenCV finds them, in m in the plane of the chart, whose y
-is up; OpenCV's own boards have y down (``object_points``). The surroundings of a board are grey.
+Corners are listed in the order in which OpenCV finds them, in m in the plane of the chart, y up;
+OpenCV's boards have y down (``object_points``). The surroundings of a board are grey.
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ def outline(chart: Chart) -> FloatArray:
 
 
 def _centers(columns: int, rows: int, side: float, least: int, most: int = 200) -> FloatArray:
-    """Centres of cells, shape (rows, columns, 2), from the upper left one."""
+    """Centres of cells, shape (rows, columns, 2), from the upper left cell."""
     whole(columns, "chart: columns", least, most)
     whole(rows, "chart: rows", least, most)
     number(side, "chart: square", 1e-4, 1e3)
@@ -152,7 +152,7 @@ def _inner(centers: FloatArray, square: float) -> FloatArray:
 
 
 def _black_squares(centers: FloatArray, square: float) -> list[Patch]:
-    """Black squares: every other one, from the first."""
+    """Black squares: every other square, from the first."""
     rows, columns = centers.shape[:2]
     return [
         Patch("square", rectangle(centers[r, c], (square, square)), grey(0.0), markers.BLACK_LAYER)

@@ -46,7 +46,7 @@ class Patch(BriefRecord):
         name: Name in the truth; several patches may share one.
         points: Corners, m, shape (N, 2), convex, counter-clockwise.
         rgb: Share of the chart's white, linear Rec.709.
-        layer: Those of higher layers cover those of lower ones.
+        layer: Patches of higher layers cover patches of lower layers.
     """
 
     name: str
@@ -75,7 +75,7 @@ class Chart:
     truth: dict[str, Any] = field(default_factory=dict)
 
     def camera(self, focal_length: float = 50.0, sensor_width: float = 36.0) -> Camera:
-        """Returns a pinhole camera square to the chart, whose frame the chart fills.
+        """Returns a pinhole camera square to the chart; the chart fills its frame.
 
         Args:
             focal_length: Focal length, mm.

@@ -1,4 +1,4 @@
-"""Colour chart of 24 patches: two rows of natural colours, one of strong ones, one of greys."""
+"""Colour chart of 24 patches: two rows of natural colours, a row of strong colours, a grey row."""
 
 from __future__ import annotations
 

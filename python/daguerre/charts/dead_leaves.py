@@ -98,7 +98,7 @@ def _radii(u: NDArray[np.float64], low: float, high: float) -> NDArray[np.float6
 
 
 def _cells(x: float, y: float, r: float) -> tuple[tuple[slice, slice], NDArray[np.bool_]]:
-    """The part of the grid around a disc, and what of it is inside."""
+    """The part of the grid around a disc, and the mask of its cells inside the disc."""
     rows, columns = _GRID * 2 // 3, _GRID
     per = columns / 1.5
     cx, cy = (x + 0.75) * per, (y + 0.5) * per

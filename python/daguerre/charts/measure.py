@@ -60,7 +60,7 @@ def edge_response(region: ArrayLike, *, bend: int = 1) -> EdgeResponse:
 
     The edge is located in each row. All rows together sample the edge's profile finer than pixels,
     and the Fourier transform of the profile's slope is the response. The effects of quarter-pixel
-    bins and differences are divided out; that of the pixel's area is part of the response.
+    bins and differences are divided out; the effect of the pixel's area is part of the response.
 
     Args:
         region: Linear light, shape (H, W), with one edge from side to side that is nearly, but not
@@ -94,7 +94,7 @@ def edge_response(region: ArrayLike, *, bend: int = 1) -> EdgeResponse:
     spectrum = np.abs(np.fft.rfft(slope * window))
     frequency = np.asarray(np.fft.rfftfreq(n, 1 / _FINER), np.float64)
     with np.errstate(invalid="ignore"):
-        # A bin is the mean of what fell into it, a difference spans one bin: two quarter boxes.
+        # A bin is the mean of its samples, a difference spans one bin: two quarter boxes.
         response = spectrum / spectrum[0] / np.sinc(frequency / _FINER) ** 2
     wanted = frequency <= 1
     angle = float(np.degrees(np.arctan(np.mean(turned))))

@@ -17,9 +17,9 @@ from .measure import plane
 
 FloatArray = NDArray[np.float64]
 BEND = 3  # of the curve that an edge follows where distortion bends it
-CONTRAST = 0.6  # of the usual one, that a line needs; less: squares of a board meet there
-NARROWEST, WIDTHS = 3.0, 2.5  # px, and standard deviations of the edge, that are looked at
-TIMES = 6  # that an edge is sought
+CONTRAST = 0.6  # least share of the median contrast; lines with less are where squares meet
+NARROWEST, WIDTHS = 3.0, 2.5  # width of the window: px, and standard deviations of the edge
+TIMES = 6  # iterations of the search for an edge
 OUTLIER = 5.0  # median distances from the fit, above which a line is left out
 REST = 1e-9  # radians between pictures; less is rounding
 LEAST = 8  # lines that see the edge

@@ -1,4 +1,4 @@
-"""Siemens star: spokes whose spatial frequency grows toward the middle (ISO 12233)."""
+"""Siemens star: spokes with a spatial frequency that grows toward the middle (ISO 12233)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PROFILES = ("sine", "bar")
 _PARTS = {
     "sine": 32,
     "bar": 2,
-}  # of a cycle; 32 steps: what is no sine is under 0.5 % below the 31st harmonic
+}  # of a cycle; 32 steps: harmonics below the 31st are under 0.5 %
 
 
 def make(width: float = 0.9, cycles: int = 72, profile: str = "sine", white: float = 0.9) -> Chart:

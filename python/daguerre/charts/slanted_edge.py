@@ -19,7 +19,7 @@ def make(
     Args:
         width: Width of the chart, m.
         angle: Rotation of the squares counter-clockwise, degrees, 1 to 44.
-        contrast: Light of the ground over that of the squares; 4 in ISO 12233.
+        contrast: Ratio of the light of the ground to the light of the squares; 4 in ISO 12233.
         white: Light of the ground, as a share of the chart's white.
     """
     number(angle, "chart: angle", 1, 44)

@@ -44,7 +44,7 @@ def _color_tables() -> FloatArray:
 def observer() -> FloatArray:
     """CIE 1931 colour matching at ``NM``, so that its sum with a radiance is XYZ, shape (L, 3).
 
-    The unit of radiance is that of ``d65()``, which has Y = 1.
+    Radiance has the unit of ``d65()``, which has Y = 1.
     """
     return np.asarray(_color_tables()[:, :3] * STEP)
 

@@ -42,7 +42,7 @@ class ColorSpace:
     Attributes:
         name: Name that users type.
         title: Name that viewers show.
-        primaries: Chromaticities of red, green and blue, x and y; empty: those of a camera.
+        primaries: Chromaticities of red, green and blue, x and y; empty: a camera's.
         interop: Name of the linear space in the Color Interop Forum's list; empty: none.
         curve: (g, a, b, c, d): linear = (a v + b)^g from d on, c v below; None: linear.
         cicp: Colour primaries and transfer characteristics by ITU-T H.273; None: it has no curve.
@@ -91,10 +91,10 @@ COLOR_SPACES = {
         ColorSpace(CAMERA, "the camera's own colors", (), ""),
     )
 }
-#: Spaces of pictures that are encoded for a display, and those of scene-linear OpenEXR.
+#: Spaces of pictures that are encoded for a display, and spaces of scene-linear OpenEXR.
 ENCODED = tuple(name for name, space in COLOR_SPACES.items() if space.curve is not None)
 LINEAR = tuple(name for name, space in COLOR_SPACES.items() if space.is_linear and space.primaries)
-#: Working space: the one of ``Frame.rgb``, and of files unless told otherwise.
+#: Working space: of ``Frame.rgb``, and of files without another space.
 WORKING = "lin_rec709"
 
 

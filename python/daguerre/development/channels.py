@@ -36,7 +36,7 @@ _TOP = 65535.0
 MARGIN_XTRANS = 6
 #: Methods for each pattern, by LibRaw's names.
 _BAYER_METHODS = {"best": "DHT", "good": "AHD", "fast": "LINEAR"}
-#: LibRaw runs Markesteijn's method in one pass for "PPG", in three for what is better.
+#: LibRaw runs Markesteijn's method in one pass for "PPG", in three for better methods.
 _XTRANS_METHODS = {"best": "DHT", "good": "PPG", "fast": "LINEAR"}
 DEMOSAICS = ("best", "good", "fast", "linear", "vng", "ppg", "ahd", "dcb", "dht")
 
@@ -140,7 +140,7 @@ def of_frame(frame: Frame) -> Channels:
     iso = frame_iso(facts) or 100.0
     unit = white_lx_s(iso) / (exposure_of_one(facts, iso) * compensation(facts))
     pixels = np.ascontiguousarray(_xyz(frame), np.float32)
-    plain_light(pixels, "frame", infinite=True)  # what is infinite is white
+    plain_light(pixels, "frame", infinite=True)  # infinite light is white
     return Channels(
         pixels=pixels,
         unit=np.full(3, unit),
@@ -243,7 +243,7 @@ def _extended(raw: Raw, margin: int, least: int) -> Raw:
 
 
 def _places(count: int, margin: int, least: int, period: int) -> NDArray[np.intp]:
-    """Indices 0 .. count - 1, and around them the nearest ones at the same place in the pattern."""
+    """Indices 0 .. count - 1, padded by the nearest indices at the same place in the pattern."""
     at = np.arange(-margin, max(count + margin, least - margin))
     last = count - 1 - (count - 1 - at) % period
     inside = np.where(at < 0, at % period, np.where(at < count, at, last))

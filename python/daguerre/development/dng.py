@@ -81,7 +81,7 @@ def shot_facts(raw: Raw) -> dict[str, Any]:
 def body_facts(raw: Raw) -> dict[str, str]:
     """Make and model for a DNG, which differ from the real camera's.
 
-    With the real ones, raw converters would apply their own profile and crop of that camera.
+    With the real names, raw converters would apply their profile and crop of the real camera.
     """
     body = f"{raw.sensor.make} {raw.sensor.model}".strip()
     return {"cameraMake": MAKE, "cameraModel": body.removeprefix(f"{MAKE} ")}

@@ -27,7 +27,7 @@ from .dng import LEAST_XTRANS
 
 #: Colours of photosites that are looked at for the pattern, each way.
 PERIOD = 12
-#: Largest picture, photosites: four times those of the largest sensors that are sold.
+#: Largest picture, photosites: four times as many as the largest sensors on sale.
 MAX_PIXELS = 1 << 29
 #: Limits of a task: seconds and bytes for any file, and for each photosite.
 _SECONDS, _SECONDS_EACH = 30.0, 4e-6
@@ -112,7 +112,7 @@ def _limits(told: str) -> Limits:
 
 
 def _checked(found: Any, where: str) -> RawFile:
-    """Checks the answer: what overran the helper could have changed it."""
+    """Checks the answer: a file that overran a buffer of the helper could have changed it."""
     fault = InputError(f"{where}: cannot read: the helper process sent no raw file")
     try:
         file = RawFile(**found)

@@ -19,11 +19,11 @@ from .recipe import develop
 def write_dng(path: str | os.PathLike[str], raw: Raw) -> None:
     """Writes a raw picture, whole or not at all.
 
-    A Quad-Bayer mosaic is written as it is binned in cameras, four photosites to one: no reader
-    knows its pattern of four by four.
+    A Quad-Bayer mosaic is binned as in cameras, 2 x 2 photosites to a pixel: no reader knows its
+    pattern of four by four.
 
     Args:
-        path: Its name should end in ``.dng``.
+        path: File to write; the name should end in ``.dng``.
         raw: The picture.
 
     Raises:

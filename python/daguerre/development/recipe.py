@@ -156,7 +156,7 @@ def _renamed(keywords: Any) -> dict[str, Any]:
 
 
 def _exposed(source: object, recipe: Recipe) -> tuple[Any, Recipe]:
-    """A frame in the mode of a recipe, and what is left of the recipe."""
+    """A frame in the mode of a recipe, and the rest of the recipe."""
     from daguerre.frame.frame import Frame
 
     if isinstance(source, Frame):

@@ -63,8 +63,9 @@ def _block_means(pixels: NDArray[Any]) -> FloatArray:
 def _average(source: Channels) -> XY:
     """Colour of the brighter unsaturated part, which is usually white or grey.
 
-    Common choices are the mean of the picture (grey world) and that of its brightest tenth (white
-    patch). A power mean lies between them (Finlayson and Trezzi 2004, Shades of gray, power 6).
+    Common choices are the mean of the picture (grey world) and the mean of its brightest tenth
+    (white patch). A power mean is between them (Finlayson and Trezzi 2004, Shades of gray, power
+    6).
     """
     means = _block_means(source.pixels)
     good = np.isfinite(means).all(axis=1) & (means < 0.95 * source.full).all(axis=1)

@@ -28,9 +28,9 @@ TRIM = 1e-10  # terms that are a smaller share of the angle are dropped
 class LensDistortion(Radial):
     """Distortion of an axially symmetric lens, for a plane at its focus distance.
 
-    The ideal picture is that of a pinhole in the middle of the paraxial entrance pupil. It has the
-    scale of the lens near the axis at the design wavelength, not at this model's. So models of
-    several wavelengths differ by the lens's lateral colour.
+    The ideal picture is a pinhole's in the middle of the paraxial entrance pupil. It has the scale
+    of the lens near the axis at the design wavelength, not at this model's. So models of several
+    wavelengths differ by the lens's lateral colour.
 
     Attributes:
         bench: Lens on the bench.

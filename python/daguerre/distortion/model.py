@@ -1,8 +1,8 @@
-"""Interface of all distortion models: maps ideal points to those of a lens, and back.
+"""Interface of all distortion models: maps undistorted points to distorted points, and back.
 
-Points lie on the plane at distance 1 in front of the camera: (x, y) = (X / Z, Y / Z), x to the
+Points are on the plane at distance 1 in front of the camera: (x, y) = (X / Z, Y / Z), x to the
 right and y down, OpenCV's convention. ``distort`` maps points of an ideal (rectilinear) picture to
-those of the lens's picture, undistorted -> distorted, OpenCV's direction. Where a model is not
+points of the lens's picture, undistorted -> distorted, OpenCV's direction. Where a model is not
 defined or folds, the result is NaN.
 """
 
@@ -29,7 +29,7 @@ class Distortion(ABC):
     """Base class of distortion models."""
 
     def distort(self, points: ArrayLike) -> FloatArray:
-        """Maps ideal points to those of the lens's picture.
+        """Maps ideal points to points of the lens's picture.
 
         Args:
             points: Points at distance 1, shape (N, 2).
@@ -62,11 +62,11 @@ class Radial(Distortion):
 
     @abstractmethod
     def _bent(self, radius: FloatArray) -> FloatArray:
-        """Distorted radii of ideal ones, shape (N,); NaN beyond the end."""
+        """Distorted radii of ideal radii, shape (N,); NaN beyond the end."""
 
     @abstractmethod
     def _straight(self, radius: FloatArray) -> FloatArray:
-        """Ideal radii of distorted ones, shape (N,); NaN beyond the end."""
+        """Ideal radii of distorted radii, shape (N,); NaN beyond the end."""
 
     def _distorted(self, points: FloatArray) -> FloatArray:
         return _scaled(points, self._bent)

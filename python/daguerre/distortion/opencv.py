@@ -1,4 +1,4 @@
-"""The models of OpenCV: Brown's and Conrady's, the rational one with all its parts, and fisheye.
+"""The models of OpenCV: Brown-Conrady, the full rational model, and fisheye.
 
 Formulas: OpenCV, "Camera Calibration and 3D Reconstruction" (calib3d) and "Fisheye camera model".
 After Conrady 1919, Decentred lens-systems; Brown 1971, Close-range camera calibration; Kannala and

@@ -26,15 +26,15 @@ class RectifiedView:
     """Maps pixels between a camera in the middle of its exposure and its rectified (ideal) twin.
 
     The ideal camera is the pinhole with the same focal length near the axis, principal point and
-    squeeze: a rectilinear picture, in which straight things are straight. What both see lies on the
-    plane in focus, since the entrance pupil of a real lens moves with the angle.
+    squeeze: a rectilinear picture, in which straight lines are straight. The map is for points on
+    the plane in focus, since the entrance pupil of a real lens moves with the angle.
 
     Args:
         camera: Its focus must be stated, or the scene given.
         resolution: Width and height of the picture, px.
         scene: Scene, for autofocus and the time.
-        core_scene: The same, built.
-        overscan: Pixels beside the picture that are asked for, too.
+        core_scene: The built scene.
+        overscan: Pixels around the picture that are mapped, too.
     """
 
     def __init__(

@@ -15,7 +15,7 @@ _WHOLE = 50.0
 
 
 def iso_limits(sensor: Sensor | None) -> tuple[float, float]:
-    """Lowest and highest automatic ISO of a sensor; None: a perfect one."""
+    """Lowest and highest automatic ISO of a sensor; None: a perfect sensor."""
     low, high = ISOS
     if sensor is not None:
         low, high = max(low, sensor.iso_range[0]), min(high, sensor.iso_range[1])

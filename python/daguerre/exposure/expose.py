@@ -124,7 +124,7 @@ def before_sensor(
 
 
 def chosen_sensor(frame: Frame, sensor: str | Sensor | None) -> Sensor:
-    """Chooses the sensor: the given one, else the frame's, else the ideal one."""
+    """Chooses the sensor: the given sensor, else the frame's, else the ideal sensor."""
     if sensor is not None:
         return load(sensor)
     name = frame.metadata.get("sensor") or "ideal"
@@ -135,7 +135,7 @@ def chosen_sensor(frame: Frame, sensor: str | Sensor | None) -> Sensor:
 
 
 def chosen_iso(frame: Frame, sensor: Sensor, iso: float | None, notes: list[str]) -> float:
-    """Chooses the ISO: the given one, else the camera's if the sensor has it, else the base ISO."""
+    """Chooses the ISO: ``iso``, else the camera's if the sensor has it, else the base ISO."""
     if iso is not None:
         sensor.check_iso(iso)
         return float(iso)
@@ -152,7 +152,7 @@ def chosen_iso(frame: Frame, sensor: Sensor, iso: float | None, notes: list[str]
 
 
 def chosen_ev(frame: Frame, ev: float | None) -> float:
-    """Chooses the exposure compensation: the given one, else the camera's."""
+    """Chooses the exposure compensation, EV: ``ev``, else the camera's."""
     given = frame.metadata.get("exposure_compensation") or 0.0 if ev is None else ev
     return number(given, "ev", -64, 64)
 
@@ -160,7 +160,7 @@ def chosen_ev(frame: Frame, ev: float | None) -> float:
 def dark_electrons(
     sensor: Sensor, seconds: float, temperature: float | None
 ) -> tuple[float, float]:
-    """Mean electrons of the dark current per photosite, and the excess of hot ones."""
+    """Mean electrons of the dark current per photosite, and the excess of hot photosites."""
     if temperature is not None:
         number(temperature, "temperature", -273.15, 200)
     factor = sensor.dark_current.factor(temperature) * seconds
@@ -255,10 +255,10 @@ def _noise_note(frame: Frame, sensor: Sensor, light: Light) -> list[str]:
 
 
 def noisy_share(frame: Frame, sensor: Sensor, light: Light) -> float:
-    """Share of the pixels whose variance over samples exceeds that of photon noise.
+    """Share of the pixels with a variance over samples above the variance of photon noise.
 
-    It compares luminance, in the strongest channel. Red, green and blue of a sample vary together
-    (a path is bright or dark), so their standard deviations add.
+    The variance is of luminance, in the strongest channel. Red, green and blue of a sample vary
+    together (a path is bright or dark), so their standard deviations add.
     """
     if frame.variance is None:
         return 0.0

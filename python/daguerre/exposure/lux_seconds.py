@@ -77,7 +77,7 @@ def display_gain(metadata: Mapping[str, Any]) -> float:
 
 
 def pinhole_note(metadata: Mapping[str, Any]) -> str | None:
-    """Note on frames of a pinhole, which has no f-stop; None: the frame has one."""
+    """Note on frames of a pinhole, which has no f-stop; None: the frame has an f-stop."""
     if metadata.get("aperture") is not None or metadata.get("h0") is None:
         return None
     return (

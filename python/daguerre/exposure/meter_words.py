@@ -32,7 +32,7 @@ def missing(ends: str, share: float) -> str:
 
     Args:
         ends: Limits of the mode, such as ``ISO 100 .. 6400``.
-        share: Exposure over the wanted one.
+        share: Exposure over the wanted exposure.
     """
     stops = math.log2(share)
     if abs(stops) <= _SLIGHT:

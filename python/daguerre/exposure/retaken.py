@@ -1,4 +1,4 @@
-"""Frames in another exposure mode than the one in which they were taken."""
+"""Frames in another exposure mode than they were taken in."""
 
 from __future__ import annotations
 

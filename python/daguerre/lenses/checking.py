@@ -1,8 +1,8 @@
 """Checks that a lens can be built and lets light through; for shipped and imported lenses alike.
 
-A lens whose surfaces cross within the axial beam is an error. Where they cross only near the rim,
-the element ends there, and its clear diameters are cut. Patent tables let surfaces touch just
-within the widest beam (none of a hundred below 0.97 of it), which is taken for rounding.
+Surfaces that cross within the axial beam are an error. Where surfaces cross only near the rim, the
+element ends there, and its clear diameters are cut. Patent tables let surfaces touch just within
+the widest beam (none of a hundred below 0.97 of the radius), which is taken for rounding.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ ENOUGH_LIGHT = 0.6
 #: One of so many draws of each point of the film comes first: most points need no more.
 _EACH = 9
 _RADII = 129
-#: Rays by their share of the entrance pupil's radius: to find one that passes, and the widest.
+#: Rays by their share of the entrance pupil's radius, to find a ray that passes, and the widest.
 _TRACED = (1.0, 0.97, 0.9, 0.8, 0.65, 0.5, 0.25, 0.1)
 _PASSING = tuple(round(1 - 0.02 * k, 2) for k in range(50))
 #: A frame may exceed the stated image circle by this factor.
@@ -38,7 +38,7 @@ SPILL = 1.01
 
 
 def checked(lens: Lens) -> Lens:
-    """Returns the lens with clear diameters cut where surfaces cross, and notes on what was found.
+    """Returns the lens with clear diameters cut where surfaces cross, and notes on the cuts.
 
     Raises:
         LensError: The lens has no focal length, surfaces cross within the axial beam, or no light

@@ -55,7 +55,7 @@ class Configuration:
 
 
 def read_configurations(root: Item, count: int) -> tuple[Configuration, ...]:
-    """Configurations of a file with ``count`` surfaces; if it has none, one without gaps."""
+    """Configurations of a file with ``count`` surfaces; default: a configuration without gaps."""
     items = root.list_of("configurations")
     return tuple(_configuration(item, count) for item in items) or (Configuration("infinity"),)
 

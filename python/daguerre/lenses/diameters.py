@@ -87,7 +87,7 @@ def _widest(radius: float | None, conic: float) -> float:
 
 
 def _trimmed(surfaces: list[LensSurface], variants: list[Lens]) -> list[LensSurface]:
-    """Cuts derived semi-diameters where a surface would cross the next one."""
+    """Cuts derived semi-diameters where a surface would cross the next surface."""
     for i, j in itertools.pairwise(bounding(surfaces)):
         a, b = surfaces[i], surfaces[j]
         gap = min(float(at.vertices[j] - at.vertices[i]) for at in variants)

@@ -9,8 +9,8 @@ from .medium import Medium
 def without_dispersion(lens: Lens) -> Lens:
     """Returns the lens with media that have their index at 587.56 nm at all wavelengths.
 
-    Focal length and f-number, which are those of that line, stay as they are. Absorption and
-    coatings keep their colours.
+    Focal length and f-number, which belong to that line, stay the same. Absorption and coatings
+    keep their colours.
     """
     surfaces = [s.replaced(medium=_constant(s.medium)) for s in lens.surfaces]
     return lens.rebuilt(surfaces, object_medium=_constant(lens.object_medium))

@@ -13,12 +13,12 @@ AS_GIVEN, ROUNDED = 0.99, 0.97
 
 
 def opened(f_stop: float, widest: float) -> float:
-    """Returns the f-stop to use: the widest of the lens, if the given one is up to 3 % wider."""
+    """Returns the f-stop to use: the lens's widest, if the given f-stop is up to 3 % wider."""
     return widest if ROUNDED * widest <= f_stop < AS_GIVEN * widest else f_stop
 
 
 def remark(name: str, given: float, used: float, letter: str = "f") -> str | None:
-    """Note that the widest stop of a lens is used; None: the given one is."""
+    """Note that the widest stop of a lens is used; None: the given stop is used."""
     if opened(given, used) == given:
         return None
     return f"{letter}/{given:.4g}: {name} opens to {letter}/{used:.4g}, which is used"

@@ -56,8 +56,8 @@ def from_core(
     Args:
         error: Error that was raised; an ``InputError`` names its file already.
         source: File of the lens.
-        code: Code for errors without one; None: such errors keep their type.
-        surface: Index of the surface being read, for such errors.
+        code: Code for errors without code; None: these errors keep their type.
+        surface: Index of the surface being read, for errors without code.
     """
     if isinstance(error, _core.LensError):
         return LensError(f"{source}: {error.message}", error.code, error.surface)

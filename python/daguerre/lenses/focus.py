@@ -42,8 +42,8 @@ class Focused:
 class Path:
     """Gaps of a lens from focus at infinity (0) to the nearest position that is printed (1).
 
-    Fitted positions lead on beyond 1. If all are fitted, the last one is at 1, and the film stays
-    where the lens is sharp at infinity: nothing moves there.
+    Fitted positions continue beyond 1. If all positions are fitted, the last is at 1, and the film
+    stays where the lens is sharp at infinity: no gap changes there.
     """
 
     lens: Lens  # at infinity
@@ -186,7 +186,7 @@ def image_z(lens: Lens, object_z: float) -> float:
 def _sharp(setting: LensSetting, narrowed: float) -> Callable[[Lens], float]:
     """Returns a function that gives the sharp film position, for a lens with its table's film.
 
-    narrowed: Ratio of the f-stop to that of the open lens.
+    narrowed: Ratio of the f-stop to the f-stop of the open lens.
     """
 
     def film(lens: Lens) -> float:
@@ -242,7 +242,7 @@ def _solved(path: Path, sharp: Callable[[Lens], float], setting: LensSetting) ->
 
 
 def _nearest(lens: Lens, *, from_sensor: bool) -> float:
-    """Object distance, m, whose paraxial image lies on the film."""
+    """Object distance with the paraxial image on the film, m."""
     order = lens.first_order()
     focal2 = order.efl * (order.front_principal_point - order.front_focal_point)
     object_z = order.front_focal_point - focal2 / (lens.image_z - order.back_focal_point)

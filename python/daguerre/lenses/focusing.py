@@ -9,7 +9,7 @@ from .focus import closest_focus_m, focused, path_of
 from .lens import Lens
 from .setting import LensSetting
 
-#: Magnification below which it hardly matters what moves: the framing differs by less than this.
+#: Magnification below which the kind of focusing hardly matters: framings differ by less than this.
 FAR = 0.02
 #: Ratio up to which magnifications count as equal: makers round them.
 ALIKE = 1.15

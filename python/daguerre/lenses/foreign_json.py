@@ -1,4 +1,4 @@
-"""Names the JSON lens files of other programs, and the way to one that is read."""
+"""Recognizes JSON lens files of other programs, and names a way to convert them."""
 
 from __future__ import annotations
 

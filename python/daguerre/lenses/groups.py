@@ -31,7 +31,7 @@ class Group:
 
 
 def placed(surfaces: Sequence[LensSurface], group: Group) -> list[LensSurface]:
-    """Returns all surfaces, with those of the group shifted and tilted."""
+    """Returns all surfaces, with the group shifted and tilted."""
     out = list(surfaces)
     turn = rotation(group.tilt)
     z = np.cumsum([0.0, *(s.thickness or 0.0 for s in surfaces[:-1])])

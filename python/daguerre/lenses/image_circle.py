@@ -47,8 +47,8 @@ def stated_half_image(lens: Lens, order: FirstOrder) -> float | None:
 def half_image(lens: Lens, order: FirstOrder) -> float:
     """Half of the image circle, mm.
 
-    A lens that states none has the smaller of that of 36 x 24 mm and that of 60 degrees from the
-    axis.
+    A lens without a stated circle has the circle of 36 x 24 mm, or of 60 degrees from the axis if
+    that is smaller.
     """
     stated = stated_half_image(lens, order)
     return stated or min(FULL_FRAME, math.sqrt(3) * abs(order.efl))
@@ -79,7 +79,7 @@ def film_mm(lens: Lens, most: float = math.inf) -> tuple[float, float]:
     """Width and height of a lens's film, mm: its format, or 3:2 within its image circle.
 
     Args:
-        lens: The lens; if it states no circle, it has that of 36 x 24 mm.
+        lens: The lens; without a stated circle, it has the circle of 36 x 24 mm.
         most: Largest half of the diagonal where no format is stated, mm.
     """
     stated = format_mm(lens)

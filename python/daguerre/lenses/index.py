@@ -1,7 +1,7 @@
 """Index of the library of lenses that ship with Daguerre.
 
-``library/sources.csv`` has one row for each lens: its source, the values that the source states,
-and the computed ones. Listing and searching therefore parse no lens file.
+``library/sources.csv`` has one row for each lens: its source, stated values and computed values.
+Listing and searching therefore parse no lens file.
 """
 
 from __future__ import annotations

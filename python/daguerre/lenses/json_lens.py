@@ -70,7 +70,7 @@ def lens_from(root: Item, path: Path, name: str | None) -> Lens:
     for group in _groups(root, len(items), configurations):
         surfaces = placed(surfaces, group)
     nominal, stop = _nominal(root, configuration), surfaces[stops[0]]
-    if configuration is not configurations[0]:  # the stated field belongs to the first one
+    if configuration is not configurations[0]:  # the stated field belongs to the first
         nominal = dataclasses.replace(nominal, full_field_deg=None)
     unsized = stop.semi_diameter is None and nominal.f_number is None
     if unsized:

@@ -17,8 +17,8 @@ _WIDE, _NORMAL, _TELE = 60.0, 40.0, 35.0
 _ULTRA_WIDE, _SUPER_TELE = 90.0, 9.0
 #: The same for 140 mm to 81 mm.
 _PORTRAIT = (17.5, 30.0)
-#: Least diameter of an entrance pupil, mm, such as that of 50 mm f/1.5. It sets the blur of a far
-#: background for a subject of a given size, whatever the format.
+#: Least diameter of an entrance pupil, mm, as of 50 mm f/1.5. It sets the blur of a far background
+#: for a subject of a given size, whatever the format.
 _BLUR_MM = 33.0
 
 

@@ -283,8 +283,8 @@ class Lens(Value):
 
         Args:
             distance_m: Distance of the plane, m; infinity is allowed.
-            zoom_mm: Focal length of a zoom, mm; default: the current one.
-            f_stop: F-stop whose rays count for the best focus; default: wide open.
+            zoom_mm: Focal length of a zoom, mm; default: the current focal length.
+            f_stop: F-stop of the rays for the best focus; default: wide open.
             by: ``paraxial``: the paraxial image; ``best``: the smallest RMS spot on the axis.
             measured_from: Start of the distance: ``pupil``, the centre of the entrance pupil, or
                 ``sensor``.

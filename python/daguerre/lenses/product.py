@@ -1,4 +1,4 @@
-"""A design's product, as its maker states it: closest focus, magnification, what moves."""
+"""Product data of a design from its maker: closest focus, magnification, kind of focusing."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Product:
     source: str | None = None
 
     def __str__(self) -> str:
-        """Lists what is known, such as ``closest focus 0.31 m, magnification 1x (Canon)``."""
+        """Lists known data, such as ``closest focus 0.31 m, magnification 1x (Canon)``."""
         known = []
         if self.closest_focus_m is not None:
             known.append(f"closest focus {self.closest_focus_m:.3g} m")

@@ -1,4 +1,4 @@
-"""Reads lens files: JSON of the schema ``daguerre-lens/0.1`` (mm), and those of other programs."""
+"""Reads lens files: JSON of the schema ``daguerre-lens/0.1`` (mm), and other programs' files."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def read_text(text: str, source: str, configuration: str | None = None) -> Lens:
 
 
 def _root(data: bytes, path: Path) -> tuple[Item, list[str]]:
-    """Parses a file; returns its value, and notes on what an import ignores."""
+    """Parses a file; returns its value, and notes on content that an import ignores."""
     if formats.is_foreign(path):
         value, notes = formats.parse(data, path)
         return Item(value, str(path)), notes

@@ -11,7 +11,7 @@ from typing import Any
 
 from daguerre.files.json_item import Item, clean, short
 
-#: Members that are texts, and those of ``nominal`` that are numbers.
+#: Members that are texts, and members of ``nominal`` that are numbers.
 _TEXTS = (*("type", "maker", "designer", "patent", "format", "title_in_source", "note", "suspect"),)
 _STATED = ("efl_mm", "efl_x_mm", "f_number", "full_field_deg", "image_circle_mm")
 #: Share of its limit that a rounded clear diameter may have: 2 digits have 5 % of 1.0 at most.

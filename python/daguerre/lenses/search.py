@@ -29,17 +29,17 @@ _TYPE, _KIND, _ALSO, _PATENT = 0.9, 0.9, 0.85, 0.5
 
 @dataclass(frozen=True)
 class Subject:
-    """A lens, as a search sees it.
+    """Searchable facts of a lens.
 
     Attributes:
         name: Name of the lens.
-        words: Words for it, with their weights.
-        focal_mm: Shortest and longest focal length: computed ones and those of its title.
-        f_numbers: F-numbers, in the same way.
-        t_numbers: T-numbers of its title.
-        sides_mm: Longer and shorter side of its format; None: it is unknown.
+        words: Words for the lens, with their weights.
+        focal_mm: Shortest and longest focal length, computed and from the title.
+        f_numbers: F-numbers, computed and from the title.
+        t_numbers: T-numbers of the title.
+        sides_mm: Longer and shorter side of the format; None: unknown.
         year: Year of the lens.
-        names: Words of its name, and of its title.
+        names: Words of the name, and of the title.
     """
 
     name: str
@@ -83,7 +83,7 @@ def suggest(name: object, others: Iterable[str] = ()) -> str:
 
     Args:
         name: The name.
-        others: Names beside those of the library that would do, such as thin.
+        others: Allowed names that are not in the library, such as thin.
     """
     text = str(name)[:MOST]
     if not _asked(text):

@@ -26,7 +26,7 @@ class LensSetting:
     Attributes:
         f_stop: F-stop as engraved, for infinity focus; None: wide open.
         focus_m: Distance in focus, m; may be infinite.
-        zoom_mm: Focal length of a zoom, mm; None: the current one.
+        zoom_mm: Focal length of a zoom, mm; None: the current focal length.
         focus_by: ``paraxial``: the paraxial image; ``best``: the smallest RMS spot on the axis.
         focus_from: Start of the distance: ``pupil``, the centre of the entrance pupil, or
             ``sensor``.

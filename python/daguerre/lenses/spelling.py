@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 def is_slip(text: str, word: str) -> bool:
-    """Whether a text is a word, or begins one, with a slip; with two from eight letters on."""
+    """Whether a text is a word or its start with a typing slip; with two from eight letters on."""
     most = 0 if len(text) < 4 else 1 if len(text) < 8 else 2
     if not most or len(word) < len(text) - most:
         return False

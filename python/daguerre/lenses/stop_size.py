@@ -1,4 +1,4 @@
-"""Sizes the open iris of a lens whose file gives neither its size nor an f-number.
+"""Sizes the open iris of a lens with neither an iris size nor an f-number in its file.
 
 The iris is then as wide as the axial beam that the other clear diameters pass, to first order.
 """

@@ -16,7 +16,7 @@ from .medium import Medium
 
 #: Values that ``kind`` may have.
 KINDS = ("spherical", "stop", "aspheric", "cyl-x", "cyl-y", "biconic", "toroid")
-#: Kinds whose two sections have different curvatures.
+#: Kinds with different curvatures in their two sections.
 TWO_SECTIONS = ("biconic", "toroid")
 
 Triple = tuple[float, float, float]
@@ -28,7 +28,7 @@ class LensSurface:
     """One surface and the medium that follows. Lengths in mm, z along the axis toward the film.
 
     Attributes:
-        kind: One of ``KINDS``. ``cyl-x``: a cylinder whose axis is along x.
+        kind: One of ``KINDS``. ``cyl-x``: a cylinder with its axis along x.
         radius: Signed radius of curvature, positive when the centre lies toward the film; None: a
             plane. For a cylinder: of its curved section. For a biconic or toroid: in the y-z plane.
         thickness: Distance to the next vertex; for the last surface to the film, None or 0 if

@@ -81,7 +81,7 @@ def _radius(item: Item, key: str) -> float | None:
 
 
 def _thickness(item: Item, gap: float | None, last: bool) -> float | None:
-    stated = number(item, "thickness")  # of other configurations, where this one has a gap
+    stated = number(item, "thickness")  # of other configurations, where this has a gap
     thickness = stated if gap is None else gap
     if not last and thickness is None:
         item.need("thickness").fail("wanted the distance to the next surface in mm, got null")

@@ -35,7 +35,7 @@ SHOWN = 8
 
 
 def unknown_members(root: Item) -> list[str]:
-    """Returns a note for each of the first few unknown members, and one that counts the others."""
+    """Returns a note on each of the first few unknown members, and a note with the number left."""
     found = [
         (child, KNOWN[place])
         for place in KNOWN

@@ -70,8 +70,8 @@ class Zoom:
         """Returns the lens at one focal length, focused at infinity as in its file.
 
         Between two positions of the file, all moving gaps take the smallest changes that give the
-        focal length and keep film and focus between those of the two positions. So the lens is
-        exact at each position of the file.
+        focal length and keep film and focus between their values at the two positions. So the lens
+        is exact at each position of the file.
 
         Raises:
             LensError: The focal length is outside the lens's range; ``lens-zoom``.
@@ -125,9 +125,9 @@ def _share(lens: Lens, low: Position, high: Position, mm: float) -> float:
 
 
 def _opening(lens: Lens, position: Position) -> float | None:
-    """F-number of a position: that of its stop, if the file states another by more than 2 %.
+    """F-number of a position: from its stop's size, if the file states another by more than 2 %.
 
-    So nothing jumps beside a position, which has the size of its stop.
+    Zooming away from a position starts from its stop's size, so this f-number does not jump there.
     """
     traced, stated = _traced(lens, position), position.f_number
     return traced if traced and stated and abs(traced / stated - 1) > _AGREES else stated
@@ -142,7 +142,7 @@ def _traced(lens: Lens, position: Position) -> float | None:
 
 
 def stop_notes(lens: Lens) -> list[str]:
-    """Notes on positions of a zoom whose stop and stated f-number disagree."""
+    """Notes on positions of a zoom where stop and stated f-number disagree."""
     if sum(c.at_infinity for c in lens.configurations) < 2:
         return []
     return [

@@ -26,7 +26,7 @@ def photo_light(
     Args:
         path: JPEG, PNG, TIFF, raw file, ``.exr`` or ``.hdr``.
         scale: Luminance of a value of 1, cd/m2; None: from the exposure, 1 for linear files.
-        taken: Camera whose exposure replaces values that EXIF lacks.
+        taken: Camera with the exposure for values that EXIF lacks.
 
     Returns:
         Linear Rec.709, cd/m2, shape (H, W, 3), and notes on missing EXIF values and clipping.

@@ -33,7 +33,7 @@ _SENSITIVITIES = (
     "StandardOutputSensitivity",
     "ISOSpeed",
 )
-#: PhotographicSensitivity has 16 bits; this value stands for higher ones.
+#: PhotographicSensitivity has 16 bits; its largest value stands for all higher ISOs.
 _MOST_ISO = 65535
 #: Words and units of numbers that are compared.
 _COMPARED = {

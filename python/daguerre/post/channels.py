@@ -22,7 +22,7 @@ def roles_of(need: str) -> tuple[str, ...]:
 
 
 def find(canvas: Canvas, role: str) -> str:
-    """Finds the channel for a role: the one that the user named, or one with a usual name.
+    """Finds the channel for a role: the channel that the user named, else one of a usual name.
 
     Raises:
         InputError: There is no such channel; the message lists the channels of the file.

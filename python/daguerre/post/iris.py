@@ -55,8 +55,8 @@ def iris_shape(values: Values) -> IrisShape:
 def outline(blades: int, rotation_deg: float, curvature: float) -> NDArray[np.float64]:
     """Outline of the opening as corners, counterclockwise, y up, shape (N, 2), in any unit.
 
-    Blades are straight (curvature 0), or arcs of a circle whose radius is 1 / curvature times that
-    of the corners; negative curvature bends them inward.
+    Blades are straight (curvature 0), or arcs of a circle with a radius of 1 / curvature times the
+    radius of the corners; negative curvature bends them inward.
     """
     if blades == 0:
         angle = np.linspace(0, 2 * math.pi, _ROUND, endpoint=False)

@@ -1,6 +1,6 @@
 """Kernels of spread light, each with sum 1 over its window.
 
-Rows from the top; odd numbers of pixels, with the source in the middle one.
+Rows from the top; odd numbers of pixels, with the source in the middle pixel.
 """
 
 from __future__ import annotations

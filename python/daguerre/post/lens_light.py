@@ -116,7 +116,7 @@ class Surface:
 class _Taps:
     """The four nodes near each pixel and their weights.
 
-    They are added one by one, as a product of matrices may round by the number of its rows.
+    The nodes are added in sequence, as a product of matrices may round by the number of its rows.
     """
 
     def __init__(self, pixels: int, nodes: int) -> None:

@@ -1,8 +1,8 @@
 """Maps motion vectors when a picture is warped.
 
-A pixel of the result shows the source at s, whose motion m leads to s + m. Its mapped motion leads
-to the position of s + m in the result. If only the map from result to source is known (an STMap),
-its derivative transforms motion, to first order.
+A pixel of the result shows the source at s, with motion m to s + m. Its mapped motion leads to the
+position of s + m in the result. If only the map from result to source is known (an STMap), its
+derivative transforms motion, to first order.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class MotionMap:
     def turned(
         self, planes: Mapping[str, NDArray[Any]], warp: Warp, rows: Rows
     ) -> dict[str, NDArray[Any]]:
-        """Transforms the motion of rows of the result whose pixels are already moved."""
+        """Transforms the motion of rows of the result; their pixels are already moved."""
         if not self.pairs:
             return {}
         moved = warp.core.displacements(self._canvas.width, *rows)
@@ -121,7 +121,7 @@ class MotionMap:
 
 
 def _pairs(canvas: Canvas) -> tuple[list[tuple[str, str]], list[str]]:
-    """Pairs of channels that hold a motion, and channels whose other coordinate is missing."""
+    """Pairs of channels that hold a motion, and channels without their other coordinate."""
     names = {name.lower(): name for name in canvas.planes}
     wanted: list[Sequence[str]] = list(zip(*(USUAL[role] for role in PARTS["motion"]), strict=True))
     given = [canvas.roles.get(role) for role in PARTS["motion"]]

@@ -27,7 +27,7 @@ class Canvas:
         height: Height of the data window, px.
         corner: First pixel of the data window in the display window, px.
         full_size: Width and height of the display window, px, on which effects are centred.
-        colors: Names of the color channels; the last one may be alpha.
+        colors: Names of the color channels; the last may be alpha.
         planes: Names of all other channels, as in the file.
         facts: Attributes of the file by name.
         where: Name of the picture, for messages.
@@ -73,8 +73,8 @@ class Band:
 
     Attributes:
         rows: Rows of the band.
-        image: Scene-linear colours, and alpha if there is one: float32 (rows, W, C). Must not be
-            changed in place.
+        image: Scene-linear colours, and alpha if the picture has it: float32 (rows, W, C). Must not
+            be changed in place.
         planes: Other channels by name, (rows, W), in the types of the file.
     """
 

@@ -95,7 +95,7 @@ def _files(planned: Planned, folder: Folder) -> dict[str, str]:
     """Files that an effect of a recipe may read, by parameter.
 
     Raises:
-        InputError: One is outside of the recipe's folder or missing, or the effect writes one.
+        InputError: A file is outside of the recipe's folder or missing, or the effect writes files.
     """
     found = {}
     for row in planned.effect.parameters:

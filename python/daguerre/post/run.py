@@ -99,10 +99,10 @@ def process(
 
 
 def _check_distinct(target: str | os.PathLike[str], planned: Sequence[Planned]) -> None:
-    """Checks that no effect writes to the picture's file, or to that of another effect.
+    """Checks that no effect writes to the picture's file, or to a file of another effect.
 
     Raises:
-        UsageError: One does; the message names the effect.
+        UsageError: An effect does; the message names it.
     """
     taken = {os.path.realpath(target)}
     for one in planned:

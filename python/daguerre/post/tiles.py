@@ -1,7 +1,7 @@
 """Runs a chain of effects over a picture, a band of rows at a time, to save memory.
 
 Rows are pulled: the writer requests a band from the last effect, which requests the rows that it
-reads from the one before, and so on down to the file. Each effect keeps the blocks of its last
+reads from the previous effect, and so on down to the file. Each effect keeps the blocks of its last
 request, so that rows common to two bands are computed once. Blocks begin at fixed rows, so that no
 bit of the result depends on the requests.
 """
@@ -32,7 +32,7 @@ class Stage:
 
     @property
     def canvas(self) -> Canvas:
-        """Facts about the picture, which are those of the source."""
+        """Facts about the picture, from the source."""
         return self.source.canvas
 
     def rows(self, rows: Rows) -> Band:

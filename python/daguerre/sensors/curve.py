@@ -34,7 +34,7 @@ class Curve(Value, BriefRecord):
 
 
 def table(where: str, wavelengths: Any, values: Any, most: float = 1.0) -> FloatArray:
-    """Checks a table: numbers of 0 to ``most``, one for each wavelength along the last axis.
+    """Checks a table: numbers of 0 to ``most`` for each wavelength along the last axis.
 
     Raises:
         InputError: A number is missing or out of range; the message has its wavelength.

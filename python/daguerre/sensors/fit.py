@@ -2,8 +2,8 @@
 
 XYZ does not determine a sensor's channels, so a matrix between them is a least-squares fit over
 reflectances. Two kinds are used, as Daguerre's cameras see both: a grid of the reflectances that
-renders make from RGB (Mallett and Yuksel 2019), and smooth, natural ones: sigmoids of parabolas
-over wavelength (Jakob and Hanika 2019). White is kept exactly.
+renders make from RGB (Mallett and Yuksel 2019), and smooth, natural reflectances: sigmoids of
+parabolas over wavelength (Jakob and Hanika 2019). White is kept exactly.
 """
 
 from __future__ import annotations

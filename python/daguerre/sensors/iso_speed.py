@@ -1,6 +1,6 @@
 """ISO 12232: exposures that the ISO of a camera stands for.
 
-The exposure that just saturates is 78 / ISO lux s, half a stop above that of a white surface.
+The exposure that just saturates is 78 / ISO lux s, half a stop above a white surface.
 Middle grey of a developed picture has 10 / ISO lux s.
 """
 

@@ -1,4 +1,4 @@
-"""Reads lens files of other programs as ``daguerre-lens/0.1``, with notes on what is ignored."""
+"""Reads lens files of other programs as ``daguerre-lens/0.1``, with notes on ignored content."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def is_foreign(path: Path) -> bool:
 
 
 def parse(data: bytes, path: Path) -> tuple[dict[str, Any], list[str]]:
-    """Converts another program's lens file to a lens file's value, with notes on what is ignored.
+    """Converts another program's lens file to a lens file's value, with notes on ignored content.
 
     Raises:
         LensError: The file cannot be read; the message has the line, and the surface if any.

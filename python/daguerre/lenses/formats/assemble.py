@@ -43,14 +43,14 @@ def lens_file(
     nominal: dict[str, Any] | None = None,
     **more: object,
 ) -> dict[str, Any]:
-    """Builds a lens file of the schema, with all configurations; the drafts have the first one's.
+    """Builds a lens file of the schema with all configurations; the drafts have the first's gaps.
 
     Args:
         file: Name of the imported file, for messages.
         name: Name of the lens.
         drafts: The object, the surfaces, the image.
         configurations: Zoom or focus positions, at least one.
-        unread: Collects what is ignored.
+        unread: Collects notes on ignored content.
         nominal: Nominal values that the file states.
         more: Further members of the lens file.
     """

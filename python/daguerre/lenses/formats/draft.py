@@ -75,8 +75,8 @@ class Table:
 def moved(decenter: list[float], tilt: list[float], tilt_first: bool = False) -> Frame:
     """Transform that shifts (mm), then turns (degrees, right-handed) about x, the new y, the new z.
 
-    With ``tilt_first`` it turns about z, y, x and then shifts, which undoes a move whose numbers
-    have the opposite sign.
+    With ``tilt_first`` it turns about z, y, x and then shifts, which undoes a move with numbers of
+    the opposite sign.
     """
     shift, turn = np.eye(4), np.eye(4)
     shift[:3, 3] = decenter

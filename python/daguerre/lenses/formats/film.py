@@ -1,4 +1,4 @@
-"""Compares the film of an imported file with the one that a camera takes: at the focus."""
+"""Compares the film position of an imported file with a camera's, which is at the focus."""
 
 from __future__ import annotations
 

@@ -31,8 +31,8 @@ def model(
         nd: Index at 587.56 nm.
         vd: Abbe number.
         name: Name in the file.
-        maker: Maker in the file; those without a catalogue are dropped.
-        deviation: theta_gF less that of Schott's normal line; 0: not known.
+        maker: Maker in the file; a maker without a catalogue is dropped.
+        deviation: theta_gF less the value of Schott's normal line; 0: not known.
     """
     if nd == 1:
         return None

@@ -4,7 +4,7 @@
 the name of a variable distance), nd, diameter, Vd, glass, maker. ``[variable distances]`` has one
 column for each position. ``[aspherical data]`` has id, radius, k, and the coefficients of r^4, r^6
 ...; with ``AsphericalA2`` they begin at r^2; with ``AsphericalOddCount n`` the first n odd powers
-from r^3 on stand between the even ones. Source: the site's published files.
+from r^3 on are between the even powers. Source: the site's published files.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Sections = dict[str, list[Line]]
 
 
 def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
-    """Converts an Optical Bench file to ``daguerre-lens/0.1``, with notes on what is ignored.
+    """Converts an Optical Bench file to ``daguerre-lens/0.1``, with notes on ignored content.
 
     Raises:
         LensError: The file cannot be read; the message has the line, and the surface if any.

@@ -2,7 +2,7 @@
 
 Lengths in mm. The row of radius 0 is the stop; an index of 0 is air; ``#`` begins a comment. pbrt
 has no planes: radius 0 where the medium changes is read as a plane.
-In an older layout (Stanford CS348b) the thickness stands before the surface: the first one is 0.
+In an older layout (Stanford CS348b), thicknesses are in front of their surfaces; the first is 0.
 Sources: pbrt-v4's user's guide, "realistic" camera; the comments in the files that come with pbrt.
 """
 
@@ -17,7 +17,7 @@ from .text import Line, Unread, lines_of, number
 
 
 def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
-    """Converts a pbrt lens file to ``daguerre-lens/0.1``, with notes on what is ignored.
+    """Converts a pbrt lens file to ``daguerre-lens/0.1``, with notes on ignored content.
 
     Raises:
         LensError: The file cannot be read; the message has the line.

@@ -35,7 +35,7 @@ _SURFACE_WORD = re.compile(r"S(\d+|[OI])", re.IGNORECASE)
 
 
 def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
-    """Converts a CODE V sequence to ``daguerre-lens/0.1``, with notes on what is ignored.
+    """Converts a CODE V sequence to ``daguerre-lens/0.1``, with notes on ignored content.
 
     Raises:
         LensError: The file cannot be read; the message has the line, and the surface if any.
@@ -56,7 +56,7 @@ def _run(text: str, where: str, radius_mode: bool) -> _Reader:
 
 
 class _Reader:
-    """Builds a lens from the commands, one after the other."""
+    """Builds a lens from the commands, in their order."""
 
     def __init__(self, file: str, radius_mode: bool) -> None:
         self.file = file

@@ -18,9 +18,9 @@ Read = tuple[dict[str, Any], list[str]]
 
 
 def fitting(radii: Callable[[], Read], curvatures: Callable[[], Read], where: str) -> Read:
-    """Returns the reading whose paraxial image is nearest to the file's film, with a note.
+    """Returns the reading with the paraxial image nearest to the file's film, with a note.
 
-    Without a film in the file they are radii.
+    Without a film in the file, the numbers are radii.
 
     Args:
         radii: Builds the lens, with the first numbers of its surfaces as radii.

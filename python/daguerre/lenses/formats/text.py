@@ -153,7 +153,7 @@ def words(text: str) -> frozenset[str]:
 
 
 class Unread:
-    """Collects what an import ignores or changes, so that each thing becomes one note."""
+    """Collects the places of content that an import ignores or changes, for a note on each kind."""
 
     def __init__(self) -> None:
         self._places: dict[str, list[str]] = {}

@@ -39,7 +39,7 @@ _HARMLESS = words(
 
 
 def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
-    """Converts a Zemax file to ``daguerre-lens/0.1``, with notes on what is ignored.
+    """Converts a Zemax file to ``daguerre-lens/0.1``, with notes on ignored content.
 
     Raises:
         LensError: The file cannot be read; the message has the line, and the surface if any.
@@ -53,7 +53,7 @@ def parse(text: str, where: str) -> tuple[dict[str, Any], list[str]]:
 
 
 class _Reader:
-    """Builds a lens from the records, one after the other."""
+    """Builds a lens from the records, in their order."""
 
     def __init__(self, file: str) -> None:
         self.file = file

@@ -39,7 +39,7 @@ class Positions:
                 line.fail(f"MNUM: wanted a configuration of 1 .. {self.count}")
 
     def take(self, line: Line) -> bool:
-        """Applies an operand; returns false if the line is not one."""
+        """Applies an operand; returns false if the line is not an operand."""
         keyword = line.words[0].upper()
         if keyword == "THIC":
             surface = line.whole_at(1, "surface", 0, 10_000)

@@ -89,5 +89,5 @@ def candidates(
 
 
 def agree(found: Sequence[Listed]) -> bool:
-    """Whether glasses count as one: their blue dispersion is about the same."""
+    """Whether glasses count as the same: their blue dispersion is about equal."""
     return not found or max(g.p_gf for g in found) - min(g.p_gf for g in found) <= SAME_P

@@ -47,17 +47,17 @@ def composite(
     """Composites rendered objects into a photograph.
 
     Args:
-        plate: Photograph. A raw one is composited in electrons.
+        plate: Photograph. A raw photograph is composited in electrons.
         objects: Render of the objects, with alpha and catcher channels.
         like_plate: Matched camera of the plate, which gives objects its blur and noise. Required
             for a raw plate from a file.
         form: How catchers change the plate: ``auto``, ``ratio`` or ``difference``.
         scale: Light of the render for a plate value of 1; default: from both exposures for
-            developed plates, 1 for linear ones.
+            developed plates, 1 for linear plates.
         seed: Seed of the noise of added objects.
 
     Returns:
-        A frame for a linear plate, a raw picture for a raw one, a picture for a developed one;
+        A frame for a linear plate, a raw picture for a raw plate, a picture for a developed plate;
         each has ``save``.
 
     Raises:

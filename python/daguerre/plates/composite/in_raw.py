@@ -6,7 +6,7 @@ shot of plate and objects has mean k L + E and read noise once. The plate's valu
 
     k (N + read) + noise of variance k (1 - k) L + (1 - k^2) r^2 + a Poisson number of mean E,
 
-with N in place of L. Mean and variance are those of a real shot (thinning of a Poisson process;
+with N in place of L. Mean and variance are as in a real shot (thinning of a Poisson process;
 Kingman 1993, Poisson Processes, 5.1). Where nothing changes, the plate keeps its values exactly.
 """
 

@@ -1,10 +1,10 @@
-"""Blocks of equal photosites, judged by low frequencies and measured by high ones.
+"""Blocks of equal photosites, selected by low frequencies and measured by high frequencies.
 
 White noise has the same variance in every coefficient of a discrete cosine transform, independent
-of each other, while pictures have little in the high ones. So the low coefficients select flat
-blocks, and the high ones measure the noise. As the high ones do not take part in the selection, it
-does not bias them (Ponomarenko et al. 2007, An automatic approach to lossy compression of AVIRIS
-images; Colom and Buades 2013, Analysis and extension of the Ponomarenko et al. method, IPOL 3).
+of each other, while pictures have little power in the high coefficients. So the low coefficients
+select flat blocks, and the high coefficients measure the noise, without bias from the selection
+(Ponomarenko et al. 2007, An automatic approach to lossy compression of AVIRIS images; Colom and
+Buades 2013, Analysis and extension of the Ponomarenko et al. method, IPOL 3).
 Coefficients along only one axis are left out: light that is a function of the row plus a function
 of the column has only those.
 

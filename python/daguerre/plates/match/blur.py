@@ -1,4 +1,4 @@
-"""Blur from rendered pixels to those of a plate: a Gaussian, then the sharpening of cameras.
+"""Blur from rendered pixels to a plate's pixels: a Gaussian, then the sharpening of cameras.
 
 The response is exp(-2 pi^2 s^2 f^2) (1 + a (1 - exp(-2 pi^2 r^2 f^2))): a Gaussian of s px, then an
 unsharp mask of strength a and the radius r of development.
@@ -59,12 +59,12 @@ def gaussian(sigma: float, frequency: FloatArray) -> FloatArray:
 
 
 def fitted(frequency: FloatArray, response: FloatArray, model: FloatArray | None = None) -> Blur:
-    """Fits the blur and sharpening that convert the response of rendered pixels to a measured one.
+    """Fits blur and sharpening that convert the response of rendered pixels to a measured response.
 
     Args:
         frequency: Frequencies, cycles per pixel, shape (F,).
         response: Measured modulation, shape (F,).
-        model: Modulation of rendered pixels, shape (F,); None: that of a square pixel.
+        model: Modulation of rendered pixels, shape (F,); None: of a square pixel.
     """
     used = (frequency > 0) & (frequency <= _FITTED)
     f, wanted = frequency[used], response[used]
@@ -77,7 +77,7 @@ def fitted(frequency: FloatArray, response: FloatArray, model: FloatArray | None
         sharpen = float(masked @ (wanted - blurred)) / power if power > 1e-12 else 0.0
         sharpen = min(max(sharpen, 0.0), _MOST_SHARPEN)
         rest = wanted - blurred - sharpen * masked
-        # Blur and sharpening cancel: among equal fits take the one with less of both.
+        # Blur and sharpening cancel: among equal fits, prefer less of both.
         error = float(rest @ rest) + 1e-4 * sharpen
         if error < best[0]:
             best = (error, Blur(float(sigma), sharpen))
@@ -104,9 +104,9 @@ def _spread(planes: Floats, sigma: float) -> Floats:
 
 
 def taps(sigma: float) -> FloatArray:
-    """Non-negative weights of a blur whose response at 1/4 cycle per pixel is the Gaussian's.
+    """Non-negative weights of a blur with the Gaussian's response at 1/4 cycle per pixel.
 
-    A Gaussian sampled at pixels has another response, the more so the smaller it is.
+    A Gaussian sampled at pixels has another response, above all a narrow Gaussian.
     """
     if sigma < 0.01:
         return np.ones(1)

@@ -1,6 +1,6 @@
 """Finds straight edges of a picture that are fit for measuring sharpness.
 
-A block whose gradients all have one direction has one straight edge (structure tensor: Bigun and
+A block with gradients in a single direction has a straight edge (structure tensor: Bigun and
 Granlund 1987, Optimal orientation detection of linear symmetry). ISO 12233 requires edges that are
 slanted by a few degrees against rows or columns, between two uniform sides.
 """

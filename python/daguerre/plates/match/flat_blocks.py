@@ -1,8 +1,8 @@
 """Finds flat blocks of developed pictures, by structure that is coarser than their noise.
 
-Noise of developed pictures is not white, so its low frequencies do not follow from its high ones.
-Blocks are selected by means of 8 x 8 px, which have little noise left, and measured by their
-variance.
+Noise of developed pictures is not white, so its low frequencies do not follow from its high
+frequencies. Blocks are selected by means of 8 x 8 px, which have little noise left, and measured by
+their variance.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ from .grain import SIDE
 from .texture import roughness
 
 FloatArray = NDArray[np.float64]
-#: Approximate number of blocks to examine, and least number of flat ones.
+#: Approximate number of blocks to examine, and least number of flat blocks.
 _MOST, LEAST = 9000, 12
 _BINS, _FLATTEST = 16, 0.2
-#: Variances above this multiple of a low quantile are texture, as those of noise differ little.
+#: Variances above this multiple of a low quantile are texture: variances of noise differ little.
 _TEXTURE, _USUAL = 1.6, 0.1
 #: Largest variance of means of 8 x 8 px over that of pixels: white noise has 1/64, grain of 4 px
 #: 1/4, edges nearly 1.
 _COARSE = 0.35
 #: A bin with this multiple of its neighbours' variance is texture: noise changes slowly with level.
 _PEAK = 4.0
-#: Display-encoded deviation above that of any camera's noise; text and patterns have it.
+#: Display-encoded deviation above the noise of any camera, as text and patterns have.
 _LOUDEST = 0.12
 #: Variance that counts as 0.
 _NOTHING = 1e-14
@@ -97,7 +97,7 @@ def rounding(photograph: Photograph) -> float:
 
 
 def alike(variance: FloatArray) -> NDArray[np.bool_]:
-    """Mask of variances near the low ones, which are those of noise rather than texture."""
+    """Mask of variances near the lowest, which are of noise rather than texture."""
     usual = np.quantile(variance, _USUAL)
     return np.asarray(variance <= _TEXTURE * max(float(usual), _NOTHING))
 

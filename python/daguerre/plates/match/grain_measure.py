@@ -80,7 +80,7 @@ def _curve(
 
 
 def _spectra(photograph: Photograph, found: FlatBlocks, plain: Grain) -> FloatArray:
-    """Mean cross power of blocks by frequency, both signs as one, (HALF, HALF, 3, 3).
+    """Mean cross power of blocks by absolute frequency, (HALF, HALF, 3, 3).
 
     Planes were subtracted, so the lowest frequencies are filled in from their neighbours.
     """

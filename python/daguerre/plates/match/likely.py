@@ -1,7 +1,7 @@
 """Tells noise from fine texture, by its size and its colours.
 
 Even texture (distant grass, plaster, felt) looks like noise in flat blocks. Two signs reveal it.
-First, photosites are independent, so slow changes of red do not follow those of green, while
+First, photosites are independent, so slow changes of red do not follow changes of green, while
 texture is dark and light in all colours at once. Second, the number of electrons, from ISO and
 pixel size, limits the noise. Noise that is alike in all colours (cameras that smooth colours, mono
 sensors) does not exceed that limit.
@@ -29,8 +29,8 @@ _WHITE_LX_S = 78.0
 _DARK, _DARK_SHARE = 3.0, 1e-4
 #: Largest credible pixel pitch, um; crops seem to have larger pixels.
 _LARGEST = 6.0
-#: Deviation over what electrons explain, at most, where red and green are alike by ``_ALIKE``; it
-#: grows as they become less so. Developed shots by the library's sensors have up to 2.4 at -0.7 to
+#: Largest deviation over shot noise where the correlation of red and green is ``_ALIKE``; a lower
+#: correlation allows more. Developed shots by the library's sensors have up to 2.4 at -0.7 to
 #: -0.2, its mono sensors up to 1.2 at 1.
 _MOST, _ALIKE = 1.5, 0.5
 #: Correlation of noise by chance; up to this, a block is not texture, unless most others are.
@@ -105,7 +105,7 @@ def expected(level: FloatArray, electrons: float) -> FloatArray:
 
 
 def _likeness(photograph: Photograph, part: FlatBlocks) -> float:
-    """Mean correlation of green's slow changes with those of red and blue."""
+    """Mean correlation of slow changes of green with red and blue."""
     pixels = photograph.pixels
     assert pixels is not None
     blocks = np.stack([pixels[y : y + SIDE, x : x + SIDE] for y, x in part.corner])

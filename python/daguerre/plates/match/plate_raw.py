@@ -19,7 +19,7 @@ def raw_of(photograph: Photograph, plate: PlateCamera) -> Raw:
         plate: Matched camera of the plate.
 
     Raises:
-        InputError: The photograph is not raw, or has another size than the matched one.
+        InputError: The photograph is not raw, or has another size than the matched photograph.
     """
     raw, sensor = photograph.raw, plate.sensor
     if raw is None or sensor is None:

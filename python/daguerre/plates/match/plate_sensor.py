@@ -13,7 +13,7 @@ from daguerre.sensors.iso_speed import SATURATION_LX_S
 
 from .transfer import Transfer
 
-#: Sensors whose colours stand in for those of unknown cameras.
+#: Sensors with colours that stand in for unknown cameras, by number of channels.
 _STAND_INS = {1: "sony-imx571-mono", 3: "nikon-d5100"}
 #: Relative standard error from which on a read noise counts as unknown.
 UNKNOWN = 0.5

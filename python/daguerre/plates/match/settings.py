@@ -37,8 +37,8 @@ class Settings:
 
     Attributes:
         camera: Camera of the photograph.
-        body: Sensor of the library for the camera, or the given one.
-        focal_length: Focal length from the metadata, or the given one, mm.
+        body: Sensor of the library for the camera, or the given sensor.
+        focal_length: Focal length, given or from the metadata, mm.
         notes: Assumptions, a sentence each.
     """
 

@@ -18,9 +18,9 @@ from .blocks import cosines
 from .grain import FOLDED, SIDE
 
 Floats = NDArray[np.float32]
-#: Power of 3 x 3 frequencies over that of the 72 around them, which 1 noise block in 100 exceeds.
+#: Ratio of the power of 3 x 3 frequencies to the 72 around them that 1 % of noise blocks exceed.
 _LINE = 6.5
-#: Share of the mean power added to that around a line, so that zeros of JPEG do not make lines.
+#: Share of the mean power added to the power around a line: zeros of JPEG must not make lines.
 _FLOOR = np.float32(0.02)
 #: Largest relative deviation of the variances of a block's 16 cells; sensor noise has 0.2 to 0.4.
 #: JPEG makes cells unequal, so the limit grows with the share of zero cosines above _ZEROS.
@@ -28,7 +28,7 @@ _UNEVEN, _UNEVEN_ZEROS, _ZEROS = 0.45, 2.2, 0.55
 #: Cosines below this many standard deviations of rounding count as zero.
 _ZERO = 2.4
 _CELL, _SMOOTH = 8, 5
-#: Blocks with less variance, over that of rounding, have too few distinct values to be judged.
+#: Least variance over the variance of rounding: below it, blocks have too few distinct values.
 _FEW = 4.0
 _AT_ONCE = 512
 #: Frequencies to judge, without coarse structure and the mosaic's pattern of two pixels.

@@ -23,10 +23,10 @@ LEAST = 64
 _BINS, _FINE_BINS, _FIRST_SHARE, _ROUNDS = 24, 96, 0.1, 6
 #: Width of a bin, standard deviations of a photosite; a block's mean has 1/8 of that deviation.
 _BIN_WIDTH = 2.0
-#: Largest mean squares of flat blocks over their variance: 1 in 100 of the low ones is larger, and
-#: 1 in 10000 of the high ones (chi-square of 9 and 16).
+#: Largest mean squares of flat blocks over their variance: 1 % of the means over low frequencies
+#: are larger, and 0.01 % of the means over high frequencies (chi-square of 9 and 16).
 _FLAT, _OUTLIER = 2.41, 2.90
-#: Largest slope of gradients, over the variance; edges have larger ones.
+#: Largest slope of gradients, over the variance; edges have larger slopes.
 _STEEP = 1000.0
 #: Least distance of a block's mean from the ends of the range, standard deviations.
 _CLEAR = 5.0
@@ -34,7 +34,7 @@ ROUNDING = 1 / 12  # DN^2
 #: Largest relative difference of the channels' gains.
 _ONE_GAIN = 0.5
 #: Error of the gain over the excess of the blocks' mean squares; excess due to chance: a share plus
-#: a number over sqrt(blocks), one for their spread and one for the mean of low ones.
+#: a number over sqrt(blocks), for their spread and for the mean of low frequencies.
 _OFF, _CHANCE, _BY_COUNT = 0.4, 0.05, (5.0, 1.5)
 #: Error of the gain by texture above which there is no result.
 _TOO_MIXED = 0.3
@@ -203,8 +203,8 @@ def _fit(level: FloatArray, variance: FloatArray, last: _Line | None) -> _Line:
 def _bins(level: FloatArray, line: _Line) -> NDArray[np.intp]:
     """Index of each block's bin, from the darkest on; bins are wider than the noise of a mean.
 
-    Weights by a block's own level would prefer dark blocks whose mean noise has lowered, and so
-    raise the line there.
+    Weights by a block's level would prefer blocks with a mean that noise has lowered, and so raise
+    the line there.
     """
     a, g, _ = line.values
     if not g > 0:
@@ -222,7 +222,7 @@ def _smooth(level: FloatArray, variance: FloatArray) -> FloatArray:
 
 
 def _inverse(columns: FloatArray) -> FloatArray:
-    """Inverse of the normal matrix, whose columns differ widely in size."""
+    """Inverse of the normal matrix of columns that differ widely in size."""
     scale = np.linalg.norm(columns, axis=0)
     scale[scale == 0] = 1
     unit = columns / scale
@@ -230,10 +230,10 @@ def _inverse(columns: FloatArray) -> FloatArray:
 
 
 def _texture_among(flat: Blocks, line: _Line) -> float:
-    """Relative error of the gain by texture among the flat blocks; 0: there is none.
+    """Relative error of the gain by texture among the flat blocks; 0: no texture.
 
-    The spread of the mean squares of noise is known, and low frequencies have as much power as
-    high ones; texture makes both larger.
+    In noise, the spread of the mean squares is known, and low frequencies have as much power as
+    high frequencies; texture makes both larger.
     """
     expected = line(flat.level)
     spread = float(np.square(flat.high / expected - 1).mean() * HIGH_COUNT / 2)

@@ -38,7 +38,7 @@ class Exposures:
 
     @property
     def stops(self) -> tuple[float, ...]:
-        """Exposure of each photograph above that of the darkest, EV."""
+        """Exposure of each photograph above the darkest, EV."""
         highest = max(self.luminance)
         return tuple(math.log2(highest / value) for value in self.luminance)
 
@@ -60,7 +60,7 @@ def exposures_of(
         flag: Flag of ``scale``, for the notes.
 
     Raises:
-        UsageError: The number of ``ev`` is not that of the photographs.
+        UsageError: The numbers of ``ev`` and photographs differ.
         InputError: EXIF lacks a required value.
     """
     if ev is not None:

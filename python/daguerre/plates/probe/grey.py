@@ -116,7 +116,7 @@ def _rms(off: FloatArray, target: FloatArray) -> float:
 
 
 def _sun_direction(soft: FloatArray, normals: FloatArray, luma: FloatArray) -> FloatArray | None:
-    """Direction whose clamped cosine explains most of the residual of soft light."""
+    """Direction with the clamped cosine that explains most of the residual of soft light."""
     q = np.linalg.qr(soft)[0]
     left = luma - q @ (q.T @ luma)
     tried, spread = scattered(2000), 0.08

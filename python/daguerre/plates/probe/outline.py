@@ -186,7 +186,7 @@ def _edges_near(grey: FloatArray, circle: Circle, reach: float) -> FloatArray:
 
 
 def _across(grey: FloatArray, points: FloatArray, way: FloatArray) -> NDArray[np.bool_]:
-    """Mask of points whose edge is perpendicular to the radius."""
+    """Mask of points with an edge perpendicular to the radius."""
     x, y = points.T
     dx = between(grey, x + 1, y) - between(grey, x - 1, y)
     dy = between(grey, x, y + 1) - between(grey, x, y - 1)

@@ -17,7 +17,7 @@ from .latlong import FloatArray, centres, luminance, place, solid_angles
 DIAMETER_DEG = 0.533
 #: Share of all light, integrated over the sphere, from which on a source counts.
 LEAST_SHARE = 0.05
-#: Largest diameter of a sun, and of one in clipped light; larger sources are windows or lamps.
+#: Largest diameter of a sun, unclipped and clipped; larger sources are windows or lamps.
 MOST_DEG, MOST_CLIPPED_DEG = 10.0, 40.0
 #: Edge of the sun, as a share of the highest luminance above the surroundings.
 _EDGE = 0.02
@@ -131,7 +131,7 @@ def _sun(
 
 
 def _brightest(found: FloatArray, angles: FloatArray, clipped: NDArray[np.bool_]) -> int:
-    """Index of the brightest pixel, in the clipped area with the most light if there is one."""
+    """Index of the brightest pixel, within the clipped area with the most light, if any."""
     left, best, index = clipped.copy(), 0.0, int(found.argmax())
     for _ in range(64):
         if not left.any():
@@ -146,7 +146,7 @@ def _brightest(found: FloatArray, angles: FloatArray, clipped: NDArray[np.bool_]
 
 
 def _connected(mask: NDArray[np.bool_], start: Any) -> NDArray[np.bool_]:
-    """Pixels of a mask connected with a given one; left and right edges are neighbours."""
+    """Pixels of a mask connected with a start pixel; left and right edges are neighbours."""
     part = np.zeros_like(mask)
     part[start] = mask[start]
     count = 0

@@ -1,6 +1,6 @@
-"""Unwraps photographs of a mirror ball from one or more directions to one environment.
+"""Unwraps photographs of a mirror ball from one or more directions to a single environment.
 
-If two photographs show a direction, the one is used that shows it neither near the camera's own
+If two photographs show a direction, the better photograph shows it neither near the camera's
 reflection nor near the rim, where the ball compresses a whole quarter of the surroundings.
 """
 

@@ -187,7 +187,7 @@ DEPTH_OF_FIELD = Effect(
 def depth_of_field(image: Image, depth: NDArray[Any], **parameters: object) -> Image:
     """Adds depth of field to a scene-linear pinhole picture, by the depth of its pixels.
 
-    Near surfaces hide far ones by the share of the lens that they cover. The background behind
+    Near surfaces hide far surfaces by the share of the lens that they cover. The background behind
     their blurred edges is filled in from beside them. A plane at one depth is convolved with the
     iris.
 

@@ -65,8 +65,8 @@ def distort(
 
     Args:
         image: Scene-linear picture, shape (H, W, C).
-        model: One model, or one each for red, green and blue.
-        focal_px: Focal length, px; one, or horizontal and vertical.
+        model: One model, or a model each for red, green and blue.
+        focal_px: Focal length, px; a number, or horizontal and vertical.
         centre: Centre of the distortion, px from the top left corner of the picture; default: its
             middle. OpenCV counts from the middle of the first pixel: add 0.5 to its cx and cy.
         scale: Magnification of the ideal picture; above 1 it shows less of the scene, larger.
@@ -155,7 +155,7 @@ def _make(canvas: Canvas, values: Values) -> Step:
 def camera(
     canvas: Canvas, values: Values
 ) -> tuple[list[Distortion], tuple[float, float], tuple[float, float]]:
-    """Returns the models (one, or one per colour), focal lengths and centre (px) of the values."""
+    """Returns the models (shared or per colour), focal lengths and centre (px) of the values."""
     middle = axis(canvas, values)
     centre = tuple(
         middle[k] if values[name] is None else values[name] + 0.5

@@ -57,7 +57,7 @@ def _shape(canvas: Canvas) -> tuple[int, int, int]:
 
 
 def _window(canvas: Canvas, wanted_px: float) -> int:
-    """Odd size of a kernel: the wanted size, limited to what can matter."""
+    """Odd size of a kernel: the wanted size, limited to pixels that can reach the picture."""
     most = min(LARGEST, 2 * max(canvas.width, canvas.height) - 1)
     return max(1, min(math.ceil(wanted_px), most)) | 1
 
@@ -72,7 +72,7 @@ def _halo(canvas: Canvas, values: Values) -> Step:
     size = _window(canvas, 60 * thickness)
     kernel = kernels.halation(thickness, values["index"], size)
     colors = len(canvas.colors) - canvas.alpha
-    # The emulsion's last layer, next to the base, is the red one.
+    # The emulsion's last layer, next to the base, records red.
     shares = np.array([values["red"], values["green"], values["blue"]], np.float32)
     shares = values["share"] * (shares if colors == 3 else shares[:1])
     if (shares > 1).any():

@@ -1,8 +1,8 @@
 """Motion blur of an instant, from motion vectors.
 
 McGuire, Hennessy, Bukowski and Osman 2012 (A reconstruction filter for plausible motion blur)
-gather along the fastest motion nearby. Here each pixel is spread along its own motion, and near
-pixels hide far ones for as long as they cover them.
+gather along the fastest motion nearby. Here each pixel is spread along its motion, and near pixels
+hide far pixels for as long as they cover them.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ class _MotionBlur(Step):
         return [(ahead if t > 0 else back, t) for t in (self._open, self._close)]
 
     def _motion(self, band: Band) -> tuple[Floats, Floats]:
-        """Motion to the next frame and to the previous one, px; 0 where it is unknown."""
+        """Motion to the next frame and to the previous frame, px; 0 where it is unknown."""
         ahead = self._flow(band, self._next)
         back = self._flow(band, self._last) if len(self._last) == 2 else -ahead
         ahead = np.where(np.isfinite(ahead), ahead, -back)
@@ -123,7 +123,7 @@ class _MotionBlur(Step):
 
 
 def _depth_channel(canvas: Canvas) -> str | None:
-    """Depth channel if there is one; a channel that the user named must exist."""
+    """Depth channel; None: the picture has none. A channel that the user named must exist."""
     try:
         return channels.find(canvas, "depth")
     except InputError:
@@ -185,7 +185,7 @@ def motion_blur(
             back to the previous frame, shape (H, W, 4). Pixels with motion that is not finite do
             not move.
         depth: Depth along the axis or the ray, shape (H, W), m; 0, infinity and NaN mean sky.
-            Without it, faster pixels hide slower ones.
+            Without depth, faster pixels hide slower pixels.
         **parameters: Parameters of the effect ``motion-blur``: ``shutter_angle`` (deg; 360 is one
             frame), ``shutter_offset`` (frames), ``shutter_curve`` ("box" or "trapezoid"),
             ``efficiency``, ``scale``, ``v_up``.

@@ -106,7 +106,7 @@ def stmap(
     Args:
         model: Distortion model.
         size: Width and height of the picture, px.
-        focal_px: Focal length, px; one, or horizontal and vertical.
+        focal_px: Focal length, px; a number, or horizontal and vertical.
         centre: Centre of the distortion, px; default: the middle.
         scale: Magnification of the ideal picture.
         inverse: Whether the map undistorts instead.
