@@ -18,10 +18,10 @@ from pathlib import Path
 # at the root. Rooms on one floor do not see each other.
 LAYERS = {
     "ground": [
-        {"errors", "cached", "compiled", "forks", "on_use"},
+        {"errors", "cached", "compiled", "forks", "lazy_imports"},
         {"checks"},
-        {"kinds"},
-        {"doors"},
+        {"annotation_kinds"},
+        {"argument_checks"},
     ],
     "tables": [{"units", "memory", "files"}, {"parameters", "apart"}],
     "optics and color": [{"color", "motion", "convolution"}, {"lenses", "sensors"}],

@@ -1,6 +1,6 @@
 """``cached_property`` without a lock: two threads that read it at once both compute the value.
 
-Python 3.11's version holds one lock per class while it computes: threads wait for other objects of
+Python 3.11's version holds a lock of the class while it computes: threads wait for other objects of
 the class, and a process forked meanwhile waits for ever. Python 3.12 removed the lock.
 """
 

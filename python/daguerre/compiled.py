@@ -38,7 +38,7 @@ def check() -> None:
 
 
 def unloadable(error: ImportError) -> ImportError:
-    """Turns the loader's error into one that says how to solve the problem."""
+    """Turns the loader's error into an error that says how to solve the problem."""
     import platform  # not at every start of the program
 
     library, version = platform.libc_ver()

@@ -5,7 +5,7 @@ All figures come from exact rays through the prescription; docs/lens-bench.md ha
 
 from typing import TYPE_CHECKING
 
-from daguerre.on_use import on_use
+from daguerre.lazy_imports import lazy_attributes
 
 from .bench import Bench, set_up
 from .chief import chief_rays, film_heights
@@ -64,6 +64,6 @@ __all__ = [
 ]
 
 if not TYPE_CHECKING:  # checkers know the names above, and report all others
-    __getattr__, __dir__ = on_use(
+    __getattr__, __dir__ = lazy_attributes(
         __name__, dict.fromkeys(("GhostRays", "ghost_rays", "trace_ghost"), "ghost_trace")
     )

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import number, rows, wavelengths
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.files.value import BriefRecord
 from daguerre.lenses import FirstOrder, Lens

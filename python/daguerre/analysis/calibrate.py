@@ -9,11 +9,11 @@ from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.camera import Camera
 from daguerre.camera.parameters.bench import CALIBRATE, SEEN
 from daguerre.camera.projection import MODELS, NEEDED, Projection
 from daguerre.checks import number, numbers, whole
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files.value import BriefRecord
 from daguerre.lenses import Lens, load

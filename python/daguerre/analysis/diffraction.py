@@ -27,9 +27,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import pixel_integrals
+from daguerre.argument_checks import guarded
 from daguerre.checks import line, number, whole
 from daguerre.convolution.fft import fast_sizes, fft, rfft, thread_count
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 from .iris import Floats, Iris

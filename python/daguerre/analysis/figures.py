@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.files.value import BriefRecord
 
 from .bench import FDC_NM, Bench, FloatArray

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.argument_checks import guarded
 from daguerre.cached import cached_property
 from daguerre.checks import number, numbers, rows, whole
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.files.value import BriefRecord
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM, check_wavelength

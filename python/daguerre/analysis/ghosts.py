@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.argument_checks import guarded
 from daguerre.checks import whole
-from daguerre.doors import guarded
 from daguerre.errors import InputError, core_errors
 from daguerre.files.value import BriefRecord
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM

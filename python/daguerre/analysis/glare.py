@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import daguerre._core as _core
+from daguerre.argument_checks import guarded
 from daguerre.camera.lens_scatter import core_parts
-from daguerre.doors import guarded
 from daguerre.errors import InputError, core_errors
 
 from .ghosts import NM, WEIGHTS

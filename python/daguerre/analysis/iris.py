@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.argument_checks import guarded
 from daguerre.cached import cached_property
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.errors import InputError
 from daguerre.files.value import BriefRecord
 

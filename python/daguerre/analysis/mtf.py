@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import line
-from daguerre.doors import guarded
 
 from .bench import FDC_NM, FDC_WEIGHTS, FloatArray
 from .pencils import Pencil

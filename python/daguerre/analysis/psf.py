@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import number, whole
-from daguerre.doors import guarded
 from daguerre.files.array_value import ArrayValue
 from daguerre.files.value import BriefRecord
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.errors import InputError, core_errors
 from daguerre.files.value import BriefRecord
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.errors import UsageError
 from daguerre.files.value import BriefRecord
 

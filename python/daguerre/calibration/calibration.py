@@ -9,11 +9,11 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.camera import shutter
 from daguerre.camera.camera import Camera
 from daguerre.camera.projection import Projection
 from daguerre.checks import number, short
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.files.value import BriefRecord
 from daguerre.setup.pose import mounted

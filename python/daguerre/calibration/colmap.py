@@ -16,9 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.projection import Projection
 from daguerre.checks import short
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files.reading import exists, is_folder, not_utf8, opened, reading
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.camera import Camera
 from daguerre.checks import short
-from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.exporters.export_camera import export_camera
 from daguerre.files.numbered import has_place

@@ -15,8 +15,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.projection import Projection
-from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source

@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from difflib import get_close_matches
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.projection import Projection
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source

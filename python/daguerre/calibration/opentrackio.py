@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.errors import InputError
 from daguerre.files.json_item import Item, short
 from daguerre.files.source import Source

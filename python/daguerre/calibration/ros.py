@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.errors import InputError
 from daguerre.files.json_item import Item
 from daguerre.files.source import Source

@@ -16,9 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.projection import Projection
 from daguerre.checks import short
-from daguerre.doors import guarded
 from daguerre.files.json_item import Item
 from daguerre.files.reading import exists
 from daguerre.files.source import Source

@@ -15,9 +15,9 @@ from typing import Any, Self
 
 import numpy as np
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.camera import Camera
 from daguerre.checks import number
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.files.numbered import PLACE, numbers_in, with_number
 from daguerre.motion.values import keys

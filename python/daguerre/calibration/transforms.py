@@ -13,8 +13,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.projection import Projection
-from daguerre.doors import guarded
 from daguerre.files.json_item import Item, short
 from daguerre.files.source import Source
 

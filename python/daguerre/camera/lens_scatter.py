@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import daguerre._core as _core
+from daguerre.argument_checks import guarded
 from daguerre.checks import number, numbers, short
-from daguerre.doors import guarded
 from daguerre.errors import UsageError, core_errors
 
 _Lobe = tuple[float, float]

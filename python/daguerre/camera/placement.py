@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import number, numbers
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 if TYPE_CHECKING:

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
+from daguerre.argument_checks import guarded
 from daguerre.cached import cached_property
 from daguerre.checks import number, numbers, short, to_numbers, whole
-from daguerre.doors import guarded
 from daguerre.errors import UsageError, core_errors, suggest
 from daguerre.files.value import Value
 

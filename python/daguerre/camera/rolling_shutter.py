@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 
 #: ``"box"``, ``("trapezoid", efficiency)`` or points (fraction of the time, opening)
 ShutterCurve = str | tuple[str, float] | list[tuple[float, float]]

@@ -8,8 +8,8 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import number, short
-from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 
 from . import boards, color, dead_leaves, siemens_star, slanted_edge, step_wedge

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import number, rows, whole
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 from . import markers

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import number
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.files.value import BriefRecord
 

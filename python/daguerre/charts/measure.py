@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import line, numbers, rows, short, to_numbers, whole
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.files.value import BriefRecord
 

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.projection import Projection
 from daguerre.checks import number, whole
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 from .boards import outline

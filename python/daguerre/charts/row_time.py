@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.projection import Projection
 from daguerre.checks import number, numbers, short, to_numbers
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 
 from .measure import plane

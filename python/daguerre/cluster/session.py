@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Unpack
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.camera import Camera
 from daguerre.checks import short
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.parameters.keywords import takes
 from daguerre.rendering.keywords import SettingsKeywords

@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.errors import UsageError
 
 from .fft import Real, thread_count

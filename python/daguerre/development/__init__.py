@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from daguerre.frame.picture import Picture
-from daguerre.on_use import on_use
+from daguerre.lazy_imports import lazy_attributes
 
 if TYPE_CHECKING:
     from .binning import bayer_of
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["HIGHLIGHTS", "LOOKS", "Picture", "bayer_of", "develop", "save_raw"]
 
 if not TYPE_CHECKING:  # checkers know the names above, and report all others
-    __getattr__, __dir__ = on_use(
+    __getattr__, __dir__ = lazy_attributes(
         __name__,
         {
             "HIGHLIGHTS": "parameters",

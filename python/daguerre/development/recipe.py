@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from daguerre._core import Development, develop_picture
 from daguerre._core import sharpen as sharpen_picture
+from daguerre.argument_checks import guarded
 from daguerre.camera.exposure_mode import meter_of, retaken_mode
 from daguerre.checks import shown
 from daguerre.color import illuminants, spaces
 from daguerre.color.adaptation import adaptation
 from daguerre.color.encodings import encoding_of_space, rec709_from
 from daguerre.color.spectra import rgb_from_xyz
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.files import formats
 from daguerre.frame.picture import Picture

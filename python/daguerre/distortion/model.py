@@ -15,8 +15,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import to_numbers
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 FloatArray = NDArray[np.float64]

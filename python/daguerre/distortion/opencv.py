@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 
 from .projected import Projected
 

@@ -11,8 +11,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from daguerre.argument_checks import guarded
 from daguerre.cached import cached_property
-from daguerre.doors import guarded
 
 from .model import FloatArray, Radial
 from .monotone import SAMPLES, Monotone

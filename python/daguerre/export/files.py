@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import short
-from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.files.atomic import write_bytes
 from daguerre.polynomial.lens_fit import LensFit

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.camera import Camera
 from daguerre.checks import numbers, short
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.files import formats
 from daguerre.scene.scene import Scene

@@ -21,10 +21,10 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.exposure import PINHOLE_F_STOP, ideal_h0
 from daguerre.camera.exposure_mode import LIGHT
 from daguerre.checks import short
-from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.sensors.iso_speed import GREY, GREY_LX_S, white_lx_s
 

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.exposure_mode import METERS
 from daguerre.checks import numbers, short
 from daguerre.color.spectra import luminance_of_rgb
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.frame.frame import Frame
 from daguerre.sensors.iso_speed import GREY, GREY_LX_S

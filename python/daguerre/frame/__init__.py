@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from daguerre.on_use import on_use
+from daguerre.lazy_imports import lazy_attributes
 
 if TYPE_CHECKING:
     from .frame import Frame
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["Frame", "Picture", "Raw"]
 
 if not TYPE_CHECKING:  # checkers know the names above, and report all others
-    __getattr__, __dir__ = on_use(
+    __getattr__, __dir__ = lazy_attributes(
         __name__,
         {
             "Frame": "frame",

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import short
 from daguerre.color.display import _shoulder, _srgb, into_gamut
-from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.files import formats
 from daguerre.files.array_value import ArrayValue

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.color import spaces
-from daguerre.doors import guarded
 from daguerre.files import formats
 from daguerre.files.array_value import ArrayValue
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.errors import InputError
 from daguerre.files import formats
 from daguerre.files.array_value import ArrayValue

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import number
-from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files import formats
 from daguerre.scene import framing

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.argument_checks import guarded
 from daguerre.camera.camera import Camera
 from daguerre.camera.ideal import IDEAL
 from daguerre.checks import short
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.files.value import BriefRecord
 from daguerre.rendering.session import Session

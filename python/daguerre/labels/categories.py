@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.files.json_item import Item, short
 from daguerre.files.json_text import parse

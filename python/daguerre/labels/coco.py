@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.files.atomic import check_writable, write_bytes
 
 if TYPE_CHECKING:

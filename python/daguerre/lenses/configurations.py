@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import short
-from daguerre.doors import guarded
 from daguerre.errors import suggest
 from daguerre.files.json_item import Item, clean
 

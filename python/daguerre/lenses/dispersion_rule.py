@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 
 _SHOWN = {
     "formula": "formula in the file",

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 
 from .configurations import Configuration
 from .errors import LensError, reported

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
+from daguerre.argument_checks import guarded
 from daguerre.cached import cached_property
 from daguerre.checks import whole
-from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files.value import BriefRecord, Value
 

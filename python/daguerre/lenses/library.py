@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import short
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.files.library import find as file_of
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.files.json_item import Item
 
 from .reading import member, number, text

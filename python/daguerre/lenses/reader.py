@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.files.json_item import Item
 from daguerre.files.json_text import parse
 from daguerre.files.reading import read_bytes

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import cache
 
 from daguerre import errors
+from daguerre.argument_checks import guarded
 from daguerre.checks import short
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 from .index import Entry, entries, names

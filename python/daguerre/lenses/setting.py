@@ -7,8 +7,8 @@ import numbers
 from dataclasses import dataclass
 from typing import Literal, get_args
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import short
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 By = Literal["paraxial", "best"]

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import daguerre._core as _core
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 
 from .dispersion_rule import DispersionRule
 from .medium import Medium

@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.argument_checks import guarded
 from daguerre.camera import shutter
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.camera.settled import settled
 from daguerre.distortion.overscan import overscan_of
 from daguerre.distortion.rectified import built
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, core_errors, suggest
 from daguerre.files.value import BriefRecord
 from daguerre.rendering.parameters import TABLE

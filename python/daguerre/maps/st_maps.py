@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.cached import cached_property
 from daguerre.camera.overscan import NONE, Overscan
 from daguerre.distortion.overscan import overscan_of, to_redistort, to_undistort
 from daguerre.distortion.rectified import RectifiedView, built
-from daguerre.doors import guarded
 from daguerre.errors import DaguerreError
 
 if TYPE_CHECKING:

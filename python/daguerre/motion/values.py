@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
+from daguerre.argument_checks import guarded
 from daguerre.cached import cached_property
 from daguerre.checks import as_readonly, matrix, number, short, shown, to_numbers
-from daguerre.doors import guarded
 from daguerre.errors import InputError, core_errors, suggest
 from daguerre.files.value import Value
 

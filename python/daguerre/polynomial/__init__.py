@@ -18,7 +18,7 @@ a camera can use.
 from typing import TYPE_CHECKING
 
 from daguerre._core import Iris
-from daguerre.on_use import on_use
+from daguerre.lazy_imports import lazy_attributes
 
 from .elements import place, propagate, reflect, refract
 from .fitting import fit
@@ -61,7 +61,7 @@ __all__ = [
 ]
 
 if not TYPE_CHECKING:  # checkers know the names above, and report all others
-    __getattr__, __dir__ = on_use(
+    __getattr__, __dir__ = lazy_attributes(
         __name__,
         dict.fromkeys(
             ("GhostError", "GhostPolynomial", "PolynomialGhosts", "expand_ghost"), "ghosts"

@@ -7,8 +7,8 @@ from typing import Unpack
 
 import daguerre._core as _core
 from daguerre import lenses
+from daguerre.argument_checks import guarded
 from daguerre.checks import numbers, short, shown, whole
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.lenses.engraved import opened
 from daguerre.lenses.errors import reported

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from daguerre.analysis.ghost_trace import GhostRays, ghost_rays, stop_index
 from daguerre.analysis.ghosts import RAYS, Ghost, Ghosts, blank, splat
+from daguerre.argument_checks import guarded
 from daguerre.checks import rows
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.files.value import BriefRecord
 from daguerre.lenses.lens import DESIGN_WAVELENGTH_NM

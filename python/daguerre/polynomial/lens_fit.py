@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
+from daguerre.argument_checks import guarded
 from daguerre.checks import wavelengths
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, core_errors
 from daguerre.files import formats
 from daguerre.files.value import BriefRecord

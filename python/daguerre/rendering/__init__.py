@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from daguerre._core import Cancelled, CancelToken
-from daguerre.on_use import on_use
+from daguerre.lazy_imports import lazy_attributes
 
 if TYPE_CHECKING:
     from .checkpoint import Checkpoint
@@ -36,7 +36,7 @@ __all__ = [
 ]
 
 if not TYPE_CHECKING:  # checkers know the names above, and report all others
-    __getattr__, __dir__ = on_use(
+    __getattr__, __dir__ = lazy_attributes(
         __name__,
         {
             "Checkpoint": "checkpoint",

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import whole
 from daguerre.color.spectra import band_colors, band_wavelengths
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.files.value import BriefRecord
 from daguerre.sensors.bands import MOST_BANDS, weights_of_bands

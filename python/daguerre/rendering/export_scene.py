@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.camera import Camera
-from daguerre.doors import guarded
 from daguerre.exporters.record import Outgoing
 from daguerre.files import formats, in_use
 from daguerre.files.atomic import check_writable

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.errors import MismatchError
 from daguerre.frame.frame import Frame
 

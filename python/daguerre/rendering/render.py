@@ -8,8 +8,8 @@ from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Unpack
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.camera import Camera
-from daguerre.doors import guarded
 from daguerre.frame.frame import Frame
 from daguerre.parameters.keywords import takes
 from daguerre.scene.scene import Scene

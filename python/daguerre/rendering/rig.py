@@ -8,10 +8,10 @@ from typing import Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure_mode import is_automatic
 from daguerre.checks import number, short
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.frame.frame import Frame
 from daguerre.parameters.keywords import takes

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import daguerre._core as _core
+from daguerre.argument_checks import guarded
 from daguerre.cached import cached_property
 from daguerre.camera.camera import Camera
 from daguerre.camera.exposure_mode import is_automatic
 from daguerre.checks import MAX_SAMPLES, shown, whole
-from daguerre.doors import guarded
 from daguerre.errors import InputError, MismatchError, UsageError, core_errors
 from daguerre.frame.frame import Frame
 from daguerre.parameters.keywords import takes

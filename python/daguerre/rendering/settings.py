@@ -10,9 +10,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.overscan import Overscan
 from daguerre.checks import short, shown
-from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.files.value import Value
 

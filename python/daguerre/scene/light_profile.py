@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import daguerre._core as _core
+from daguerre.argument_checks import guarded
 from daguerre.cached import cached_property
 from daguerre.checks import array, as_readonly, color, number, short, to_numbers
 from daguerre.color.spectra import luminance_of_rgb
-from daguerre.doors import guarded
 from daguerre.errors import InputError, core_errors
 from daguerre.files import formats
 from daguerre.files.value import FixedArrays, Value

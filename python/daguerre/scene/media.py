@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import as_readonly, color, given_matrix, number, short, to_numbers
-from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files import formats
 from daguerre.files.array_value import ArrayValue

@@ -15,6 +15,7 @@ from typing import Any, Unpack, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.camera import Camera
 from daguerre.checks import (
     MAX_NUMBERS,
@@ -28,7 +29,6 @@ from daguerre.checks import (
 )
 from daguerre.checks import color as check_color
 from daguerre.checks import number as check_number
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError, suggest
 from daguerre.files import formats
 from daguerre.files.notes import Notes

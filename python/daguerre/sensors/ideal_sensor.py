@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from daguerre.argument_checks import guarded
 from daguerre.color import illuminants
-from daguerre.doors import guarded
 
 from .iso_speed import SATURATION_LX_S
 from .mosaic import Mosaic

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.files.library import find, stems
 
 from .ideal_sensor import NAMES, ideal

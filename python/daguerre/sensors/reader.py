@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.files.json_file import checked_json, read_json_file
 from daguerre.files.json_item import MAX_NAME, Item
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import number
 from daguerre.color import illuminants
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 
 from . import fit

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import number
-from daguerre.doors import guarded
 from daguerre.errors import InputError
 
 FloatArray = NDArray[np.float64]

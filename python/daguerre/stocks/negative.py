@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import grain_pattern
+from daguerre.argument_checks import guarded
 from daguerre.checks import plain_light, whole
 from daguerre.color.spectra import rgb_from_xyz
-from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.exposure.expose import chosen_ev
 from daguerre.exposure.lux_seconds import exposure_of_one

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from daguerre.argument_checks import guarded
 from daguerre.color import illuminants
-from daguerre.doors import guarded
 from daguerre.files.json_file import read_json_file
 from daguerre.files.json_item import MAX_NAME, Item
 from daguerre.sensors.curve import rising

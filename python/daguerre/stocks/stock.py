@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import number, short
 from daguerre.color import illuminants
-from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files.value import BriefRecord, Value
 from daguerre.sensors.checking import tells_colors

@@ -7,8 +7,8 @@ import re
 import threading
 from typing import TYPE_CHECKING, Any
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.camera import Camera
-from daguerre.doors import guarded
 from daguerre.files import extras
 from daguerre.rendering.settings import RenderSettings
 from daguerre.scene.scene import Scene

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import numbers
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.files.atomic import write_bytes
 from daguerre.files.formats import check_written

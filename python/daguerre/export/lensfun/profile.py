@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.files.value import BriefRecord
 
 from .frame import Frame

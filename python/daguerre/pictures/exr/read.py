@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.color.spaces import LINEAR
 from daguerre.color.spectra import xyz_of
-from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.files.json_item import clean
 from daguerre.frame.cryptomatte import taken

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import number
 from daguerre.color import srgb
 from daguerre.color.spectra import xyz_of
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.exposure.lux_seconds import display_gain
 from daguerre.frame.frame import Frame

@@ -9,10 +9,10 @@ from typing import Any, Unpack
 
 import numpy as np
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.camera import Camera
 from daguerre.checks import shown
 from daguerre.development.looks import look_of
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.parameters.keywords import takes
 from daguerre.plates.files import read

@@ -6,8 +6,8 @@ import os
 from dataclasses import dataclass
 from typing import Any
 
+from daguerre.argument_checks import guarded
 from daguerre.camera.camera import Camera
-from daguerre.doors import guarded
 from daguerre.files.value import Value
 from daguerre.plates.photograph import Kind
 from daguerre.sensors import Sensor

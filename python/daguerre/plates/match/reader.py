@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre import sensors
+from daguerre.annotation_kinds import is_path
+from daguerre.argument_checks import guarded
 from daguerre.camera.camera import Camera
 from daguerre.development.looks import LOOKS
-from daguerre.doors import guarded
 from daguerre.files.json_file import read_json_file
 from daguerre.files.json_item import Item, short
-from daguerre.kinds import is_path
 from daguerre.sensors import Sensor
 
 from .blur import Blur

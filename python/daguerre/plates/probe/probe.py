@@ -11,7 +11,7 @@ from typing import Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from daguerre.doors import guarded
+from daguerre.argument_checks import guarded
 from daguerre.files.value import BriefRecord
 from daguerre.parameters.keywords import takes
 

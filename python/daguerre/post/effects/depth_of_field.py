@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from daguerre import units
 from daguerre._core import defocus
+from daguerre.argument_checks import guarded
 from daguerre.convolution.rows import Rows
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.post import channels
 from daguerre.post.array import on_array

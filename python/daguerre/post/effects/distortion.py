@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from daguerre import distortion as models
+from daguerre.argument_checks import guarded
 from daguerre.checks import numbers
 from daguerre.distortion import Distortion
-from daguerre.doors import guarded
 from daguerre.errors import UsageError, suggest
 from daguerre.post.array import step_on_array
 from daguerre.post.effect import Effect, Step, Values

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import IrisShape, defocus, rounded_blur
+from daguerre.argument_checks import guarded
 from daguerre.convolution.rows import Rows
-from daguerre.doors import guarded
 from daguerre.post.array import on_array
 from daguerre.post.by_four_channels import by_four_channels
 from daguerre.post.effect import Effect, Step, Values

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from daguerre import units
+from daguerre.argument_checks import guarded
 from daguerre.convolution.convolve import spreader_of
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.post import kernels
 from daguerre.post.array import on_array

@@ -24,8 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daguerre._core import grain_pattern
+from daguerre.argument_checks import guarded
 from daguerre.convolution.rows import Rows
-from daguerre.doors import guarded
 from daguerre.post.array import on_array
 from daguerre.post.effect import Effect, Step, Values
 from daguerre.post.optics import SENSOR, film_plane

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daguerre.argument_checks import guarded
 from daguerre.cached import cached_property
 from daguerre.distortion import Distortion, Radial
 from daguerre.distortion.model import FloatArray
 from daguerre.distortion.monotone import SAMPLES, Monotone
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.post.array import on_array
 from daguerre.post.effect import Effect, Step, Values

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from daguerre.argument_checks import guarded
 from daguerre.convolution.convolve import Spreader
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.post.array import on_array
 from daguerre.post.effect import Effect, Step, Values

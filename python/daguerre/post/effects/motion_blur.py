@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from daguerre._core import ShutterTime
 from daguerre._core import motion_blur as spread_along
+from daguerre.argument_checks import guarded
 from daguerre.convolution.rows import Rows
-from daguerre.doors import guarded
 from daguerre.errors import InputError
 from daguerre.post import channels
 from daguerre.post.array import on_array

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from daguerre.argument_checks import guarded
 from daguerre.color.spaces import LUMINANCE_709
 from daguerre.convolution.rows import Rows
-from daguerre.doors import guarded
 from daguerre.post.array import on_array
 from daguerre.post.effect import Effect, Step, Values
 from daguerre.post.lens_light import Falloff

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.checks import MAX_RESOLUTION, number, numbers, to_numbers
 from daguerre.convolution.rows import Rows
 from daguerre.distortion import Distortion
-from daguerre.doors import guarded
 from daguerre.errors import InputError, UsageError
 from daguerre.pictures.exr.reader import ExrReader
 from daguerre.post.array import step_on_array

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from daguerre.argument_checks import guarded
 from daguerre.convolution.rows import Rows
-from daguerre.doors import guarded
 from daguerre.errors import UsageError
 from daguerre.post.array import on_array
 from daguerre.post.effect import Effect, Step, Values

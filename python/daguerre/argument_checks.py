@@ -19,10 +19,10 @@ from typing import Any, Literal, TypeVar, overload
 
 import numpy as np
 
-from . import kinds
+from . import annotation_kinds as kinds
+from .annotation_kinds import Kind
 from .checks import shown
 from .errors import UsageError
-from .kinds import Kind
 
 Anything = TypeVar("Anything", bound=Callable[..., Any])
 
@@ -43,7 +43,7 @@ _KNOWN: dict[str, Any] = {
 
 
 class _Names(dict[str, Any]):
-    """Names of a module; one that only type checkers import becomes an empty class."""
+    """Names of a module; a name that only type checkers import becomes an empty class."""
 
     def __missing__(self, name: str) -> Any:
         return kinds.unseen(name)
@@ -86,36 +86,36 @@ def guarded(
     if function is None:
         return functools.partial(guarded, init=init, arrays=arrays, but=but)
     if not inspect.isclass(function):
-        return _with_door(function, function.__name__, arrays, but)
+        return _with_checks(function, function.__name__, arrays, but)
     ours = [base for base in function.__mro__ if base.__module__.startswith("daguerre.")]
     members = {name: member for base in reversed(ours) for name, member in vars(base).items()}
     for name, member in members.items():
         if not name.startswith("_") or (init and name == "__init__"):
-            _shut(function, name, member, arrays, but)
+            _add_checks(function, name, member, arrays, but)
     return function
 
 
-def _shut(cls: type, name: str, member: object, arrays: bool, but: tuple[str, ...]) -> None:
-    """Adds checks to a method of a class, which may be inherited, unless it has them."""
-    if hasattr(getattr(member, "__func__", member), "has_door"):
+def _add_checks(cls: type, name: str, member: object, arrays: bool, but: tuple[str, ...]) -> None:
+    """Adds checks to a method of a class, own or inherited, that has none yet."""
+    if hasattr(getattr(member, "__func__", member), "has_checks"):
         return
     shown_as = cls.__name__ if name == "__init__" else name
     if isinstance(member, classmethod | staticmethod):
-        setattr(cls, name, type(member)(_with_door(member.__func__, shown_as, arrays, but)))
+        setattr(cls, name, type(member)(_with_checks(member.__func__, shown_as, arrays, but)))
     elif inspect.isfunction(member):
-        setattr(cls, name, _with_door(member, shown_as, arrays, but))
+        setattr(cls, name, _with_checks(member, shown_as, arrays, but))
 
 
-def _with_door(function: Any, name: str, arrays: bool, but: tuple[str, ...]) -> Any:
+def _with_checks(function: Any, name: str, arrays: bool, but: tuple[str, ...]) -> Any:
     """Returns the function with checks, or itself if it has no parameters to check."""
     if not function.__annotations__.keys() - {"return"}:
         return function
     plan: _Plan | None = None
 
     @functools.wraps(function)
-    def door(*args: Any, **keywords: Any) -> Any:
+    def checked(*args: Any, **keywords: Any) -> Any:
         nonlocal plan
-        if plan is None:  # threads may both make it; each sees a whole one
+        if plan is None:  # two threads may both make a plan; each sees a complete plan
             plan = _plan(function, arrays, but)
         given, count = list(args), len(args)
         for place, key, kind in plan.by_place:
@@ -131,8 +131,8 @@ def _with_door(function: Any, name: str, arrays: bool, but: tuple[str, ...]) -> 
                     raise _refusal(kind, value, name, key)
         return function(*given, **keywords)
 
-    door.has_door = True  # type: ignore[attr-defined]
-    return door
+    checked.has_checks = True  # type: ignore[attr-defined]
+    return checked
 
 
 def _refusal(kind: Kind, value: object, function: str, parameter: str) -> UsageError:

@@ -1,4 +1,4 @@
-"""Names of a package that are imported on first use, so that a program loads only what it needs."""
+"""Imports the names of a package on first use, so that a program loads only the modules it uses."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from importlib import import_module
 from typing import Any
 
 
-def on_use(
+def lazy_attributes(
     package: str, modules: Mapping[str, str]
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
     """Makes ``__getattr__`` and ``__dir__`` of a package.
 
     Args:
-        package: Its ``__name__``.
-        modules: The module of each name, without the package's own name.
+        package: ``__name__`` of the package.
+        modules: Module of each name, relative to the package.
     """
     names = sys.modules[package].__dict__
 

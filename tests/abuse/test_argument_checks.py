@@ -1,4 +1,4 @@
-"""Doors of public functions: what they let through, and that nobody else sees them."""
+"""Checks of arguments of public functions: accepted values, errors, and unchanged signatures."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 import daguerre as dg
-from daguerre import doors, kinds, lenses
-from daguerre.doors import guarded
+from daguerre import annotation_kinds, argument_checks, lenses
+from daguerre.argument_checks import guarded
 
 
 @guarded
@@ -55,13 +55,13 @@ def test_numbers_of_numpy_are_numbers() -> None:
 
 def test_first_calls_of_many_threads_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """None of them sees a half-made plan."""
-    whole = doors._plan
+    whole = argument_checks._plan
 
     def slow(*args: Any) -> Any:
         time.sleep(0.01 * (1 + threading.get_ident() % 3))
         return whole(*args)
 
-    monkeypatch.setattr(doors, "_plan", slow)
+    monkeypatch.setattr(argument_checks, "_plan", slow)
 
     @guarded
     def twice(count: int, name: str = "a") -> str:
@@ -81,7 +81,7 @@ def test_first_calls_of_many_threads_at_once(monkeypatch: pytest.MonkeyPatch) ->
         assert list(pool.map(call, range(8))) == ["", "b", "", "bbb", "", "bbbbb", "", "bbbbbbb"]
 
 
-def test_doors_do_not_show() -> None:
+def test_checks_do_not_show() -> None:
     """Names, signatures, docstrings and pickles are those of what stands behind."""
     assert "scene" in inspect.signature(dg.render).parameters
     assert "spp" in inspect.signature(dg.render).parameters
@@ -102,12 +102,12 @@ def test_a_named_type_is_checked_as_what_it_names() -> None:
     class Alias:
         __value__ = np.ndarray
 
-    found = kinds.of(Alias)
+    found = annotation_kinds.of(Alias)
     assert found is not None
     assert found.words == "numbers"
-    optional = kinds.of(Alias, none=True)
+    optional = annotation_kinds.of(Alias, none=True)
     assert optional is not None
-    assert optional.take(Path("x")) is kinds.REFUSED
+    assert optional.take(Path("x")) is annotation_kinds.REFUSED
 
 
 def test_a_message_stays_short(tmp_path: Path) -> None:
