@@ -8,19 +8,18 @@
 
 namespace dg {
 
-/// Auxiliary values of one camera sample's first hit; only samples that passed the lens
-/// bring them.
+/// Auxiliary values at the first hit of a camera sample. Samples that the lens vignettes have none.
 struct AovSample {
     bool hit = false;
     float depth = 0;  // m, along the camera's -z
     Vec3f position, normal, albedo;
-    std::uint32_t object_id = 0;  // instance index + 1; 0 is nothing
-    Vec3f seen_albedo{}, seen_normal{};   // guides for a denoiser, through mirrors and glass; 0: nothing
+    std::uint32_t object_id = 0;  // instance index + 1; 0: no hit
+    Vec3f seen_albedo{}, seen_normal{};   // denoiser guides, seen through mirrors and glass; 0: no hit
 };
 
 struct AovChannel {
     const char* name;   // as in files
-    bool of_hits;       // its mean is over the samples that hit something, else over all that passed
+    bool of_hits;       // whether the mean is over samples with a hit; else over all samples that passed the lens
     float (*value)(const AovSample&);
 };
 
@@ -35,8 +34,8 @@ inline constexpr std::array kAovChannels{
     AovChannel{"albedo.R", false, [](const AovSample& s) { return s.albedo.x; }},
     AovChannel{"albedo.G", false, [](const AovSample& s) { return s.albedo.y; }},
     AovChannel{"albedo.B", false, [](const AovSample& s) { return s.albedo.z; }},
-    // Like the picture: means over all that passed, so what is blurred by lens or motion is blurred here, and an edge
-    // before the sky fades.
+    // Means over all samples that passed the lens, as in the picture: guides have the same defocus and motion blur, and
+    // edges fade into the sky.
     AovChannel{"denoise_albedo.R", false, [](const AovSample& s) { return s.seen_albedo.x; }},
     AovChannel{"denoise_albedo.G", false, [](const AovSample& s) { return s.seen_albedo.y; }},
     AovChannel{"denoise_albedo.B", false, [](const AovSample& s) { return s.seen_albedo.z; }},

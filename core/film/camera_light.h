@@ -8,20 +8,20 @@
 
 namespace dg {
 
-/// Part of a sample's coverage that is one object's, by any number.
+/// Coverage of a sample by one object.
 struct ObjectCover {
-    std::uint32_t object;
-    float covered;
+    std::uint32_t object;   // any number that identifies the object
+    float covered;          // part of CameraLight::white
 };
 
-/// Light that one camera sample brings to one pixel, and how much of the pixel its objects cover. In a film with
-/// catchers `light` is the objects' alone, beside what the set sends with them there and without.
+/// Light and coverage that a camera sample adds to a pixel. In a film with catchers, `light` is the light of the objects
+/// alone; `with` and `without` are the light of the set with the objects present and absent.
 struct CameraLight {
     Spectrum light{0.f}, with{0.f}, without{0.f};
-    float white = 0;     // what a white world would bring: the weight of this sample's coverage
-    float covered = 0;   // as much of it as objects cover
+    float white = 0;     // weight of the sample: the light of a white world
+    float covered = 0;   // part of `white` that objects cover
     static constexpr std::size_t kMostObjects = 4;
-    std::array<ObjectCover, kMostObjects> objects{};   // the same by object, of the first
+    std::array<ObjectCover, kMostObjects> objects{};   // `covered` split by object, for the first kMostObjects
     std::size_t object_count = 0;
 };
 

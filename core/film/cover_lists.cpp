@@ -98,7 +98,7 @@ void CoverLists::set_words(std::span<const std::uint32_t> words, std::size_t wid
     std::ranges::fill(heads_, 0);
     used_ = 1;
     for (std::size_t y = 0; y < height; ++y) {
-        std::uint64_t last = 0;   // one more than the entry before
+        std::uint64_t last = 0;   // smallest key that the next entry may have
         for (std::size_t i = 0; i < row_size; i += kEntryWords) {
             const auto e = words.subspan(y * row_size + i, kEntryWords);
             const std::uint64_t at = std::uint64_t(e[0]) << 32 | e[1];

@@ -22,7 +22,7 @@ struct Draw {
     std::int64_t steps;
 };
 
-/// Few objects in most pixels, many in some; some sums come to 0.
+/// Lists with few objects in most pixels and many in some; some sums are 0.
 std::vector<Draw> all_draws() {
     std::vector<Draw> draws;
     for (std::size_t i = 0; i < 20000; ++i) {

@@ -1,5 +1,5 @@
-// film.h -- linear sums per pixel. Every sum is exact (fixed point, 128 bits), so that neither the order of samples, nor
-// the number of threads, nor the way a frame was split and merged changes a bit. layers.h lists the layers of sums.
+// film.h -- linear sums per pixel. Every sum is exact (fixed point, 128 bits): order of samples, number of threads, and
+// splits and merges of a frame change no bit. layers.h lists the layers of sums.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -20,18 +20,19 @@
 
 namespace dg {
 
-/// A sample that had to be dropped, with the place to look for it.
+/// A sample that was dropped because it was not finite or too large.
 struct BadSample {
-    int x, y;
+    int x, y;   // px, full frame
     std::uint32_t sample;
 };
 
-/// Shares of pixels by group of objects, each group under its id: in each pixel those of the largest magnitude first.
+/// Coverage of pixels by groups of objects. The groups of a pixel are sorted by the magnitude of their share, largest
+/// first.
 struct Ranked {
-    std::vector<std::uint32_t> ids;   // `ranks` per pixel; 0 where there are no more
-    std::vector<float> shares;
-    std::uint64_t cut_pixels = 0;     // with more groups than ranks
-    float most_cut = 0;               // the largest share of a pixel that these leave out
+    std::vector<std::uint32_t> ids;   // id of the group, `ranks` per pixel; 0: no further group
+    std::vector<float> shares;        // share of the pixel, for each of `ids`
+    std::uint64_t cut_pixels = 0;     // number of pixels with more groups than ranks
+    float most_cut = 0;               // largest share that is left out in any of these pixels
 };
 
 class Film {
@@ -39,106 +40,106 @@ class Film {
     friend class KeptFilms;
 
   public:
-    /// Bytes of the sums of one pixel, in which there are two objects, if objects are kept.
+    /// Bytes of the sums of a pixel; for Layer::objects, with two objects per pixel.
     static std::size_t pixel_bytes(const FilmLayout& layout) { return Stores::pixel_bytes(layout.layers); }
-    /// Throws Error, before it takes memory, for a size or layers that no film can have.
+    /// Throws Error, before it allocates, for an invalid size or invalid layers.
     explicit Film(FilmLayout layout);
     Film(Film&&) = default;
     Film& operator=(Film&&) = default;
     ~Film();
-    /// Takes all samples away.
+    /// Sets all sums to zero.
     void clear();
     const FilmLayout& layout() const { return layout_; }
-    /// Number of records that a layer may have in a pixel: of bands and channels; of others 1 or 0.
+    /// Count that the layout asks for: number of bands or channels; 1 or 0 for the other layers.
     int count_of(Layer layer) const { return layout_.layers[layer]; }
-    /// Moves its region, in a frame that begins elsewhere.
+    /// Sets the offset of the film's region in the full frame, px.
     void place(int offset_x, int offset_y) { layout_.offset_x = offset_x, layout_.offset_y = offset_y; }
-    /// Sets the weights of light in the channels, before a film with channels is drawn into. Throws
-    /// Error for another number of channels.
+    /// Sets the spectral responses of the channels. A film with channels needs them before its first sample. Throws Error
+    /// for another number of channels.
     void set_responses(Responses responses);
     const Responses& responses() const { return responses_; }
 
-    // Samples. Pixels are those of the full frame; outside the region all is ignored. A sample that is NaN, Inf or beyond
-    // kMaxFilmValue is counted as bad, and 0 is added.
+    // Samples. Pixel coordinates are in the full frame; samples outside the film's region are ignored. A sample that is
+    // NaN, Inf or beyond kMaxFilmValue adds 0, and is counted as bad.
 
-    /// Counts a camera sample, once per sample and pixel: the divisor of the mean.
+    /// Counts a camera sample, once per sample and pixel. The count is the divisor of the mean.
     void count(int x, int y, std::uint32_t sample = 0);
-    /// Adds the light of a camera sample, in one sum: its square is what the variance is made of. Not thread safe for
-    /// the same pixel: tiles own their pixels.
+    /// Adds the whole light of a camera sample in a pixel, because the variance needs the square of the sum. Not thread
+    /// safe for the same pixel: tiles own their pixels.
     void add(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived);
-    /// The same from any thread at any time, as dispersion sends wavelengths to the pixels of other tiles; a pixel that
-    /// may be written like this must not be written by add() meanwhile.
+    /// Thread-safe add(), for lenses with dispersion, which sends wavelengths to the pixels of other tiles. No thread may
+    /// call add() for the same pixel meanwhile.
     void add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived);
-    /// Adds a colour like add(), without bands and channels.
+    /// Adds a colour to the picture, but not to bands and channels.
     void add(int x, int y, std::uint32_t sample, Vec3f xyz);
     void add_aov(int x, int y, std::uint32_t sample, const AovSample& aov);
-    /// Adds the light of a path from an emitter, from any thread at any time, to Layer::splats or Layer::flare. Their
-    /// sums are divided by the same count. Their squares tell the variance of independent arrivals (compound Poisson),
-    /// from which no mean is to be taken off; so they are sums of their own.
+    /// Adds the light of a path from an emitter to Layer::splats or Layer::flare. Thread safe. The mean divides these sums
+    /// by the count of camera samples. Splats are separate from camera samples because their variance is that estimate of
+    /// a compound Poisson process, sum(s^2) / n^2, without the square of the mean.
     void splat(int x, int y, std::uint32_t sample, const Wavelengths& wavelengths, Spectrum radiance,
                Layer layer = Layer::splats);
-    /// The same for pixels side by side, of a film without bands; with channels as many of their values.
+    /// Adds splats to adjacent pixels of a row, in a film without bands. In a film with channels, `channels` has their
+    /// values for each pixel.
     void splat_row(int x, int y, std::uint32_t sample, std::span<const Vec3f> xyz, Layer layer,
                    std::span<const Spectrum> channels = {});
-    /// Adds whole steps of the sums to the flare of pixels side by side within the region: of XYZ, of the squares of R, G
-    /// and B, and of the channels, as many per pixel as there are. From any thread at any time.
+    /// Adds to the flare of adjacent pixels of a row within the region, in whole steps of the fixed-point sums: XYZ,
+    /// squares of R, G and B, and the channels of each pixel. Thread safe.
     struct FlareSteps {
         std::array<Int128, 3> xyz{}, squares{};
     };
     void add_flare_row(int x, int y, std::span<const FlareSteps> steps, std::span<const Int128> channels);
-    /// Before splats to pixels [x0, x1) x [y0, y1): their sums come from memory while other things are done.
+    /// Prefetches the sums of pixels [x0, x1) x [y0, y1) into the cache, ahead of splats.
     void prefetch(int x0, int x1, int y0, int y1, Layer layer);
 
-    /// Exact: a.merge(b) equals having drawn all samples into one film. Throws Error if
-    /// layouts differ. That channels are of the same sensor is the caller's word: films out of files have no
-    /// responses.
+    /// Adds the sums of another film, exactly as if all samples had been drawn into this film. Throws Error if the layouts
+    /// differ. The caller makes sure that the channels are from the same sensor: films read from files have no responses.
     void merge(const Film& other);
 
-    // Pictures: rows from the top, 0 without samples. Error without the layer that they are made of.
+    // Pictures: rows from the top; 0 in pixels without samples. They throw Error if the film lacks the layer.
 
-    /// Mean CIE XYZ per pixel, all that was added.
+    /// Mean CIE XYZ per pixel, with splats and flare.
     std::vector<float> mean_xyz() const;
-    /// Means of a layer of plain sums over the samples of the pixel: `count` of a pixel's values, from `first` on.
+    /// Means of a layer over the camera samples: `count` values of each pixel, from value `first` on.
     static constexpr std::size_t kAll = ~std::size_t(0);
     std::vector<float> means(const std::string& layer, std::size_t first = 0, std::size_t count = kAll) const;
-    /// The pictures of samples with even and with odd indices. They share no sample, so their difference tells the noise
-    /// of both. Light paths are apart, and ghosts are in neither.
+    /// Mean XYZ of the samples with even or with odd indices: of camera paths, or of light paths. The two halves share no
+    /// sample, so their difference estimates their noise. Ghosts are left out.
     enum class Half { even, odd };
     std::vector<float> half_xyz(Half half, bool by_light_paths = false) const;
     /// Share of each pixel that objects cover.
     std::vector<float> coverage() const;
-    /// The same by groups of objects: ids[k] is the id of the group of object k, not 0; an object beyond has none.
+    /// Coverage by groups of objects. ids[k] is the id of the group of object k, not 0; objects beyond the span are in no
+    /// group.
     Ranked ranked(std::span<const std::uint32_t> ids, int ranks) const;
-    /// Mean of each channel, all that was added.
+    /// Mean of each channel of the sensor, with splats and flare.
     std::vector<float> mean_channels() const;
-    /// Variance of the mean of linear Rec.709 R, G, B (see film_noise.cpp); 0 for less
-    /// than two samples.
+    /// Variance of the mean of linear Rec.709 R, G, B (see film_noise.cpp); 0 with fewer than two samples.
     std::vector<float> variance_rgb() const;
-    /// Relative variance of one sample, at least of two, as far as the n drawn tell: n times the variance
-    /// of the mean over (mean^2 + dark), the mean of R, G and B.
+    /// Relative variance of one sample, estimated from the n samples of the pixel: n var(mean) / (mean^2 + dark), averaged
+    /// over R, G and B.
     std::vector<float> relative_variance(float dark) const;
     std::vector<std::uint32_t> sample_counts() const;
-    /// Mean over the samples that brought one, 0 where none did. Names: those of kAovChannels.
+    /// Mean of a channel of kAovChannels over the samples that have a value; 0 in pixels without these.
     std::vector<float> aov(const std::string& name) const;
-    /// Object of the lowest sample index that hit something.
+    /// Object id of the sample with a hit that has the lowest index.
     std::vector<std::uint32_t> object_ids() const;
-    /// The first bad sample of each of the first 100 pixels that have one; full-frame coordinates. Kept per pixel, so it
-    /// depends on no order and survives merging.
+    /// Bad samples: the sample of lowest index in each of the first 100 pixels with bad samples. Neither the order of
+    /// samples nor merging changes the list.
     std::vector<BadSample> bad_samples() const;
     std::uint64_t bad_sample_count() const;
 
-    // The state: words of each layer as they are in memory, which is what pass files store and read back.
+    // The state: words of each layer as they are in memory; pass files store them.
 
     /// Names of the layers that the film keeps.
     std::vector<std::string> state_parts() const { return stores_.names(); }
     LayerState state(const std::string& part) const;
     /// Words of a pixel, or of an entry of a list.
     std::size_t words_of(const std::string& part) const;
-    /// Throws Error for another number of bytes, or lists that no film has.
+    /// Throws Error for another number of bytes, or invalid lists of objects.
     void set_state(const std::string& part, std::span<const std::byte> bytes);
-    /// Adds a part of the state of a film of the same layout, exactly as merge does. Of the words of each pixel only
-    /// those of these columns come, in rising order; the others are 0. Of lists all words come. Bytes of a network
-    /// need not be aligned. Throws Error like set_state().
+    /// Merges a layer of the state of a film of the same layout. `columns` are the indices, in rising order, of the words
+    /// of a pixel that `words` has; the other words are 0. Lists of objects come with all words. `words` need not be
+    /// aligned, as bytes from a network. Throws Error like set_state().
     void add_state(const std::string& part, std::span<const std::uint32_t> columns, std::span<const std::byte> words);
 
   private:
@@ -146,7 +147,7 @@ class Film {
     auto& of() { return stores_.of<kLayer>(); }
     template <Layer kLayer>
     const auto& of() const { return stores_.of<kLayer>(); }
-    /// The same; Error if the film does not keep this layer.
+    /// Store of a layer; throws Error if the film does not keep the layer.
     template <Layer kLayer>
     const auto& require() const;
 
@@ -157,12 +158,13 @@ class Film {
         return inside ? row * layout_.width + column : -1;
     }
     Plane<ColorSums>& arrivals(Layer layer) { return layer == Layer::flare ? of<Layer::flare>() : of<Layer::splats>(); }
-    bool lit() const { return count_of(Layer::splats) || count_of(Layer::flare); }   // by paths from emitters
+    /// Whether paths from emitters add to the film.
+    bool lit() const { return count_of(Layer::splats) || count_of(Layer::flare); }
 
-    /// Sums of X, Y, Z that a sample goes to beside the pixel's own, or beside those of its splats; null: none.
+    /// Sums of X, Y, Z of the half picture that a camera sample, or a splat to `layer`, also goes to; null: none.
     ValueSum* half(std::size_t i, std::uint32_t sample);
     ValueSum* half(std::size_t i, std::uint32_t sample, Layer layer);
-    /// To XYZ and bands. False if the sample is bad.
+    /// Adds light to XYZ and bands. Returns false if the sample is bad.
     bool add_light(ColorSums& sums, ValueSum* half, std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths,
                    Spectrum radiance, bool squares = true);
     void add_arrived(std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived);
@@ -171,7 +173,7 @@ class Film {
     /// Lock of a row of the region; for splats without bands, and for the channels of all splats.
     std::uint32_t& row_lock(int y) { return row_locks_[std::size_t(kLockStride) * (y - layout_.offset_y)]; }
 
-    /// Sum of all that was added to the pixel of this index.
+    /// Sum of XYZ of a pixel, with splats and flare.
     Vec3d sum_xyz(std::size_t i) const;
     /// Sums of linear Rec.709 R, G, B, and the variances of their means.
     struct Estimate {
@@ -179,8 +181,8 @@ class Film {
     };
     Estimate estimate(std::size_t i) const;
 
-    /// Film of this layout in memory that is kept; null: there is none. Memory of another layout is given up first, unless
-    /// this film is small beside it.
+    /// Film of this layout out of the memory that KeptFilms keeps; null: none. Frees kept memory of another layout, unless
+    /// the new film is much smaller.
     static std::unique_ptr<Film> take_kept(const FilmLayout& layout);
     /// Bytes of all planes.
     std::size_t state_bytes() const;
@@ -188,7 +190,7 @@ class Film {
     FilmLayout layout_;
     RgbRows rgb_from_xyz_;
     Stores stores_;
-    // Locks of splats without bands, a row at a time. Apart from the pixels, which a splat would have to fetch for it.
+    // Locks of splats without bands, one per row. A lock in the pixel would cost a splat another cache line.
     static constexpr int kLockStride = 16;   // one per cache line
     std::vector<std::uint32_t> row_locks_;
     Responses responses_;

@@ -10,7 +10,7 @@
 namespace dg {
 namespace {
 
-/// Values of a sample for the channels, in their order; 0 where it has none.
+/// Values of a sample for each of kAovChannels; 0 for channels of hits if the sample has none.
 std::array<float, kAovChannels.size()> aov_values(const AovSample& s) {
     std::array<float, kAovChannels.size()> values{};
     for (std::size_t k = 0; k < values.size(); ++k)
@@ -18,7 +18,7 @@ std::array<float, kAovChannels.size()> aov_values(const AovSample& s) {
     return values;
 }
 
-/// Holds a pixel, or a row, that several threads may write.
+/// Spin lock of a pixel, or of a row, that several threads may write.
 class Lock {
   public:
     explicit Lock(std::uint32_t& word) : lock_(word) {
@@ -30,7 +30,7 @@ class Lock {
     std::atomic_ref<std::uint32_t> lock_;
 };
 
-/// To a pixel's own sums, or to those of its splats, and to half of them if there are any; false if the sample is bad.
+/// Adds a colour to sums of a pixel, and to its half picture unless `half` is null. Returns false if the sample is bad.
 bool add_color(ColorSums& sums, ValueSum* half, const RgbRows& rgb_from_xyz, Vec3f xyz, bool squares = true) {
     if (!(fits_film(xyz.x) && fits_film(xyz.y) && fits_film(xyz.z))) return false;
     sums.xyz[0].add(xyz.x);
@@ -94,7 +94,7 @@ void Film::add_shared(int x, int y, std::uint32_t sample, const Wavelengths& wav
     add_arrived(i, sample, wavelengths, arrived);
 }
 
-/// Under the pixel's lock, if there is need of one.
+/// The caller holds the lock of the pixel if other threads may write it.
 void Film::add_arrived(std::size_t i, std::uint32_t sample, const Wavelengths& wavelengths, const CameraLight& arrived) {
     CameraSums& pixel = of<Layer::sums>()[i];
     if (count_of(Layer::coverage)) add_coverage(i, arrived);
@@ -105,8 +105,8 @@ void Film::add_arrived(std::size_t i, std::uint32_t sample, const Wavelengths& w
     if (channels) add_channels(of<Layer::channels>(), i, channels, responses_.of(wavelengths, arrived.light));
 }
 
-/// Adds light of the set. The noise of the picture comes from all light of the plate: the squares of light plus change
-/// replace those of the light alone, which add_light() adds.
+/// Adds light of the set. Returns false if the sample is bad. The picture over a plate is `light` + `with` - `without`, so
+/// its squares go into the variance, and add_light() then adds no squares.
 bool Film::add_set(std::size_t i, const Wavelengths& wavelengths, const CameraLight& arrived) {
     const Vec3f light = wavelengths.to_xyz(arrived.light), with = wavelengths.to_xyz(arrived.with),
                 without = wavelengths.to_xyz(arrived.without);

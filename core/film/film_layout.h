@@ -25,7 +25,7 @@ class LayerCounts {
     constexpr LayerCounts(std::initializer_list<Asked> all) {
         for (const Asked& one : all) (*this)[one.layer] = one.count;
     }
-    /// 0 for a layer of another table, too.
+    /// Count of a layer; 0 also for a layer of another table.
     constexpr int operator[](Layer layer) const {
         return std::size_t(layer) < kLayerCount ? counts_[std::size_t(layer)] : 0;
     }
@@ -37,9 +37,9 @@ class LayerCounts {
 };
 
 struct FilmLayout {
-    int width = 0, height = 0;       // of the region that is stored
-    int offset_x = 0, offset_y = 0;  // of that region in the full frame
-    LayerCounts layers{};            // beside the sums of the picture, which every film has
+    int width = 0, height = 0;       // size of the stored region, px
+    int offset_x = 0, offset_y = 0;  // upper left pixel of the region in the full frame
+    LayerCounts layers{};            // layers in addition to Layer::sums, which every film has
     std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }
     friend bool operator==(const FilmLayout&, const FilmLayout&) = default;
 };

@@ -1,12 +1,9 @@
 // film_noise.cpp -- variance of the picture, out of exact sums.
 //
-// Variance of the mean of n samples s: (sum s^2 - (sum s)^2 / n) / (n (n - 1)), which
-// takes samples as independent; stratified ones scatter less, so it errs on the safe
-// side. A splat adds its value and its square but no count: the pixel then is a sum of
-// independent arrivals (compound Poisson), with the expected sum of squares as variance.
-// The formula takes the square of the mean off those too: it is too low by at most
-// mean^2 / n, little where samples scatter by more than their mean. Splats of one camera
-// sample in one pixel would be correlated: the caller adds them up first.
+// Variance of the mean of n samples s: (sum s^2 - (sum s)^2 / n) / (n (n - 1)). It assumes independent samples;
+// stratified samples scatter less, so the estimate is conservative. A splat adds its value and its square but no count:
+// the splats of a pixel are a compound Poisson process, with the expected sum of squares as variance. Splats of one light
+// path in one pixel would be correlated: the caller adds them up first.
 #include <algorithm>
 
 #include "film/film.h"
@@ -17,7 +14,7 @@ Film::Estimate Film::estimate(std::size_t i) const {
     const CameraSums& p = of<Layer::sums>()[i];
     const Plane<XyzSums>& set = of<Layer::catchers>();
     Vec3d xyz{p.xyz[0].value(), p.xyz[1].value(), p.xyz[2].value()}, all = sum_xyz(i);
-    for (int k = 0; k < 3 && !set.empty(); ++k) {   // the noise of light and change, beside what is seen
+    for (int k = 0; k < 3 && !set.empty(); ++k) {   // variance of light plus change, relative to all visible light
         const double with = set[2 * i].xyz[k].value();
         xyz[k] += with - set[2 * i + 1].xyz[k].value();
         all[k] += with;

@@ -1,4 +1,4 @@
-// film_state.cpp -- the sums of a film as the bytes that they are, and back.
+// film_state.cpp -- the sums of a film as bytes.
 #include <bit>
 
 #include "film/film.h"
@@ -6,7 +6,7 @@
 namespace dg {
 
 static_assert(std::endian::native == std::endian::little,
-              "files hold the words of a sum as they lie in memory, lowest first");
+              "files hold the words of a sum as they are in memory, lowest first");
 
 LayerState Film::state(const std::string& part) const {
     LayerState found;

@@ -427,7 +427,7 @@ TEST_CASE("a film in the memory of another one is empty") {
         Film film(all);
         draw(film);
         place = memory(film);
-    }   // `another` ends last, and is smaller than what is kept
+    }   // `another` ends last, and is smaller than the kept film
     {
         Film film(all);
         CHECK(whole_state(film) == whole_state(fresh));
@@ -494,7 +494,7 @@ TEST_CASE("the relative variance of one sample, from the variance of the mean") 
         film.add(0, 0, i, {y, y, y});
         film.count(0, 0);
     }
-    film.count(1, 0);   // one sample tells nothing
+    film.count(1, 0);   // a single sample has no variance
     const auto relative = film.relative_variance(dark);
     const auto mean = film.mean_xyz(), variance = film.variance_rgb();
     const Rgb rgb = rgb_from_xyz({mean[0], mean[1], mean[2]});

@@ -109,7 +109,7 @@ double Filter::variance() const {
 }
 
 FilterSample Filter::sample(Vec2f u) const {
-    if (kind_ == FilterKind::box)   // what the table would give, without looking
+    if (kind_ == FilterKind::box)   // same as from the table
         return {{(2 * u.x - 1) * radius_, (2 * u.y - 1) * radius_}, 1};
     const DiscreteSample x = magnitude_.sample(u.x), y = magnitude_.sample(u.y);
     const float step = 2 * radius_ / kSteps;

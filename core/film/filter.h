@@ -13,17 +13,16 @@ enum class FilterKind { box, gaussian, blackman_harris, mitchell, tent };
 
 /// "box", "gaussian", "blackman_harris", "mitchell" or "tent"; anything else throws Error.
 FilterKind filter_kind(const std::string& name);
-/// Radius in px where nobody asks for another: 0.5, 1.5, 1.5, 2, 1.
+/// Default radius, px: 0.5, 1.5, 1.5, 2, 1.
 float default_radius(FilterKind kind);
 
 struct FilterSample {
     Vec2f offset;  // px, from the pixel's centre, within the radius
-    float weight;  // +-(integral of |f|) / (integral of f): 1 where f is nowhere negative
+    float weight;  // +-(integral of |f|) / (integral of f); 1 for a filter without negative lobes
 };
 
-/// Separable filter on a square of +-radius px. The shape is tabulated: 256 steps per
-/// axis, each at the mean of the formula there. What sample() draws, evaluate() gives and
-/// the weight corrects is that table, so the three agree exactly.
+/// Separable filter on a square of +-radius px. The filter is piecewise constant: 256 steps per axis, each with the mean
+/// of the formula over the step. sample(), evaluate() and the weight use this table, so they agree exactly.
 class Filter {
   public:
     explicit Filter(FilterKind kind = FilterKind::blackman_harris)
@@ -32,16 +31,16 @@ class Filter {
     Filter(FilterKind kind, float radius);
 
     FilterSample sample(Vec2f u) const;
-    /// Value of the filter, of unit integral; 0 outside.
+    /// Value of the filter, normalized to unit integral; 0 outside.
     float evaluate(Vec2f offset) const { return axis(offset.x) * axis(offset.y); }
-    /// Its factor along one axis.
+    /// Factor of the filter along one axis.
     float axis(float x) const {
         const float t = (x + radius_) * steps_per_px_;
         if (!(t >= 0 && t < float(kSteps))) return 0;
         return table_[int(t)];
     }
 
-    /// The same at x, x - 1, x - 2, ...
+    /// Factors at x, x - 1, x - 2, ...
     void axis(float x, int count, float* values) const {
         float t = (x + radius_) * steps_per_px_;
         for (int i = 0; i < count; ++i, t -= steps_per_px_)
@@ -50,7 +49,7 @@ class Filter {
 
     FilterKind kind() const { return kind_; }
     float radius() const { return radius_; }
-    /// Integral of the formula as it stands, px^2.
+    /// Integral of the formula before normalization, px^2.
     double integral() const { return integral_; }
     /// Second moment along one axis, px^2.
     double variance() const;

@@ -23,8 +23,7 @@ struct Tally {
     std::vector<double> count, expected, signed_weight, integral;
 };
 
-/// Counts samples per cell beside the integral of |evaluate|, signed weights beside that
-/// of evaluate.
+/// Compares samples per cell with the integral of |evaluate|, and signed weights with the integral of evaluate.
 Tally tally(const Filter& filter, double fault) {
     const double r = filter.radius(), cell = 2 * r / kCells;
     Tally t{std::vector<double>(kCells * kCells),

@@ -12,15 +12,15 @@ namespace dg {
 __extension__ typedef __int128 Int128;
 __extension__ typedef unsigned __int128 UInt128;
 
-/// A sum in steps of 2^-kFractionBits. Each term is rounded toward 0 to whole steps by
-/// itself, then added as an integer: exact, associative and commutative. A float of
+/// A sum in steps of 2^-kFractionBits. Each term is rounded toward 0 to whole steps, then
+/// added as an integer: exact, associative and commutative. A float of
 /// magnitude 2^(24 - kFractionBits) or more is a whole number of steps already. Range of
 /// the sum: +-2^(127 - kFractionBits).
 template <int kFractionBits>
 class FixedSum {
   public:
-    /// |v| < 2^(126 - kFractionBits), not NaN: the caller checks. A double in and no
-    /// loss, because the high part and the rest of it are exact; the rest keeps 63 bits.
+    /// The caller checks that |v| < 2^(126 - kFractionBits), and not NaN. Integer part and
+    /// remainder of the scaled double are exact; the remainder keeps 63 bits.
     void add(double v) {
         const double scaled = v * kScale;
         const double whole = std::trunc(scaled);
@@ -43,7 +43,7 @@ class FixedSum {
         kFractionBits <= 63 ? 1.0 / double(1ull << (63 - kFractionBits)) : 0;
     static_assert(kFractionBits > 0 && kFractionBits <= 63);
 
-    /// Sums out of a damaged file may run over: they wrap around, as anything does there.
+    /// Unsigned, as sums out of a damaged file may overflow: they wrap around.
     void add_bits(Int128 bits) { bits_ = Int128(UInt128(bits_) + UInt128(bits)); }
 
     Int128 bits_ = 0;
@@ -54,14 +54,13 @@ using ValueSum = FixedSum<63>;
 /// Sums of squares: steps of 1.1e-13, up to 1.9e25.
 using SquareSum = FixedSum<43>;
 
-/// Largest value that a film takes: 2^24 samples of it still fit. NaN and infinity are
-/// beyond.
+/// Largest value of a good sample; sums of 2^24 such samples fit.
 inline constexpr float kMaxFilmValue = 0x1p40f;
 inline bool fits_film(float v) {
     return std::abs(v) <= kMaxFilmValue;
 }
-/// Larger squares (values above 3e9) count as this: the variance of such fireflies is a
-/// lower bound.
+/// Limit that squares are clamped to (values above 3e9): the variance with such fireflies is
+/// a lower bound.
 inline constexpr double kMaxFilmSquare = 0x1p63;
 
 }  // namespace dg

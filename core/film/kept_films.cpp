@@ -38,7 +38,7 @@ std::size_t Film::state_bytes() const {
 }
 
 std::unique_ptr<Film> Film::take_kept(const FilmLayout& layout) {
-    constexpr std::size_t kSmall = 16;   // so many films of a pilot render, or more, fit in the memory that is kept
+    constexpr std::size_t kSmall = 16;   // a film smaller than the kept film by this factor, as of a pilot, frees nothing
     std::unique_ptr<Film> found;
     Stores ended;   // destroyed after the lock
     const std::lock_guard lock(guard);

@@ -1,14 +1,14 @@
-// kept_films.h -- memory of films that ended, for the next ones.
+// kept_films.h -- memory of destroyed films, for reuse.
 #pragma once
 #include <cstddef>
 
 namespace dg {
 
-/// While one lives, the memory of a film that ends waits for the next film of the same layout, as new memory costs time:
-/// the system clears it page by page. A film of about its size, or larger, of another layout ends the wait.
+/// While a KeptFilms exists, the memory of the largest destroyed film is kept for the next film of the same layout: new
+/// memory is slow, as the system clears it page by page. A film of another layout frees it, unless it is much smaller.
 class KeptFilms {
   public:
-    /// Memory that waits.
+    /// Bytes of the kept film.
     static std::size_t bytes();
     KeptFilms();
     ~KeptFilms();

@@ -24,7 +24,7 @@ class LayerStores {
     static constexpr void for_each_row(const Act& act) {
         std::apply([&](const auto&... row) { (act(row), ...); }, kRows);
     }
-    /// Bytes of a pixel, in which there are two objects, if objects are kept.
+    /// Bytes of a pixel; for Layer::objects, with two objects per pixel.
     static constexpr std::size_t pixel_bytes(const LayerCounts& asked) {
         std::size_t bytes = 0;
         for_each_row([&](const auto& row) {
@@ -32,11 +32,11 @@ class LayerStores {
         });
         return bytes;
     }
-    /// Throws Error for a layout that no film can have; takes no memory.
+    /// Throws Error for an invalid layout; allocates nothing.
     static void check(const FilmLayout& layout);
 
     LayerStores() = default;
-    /// Empty layers of a layout that was checked. All memory is there before any of it is written.
+    /// Makes the empty layers of a checked layout. All memory is reserved before any is written.
     explicit LayerStores(const FilmLayout& layout) {
         const auto records = [&](const auto& row) { return layout.pixels() * std::size_t(row.records(layout.layers)); };
         for_each([&](const auto& row, auto& store) { store.reserve(records(row)); });

@@ -20,10 +20,10 @@ struct LayerRow {
     using Store = S;   // Plane of records, or ObjectLists
     Layer layer;
     const char* name;                             // in files, messages and Python
-    const char* about;                            // for Python; null: nobody asks for it, it follows from other layers
-    int most;                                     // that a film may be asked for
-    int (*each)(const LayerCounts&) = nullptr;    // records per pixel; null: as many as asked for
-    Layer needs = Layer::sums;                    // another layer, without which this one is refused
+    const char* about;                            // docstring in Python; null: the layer follows from other layers
+    int most;                                     // largest count that a layout may ask for
+    int (*each)(const LayerCounts&) = nullptr;    // records per pixel; null: the count of the layout
+    Layer needs = Layer::sums;                    // layer that a layout must also ask for
 
     constexpr int records(const LayerCounts& asked) const { return each ? each(asked) : asked[layer]; }
 };
@@ -35,13 +35,13 @@ inline constexpr std::tuple kLayers{
     LayerRow<Plane<ColorSums>>{Layer::flare, "flare", "Ghosts may add to any pixel.", 1},
     LayerRow<Plane<HalfSums>>{Layer::halves, "halves", "The picture of every other sample beside that of all.", 1},
     LayerRow<Plane<CoverageSums>>{Layer::coverage, "coverage", "Share of each pixel that objects cover.", 1},
-    // With the objects, then without.
+    // Two records per pixel: light of the set with the objects, and without.
     LayerRow<Plane<XyzSums>>{Layer::catchers, "catchers", "Light of the set beside that of the objects.", 1,
                              [](const LayerCounts& asked) { return 2 * asked[Layer::catchers]; }},
     LayerRow<Plane<ValueSum>>{Layer::bands, "bands", "Bands of equal width over all wavelengths.", 64},
     LayerRow<Plane<ValueSum>>{Layer::channels, "channels", "Channels of a sensor (Film.set_responses).",
                               Responses::kMost},
-    // Beside those of camera samples, so that splats lock rows of pixels and not each pixel.
+    // Channels of splats and flare, separate from camera samples so that splats lock rows of pixels and not each pixel.
     LayerRow<Plane<ValueSum>>{Layer::channel_splats, "channel_splats", nullptr, 0,
                               [](const LayerCounts& asked) {
                                   return asked[Layer::splats] || asked[Layer::flare] ? asked[Layer::channels] : 0;

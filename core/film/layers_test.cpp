@@ -49,7 +49,7 @@ std::vector<std::size_t> forgotten_words() {
         for (std::uint64_t seed = 0; seed < 8; ++seed) {
             const R one = random_record<R>(seed);
             auto words = words_of(one);
-            words[k] /= 2;   // lower than what it merges into, too
+            words[k] /= 2;   // also lower than the record it merges into
             R other;
             std::memcpy(static_cast<void*>(&other), words.data(), sizeof(R));
             const R to = random_record<R>(100 + seed);
@@ -107,7 +107,7 @@ static_assert(LayerRecord<CameraSums> && HasMeans<CameraSums> && Settles<CameraS
 static_assert(!HasMeans<HalfSums> && !HasMeans<CoverageSums> && !Settles<ColorSums>);
 static_assert(!LayerRecord<DoesNotMerge> && !LayerRecord<HasGap> && !LayerRecord<OwnsMemory> && !LayerRecord<HalfAWord>);
 
-// Sizes of the records are those of files of all versions.
+// Sizes of the records in the files of all versions.
 static_assert(sizeof(CameraSums) == 112 && sizeof(ColorSums) == 96 && sizeof(HalfSums) == 112 && sizeof(XyzSums) == 48 &&
               sizeof(CoverageSums) == 16 && sizeof(ValueSum) == 16 && sizeof(AovSums) == 16 * (kAovChannels.size() + 1));
 

@@ -21,11 +21,11 @@ namespace dg {
 /// Words of a layer, 32 bits each, row by row from the top.
 struct LayerState {
     std::span<const std::byte> bytes;
-    std::size_t entries;               // of a row: its pixels, or the longest list
-    std::vector<std::uint32_t> made;   // the words themselves, where the layer stores them otherwise
+    std::size_t entries;               // per row: pixels, or entries of the longest row of lists
+    std::vector<std::uint32_t> made;   // owns the words of lists, which are made on demand
 };
 
-/// Records of a layer; those of a pixel side by side.
+/// Records of a layer; the records of a pixel are adjacent.
 template <LayerRecord R>
 class Plane {
   public:
@@ -42,7 +42,7 @@ class Plane {
     auto end() const { return records_.end(); }
 
     void reserve(std::size_t count) { records_.reserve(count); }
-    /// Makes empty records, bit by bit, so that work that is cancelled need not wait for the zeros of a large film.
+    /// Makes empty records, in steps, so that cancelling need not wait until a large film is zeroed.
     void make(std::size_t count) {
         while (records_.size() < count) {
             throw_if_cancelled();
@@ -73,7 +73,7 @@ class Plane {
         if constexpr (Settles<R>)
             for (R& record : records_) record.settle();
     }
-    /// Merges words of some columns of each pixel; those of the others are 0.
+    /// Merges words of some columns of each pixel; words of other columns are 0.
     void add_state(const char* name, std::span<const std::uint32_t> columns, std::span<const std::byte> bytes,
                    const FilmLayout& layout) {
         const std::size_t pixels = layout.pixels(), each = size() / pixels, words = each * kWords;
@@ -100,10 +100,10 @@ class Plane {
     std::vector<R> records_;
 };
 
-/// Lists of the objects of each pixel. Their words are rows of CoverLists::words(), made anew.
+/// Lists of the objects of each pixel. state() makes their words by CoverLists::words().
 class ObjectLists {
   public:
-    static constexpr std::size_t kBytes = CoverLists::kPixelBytes + 2 * CoverLists::kEntryBytes;   // of two objects
+    static constexpr std::size_t kBytes = CoverLists::kPixelBytes + 2 * CoverLists::kEntryBytes;   // with two objects
     static constexpr std::size_t kWords = CoverLists::kEntryWords;
 
     bool empty() const { return !lists_; }
@@ -123,7 +123,7 @@ class ObjectLists {
         if (lists_) lists_->add(*more.lists_);
     }
 
-    std::size_t bytes() const { return 0; }   // few beside the planes
+    std::size_t bytes() const { return 0; }   // negligible beside the planes
     LayerState state(const FilmLayout& layout) const {
         LayerState found{{}, 0, lists_->words(std::size_t(layout.width))};
         found.bytes = std::as_bytes(std::span(found.made));
@@ -142,7 +142,7 @@ class ObjectLists {
 
   private:
     static void read(CoverLists& to, std::span<const std::byte> bytes, const FilmLayout& layout) {
-        std::vector<std::uint32_t> words(bytes.size() / 4);   // bytes of a network need not be aligned
+        std::vector<std::uint32_t> words(bytes.size() / 4);   // a copy, as `bytes` need not be aligned
         if (!words.empty()) std::memcpy(words.data(), bytes.data(), 4 * words.size());
         to.set_words(words, std::size_t(layout.width));
     }

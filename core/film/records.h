@@ -1,4 +1,4 @@
-// records.h -- what a layer of a film stores for each pixel.
+// records.h -- records that the layers of a film store for each pixel.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -13,20 +13,20 @@
 
 namespace dg {
 
-/// A record: plain words without gaps, which files store as they are; a new one holds no samples. add() merges the record
-/// of another film, in any order with the same bits.
+/// A record consists of words without padding, which files store as they are. A default record has no samples. add()
+/// merges the record of another film; the order of merging changes no bit.
 template <class R>
 concept LayerRecord = std::is_trivially_copyable_v<R> && std::has_unique_object_representations_v<R> &&
                       std::default_initializable<R> && sizeof(R) % sizeof(std::uint32_t) == 0 &&
                       requires(R sums, const R& more) { sums.add(more); };
 
-/// A record with values() is read as the means of these sums over the samples of the pixel (Film::means).
+/// A record with values(): Film::means divides these sums by the count of samples.
 template <class R>
 concept HasMeans = LayerRecord<R> && requires(const R& sums) {
     { sums.values() } -> std::convertible_to<std::span<const ValueSum>>;
 };
 
-/// A record with settle() corrects itself when its words came out of a file.
+/// A record with settle(), which repairs words read from a file.
 template <class R>
 concept Settles = LayerRecord<R> && requires(R& sums) { sums.settle(); };
 
@@ -63,7 +63,7 @@ struct ColorSums {
 /// Camera samples of a pixel.
 struct CameraSums : ColorSums {
     std::uint32_t count = 0, bad = 0, first_bad = kNoSample;
-    std::uint32_t lock = 0;   // of add_shared; 0 at rest
+    std::uint32_t lock = 0;   // spin lock of add_shared(); 0: open
     void mark_bad(std::uint32_t sample) {
         ++bad;
         first_bad = std::min(first_bad, sample);
@@ -74,11 +74,11 @@ struct CameraSums : ColorSums {
         bad += more.bad;
         first_bad = std::min(first_bad, more.first_bad);
     }
-    /// A lock out of a damaged file would never open.
+    /// Opens the lock: a closed lock from a damaged file would block forever.
     void settle() { lock = 0; }
 };
 
-/// Samples with even indices.
+/// XYZ of samples with even indices: of camera paths and of light paths.
 struct HalfSums {
     ValueSum own[3], splats[3];
     std::uint32_t count = 0, unused[3] = {};
@@ -88,7 +88,7 @@ struct HalfSums {
     }
 };
 
-/// Whole steps of 2^-30: 2^33 samples of white fit.
+/// Weight of all samples, and the part that objects cover, in whole steps of 2^-30: 2^33 samples of weight 1 fit.
 struct CoverageSums {
     std::int64_t white = 0, covered = 0;
     void add(const CoverageSums& more) {
@@ -98,7 +98,7 @@ struct CoverageSums {
 };
 
 struct AovSums {
-    std::array<ValueSum, kAovChannels.size()> sums;   // in their order
+    std::array<ValueSum, kAovChannels.size()> sums;   // in the order of kAovChannels
     std::uint32_t passed = 0, hits = 0, object_sample = kNoSample, object_id = 0;
     void add(const AovSums& more) {
         for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(more.sums[k]);
@@ -106,7 +106,7 @@ struct AovSums {
         hits += more.hits;
         take_object(more.object_sample, more.object_id);
     }
-    /// The object of the lowest sample stays.
+    /// Keeps the object of the sample with the lowest index.
     void take_object(std::uint32_t sample, std::uint32_t id) {
         if (sample < object_sample) object_sample = sample, object_id = id;
     }

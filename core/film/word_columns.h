@@ -1,4 +1,4 @@
-// word_columns.h -- words of a film's sums without those that are 0 in every pixel, as most of them are.
+// word_columns.h -- the used words of the sums of a film; most words are 0 in every pixel.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace dg {
 
-/// Columns of pixels with `each` words, at least one, that are not 0 everywhere; in rising order.
+/// Indices of the words of a pixel, out of `each`, that are not 0 in every pixel; rising, at least one.
 std::vector<std::uint32_t> used_columns(std::span<const std::uint32_t> words, std::size_t each);
-/// Words of these columns, pixel by pixel; `to` has room for as many.
+/// Copies the words of these columns, pixel by pixel, into `to`.
 void take_columns(std::span<const std::uint32_t> words, std::size_t each, std::span<const std::uint32_t> columns,
                   std::span<std::uint32_t> to);
 
