@@ -47,7 +47,7 @@ class Camera(Value):
 
     Parameters in ``MOVABLE`` may be values over time (:func:`daguerre.keys`). ``motion`` keeps
     these, and the parameter itself holds the value at one moment, which ``evaluated_at`` chooses.
-    A picture has one brightness and one shutter, those of its time.
+    A picture has the exposure and the shutter of its own time.
 
     Attributes:
         transform: World from camera, shape (4, 4), m; the camera looks along its -z, +y is up.
@@ -61,7 +61,7 @@ class Camera(Value):
         fit_tolerance: RMS error of a polynomial lens, px, above which the exact lens replaces it;
             default: 0.5.
         focal_length: Focal length of an ideal lens, mm; default: 50. A lens with a prescription has
-            its own focal length; another one is an error.
+            its own focal length; any other is an error.
         zoom: Focal length to set a zoom lens to, mm; default: as its lens file says. ``daguerre
             lenses`` shows the range.
         decenter: Elements of a prescription off their axis, as in a lens that was dropped. For
@@ -121,8 +121,8 @@ class Camera(Value):
             electronic with ``rolling_shutter``.
         shutter_curve: Opening of the shutter over time: box, ("trapezoid", efficiency) or points
             (fraction of the time, opening); for a leaf shutter, the radius of the iris.
-        rolling_shutter: Rolling shutter, which exposes lines of pixels in turn; default: that of
-            the shutter type.
+        rolling_shutter: Rolling shutter, which exposes lines of pixels in turn; default: by the
+            shutter type.
         iso: ISO speed of developed pictures; in the exposure mode light it sets the noise alone;
             default: 100.
         exposure_compensation: Exposure compensation, EV; in every mode; default: 0.
@@ -133,9 +133,9 @@ class Camera(Value):
         responsivity: Factor that scales the exposure; default: 1.
         white_balance: White for development: colour temperature, K, or chromaticity (x, y).
         motion: Parameters that change over time, by name.
-        near_clip: Near clipping plane: what is nearer along the axis, m, is not seen; 0: nothing is
-            clipped; default: 0. What is clipped still casts shadows and is seen in mirrors. A lens
-            that sees to the side has a sphere instead.
+        near_clip: Distance of the near clipping plane along the axis, m; 0: no clipping; default:
+            0. Clipped surfaces still cast shadows and are visible in mirrors. A lens that sees to
+            the side has a sphere instead.
         dispersion: Whether glass bends colours differently; without it a lens has no colour
             fringes. Without it each glass has its index at 587.56 nm at all wavelengths. Its
             absorption and its coatings keep their colours.
@@ -220,7 +220,7 @@ class Camera(Value):
         object.__setattr__(self, "motion", {**self.motion, **found})
 
     def __getstate__(self) -> dict[str, Any]:
-        # The identity of the default ``sensor_size`` shows that nobody chose one.
+        # The identity of the default ``sensor_size`` shows that it was not given.
         unchosen = self.sensor_size is FULL_FRAME
         return super().__getstate__() | ({"sensor_size": None} if unchosen else {})
 
@@ -290,8 +290,8 @@ class Camera(Value):
     ) -> Camera:
         """Reads a camera from ROS ``camera_info``, with its place in a stereo rig.
 
-        Args: those of :meth:`from_opencv`. ``camera`` stands at the first rectified camera of the
-            rig. ``rectified`` takes the rectified picture (P) instead of the raw one.
+        Args: as in :meth:`from_opencv`. ``camera`` has the pose of the first rectified camera of
+            the rig. ``rectified`` takes the rectified picture (P) instead of the raw picture.
         """
         return cls._calibrated("ros", calibration, camera, pixel_pitch, rectified=rectified)
 
@@ -307,8 +307,8 @@ class Camera(Value):
     ) -> Camera:
         """Reads a camera of a Kalibr camera chain, by default ``cam0``.
 
-        Args: those of :meth:`from_opencv`. ``camera`` stands at the first camera of the chain.
-            ``timeshift`` delays the shutter by ``timeshift_cam_imu`` minus that of the first.
+        Args: as in :meth:`from_opencv`. ``camera`` has the pose of the first camera of the chain.
+            ``timeshift`` delays the shutter by ``timeshift_cam_imu`` relative to that camera.
         """
         options = {"name": name, "timeshift": timeshift}
         return cls._calibrated("kalibr", calibration, camera, pixel_pitch, **options)
@@ -325,8 +325,8 @@ class Camera(Value):
     ) -> Camera:
         """Reads the camera of a picture of a COLMAP text model, with its pose in COLMAP's world.
 
-        Args: those of :meth:`from_opencv`; ``name`` is that of the picture. With # in the place of
-        a number (``IMG_####.jpg``) the camera moves: picture n is at n / fps, s.
+        Args: as in :meth:`from_opencv`; ``name`` is the name of the picture. With # in place of a
+        number (``IMG_####.jpg``) the camera moves: picture n is at n / fps, s.
         """
         options = {"name": name, "unit_m": unit_m}
         return cls._calibrated("colmap", folder, camera, pixel_pitch, **options)
@@ -342,7 +342,7 @@ class Camera(Value):
     ) -> Camera:
         """Reads a tracked camera: lens, f-stop, focus and pose of OpenTrackIO samples.
 
-        Args: those of :meth:`from_opencv`. Several samples (a list, or a file with a list or one
+        Args: as in :meth:`from_opencv`. Several samples (a list, or a file with a list or one
         sample a line) make keys over time, the first at 0 s.
         """
         return cls._calibrated("opentrackio", calibration, camera, pixel_pitch, size=size)
@@ -404,7 +404,7 @@ class Camera(Value):
                     f"camera: {odd[0]}: a {hole} has none; choose another lens, or leave it out"
                 )
         replaced: dict[str, Any] = {"t_stop": None} if hole else {}
-        if changes.get("lens") is not None:  # of the lens that goes
+        if changes.get("lens") is not None:  # parameters of the replaced lens
             replaced |= {name: _default(name) for name in ("zoom", "decenter", "ripple")}
         if changes.get("lens_model") not in (None, "polynomial"):
             replaced |= {"degree": None, "fit_tolerance": None}

@@ -16,7 +16,7 @@ from .shutter import seconds
 if TYPE_CHECKING:
     from .camera import Camera
 
-#: Relative difference below which two numbers are one, as files hold single precision.
+#: Relative difference below which two numbers count as equal, as files hold single precision.
 _SINGLE = 1e-6
 LIGHT_DEFAULTS = {row.name: row.default for row in LIGHT}
 #: Parameters of brightness alone, with their defaults: they change no light of a frame.
@@ -45,7 +45,7 @@ def lens_h0(camera: Camera, film_mm: float, diameter_mm: float | None) -> float:
     """``h0`` of an ideal lens at mid-shutter, lux per cd/m2.
 
     Args:
-        camera: Camera, whose ``exposure_f_stop`` counts for a pinhole.
+        camera: Camera; a pinhole has its ``exposure_f_stop``.
         film_mm: Film distance.
         diameter_mm: Diameter of the aperture; None: a pinhole.
     """
@@ -72,7 +72,7 @@ def without_exposure(facts: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def describe_exposure(camera: Camera, f_stop: float | None, shutter_s: float) -> str:
-    """Describes what sets the brightness, such as ``manual, 1/48 s, f/2, ISO 800, +1 EV``.
+    """Describes the exposure, such as ``manual, 1/48 s, f/2, ISO 800, +1 EV``.
 
     Args:
         camera: The camera.
@@ -91,7 +91,7 @@ def describe_exposure(camera: Camera, f_stop: float | None, shutter_s: float) ->
 
 
 def exposure_notes(camera: Camera, f_stop: float | None, shutter_s: float) -> list[str]:
-    """Notes for exposures whose brightness and blur come from different shutters or stops."""
+    """Notes for exposures with brightness and blur from different shutters or stops."""
     if camera.exposure == "light":  # neither sets the brightness
         return []
     notes = []

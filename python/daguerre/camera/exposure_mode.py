@@ -9,7 +9,7 @@ from daguerre.errors import UsageError, suggest
 LIGHT = "light"
 MODES = (LIGHT, "manual", "auto", "A", "S", "P")
 AUTOMATIC = MODES[2:]
-#: Parameters of a camera that set what a mode chooses.
+#: Parameters of a camera that set exposure time and f-stop, which a mode may choose.
 TIMES = ("shutter_time", "shutter_angle", "exposure_time")
 STOPS = ("f_stop", "t_stop", "aperture_diameter", "exposure_f_stop")
 CHOSEN: dict[str, tuple[str, ...]] = {
@@ -19,7 +19,7 @@ CHOSEN: dict[str, tuple[str, ...]] = {
 CHOICES = {
     "auto": "the ISO", "A": "the exposure time", "S": "the f-stop", "P": "the time and the f-stop"
 }  # fmt: skip
-#: Modes that a picture can still have when it is taken: the others choose time or stop.
+#: Modes that a picture can have after it is taken: modes without a choice of time or stop.
 RETAKEN = (LIGHT, "manual", "auto")
 METERS = ("centre", "spot", "matrix", "highlight")
 
@@ -87,11 +87,11 @@ def is_automatic(exposure: str) -> bool:
 
 
 def chosen_by(exposure: str) -> tuple[str, ...]:
-    """Names of the parameters that set what a mode chooses; empty: it chooses nothing."""
+    """Names of the parameters that a mode chooses; empty: none."""
     return CHOSEN.get(split_mode(exposure)[0], ())
 
 
 def split_pattern(pattern: str) -> tuple[str, str]:
-    """Returns the kind of a metering pattern and the place of its spot; empty: none is named."""
+    """Returns the kind of a metering pattern and the position of its spot; empty: not given."""
     kind, _, place = pattern.partition(":")
     return kind, place

@@ -1,6 +1,6 @@
 """Kinds of ideal lenses: one row each, from which names, checks and set-up are made.
 
-The chief rays of an ideal lens go straight on through its centre, so its pictures have no
+The chief rays of an ideal lens pass through its centre undeviated, so its pictures have no
 distortion. ``CONTRIBUTING.md`` says how to add a kind.
 """
 

@@ -75,5 +75,5 @@ def core_parts(given: object) -> _core.LensScatter:
 
 @lru_cache(maxsize=8)
 def _made(barrel: _Finish, blades: _Finish, rms_nm: float, lobe: _Lobe) -> _core.LensScatter:
-    """Makes the core's record, whose tables take 10 ms, once for all cameras of one kind."""
+    """Makes the core's record; cached, because its tables take 10 ms."""
     return _core.LensScatter(barrel, blades, rms_nm, lobe)

@@ -62,7 +62,7 @@ def check_overscan(
         where: For messages.
 
     Returns:
-        Overscan; None for ``"undistort"``, whose size depends on the camera.
+        Overscan; None for ``"undistort"``, which depends on the camera.
 
     Raises:
         UsageError: Another value, or a data window that is too large.

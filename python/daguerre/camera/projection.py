@@ -110,8 +110,8 @@ class Projection(Value):
         Args:
             model: One of ``MODELS``.
             size: Width and height of the picture, px.
-            field: Horizontal field of view, degrees; ignored for ``cube``, whose six faces span the
-                width.
+            field: Horizontal field of view, degrees; ignored for ``cube``, with six faces across
+                the width.
             parameters: Parameters of the model.
 
         Raises:
@@ -241,7 +241,7 @@ def check_resolution(projection: Projection, resolution: tuple[int, int]) -> Non
     """Checks that a picture has the aspect ratio of the calibration.
 
     Raises:
-        UsageError: It has another one.
+        UsageError: The aspect ratios differ.
     """
     (width, height), (columns, rows) = projection.size, resolution
     if abs(rows - columns * height / width) > 0.5:

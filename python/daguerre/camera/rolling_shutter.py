@@ -13,7 +13,7 @@ ShutterCurve = str | tuple[str, float] | list[tuple[float, float]]
 @guarded
 @dataclass(frozen=True)
 class RollingShutter:
-    """Rolling shutter: lines of pixels are exposed one after the other.
+    """Rolling shutter: lines of pixels are exposed in sequence.
 
     Attributes:
         scan_order: Side of the upright picture that is exposed first: top, bottom, left or right.

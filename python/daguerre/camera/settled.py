@@ -1,4 +1,4 @@
-"""Brightness and shutter of one picture: they change from picture to picture, not within one."""
+"""Exposure and shutter of a picture: constant within it, though they may change over time."""
 
 from __future__ import annotations
 

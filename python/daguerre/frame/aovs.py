@@ -94,7 +94,7 @@ def names_of(*sources: Source) -> tuple[str, ...]:
 #: Rows by each of their names and aliases.
 BY_NAME = {name: row for row in TABLE for name in (row.name, *row.aliases)}
 
-#: Names in files: a film's channels, those of ground truth at one moment, and those of means.
+#: Names in files: channels of the film, of ground truth at one moment, and of means over time.
 FILM_CHANNELS = channels_of(Source.FILM, Source.GUIDES)
 TRUTH_CHANNELS = channels_of(Source.TRUTH)
 MEANS_CHANNELS = channels_of(Source.TRUTH, Source.MEANS)

@@ -1,6 +1,6 @@
 """Cryptomatte: coverage of each pixel by the names of objects, for compositing programs.
 
-A hash stands for a name. Each pixel has pairs of hash and coverage, ranked by coverage. Source:
+A hash represents a name. Each pixel has pairs of hash and coverage, ranked by coverage. Source:
 Friedman and Jones 2015, Fully automatic ID mattes with support for motion blur and transparency;
 names of channels and attributes: Psyop, Cryptomatte specification 1.2.0.
 """
@@ -135,7 +135,7 @@ def taken(
     """Takes the mattes of Daguerre's layers out of the channels of a file.
 
     Args:
-        channels: Planes by name, from which those of mattes are removed.
+        channels: Planes by name; the planes of mattes are removed from it.
         facts: Attributes of the file.
         where: Name of the file, for messages.
 

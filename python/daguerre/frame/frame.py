@@ -1,4 +1,4 @@
-"""A frame: what a camera recorded, scene-linear, with its auxiliary channels and its facts."""
+"""A frame: scene-linear light that a camera recorded, with auxiliary channels and metadata."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _STRIPE = 64  # rows
 @guarded(init=True)
 @dataclass(eq=False)
 class Frame(Value, ArrayValue, Shown, array="rgb"):
-    """A rendered picture, or the state of one that is being rendered.
+    """A picture, rendered completely or in part.
 
     NumPy takes a frame for its ``rgb``: ``np.asarray(frame)``, ``np.mean(frame)``.
 
@@ -61,16 +61,16 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
         halves: Pictures of the samples of even and of odd index, each in two parts that add up:
             by camera paths, and by light paths; shape (H, W, 2, 2, 3), if requested.
         samples: Samples per pixel, shape (H, W).
-        aovs: Channels beside the picture by name, each of shape (H, W); ``layer`` joins those of
-            one name. With ``aovs=True`` means over the samples: ``depth.Z`` (m along the camera's
+        aovs: Auxiliary channels by name, each of shape (H, W); ``layer`` joins the channels of a
+            layer. With ``aovs=True`` means over the samples: ``depth.Z`` (m along the camera's
             -z), ``P.X`` to ``P.Z`` (m, world), ``N.X`` to ``N.Z`` (shading normal, world),
             ``albedo.R`` to ``albedo.B``, ``object_id``. With ``gt_time`` these are exact, and there
             are ``distance.Z`` (m from the entrance pupil) and ``material_id``; with ``motion=True``
             ``motion.U``, ``motion.V``, ``motion_back.U`` and ``motion_back.V`` (px, +x right,
             +y down).
         metadata: Facts of camera and render; see ``daguerre.pictures.exr.write``.
-        channels: Channels of the camera's sensor, shape (H, W, C), if it has one: D65 of luminance
-            1 is 1 in each; ``metadata["sensor_channels"]`` has their names.
+        channels: Channels of the camera's sensor, shape (H, W, C), if the camera has a sensor: D65
+            of luminance 1 is 1 in each; ``metadata["sensor_channels"]`` has their names.
         bands: Mean radiance in wavelength bands of equal width, 380 to 780 nm, shape (H, W, N), if
             requested: D65 of luminance 1 is about 1 in each.
         bad_samples: Number of samples that were NaN or Inf, and the first of them as
@@ -157,7 +157,7 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
         """Crops the frame to the picture itself, which is the part that a sensor records.
 
         Raises:
-            UsageError: The frame is a crop that lies outside of the picture.
+            UsageError: The frame is a crop outside of the picture.
         """
         width, height = self.metadata.get("resolution") or (self.width, self.height)
         left, top = (self.metadata.get("crop") or (0, 0))[:2]
@@ -233,7 +233,7 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
                 ``daguerre.development.develop``.
             tone: Tone curve of pictures for display; see :meth:`display`.
             colour_space: Colour space of an ``.exr``: ``lin_rec709``, ``acescg``, ``aces`` or
-                ``xyz``; None: that of the file that the frame was read from, else ``lin_rec709``.
+                ``xyz``; None: as in the file that the frame was read from, else ``lin_rec709``.
                 See ``docs/colour.md``.
 
         Raises:
@@ -257,17 +257,17 @@ class Frame(Value, ArrayValue, Shown, array="rgb"):
     ) -> Raw:
         """Exposes a sensor to the frame: returns a raw picture with photon and sensor noise.
 
-        A pixel of the frame is one photosite, whatever the frame's resolution.
+        A pixel of the frame is a photosite at any resolution of the frame.
 
         Args:
-            sensor: Library name (``dg.sensors.names()``), file, or sensor; default: the one whose
-                channels the frame holds, else "ideal".
+            sensor: Library name (``dg.sensors.names()``), file, or sensor; default: the sensor of
+                the frame's channels, else "ideal".
             iso: ISO; default: the camera's, if the sensor has it, else the sensor's base ISO.
             seed: Seed of the shot's noise. The serial number seeds the sensor's fixed pattern.
             ev: Exposure compensation, EV: multiplies the light by 2^ev; default: the camera's.
             white_balance: White balance that the raw file states as neutral, K or (x, y); default:
                 the camera's, else D65.
-            temperature: Temperature of the sensor, deg C; default: that of its measurement.
+            temperature: Temperature of the sensor, deg C; default: its temperature when measured.
 
         Raises:
             DaguerreError: No such sensor, an ISO beyond its range, or a frame without the metadata

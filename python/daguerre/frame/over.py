@@ -1,7 +1,7 @@
 """Compositing of objects over a plate in linear light, with the layers of catchers.
 
-``catcher`` and ``catcher_ratio`` are those of :mod:`daguerre.frame.catcher`. All forms give the
-same picture where the plate equals the modelled set. Elsewhere *auto* removes light as a share of
+:mod:`daguerre.frame.catcher` defines ``catcher`` and ``catcher_ratio``. All forms give the same
+picture where the plate equals the modelled set. Elsewhere *auto* removes light as a share of
 the plate, which has the true materials, and adds light by difference, which does not depend on how
 dark the plate is.
 """

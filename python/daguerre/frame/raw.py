@@ -98,7 +98,7 @@ class Raw(ArrayValue, array="mosaic"):
         return self.luminance_exposure
 
     def electrons(self) -> NDArray[np.float32]:
-        """Electrons that the numbers stand for, with their noise, shape (H, W)."""
+        """Numbers of the file converted to electrons, with their noise, shape (H, W)."""
         above = self.mosaic.astype(np.float32) - np.float32(self.black_level)
         return np.asarray(above / np.float32(self.gain), np.float32)
 

@@ -61,7 +61,7 @@ def seen_of(frame: Frame, sensor: Seeing) -> Seen:
 
 
 def sensor_metadata(sensor: Sensor | None) -> dict[str, Any]:
-    """Metadata of a frame whose channels are those of a sensor."""
+    """Metadata of a frame with the channels of a sensor."""
     if sensor is None:
         return {}
     return {

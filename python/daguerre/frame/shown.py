@@ -8,7 +8,7 @@ from typing import Any
 
 
 class Shown:
-    """Base of pictures that are saved by ``save``, or have a ``_repr_png_`` of their own."""
+    """Base of pictures that have ``save``, or override ``_repr_png_``."""
 
     def show(self) -> None:
         """Shows the picture: in a notebook in its cell, else in the desktop's viewer of images.
@@ -27,7 +27,7 @@ class Shown:
 
     def _repr_png_(self) -> bytes:
         """The picture as a PNG file, for notebooks."""
-        from tempfile import TemporaryDirectory  # pictures that no notebook shows need none
+        from tempfile import TemporaryDirectory  # imported late: needed in notebooks alone
 
         with TemporaryDirectory() as folder:
             path = Path(folder) / "picture.png"
@@ -36,7 +36,7 @@ class Shown:
 
 
 def _show_in_notebook(picture: Shown) -> bool:
-    """Shows a picture in the cell that runs; False: none does."""
+    """Shows a picture in the running cell of a notebook; False: there is no notebook."""
     ipython: Any = sys.modules.get("IPython")  # a kernel has loaded it
     shell = None if ipython is None else ipython.get_ipython()
     if not hasattr(shell, "kernel"):

@@ -1,4 +1,4 @@
-"""Signatures of functions whose keywords are rows of a table.
+"""Signatures of functions with the rows of a table as keywords.
 
 Type checkers read a TypedDict, the type of the function's ``**keywords``. ``help()`` and
 ``inspect.signature`` use the table, so that each parameter is declared once.

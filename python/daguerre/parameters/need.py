@@ -13,7 +13,7 @@ class Need:
     """A condition on the kind of camera.
 
     Attributes:
-        kinds: Traits of cameras, such as ``("exact", "polynomial")``; the camera needs one of them.
+        kinds: Traits of cameras, such as ``("exact", "polynomial")``; the camera needs any of them.
         refusal: Message for the user; ``{kind}`` stands for the model of the camera's lens. Empty:
             other cameras ignore the parameter.
     """

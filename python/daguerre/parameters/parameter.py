@@ -65,7 +65,7 @@ class Parameter:
         usual: Value used if none is given, if it is always the same.
         tells_default: Whether texts show the default, or the usual value.
         more: Sentences that follow the meaning in docstrings and pages, without the last full stop.
-        in_python: Docstring text, if the Python value differs from that of the flag.
+        in_python: Docstring text, if the Python value differs from the flag's value.
         explained: Pages of the docs with more, such as ``flare.md#the-body``.
         needs: Conditions that a camera must meet.
         rivals: Name of a group of parameters of which at most one may be given.

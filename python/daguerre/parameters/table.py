@@ -55,7 +55,7 @@ class Table:
     def values(
         self, given: Mapping[str, Any], where: str, error: type[InputError | UsageError]
     ) -> dict[str, Any]:
-        """Values of all parameters by name: given ones, parsed and checked, and defaults.
+        """Values of all parameters by name: the given values, parsed and checked, and defaults.
 
         Args:
             given: Values by name, as text or JSON values.
@@ -119,7 +119,7 @@ class Table:
             where: Owner of the parameters, such as ``camera``; empty: messages name their flags.
 
         Raises:
-            UsageError: They do; the message names them.
+            UsageError: Two parameters exclude each other; the message names them.
         """
         for names in self.rivals():
             both = [name for name in names if name in given]

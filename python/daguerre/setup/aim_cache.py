@@ -3,7 +3,7 @@
 A folder keeps the results, one file per lens and setting, named by a hash of everything that they
 depend on, including the build of this package: ``$XDG_CACHE_HOME/daguerre/aims`` (``~/.cache`` if
 that is not set). ``DAGUERRE_CACHE`` names another folder, or is ``off``. Files are written
-atomically; beyond 256 MB the least recently used ones are removed. If the folder cannot be written
+atomically; beyond 256 MB the least recently used are removed. If the folder cannot be written
 or a file is damaged, the lens is set up anew.
 """
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def stack_of(camera: Camera) -> _core.SensorStack:
-    """Makes the surfaces that the body adds to those of the lens.
+    """Makes the surfaces of the camera body behind the lens.
 
     Raises:
         UsageError: A value of cover glass or sensor is out of its range.

@@ -77,7 +77,7 @@ def set_up(
 
     def lens_of(moment: Camera) -> ResolvedLens:
         """Makes the lens at another moment, with a known focus distance."""
-        like = lens.model  # what stands in for it at mid-shutter
+        like = lens.model  # the model that draws, which may replace a polynomial
         moment = moment if like == model else moment.with_(lens_model=like)
         check(moment, like, prescription=prescription is not None)
         known = replace(focus, camera=moment, core_scene=None)
@@ -103,14 +103,14 @@ def set_up(
 
 
 def with_brightness_of(setup: ResolvedCamera, camera: Camera) -> ResolvedCamera:
-    """Returns the set-up of a camera that sees the same light, whatever its brightness.
+    """Returns the set-up of a camera that differs in its exposure alone.
 
     Args:
-        setup: A camera that is set up.
-        camera: The other one, settled.
+        setup: Set-up of the first camera.
+        camera: The second camera, settled.
 
     Raises:
-        UsageError: Its exposure is wrong.
+        UsageError: The exposure of the second camera is wrong.
     """
     begin, end = setup.interval_s
     now = camera.frozen_at(0.5 * (begin + end))

@@ -34,7 +34,7 @@ COC_PER_DIAGONAL = 1 / 1500
 
 @dataclass(frozen=True)
 class Facts:
-    """Numbers of a camera; None where one is unknown or meaningless.
+    """Numbers of a camera; None: unknown or meaningless.
 
     Attributes:
         lens: Name of the lens, or thin, or pinhole.
@@ -61,7 +61,7 @@ class Facts:
         pupil_diameter_mm: Diameter of the entrance pupil.
         shutter_s: Exposure time of a point of the film.
         shutter: Description of the shutter.
-        exposure: Description of what sets the brightness.
+        exposure: Description of the exposure.
         ev100: Exposure value log2(N^2 / t) - log2(ISO / 100), ISO 2720.
         near_clip_m: Distance of the near clipping plane; 0: nothing is clipped.
     """
@@ -205,8 +205,8 @@ def field_of_view_deg(
 ) -> tuple[float, float, float]:
     """Full angles, 2 atan(d / 2 f): horizontal, vertical, diagonal.
 
-    ``focal_mm`` is that of the pinhole with the same framing; the horizontal field of an anamorphic
-    lens is wider by its squeeze.
+    ``focal_mm`` is the film distance of the pinhole with the same framing; the horizontal field of
+    an anamorphic lens is wider by its squeeze.
     """
     width, height = size_mm[0] * squeeze, size_mm[1]
     sides = (width, height, math.hypot(width, height))

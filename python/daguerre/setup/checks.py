@@ -59,7 +59,7 @@ def lens_and_model(camera: Camera) -> tuple[lenses.Lens | None, str]:
 
 
 def prescription_of(camera: Camera) -> lenses.Lens:
-    """Loads the lens of a camera that has one with a prescription."""
+    """Loads the lens of a camera with a prescription."""
     from daguerre.lenses.dispersion import without_dispersion
     from daguerre.lenses.library import FOLDER, path_of
 
@@ -105,7 +105,7 @@ def check(camera: Camera, model: str, *, prescription: bool) -> None:
     Args:
         camera: Camera at one moment.
         model: One of ``MODELS``, or projection.
-        prescription: Whether its lens has one.
+        prescription: Whether its lens has a prescription.
 
     Raises:
         UsageError: The message names the parameter.

@@ -15,7 +15,7 @@ from daguerre.scene.scene import Scene
 
 
 class ContentHash:
-    """SHA-256 of a scene, which hashes what does not move once.
+    """SHA-256 of a scene; caches the hashes of values that do not move.
 
     Args:
         scene: The scene; it must not change while this object is in use.

@@ -11,7 +11,7 @@ def contents(scene: Scene) -> dict[str, Any]:
     """Lists nodes, materials, lamps and other names of cameras.
 
     Returns:
-        ``nodes``: Name, number of ``instances`` with those of its descendants (0: no catcher), and
+        ``nodes``: Name, number of ``instances`` including descendants (0: no catcher), and
         ``position_m`` (None: unknown) of each. ``material_names``: "" is a material without a
         name. ``lamps``: ``name``, ``kind`` and ``position_m``. ``camera_aliases``: Other names of
         cameras.

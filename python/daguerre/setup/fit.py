@@ -84,7 +84,7 @@ def _length(um: float) -> str:
 
 
 def _field_deg(exact: _core.ExactLens, inner_mm: float, radius_mm: float) -> float:
-    """View angle of a film point, deg; if it sees nothing, that of the last point before it."""
+    """View angle of a film point, deg; of the outermost lit point if this point is dark."""
     angle = 0.0
     for step in range(9):
         x, y, z = exact.chief_direction(radius_mm - (radius_mm - inner_mm) * step / 8, 0.0)

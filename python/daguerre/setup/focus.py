@@ -1,4 +1,4 @@
-"""Focus distance: stated, measured along a ray, or that of a node."""
+"""Focus distance: given, measured along a ray, or the distance of a node."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class Focus(BriefRecord):
         return self._along(direction, start, what)
 
     def settled(self, direction_at: Callable[[float], Directions]) -> Sharp:
-        """Finds the focus of a tilted lens, whose view directions depend on its focus.
+        """Finds the focus of a tilted lens, where view directions depend on the focus.
 
         Args:
             direction_at: View directions of film points, given a focus distance in m.

@@ -133,7 +133,7 @@ def _with_iris(framing: Framing, model: str) -> ResolvedLens:
 
 
 def _film_distance(camera: Camera, f: float, distance: float) -> float:
-    """Film distance along the camera's axis, mm: that of the pinhole with the same framing."""
+    """Film distance of the pinhole with the same framing, along the camera's axis, mm."""
     if not camera.focus_breathing:
         return f
     if not distance * 1e3 > f:

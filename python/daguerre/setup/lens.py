@@ -1,4 +1,4 @@
-"""Set-up of a camera with a real lens: traced exactly, as a thick lens, or as an ideal one.
+"""Set-up of a camera with a real lens: traced exactly, or as a thick or ideal lens.
 
 Lengths are in mm unless the name says otherwise. Focus distances are in m.
 """
@@ -154,7 +154,7 @@ class _Glass:
 
 @lru_cache(_KEPT)
 def _glass(camera: Camera, lens: lenses.Lens, model: str) -> _Glass:
-    """Glass of a camera without pose and brightness: one that only moves has the same."""
+    """Glass of a camera; cached without pose and exposure, which do not change it."""
     return _Glass(camera, lens, model)
 
 

@@ -1,8 +1,8 @@
 """Focus, zoom, iris and film shift that change while the shutter is open.
 
-An ideal lens or a projection has keys, whose error is within the bound of
+An ideal lens or a projection has keys, with an error within the bound of
 :mod:`daguerre.motion.resample`. The parameters of a projection's model change in steps that move
-nothing by more than twice ``MODEL_BLUR`` of a pixel. A thick or exact lens is set up in states;
+no point by more than twice ``MODEL_BLUR`` of a pixel. A thick or exact lens is set up in states;
 each sample uses the state nearest in time. There are so many states that focusing and tilting miss
 the true blur by less than ``STATE_BLUR`` of a pixel, and the iris turns and bends by less than 1 %
 of its radius. The f-stop needs no states: the widest iris is closed to its size at each moment.
@@ -34,7 +34,7 @@ STATE_BLUR = 0.1
 #: Error of an iris corner that a state may have, in radii.
 _STATE_TURN = 0.01
 MAX_STATES = 129
-#: Blur error, px, for a projection's model, whose states are cheap and serve ground truth, too.
+#: Blur error, px, for a projection's model. Its states are cheap, and ground truth uses them, too.
 MODEL_BLUR = 0.01
 MAX_MODELS = 513
 _LOOKS = 1024
@@ -191,7 +191,7 @@ class LensMotion:
         if "f_stop" in self.changing and camera.f_stop is not None:
             stop = float(camera.f_stop)
             return stop if self.lens.glass is None else opened(stop, self.lens.widest_stop)
-        assert self.lens.f_stop is not None  # an exact lens has one
+        assert self.lens.f_stop is not None  # an exact lens has an f-stop
         return self.lens.f_stop
 
     def _state_times(

@@ -18,15 +18,15 @@ ASIDE = 80.0
 _SHARES = [(i + 1) / 8 for i in range(8)]
 _SIDES = [(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1) if x or y]
 _AHEAD = np.array([0.0, 0.0, -1.0])
-#: Distance that stands for infinity, m: the ray tracer bears it.
+#: Finite distance used for infinity, m; within the range of the ray tracer.
 _NEVER = 1e18
 
-#: unit view direction in the camera's frame of a film point (mm, upright)
+#: Function from a film point (mm, upright) to its unit view direction in the camera's frame.
 Directions = Callable[[float, float], NDArray[np.float64]]
 
 
 def set_near_clip(core: _core.Camera, camera: Camera, frame_mm: tuple[float, float]) -> None:
-    """Gives the core's camera what it clips.
+    """Sets the near clipping of the core's camera.
 
     Args:
         core: Camera of the core, with its lens.
@@ -38,7 +38,7 @@ def set_near_clip(core: _core.Camera, camera: Camera, frame_mm: tuple[float, flo
 
 
 def directions_of(core: _core.Camera) -> Directions:
-    """View directions of the film points of a camera that is set up; straight ahead where dark."""
+    """View directions of film points of the core's camera; along the axis for dark points."""
     chief = core.chief_rays()
 
     def direction(x: float, y: float) -> NDArray[np.float64]:
@@ -50,10 +50,10 @@ def directions_of(core: _core.Camera) -> Directions:
 
 
 def is_round(camera: Camera, direction_of: Directions, frame_mm: tuple[float, float]) -> bool:
-    """Whether a sphere bounds what is clipped: the lens sees to the side.
+    """Whether a sphere bounds the clipped space, because the lens sees to the side.
 
     Args:
-        camera: The camera; its projection says this itself.
+        camera: The camera.
         direction_of: View directions of film points.
         frame_mm: Width and height of the picture on the film.
     """
@@ -75,9 +75,9 @@ def view_begins(
     frame_mm: tuple[float, float],
     direction: NDArray[np.float64],
 ) -> float:
-    """Distance from the pupil at which a view direction leaves what is clipped, m.
+    """Distance from the pupil at which a view direction leaves the clipped space, m.
 
-    Args: those of :func:`is_round`, and the unit direction in the camera's frame.
+    Args: as of :func:`is_round`, and the unit direction in the camera's frame.
     """
     if not camera.near_clip:
         return 0.0

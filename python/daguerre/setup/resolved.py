@@ -64,7 +64,7 @@ class ResolvedLens:
     Attributes:
         core: Camera of the core.
         model: Model that draws: exact, polynomial, thick, thin, pinhole or projection.
-        name: Name of the lens; thin, pinhole or projection without one.
+        name: Name of the lens; without a prescription: thin, pinhole or projection.
         focal_length_mm: Focal length as engraved.
         pinhole_focal_length_mm: Film distance of the pinhole with the same framing.
         f_stop: F-stop; None: a pinhole without a prescription.
@@ -72,7 +72,7 @@ class ResolvedLens:
         focus_distance_m: Focus distance from the entrance pupil along the lens's axis; None:
             everything is sharp.
         projection: Projection that replaces a lens.
-        glass: Prescription, if there is one, for any model.
+        glass: Prescription, if the lens has one, for any model.
         notes: Decisions made on the user's behalf, one sentence each.
     """
 
@@ -102,7 +102,7 @@ class ResolvedLens:
 
     @property
     def effective_focal_length_mm(self) -> float:
-        """Focal length at its focus; without glass, the engraved one."""
+        """Focal length at its focus; without glass, the engraved focal length."""
         return self.glass.effective_focal_length_mm if self.glass else self.focal_length_mm
 
     @property

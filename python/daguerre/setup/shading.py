@@ -59,7 +59,7 @@ class Profiles:
         self._known: dict[LightProfile, int] = {}
 
     def index(self, profile: LightProfile | None) -> int:
-        """Index of a profile in the builder; -1 without one."""
+        """Index of a profile in the builder; -1: no profile."""
         if profile is None:
             return -1
         if profile not in self._known:

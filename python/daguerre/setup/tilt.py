@@ -92,7 +92,7 @@ def focus_on(cardinal: CardinalPoints, tilt_deg: tuple[float, float], point_m: F
 
 
 def focus_still(film_mm: float, tilt_deg: tuple[float, float], point_m: FloatArray) -> float:
-    """Focus distance for a thin lens whose film does not move when it focuses (``ThinLens``).
+    """Focus distance for a thin lens with a film that focusing does not move (``ThinLens``).
 
     With c the chief ray of depth 1, a the axis and D the film's distance, the point in focus has
     the depth t with 1 / t = (c . a) (a_z / D + 1 / focus) - 1 / D.

@@ -1,6 +1,6 @@
 """Parameters of a camera: one row each, from which flags, checks and pages are made.
 
-The rows stand in the order of helps and pages.
+The order of the rows is the order in help texts and pages.
 """
 
 from __future__ import annotations
@@ -51,6 +51,6 @@ CAMERA_FLAGS = Table(
 #: Names of those that may change over time: optics while the shutter is open, brightness and
 #: shutter from one picture to the next.
 MOVABLE = tuple(row.name for row in CAMERA if row.movable)
-#: Smallest and largest values, far beyond any camera: what lies outside is a mistake, and single
-#: precision would overflow on the way.
+#: Smallest and largest values, far beyond any real camera: values outside are mistakes, and would
+#: overflow single precision.
 LIMITS = {row.name: (row.low, row.high) for row in CAMERA if math.isfinite(row.low)}

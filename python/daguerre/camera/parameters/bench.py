@@ -29,7 +29,7 @@ F_STOP = replace(
 
 
 def focus_by(meaning: str, first: str) -> Parameter:
-    """``--focus-by`` with a meaning and a default of its own."""
+    """``--focus-by`` with this meaning and default."""
     row = CAMERA["focus_by"]
     choices = tuple(sorted(row.choices, key=lambda choice: choice != first))
     return replace(row, meaning=meaning, choices=choices, default=first, panel=None)

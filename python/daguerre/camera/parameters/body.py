@@ -160,7 +160,7 @@ STANDING = (
     ),
     Parameter(
         "near_clip",
-        "Near clipping plane: what is nearer along the axis, m, is not seen; 0: nothing is clipped",
+        "Distance of the near clipping plane along the axis, m; 0: no clipping",
         "m",
         default=0.0,
         low=0,
@@ -169,7 +169,7 @@ STANDING = (
         metavar="M",
         panel="Camera",
         tells_default=True,
-        more="What is clipped still casts shadows and is seen in mirrors. A lens that sees to the "
+        more="Clipped surfaces still cast shadows and are visible in mirrors. A lens that sees to the "
         "side has a sphere instead",
         explained=("lens-models.md#the-near-clipping-plane",),
     ),

@@ -10,7 +10,7 @@ from daguerre.parameters.parameter import Parameter
 
 from . import needs
 
-#: F-stop of a pinhole, whose opening has no size: the photographer's sunny 16, two stops wider.
+#: F-stop that exposes a pinhole, which has no aperture: the sunny 16 rule, two stops wider.
 _PINHOLE = 8.0
 EXPOSURE_PANEL = "Exposure"
 _Row = partial(Parameter, panel=EXPOSURE_PANEL)

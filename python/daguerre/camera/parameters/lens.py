@@ -1,4 +1,4 @@
-"""Parameters of the lens: which one, and how it is computed."""
+"""Parameters of the lens and of its optical model."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ LENS = (
         metavar="MM",
         usual=50.0,
         tells_default=True,
-        more="A lens with a prescription has its own focal length; another one is an error",
+        more="A lens with a prescription has its own focal length; any other is an error",
         needs=(needs.LENS_ITSELF, needs.WITHOUT_PRESCRIPTION),
         movable=True,
     ),

@@ -6,16 +6,16 @@ from daguerre.camera.ideal import IDEAL as KINDS
 from daguerre.camera.ideal import WITH_IRIS
 from daguerre.parameters.need import Need
 
-#: those that have a prescription's elements
+#: Models with the elements of a prescription.
 TRACED = ("exact", "polynomial")
-#: ways to compute a lens
+#: Optical models of a lens.
 MODELS = (*TRACED, "thick", *KINDS)
 
-#: It stands in the place of a lens: a projection takes no other (``setup/checks.py``).
+#: For parameters that choose the lens: a projection replaces the lens (``setup/checks.py``).
 LENS_ITSELF = Need(MODELS, "cannot be combined with a projection")
-#: A projection leaves it aside: a flag that says it is refused, a scene file's value is not.
+#: For parameters that a projection ignores: their flags are refused, values of scene files are not.
 OF_LENSES = Need(MODELS, "")
-#: An opening of some size: to make a lens a pinhole, and give it at once, is refused.
+#: For parameters of the aperture, which a pinhole does not have.
 OPENING = Need((*TRACED, "thick", *WITH_IRIS, "projection"), "")
 
 _QUOTED = " or ".join(map(repr, KINDS))

@@ -1,4 +1,4 @@
-"""Parameters of where a camera stands and looks: parts of its ``transform``."""
+"""Parameters of a camera's pose: parts of its ``transform``."""
 
 from __future__ import annotations
 

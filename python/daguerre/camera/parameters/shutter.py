@@ -1,4 +1,4 @@
-"""Parameters of the shutter. Limits are far beyond any: what lies outside is a mistake."""
+"""Parameters of the shutter. Limits are far beyond any real shutter, to catch mistakes."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ SHUTTER_ROWS = (
         flags=("--rolling",),
         metavar="SIDE,S",
         parse=typed.rolling_shutter,
-        in_python="Rolling shutter, which exposes lines of pixels in turn; default: that of the "
+        in_python="Rolling shutter, which exposes lines of pixels in turn; default: by the "
         "shutter type.",
     ),
 )
