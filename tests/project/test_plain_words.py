@@ -15,7 +15,6 @@ PATTERNS, comments, files, rates = (WORDS[k] for k in ("PATTERNS", "comments", "
 #: Rooms with comments that are still to be rewritten.
 LEFT = {
     "core/bind",
-    "core/film",
     "core/light",
     "core/material",
     "core/medium",
@@ -23,16 +22,11 @@ LEFT = {
     "core/scene",
     "core/transport",
     "python/daguerre/apart",
-    "python/daguerre/camera",
     "python/daguerre/export",
     "python/daguerre/exporters",
     "python/daguerre/files",
-    "python/daguerre/frame",
     "python/daguerre/importers",
     "python/daguerre/pictures",
-    "python/daguerre/rendering",
-    "python/daguerre/scene",
-    "python/daguerre/setup",
     "python/daguerre/shading",
 }
 ROOMS = sorted(

@@ -35,7 +35,7 @@ __all__ = [
     "in_order",
 ]
 
-if not TYPE_CHECKING:  # checkers know the names above, and report all others
+if not TYPE_CHECKING:  # type checkers use the imports above, and report other names
     __getattr__, __dir__ = lazy_attributes(
         __name__,
         {

@@ -6,9 +6,9 @@ proportion to sqrt(V(p)), V the relative variance of one sample. A round decides
 complete rounds alone, so neither threads nor interruptions change a bit.
 
 If the sample count of a pixel depends on its own values, its mean is biased: a pixel that missed
-its bright paths by chance looks clean and stays so. So pixels have three colours, and V of a pixel
-comes from neighbours of the next colour, whose counts come from those of the next: the values of a
-pixel affect its own count after three rounds at the earliest, and faintly.
+its bright paths by chance looks clean and stays so. So pixels have three colours in a cycle, and V
+of a pixel comes from neighbours of the next colour alone: the values of a pixel affect its own
+count after three rounds at the earliest, and faintly.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ STEP = 8
 GROWTH = 1.06, 2.0
 #: Each pixel gets at least this share of the mean: it may not have met its brightest light yet.
 FLOOR = 1 / 3
-#: Reach of neighbours whose variances count for a pixel, by 1 / distance^2. (Standard deviations
-#: would scatter less, but grow with the samples of a pixel that has rare light: a spiky picture
-#: came out 0.6 % too dark, and 3 % where rounds began at 8 samples.)
+#: Largest distance of neighbours, px; their variances are weighted by 1 / distance^2. (Standard
+#: deviations would scatter less, but grow with the samples of a pixel that has rare light: a spiky
+#: picture came out 0.6 % too dark, and 3 % where rounds began at 8 samples.)
 REACH = 7
 MAX_SPP = 16384
 #: Added to the square of a value, so that values below 0.1 need less relative accuracy.
@@ -76,7 +76,7 @@ def check_noise(noise: object, spp: object, where: str = "noise") -> tuple[float
     """Checks the target relative error and the maximum samples per pixel.
 
     Raises:
-        UsageError: One is out of range.
+        UsageError: A value is out of range.
     """
     ceiling = MAX_SPP if spp is None else whole(spp, "spp", 2, 1 << 31, "2 .. 2^31")
     return number(noise, where, high=1.0, above=0.0), ceiling
@@ -95,25 +95,25 @@ def next_counts(
     Args:
         variance: Relative variance of one sample, (H, W).
         counts: Samples drawn, (H, W).
-        factor: Target relative variance of the frame over the present one.
+        factor: Target relative variance of the frame over the present relative variance.
         ceiling: Maximum samples of a pixel.
     """
     # A subset of the pixels suffices to find the number, and is faster.
-    some = slice(None, None, (variance.size >> 16) | 1)
-    have, one = counts.ravel()[some].astype(np.float32), variance.ravel()[some]
+    subset = slice(None, None, (variance.size >> 16) | 1)
+    drawn, variances = counts.ravel()[subset].astype(np.float32), variance.ravel()[subset]
     spread = around(variance)
     np.sqrt(spread, out=spread)
-    need, wanted = spread.ravel()[some], factor * mean_over(one, have)
+    need, wanted = spread.ravel()[subset], factor * mean_over(variances, drawn)
 
     def reaches(scale: float) -> bool:
-        return mean_over(one, share(need, have, scale, ceiling)) <= wanted
+        return mean_over(variances, share(need, drawn, scale, ceiling)) <= wanted
 
     def grows(by: float) -> Callable[[float], bool]:
-        return lambda s: bool(share(need, have, s, ceiling).mean() >= by * have.mean())
+        return lambda s: bool(share(need, drawn, s, ceiling).mean() >= by * drawn.mean())
 
     enough = first_scale(reaches)
     least, most = (first_scale(grows(by)) for by in GROWTH)
-    expected = share(need, have, enough, ceiling).mean()
+    expected = share(need, drawn, enough, ceiling).mean()
     more = share(spread, counts, min(max(enough, least), most), ceiling)
     more -= counts
     more /= STEP

@@ -1,7 +1,7 @@
-"""Automatic exposure: a meter takes a small picture of its own, and sets ISO, time or f-stop.
+"""Automatic exposure: a meter renders a small picture, and sets ISO, time or f-stop.
 
-The picture of the meter has its own size, samples and seed, so what it reads depends on nothing
-but the scene, the camera and the shape of the picture.
+The picture of the meter has its own size, samples and seed, so the reading depends only on the
+scene, the camera and the shape of the picture.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ TIMES_S, MOST_STOP = (1 / 8000, 1 / 15), 22.0
 PROGRAM_S, PROGRAM_STOP = 1 / 60, 16.0
 #: Steps that find the f-stop of an exposure, as glass vignettes and its pupil is no disk.
 _STEPS = 4
-#: Further pictures of the meter after it chose a stop, whose vignetting may differ.
+#: Maximum number of further pictures after the meter chose a stop, as vignetting may differ there.
 _LOOKS = 2
 
 
@@ -91,15 +91,16 @@ def choose(
         look: Takes the meter's picture, or returns the same from before.
 
     Raises:
-        UsageError: The mode chooses what the lens does not have, or the spot is not in the picture.
+        UsageError: The mode chooses a parameter that the lens does not have, or the spot is not in
+            the picture.
         InputError: The scene or the lens cannot be used.
     """
     check_backdrop(scene, settings, camera.exposure)
     meter = _Meter(scene, camera, settings, built, look)
     if not meter.luminance > 0:
         dark = Chosen({"exposure": LIGHT}, f"--exposure {LIGHT}", warning=NO_LIGHT)
-        return dark, meter.one.built
-    return meter.chosen(), meter.one.built
+        return dark, meter.prepared.built
+    return meter.chosen(), meter.prepared.built
 
 
 class _Meter:
@@ -122,12 +123,12 @@ class _Meter:
         size = max(round(whole[0] * scale), 1), max(round(whole[1] * scale), 1)
         self.settings = RenderSettings.of(resolution=size, spp=SAMPLES, threads=settings.threads)
         placed = at_size(self.camera, whole, size)
-        self.one = prepare(scene, placed, self.settings, built)
-        self.point = metered_point(self.one, self.pattern, whole)
-        self.luminance = self._read(self.one)
+        self.prepared = prepare(scene, placed, self.settings, built)
+        self.point = metered_point(self.prepared, self.pattern, whole)
+        self.luminance = self._read(self.prepared)
 
-    def _read(self, one: Prepared) -> float:
-        return luminance_of(self.look(one), split_pattern(self.pattern)[0], self.point)
+    def _read(self, prepared: Prepared) -> float:
+        return luminance_of(self.look(prepared), split_pattern(self.pattern)[0], self.point)
 
     def chosen(self) -> Chosen:
         """Exposure by the mode."""
@@ -167,16 +168,18 @@ class _Meter:
 
     def _with(self, **changes: object) -> Prepared:
         """Prepares the meter's picture with other parameters of the camera."""
-        camera = self.one.camera.with_(**changes)
-        return prepare(self.scene, camera, self.settings, self.one.built)
+        camera = self.prepared.camera.with_(**changes)
+        return prepare(self.scene, camera, self.settings, self.prepared.built)
 
     def _lux_s(self, **changes: object) -> float:
         """Luminance exposure of a value of 1 by the camera with other parameters, lux s."""
-        one = self._with(**changes) if changes else self.one
-        return luminance_exposure(camera_metadata(one.camera, one.setup, one.size[0]))
+        prepared = self._with(**changes) if changes else self.prepared
+        return luminance_exposure(
+            camera_metadata(prepared.camera, prepared.setup, prepared.size[0])
+        )
 
     def _isos(self) -> tuple[float, float]:
-        return iso_limits(self.one.sensor)
+        return iso_limits(self.prepared.sensor)
 
     def _iso(self, wanted: float) -> tuple[dict[str, Any], str, float]:
         lux_s = self._lux_s()
@@ -184,8 +187,8 @@ class _Meter:
         return {"iso": iso}, "", iso * lux_s
 
     def _time(self, wanted: float) -> tuple[dict[str, Any], str, float]:
-        now = shutter_time(self.one.camera)
-        per_s = self.one.camera.iso * self._lux_s() / now
+        now = shutter_time(self.prepared.camera)
+        per_s = self.prepared.camera.iso * self._lux_s() / now
         time, words = _short(min(max(wanted / per_s, TIMES_S[0]), TIMES_S[1]))
         return {"shutter_time": time}, f" --shutter {words}", per_s * time
 
@@ -194,12 +197,12 @@ class _Meter:
         return (
             {"f_stop": stop},
             f" --f-stop {stop:g}",
-            self.one.camera.iso * self._lux_s(f_stop=stop),
+            self.prepared.camera.iso * self._lux_s(f_stop=stop),
         )
 
     def _stop_for(self, wanted: float, ends: tuple[float, float]) -> float:
         """F-stop of an exposure within its ends, to three digits."""
-        iso, stop = self.one.camera.iso, self._now()
+        iso, stop = self.prepared.camera.iso, self._now()
         for _ in range(_STEPS):
             got = iso * self._lux_s(f_stop=stop)
             stop = min(max(stop * math.sqrt(got / wanted), ends[0]), ends[1])
@@ -207,7 +210,7 @@ class _Meter:
         return min(max(rounded, ends[0]), ends[1])
 
     def _program(self, wanted: float) -> tuple[dict[str, Any], str, float]:
-        camera, widest = self.one.camera, self._widest()
+        camera, widest = self.prepared.camera, self._widest()
         open_lux = camera.iso * self._lux_s(f_stop=widest) / shutter_time(camera)
         stops = math.log2(open_lux * PROGRAM_S / wanted)  # above 0: more light than it needs
         stop = float(f"{min(widest * 2 ** (max(stops, 0.0) / 4), PROGRAM_STOP):.3g}")
@@ -218,7 +221,7 @@ class _Meter:
         return changes, f" --shutter {words} --f-stop {stop:g}", per_s * time
 
     def _now(self) -> float:
-        stop = self.one.setup.lens.f_stop
+        stop = self.prepared.setup.lens.f_stop
         if stop is None:
             raise UsageError(
                 f"exposure {self.mode} chooses the f-stop, but a pinhole has none; use auto or A"
@@ -227,7 +230,7 @@ class _Meter:
 
     def _widest(self) -> float:
         self._now()
-        widest = self.one.setup.lens.widest_stop
+        widest = self.prepared.setup.lens.widest_stop
         return math.ceil(round(widest * 1000, 6)) / 1000  # not wider than it is, in four digits
 
 

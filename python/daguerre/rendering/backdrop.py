@@ -62,7 +62,7 @@ def check_backdrop(scene: Scene, settings: RenderSettings, exposure: str) -> Non
 
 
 def over(frame: Frame, pixels: NDArray[np.float32]) -> Frame:
-    """Composites the frame over its background; alpha and all layers stay those of the objects."""
+    """Composites the frame over its background; alpha and layers still describe the objects."""
     rgb = change_of_rgb(frame).of(pixels)
     return replace(frame, rgb=rgb, xyz=xyz_of(rgb))
 

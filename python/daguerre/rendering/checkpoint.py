@@ -36,7 +36,7 @@ class Checkpoint:
         return self.path is not None and self.path.exists()
 
     def load_writer(self) -> None:
-        """Imports what writes the file, as memory may be short after hours of drawing."""
+        """Imports the writer of the file early, as memory may be short after hours of drawing."""
         if self.path is not None:
             import OpenEXR  # noqa: F401
 

@@ -28,7 +28,7 @@ def coarse(
 ) -> tuple[Frame, BuiltScene]:
     """Draws a preview in large squares at full size; returns it and the scene built for it.
 
-    It omits light paths, ghosts, scatter and diffraction, whose set-up takes time.
+    It omits light paths, ghosts, scatter and diffraction, because their set-up takes time.
 
     Args:
         scene: The scene.

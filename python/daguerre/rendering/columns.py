@@ -67,7 +67,7 @@ def add_columns(film: _core.Film, parts: Mapping[str, Columns], where: str) -> N
         MismatchError: A part is missing, unknown or of another size; the film is unchanged then.
         InputError: A list is damaged.
     """
-    check_layout(film, {part: one.shape for part, one in parts.items()}, where)
+    check_layout(film, {part: columns.shape for part, columns in parts.items()}, where)
     with core_errors(InputError, where):
-        for part, one in parts.items():
-            film.add_state(part, one.kept, one.words.view(np.uint8))
+        for part, columns in parts.items():
+            film.add_state(part, columns.kept, columns.words.view(np.uint8))

@@ -30,7 +30,7 @@ Image = NDArray[np.float32]
 
 MODULE = "mitsuba_oidn"
 PACKAGE = extras.EXTRAS[MODULE][0]
-#: Side of the squares whose means show light that denoising moved, px.
+#: Side of the squares over which means are compared, to find light that denoising moved, px.
 BLOCK = 8
 
 
@@ -54,10 +54,10 @@ def denoise(frame: Frame) -> Frame:
     """Returns a copy of the frame with denoised ``rgb`` and catcher layers; the rest is unchanged.
 
     Ghosts of the lens stay as drawn, as the guides do not show them. Scattered light without ghosts
-    is denoised by itself. The copy has no sensor channels and no bands, which would be noisy beside
-    a clean picture; sensors are fitted to the colours instead.
+    is denoised separately. The copy has no sensor channels and no bands, which would be noisy
+    beside a clean picture; sensors are fitted to the colours instead.
 
-    The denoiser needs colours of at least 0, so negative ones (outside Rec.709) become 0.
+    The denoiser needs colours of at least 0, so negative values (outside Rec.709) become 0.
 
     Metadata ``denoised`` names the denoiser. If the frame has halves, ``denoised_noise`` is the
     relative error that is left (see ``error_left``). If a target noise was set, ``noise`` has that
@@ -126,10 +126,10 @@ class Cleaner:
     """Denoiser of a frame, for pictures (H, W, 3) of its scene.
 
     It denoises the light of light paths separately: discs of defocused lamps have edges that no
-    guide shows, and other noise than the scene.
+    guide shows, and their noise differs from the noise of the scene.
 
     Attributes:
-        run: Filter, as that of a ``Denoiser``.
+        run: Filter, as ``run`` of a ``Denoiser``.
         guides: Denoised albedo and normal; None: there are none.
         splats: Light that light paths added; None: there is none, or it is unknown.
     """
@@ -224,15 +224,15 @@ def error_left(even: Image, odd: Image, moved: Image, variance: Image) -> float:
     - noise that is left: two denoised pictures without common samples differ by twice the error of
       their mean, for any kind of noise;
     - light that moved further than ``BLOCK`` pixels: the change of the means of squares of pixels,
-      minus what the noise before denoising explains.
+      minus the part that the noise before denoising explains.
 
     It does not include smaller detail that the filter removes, nor light that no sample has met.
-    The value is the smaller of the two, so that a spark in one of them does not hide its own error.
+    ``value`` is the smaller of the two pictures, so that a firefly does not hide its own error.
 
     Args:
         even: Denoised picture of one half of the samples, (H, W, 3).
         odd: Denoised picture of the other half.
-        moved: Denoised picture of all samples minus the noisy one.
+        moved: Denoised picture of all samples minus the noisy picture.
         variance: Variance of the noisy picture.
     """
     value = np.minimum(even, odd).astype(np.float64)

@@ -47,7 +47,7 @@ def clean_catchers(frame: Frame, clean: Callable[[Image], Image]) -> dict[str, A
 
 
 def _change(change: Image, clean: Callable[[Image], Image]) -> Image:
-    """Denoises a change, shape (H, W, C); 0 where none is near."""
+    """Denoises a change, shape (H, W, C); 0 far from pixels with a change."""
     parts = [np.maximum(sign * change, 0) for sign in (1, -1)]
     more, less = (_of_channels(part, clean) if part.any() else part for part in parts)
     near = _near(np.asarray(change.any(axis=2)))
@@ -55,7 +55,7 @@ def _change(change: Image, clean: Callable[[Image], Image]) -> Image:
 
 
 def _of_channels(light: Image, clean: Callable[[Image], Image]) -> Image:
-    """Filters light of any number of channels: three at once, others one by one."""
+    """Filters light of any number of channels: three together, any other number one at a time."""
     if light.shape[2] == 3:
         return clean(light)
     alone = [clean(np.repeat(light[..., c, None], 3, axis=2)) for c in range(light.shape[2])]

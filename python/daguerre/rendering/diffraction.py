@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 MOST_ZONES = 9
 LEAST_WAVELENGTHS = 24  # of all bands together
 ONE_ZONE, MANY_ZONES = 2049, 1025  # maximum width of kernels, px
-#: Kernels of all bands of one picture, by their size and the wavelengths; at most one entry.
+#: Kernels of all bands of a picture, by their size and the wavelengths; at most one entry.
 Kernels = dict[tuple[int, bytes], NDArray[np.float32]]
-DARK = 2e-4  # of the brightest band's colour: darker bands have no kernel of their own
+DARK = 2e-4  # of the brightest band's colour: darker bands share the mean kernel
 
 
 @guarded
@@ -128,7 +128,7 @@ class Developed(BriefRecord):
 
     Attributes:
         xyz: Shape (H, W, 3).
-        channels: Channels of the plan's sensor, (H, W, C), if it has one.
+        channels: Channels of the plan's sensor, (H, W, C); None: no sensor.
         bands: Wavelength bands, (H, W, bands), if they are kept.
     """
 
@@ -201,8 +201,8 @@ def developed(
     for picture, (all_of, colours) in zip(pictures, sums, strict=True):
         rest = all_of()  # a new array at each call
         colours[dark] = 0
-        for row, told in zip(rest, bands, strict=True):
-            row -= told @ colours  # what bands do not tell
+        for row, row_bands in zip(rest, bands, strict=True):
+            row -= row_bands @ colours  # light that the bands do not represent
         for k, unit in enumerate(np.eye(rest.shape[2], dtype=np.float32)):
             plane[:] = rest[:, :, k, None]
             spread(plane, mean, threads=threads, out=made)

@@ -37,13 +37,13 @@ def export_scene(
         path: The file.
         camera: Camera, or its name in the scene; default: the scene's own.
         resolution: Width and height of the picture, px.
-        spp: Samples per pixel; default: that of ``render``.
+        spp: Samples per pixel; default: as in ``render``.
 
     Returns:
         Remarks on all that is approximated or left out, one sentence each, with counts.
 
     Raises:
-        UsageError: The suffix is another, the file is the scene's own, or a parameter of the camera
+        UsageError: Unknown suffix, the scene was read from this file, or a parameter of the camera
             is wrong.
         InputError: The scene cannot be drawn, or has no camera.
         OutputError: A file cannot be written.

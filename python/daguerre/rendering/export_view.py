@@ -30,7 +30,7 @@ _LEFT_OUT = {
 
 
 def view_of(setup: ResolvedCamera, notes: Notes) -> View:
-    """Makes the view of a camera at mid-exposure, and notes what it leaves out."""
+    """Makes the view of a camera at mid-exposure, and notes the properties that it lacks."""
     camera, lens = setup.camera, setup.lens
     _note_camera(setup, notes)
     view = View(
@@ -77,7 +77,7 @@ def _radius_m(setup: ResolvedCamera) -> float:
 
 
 def _with_lens(view: View, setup: ResolvedCamera, glass: Glass, notes: Notes) -> View:
-    """Adds the prescription if pbrt can trace it, and notes that a thin lens stands for it else."""
+    """Adds the prescription if pbrt can trace it; otherwise notes that a thin lens replaces it."""
     surfaces = glass.lens.surfaces
     if not all(_is_spherical(surface) for surface in surfaces) or any(setup.camera.tilt):
         notes.add(f"lens {glass.lens.name} is written as a thin lens: its surfaces are not spheres")
@@ -110,7 +110,7 @@ def _is_spherical(surface: LensSurface) -> bool:
 
 
 def _rows(surfaces: Sequence[LensSurface]) -> list[tuple[float, float, float, float]]:
-    """Rows of radius, thickness, index and diameter, mm; the stop has a row of its own."""
+    """Rows of radius, thickness, index and diameter, mm; the stop is a separate row."""
     rows, before = [], 1.0
     for surface in surfaces:
         assert surface.semi_diameter is not None
@@ -125,7 +125,7 @@ def _rows(surfaces: Sequence[LensSurface]) -> list[tuple[float, float, float, fl
     return rows
 
 
-#: Radius of a sphere that stands for a plane, mm: pbrt takes a radius of 0 for the stop.
+#: Radius of a sphere in place of a plane, mm, as a radius of 0 is the stop in pbrt.
 _FLAT_MM = 1e6
 
 

@@ -50,7 +50,7 @@ def check_layout(film: _core.Film, given: Mapping[str, tuple[int, ...]], where: 
 
 
 def _shape(part: str, shape: tuple[int, ...]) -> tuple[int, ...]:
-    """Shape that films of one layout share; for lists the number of rows."""
+    """Shape that films of the same layout share; for lists the number of rows."""
     return (*shape[:1], *shape[2:]) if part == OBJECTS else shape
 
 
@@ -123,7 +123,7 @@ def _catchers(film: _core.Film, alpha: NDArray[np.float32]) -> dict[str, NDArray
 
 
 def _mattes(film: _core.Film, metadata: dict[str, Any]) -> dict[str, Any]:
-    """Mattes by name, if the film has objects; metadata tell of pixels with too many."""
+    """Mattes by name, if the film has objects; ``mattes_cut`` counts pixels with too many."""
     facts = metadata.get("mattes")
     if facts is None or OBJECTS not in film.state_parts():
         return {}

@@ -52,7 +52,7 @@ def check_film(
         layout: Layout of the film.
         truth: Whether the frame gets ground truth.
         scatter: Whether scattered light is drawn.
-        free: Bytes that may be used; None: those of ``memory.left_bytes``.
+        free: Bytes that may be used; None: ``memory.left_bytes``.
 
     Raises:
         InputError: Too little memory; the message says how many pixels fit.
@@ -89,7 +89,7 @@ def _check(size: tuple[int, int], each: int, fixed: int, advice: str, free: int 
 
 @contextmanager
 def kept_films() -> Iterator[None]:
-    """Context in which a new film has the memory of the last one of its layout that ended."""
+    """Context in which a new film reuses the memory of the last film of the same layout."""
     keep = _core.KeptFilms()
     try:
         yield

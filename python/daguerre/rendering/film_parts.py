@@ -68,7 +68,7 @@ class FilmPart:
 
 
 def inside(region: Box, resolution: tuple[int, int]) -> Box:
-    """Part of a region that lies in the picture; ``NOWHERE`` if none does."""
+    """Part of a region inside the picture; ``NOWHERE`` if they do not overlap."""
     x0, y0, x1, y1 = region
     cut = (max(x0, 0), max(y0, 0), min(x1, resolution[0]), min(y1, resolution[1]))
     return cut if cut[0] < cut[2] and cut[1] < cut[3] else NOWHERE

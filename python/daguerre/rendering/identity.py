@@ -48,12 +48,12 @@ class Drawn(Protocol):
 
 def key(session: Drawn) -> dict[str, str]:
     """Key that passes must share to be added: hashes of scene, camera, settings, build."""
-    one = session.prepared
+    prepared = session.prepared
     return {
-        "scene": one.built.hash,
-        "camera": _hash_json(without_exposure(facts_of(one.setup))),
+        "scene": prepared.built.hash,
+        "camera": _hash_json(without_exposure(facts_of(prepared.setup))),
         "settings": _hash_json(_settings_facts(session)),
-        "build": f"{build()} {one.core_scene.intersector}",
+        "build": f"{build()} {prepared.core_scene.intersector}",
     }
 
 
@@ -64,27 +64,27 @@ def build() -> str:
 
 def metadata(session: Drawn) -> dict[str, Any]:
     """Camera and picture facts, in the names and units of the EXR attributes."""
-    one, plan, (bad, places) = session.prepared, session.light_plan, session.bad_samples
+    prepared, plan, (bad, places) = session.prepared, session.light_plan, session.bad_samples
     settings, truth = session.settings, session.settings.truth
     out: dict[str, Any] = {
-        "time": one.scene.time,
-        **camera_metadata(one.camera, one.setup, one.size[0]),
+        "time": prepared.scene.time,
+        **camera_metadata(prepared.camera, prepared.setup, prepared.size[0]),
         "seed": settings.sampling.seed,
         **_sample_facts(session),
-        "resolution": one.size,
-        "crop": one.crop,
-        "overscan": str(one.overscan) if one.overscan else None,
+        "resolution": prepared.size,
+        "crop": prepared.crop,
+        "overscan": str(prepared.overscan) if prepared.overscan else None,
         "filter": parse_filter(settings.sampling.filter)[0],
         "light_paths": show_plan(plan.light_paths),
         "flare": f"{plan.flare:.17g}" if plan.flare else None,
         "scatter": f"{plan.scatter:.17g}" if plan.scatter else None,
-        "lens_scatter": scatter_facts(one.camera) if plan.scatter else None,
+        "lens_scatter": scatter_facts(prepared.camera) if plan.scatter else None,
         "diffraction": settings.diffraction.words if settings.diffraction else None,
-        "pupils": one.pupils,
+        "pupils": prepared.pupils,
         "bands": settings.film.bands or None,
-        "mattes": one.mattes,
+        "mattes": prepared.mattes,
         "background": settings.backdrop.background,
-        **sensor_metadata(one.sensor),
+        **sensor_metadata(prepared.sensor),
         "scene_hash": session.key["scene"],
         "bad_samples": bad,
         "bad_sample_places": [list(place) for place in places],
@@ -92,19 +92,19 @@ def metadata(session: Drawn) -> dict[str, Any]:
         "gt_lens": truth.gt_lens if truth.moment else None,
         "gt_rays": truth.rays if truth.moment and truth.gt_lens == "mean" else None,
         "version": _core.__version__,
-        "intersector": one.core_scene.intersector,
+        "intersector": prepared.core_scene.intersector,
     }
     return {name: value for name, value in out.items() if value is not None}
 
 
 def _settings_facts(session: Drawn) -> dict[str, Any]:
     """Settings that passes must share; features that are off are omitted, so that hashes stay."""
-    one, plan, settings = session.prepared, session.light_plan, session.settings
+    prepared, plan, settings = session.prepared, session.light_plan, session.settings
     light, reference = settings.light, settings.reference
     kind, radius = parse_filter(settings.sampling.filter)
     out: dict[str, Any] = {
-        "resolution": list(one.size),
-        "crop": list(one.crop),
+        "resolution": list(prepared.size),
+        "crop": list(prepared.crop),
         "seed": settings.sampling.seed,
         "filter": kind,
         "filter_radius": radius,
@@ -118,21 +118,21 @@ def _settings_facts(session: Drawn) -> dict[str, Any]:
     if plan.flare:
         out |= {"flare": plan.flare, "flare_order": light.flare_order}
     if plan.scatter:
-        out |= {"scatter": plan.scatter, "scatters": scatter_facts(one.camera)}
+        out |= {"scatter": plan.scatter, "scatters": scatter_facts(prepared.camera)}
     if plan.flare or plan.scatter:
         out |= {"flare_highlights": light.flare_highlights}
-    if one.pupils is not None:
-        out["pupils"] = _hash_json(one.pupils)
-    if one.sensor is not None:
-        out["sensor"] = one.sensor.hash
+    if prepared.pupils is not None:
+        out["pupils"] = _hash_json(prepared.pupils)
+    if prepared.sensor is not None:
+        out["sensor"] = prepared.sensor.hash
     if settings.film.halves:
         out["halves"] = True
     if settings.film.cryptomatte:
         out["objects"] = True
     if settings.film.bands:
         out["bands"] = settings.film.bands
-    if one.overscan:
-        out["overscan"] = str(one.overscan)
+    if prepared.overscan:
+        out["overscan"] = str(prepared.overscan)
     if settings.backdrop.background != DEFAULT["background"]:
         out["background"] = settings.backdrop.background
     if settings.backdrop.see_through:

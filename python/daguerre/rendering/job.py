@@ -1,4 +1,4 @@
-"""Jobs: render pictures of a scene into files, one after the other, for any front end."""
+"""Jobs: render pictures of a scene into files, in sequence, for any front end."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def _nothing(picture: Picture, session: Session) -> None:
 
 
 class Job:
-    """Renders pictures of one scene: a single one, those of a rig, or the frames of a sequence.
+    """Renders pictures of a scene: a single picture, a rig, or the frames of a sequence.
 
     A checkpoint beside the first file of a picture keeps its samples until the picture is complete.
 
@@ -55,9 +55,9 @@ class Job:
         name: Name of the scene, for messages.
         opened: Called when a picture's scene is built, before its first sample.
         written: Called when the files of a picture are written.
-        skipped: Called with a picture whose files exist already.
+        skipped: Called with a picture that is complete already, so that it is not drawn.
         staged: Called with a frame's number and its scene, to add per-frame data such as a plate.
-        work_of: Makes the work of a picture; that of a cluster draws it elsewhere.
+        work_of: Makes the work of a picture; a cluster's work draws on other machines.
         done: Number of pictures that are complete.
     """
 
@@ -135,7 +135,7 @@ class Job:
         return self._exposed(picture)[0]
 
     def _exposed(self, picture: Picture) -> tuple[Camera, Mapping[str, Any]]:
-        """The camera of a picture, and what the meter of the job adds to its metadata."""
+        """The camera of a picture, and the metadata that the meter of the job adds."""
         camera = picture.view.camera(self.scene_of(picture))
         chosen = self._metered(picture, camera)
         return (camera, {}) if chosen is None else (chosen.of(camera), chosen.facts)
@@ -188,20 +188,20 @@ class Job:
         return session
 
     def _is_complete(self, picture: Picture) -> bool:
-        """Whether a frame's files exist; those of a single picture may be from another call."""
-        one = len(self.pictures) == 1 and picture.frame is None
+        """Whether a frame's files exist; a single picture is never complete, but overwritten."""
+        single = len(self.pictures) == 1 and picture.frame is None
         files = all(path.exists() for path in picture.output.written)
-        return files and not one and not picture.output.checkpoint.exists()
+        return files and not single and not picture.output.checkpoint.exists()
 
     def _first_look(self, picture: Picture) -> None:
-        """Shows a coarse picture before the set-up of the fine one."""
+        """Shows a coarse picture before the set-up of the picture."""
         from .coarse import coarse
 
         check_picture(picture.settings.film.crop, picture.settings.film.resolution)
         scene, camera = self.scene_of(picture), self.camera_of(picture)
         try:
             frame, self._built = coarse(scene, camera, picture.settings, self._built)
-        except DaguerreError:  # the session will say it, if it is one for the picture, too
+        except DaguerreError:  # the session raises it if it concerns the picture, too
             return
         self.reporter.preview(picture.output.look(frame))
 
@@ -253,7 +253,7 @@ class Drawing:
         return True
 
     def _out_of_memory(self) -> str:
-        """Message for a pass that ran out of memory, whose sums cannot be used."""
+        """Message for a pass that ran out of memory; its sums are lost."""
         kept = (
             f"{self.checkpoint.path} keeps the samples before; continue with --resume, or "
             if self.checkpoint.exists

@@ -55,7 +55,7 @@ class RenderKeywords(SettingsKeywords, total=False):
 
 
 class RigKeywords(ViewKeywords, total=False):
-    """Parameters of several pictures, whose sizes may differ."""
+    """Parameters of several pictures, of the same size or not."""
 
     spp: int | None
     noise: float | None

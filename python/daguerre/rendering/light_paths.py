@@ -12,7 +12,7 @@ from typing import Any
 from daguerre.checks import short
 from daguerre.errors import UsageError
 
-#: Numbers of light paths per sample index: straight from a light to the lens, and with bounces.
+#: Numbers of light paths per sample index: from a light directly to the lens, and with bounces.
 Plan = tuple[float, float]
 OFF: Plan = (0.0, 0.0)
 TECHNIQUES = ("both", "camera", "light")

@@ -36,11 +36,11 @@ class LightPlan:
 
     Attributes:
         parts: The picture and its overscan, as far as the crop has them.
-        light_paths: Number of paths from the lights: straight to the lens, and with bounces.
+        light_paths: Number of paths from the lights: directly to the lens, and with bounces.
         flare: Number of ghost paths.
         scatter: Number of paths that the lens scatters.
-        notes: Reasons why some are not drawn.
-        piloted: Result of the pilot render, from which the numbers come; None: there was none.
+        notes: Reasons why some kinds of paths are not drawn.
+        piloted: Result of the pilot render that chose the numbers; None: there was no pilot.
         core: Settings of the core for the picture.
     """
 
@@ -58,69 +58,70 @@ class LightPlan:
         return any(part.settings.light_paths != OFF for part in self.parts)
 
 
-def plan_light(one: Prepared, piloted: Plan | None = None) -> LightPlan:
+def plan_light(prepared: Prepared, piloted: Plan | None = None) -> LightPlan:
     """Makes the plan for a picture.
 
     Args:
-        one: The picture.
-        piloted: Result of a pilot render of the same picture; None: automatic numbers need one.
+        prepared: The picture.
+        piloted: Result of a pilot render of the same picture; None: not known, so that automatic
+            numbers need a pilot render.
     """
-    check_light(one)
-    core = core_settings_of(one)
-    wanted = check_light_paths(one.settings.light.light_paths)
-    if _is_over_plate(one):
+    check_light(prepared)
+    core = core_settings_of(prepared)
+    wanted = check_light_paths(prepared.settings.light.light_paths)
+    if _is_over_plate(prepared):
         wanted = OFF
     if piloted is not None:
         piloted = check_light_paths(piloted, "piloted")
     if wanted is not None:
         plan, piloted = wanted, None
     else:
-        plan = piloted = piloted or pilot(one, core)
+        plan = piloted = piloted or pilot(prepared, core)
     # The pilot renders the whole frame; a crop gets paths in proportion to its pixels.
-    shared = one.share(area(one.window)) if wanted is None else 1.0
+    shared = prepared.share(area(prepared.window)) if wanted is None else 1.0
     core.light_paths = light_paths = (plan[0] * shared, plan[1] * shared)
-    core.prepare_light(one.core_scene, one.setup.core)
+    core.prepare_light(prepared.core_scene, prepared.setup.core)
     notes: list[str] = []
-    paths = {name: _prepare(one, core, name, notes) for name in DARK}
+    paths = {name: _prepare(prepared, core, name, notes) for name in DARK}
     parts = []
-    if inner := area(one.window):
-        if one.overscan:
-            core.window = one.window
-        parts.append(FilmPart(one.setup.core, core, (0, 0), inner))
-    if outer := area(one.crop) - inner:
-        grown = one.share(area(one.overscan.region(one.size)))
-        times = one.share(outer) if wanted is None else grown
-        parts.append(_around(one, (plan[0] * times, plan[1] * times), paths, outer))
+    if inner := area(prepared.window):
+        if prepared.overscan:
+            core.window = prepared.window
+        parts.append(FilmPart(prepared.setup.core, core, (0, 0), inner))
+    if outer := area(prepared.crop) - inner:
+        grown = prepared.share(area(prepared.overscan.region(prepared.size)))
+        times = prepared.share(outer) if wanted is None else grown
+        parts.append(_around(prepared, (plan[0] * times, plan[1] * times), paths, outer))
     return LightPlan(parts, light_paths, **paths, notes=tuple(notes), piloted=piloted, core=core)
 
 
-def check_light(one: Prepared) -> None:
+def check_light(prepared: Prepared) -> None:
     """Checks that lens and scene allow the light that is asked for, before anything is set up.
 
     Raises:
         UsageError: The message names the parameter.
     """
-    if _is_over_plate(one):
-        _check_catchers(one)
+    if _is_over_plate(prepared):
+        _check_catchers(prepared)
     for name in DARK:
-        if check_paths(getattr(one.settings.light, name), name) != 0:
-            check_surfaces(one.setup.lens.model, name)
+        if check_paths(getattr(prepared.settings.light, name), name) != 0:
+            check_surfaces(prepared.setup.lens.model, name)
 
 
-def core_settings_of(one: Prepared) -> _core.RenderSettings:
+def core_settings_of(prepared: Prepared) -> _core.RenderSettings:
     """Settings of the core for a picture, before any paths are planned."""
     with core_errors(UsageError):
-        return _settings(one, one.setup, NONE)
+        return _settings(prepared, prepared.setup, NONE)
 
 
-def film_layout(one: Prepared, plan: LightPlan) -> _core.FilmLayout:
+def film_layout(prepared: Prepared, plan: LightPlan) -> _core.FilmLayout:
     """Returns the layout of the film, with the layers that the picture needs.
 
     Raises:
         InputError: The film would be too large.
     """
-    x0, y0, x1, y1 = one.crop
-    film, waves = one.settings.film, one.settings.diffraction
+    x0, y0, x1, y1 = prepared.crop
+    film, waves = prepared.settings.film, prepared.settings.diffraction
     layout = _core.FilmLayout(
         width=x1 - x0,
         height=y1 - y0,
@@ -132,41 +133,41 @@ def film_layout(one: Prepared, plan: LightPlan) -> _core.FilmLayout:
         halves=film.halves,
         coverage=True,
         objects=bool(film.cryptomatte),
-        catchers=one.scene.has_catchers,
+        catchers=prepared.scene.has_catchers,
         bands=film.bands if waves is None else waves.bands,
-        channels=0 if one.sensor is None else len(responses(one.sensor)),
+        channels=0 if prepared.sensor is None else len(responses(prepared.sensor)),
     )
-    check_film(layout, truth=one.settings.truth.moment is not None, scatter=plan.scatter > 0)
+    check_film(layout, truth=prepared.settings.truth.moment is not None, scatter=plan.scatter > 0)
     return layout
 
 
-def new_film(one: Prepared, layout: _core.FilmLayout) -> _core.Film:
+def new_film(prepared: Prepared, layout: _core.FilmLayout) -> _core.Film:
     """Makes a film."""
     made = _core.Film(layout)
-    if one.sensor is not None:
-        made.set_responses(responses(one.sensor))
+    if prepared.sensor is not None:
+        made.set_responses(responses(prepared.sensor))
     return made
 
 
-def _is_over_plate(one: Prepared) -> bool:
-    return one.scene.has_catchers or one.scene.plate is not None
+def _is_over_plate(prepared: Prepared) -> bool:
+    return prepared.scene.has_catchers or prepared.scene.plate is not None
 
 
-def _check_catchers(one: Prepared) -> None:
+def _check_catchers(prepared: Prepared) -> None:
     """Refuses effects that would be in a plate twice, or in the wrong place.
 
     Raises:
         UsageError: The message names the parameter.
     """
-    light = one.settings.light
+    light = prepared.settings.light
     for name in DARK:
         if check_paths(getattr(light, name), name) != 0:
             raise UsageError(
                 f"{name}: cannot be used with catchers: the plate already has the {name} of its "
                 "own lights"
             )
-    if one.settings.diffraction is not None or one.settings.film.bands:
-        name = "bands" if one.settings.diffraction is None else "diffraction"
+    if prepared.settings.diffraction is not None or prepared.settings.film.bands:
+        name = "bands" if prepared.settings.diffraction is None else "diffraction"
         raise UsageError(
             f"{name}: cannot be used with catchers, as their layers store only colours"
         )
@@ -174,48 +175,52 @@ def _check_catchers(one: Prepared) -> None:
         raise UsageError("light_paths: wanted auto or off with catchers, got a number of paths")
 
 
-def pilot(one: Prepared, core: _core.RenderSettings) -> Plan:
+def pilot(prepared: Prepared, core: _core.RenderSettings) -> Plan:
     """Numbers of light paths that pay off in this scene, estimated by a few samples."""
-    m1, m2 = _core.pilot(one.core_scene, one.setup.core, core)
+    m1, m2 = _core.pilot(prepared.core_scene, prepared.setup.core, core)
     return m1, m2
 
 
-def _around(one: Prepared, plan: Plan, paths: dict[str, float], pixels: int) -> FilmPart:
+def _around(prepared: Prepared, plan: Plan, paths: dict[str, float], pixels: int) -> FilmPart:
     """Film part of the overscan, drawn by the same camera with a larger sensor."""
-    overscan = one.overscan
-    setup = set_up(one.scene, one.focused_camera, one.size, one.core_scene, overscan)
-    core = _settings(one, setup, overscan)
+    overscan = prepared.overscan
+    setup = set_up(
+        prepared.scene, prepared.focused_camera, prepared.size, prepared.core_scene, overscan
+    )
+    core = _settings(prepared, setup, overscan)
     core.light_paths = plan
-    core.prepare_light(one.core_scene, setup.core)
-    grown = one.share(area(overscan.region(one.size)))
+    core.prepare_light(prepared.core_scene, setup.core)
+    grown = prepared.share(area(overscan.region(prepared.size)))
     for name, count in paths.items():
-        if count and getattr(core, f"prepare_{name}")(one.core_scene, setup.core):
+        if count and getattr(core, f"prepare_{name}")(prepared.core_scene, setup.core):
             setattr(core, name, count * grown)
     return FilmPart(setup.core, core, (overscan.left, overscan.top), pixels)
 
 
-def _prepare(one: Prepared, core: _core.RenderSettings, name: str, notes: list[str]) -> float:
+def _prepare(prepared: Prepared, core: _core.RenderSettings, name: str, notes: list[str]) -> float:
     """Paths per sample index of flare or scatter, as for the whole frame; 0: none."""
-    paths = check_paths(getattr(one.settings.light, name), name)
+    paths = check_paths(getattr(prepared.settings.light, name), name)
     if paths == 0:
         return 0.0
     with core_errors(InputError, name):
-        shines = getattr(core, f"prepare_{name}")(one.core_scene, one.setup.core)
+        shines = getattr(core, f"prepare_{name}")(prepared.core_scene, prepared.setup.core)
     if not shines:
         notes.append(f"{name}: {DARK[name]}")
         return 0.0
     if name == "flare" and core.flare_maps_failed:
         off = f"{core.flare_map_error:.1%}"
         notes.append(f"flare: ghost maps are off by {off}, wanted 1 %; paths draw all ghosts")
-    count = PER_PIXEL[name] * area((0, 0, *one.size)) if paths is None else paths
+    count = PER_PIXEL[name] * area((0, 0, *prepared.size)) if paths is None else paths
     setattr(core, name, count)
     return float(count)
 
 
-def _settings(one: Prepared, setup: ResolvedCamera, overscan: Overscan) -> _core.RenderSettings:
-    core_shutter = shutter.core_shutter(one.camera, one.size)
-    core = core_settings(setup, one.size, core_shutter, overscan, _options(one.settings))
-    throw_plate(one, core)
+def _settings(
+    prepared: Prepared, setup: ResolvedCamera, overscan: Overscan
+) -> _core.RenderSettings:
+    core_shutter = shutter.core_shutter(prepared.camera, prepared.size)
+    core = core_settings(setup, prepared.size, core_shutter, overscan, _options(prepared.settings))
+    throw_plate(prepared, core)
     return core
 
 

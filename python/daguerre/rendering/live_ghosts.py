@@ -27,25 +27,27 @@ class LiveGhosts:
         """Draws the ghosts by two reflections of the brightest small lamps, and nothing else.
 
         Args:
-            session: Session of the picture, whatever it has drawn.
+            session: Session of the picture, at any number of samples.
 
         Returns:
-            Their light, which adds to a frame without ghosts; None: there is none.
+            Light of the ghosts, to add to a frame without ghosts; None: no ghosts.
         """
-        one = session.prepared
-        if one.setup.lens.model not in TRACED:
+        prepared = session.prepared
+        if prepared.setup.lens.model not in TRACED:
             return None
-        whole = self._core.draw(one.core_scene, one.setup.core, core_settings_of(one))
+        whole = self._core.draw(
+            prepared.core_scene, prepared.setup.core, core_settings_of(prepared)
+        )
         return _frame(session, whole) if self._core.sources else None
 
 
 def _frame(session: Session, whole: NDArray[np.float32]) -> Frame:
     """Returns the crop of a session's ghosts as a frame."""
-    one = session.prepared
-    left, top, right, bottom = one.crop
+    prepared = session.prepared
+    left, top, right, bottom = prepared.crop
     rgb = np.ascontiguousarray(whole[top:bottom, left:right])
     light = Frame(rgb, flare=rgb)
-    if one.sensor is not None:
-        matrix = channels_from_xyz(one.sensor).T
+    if prepared.sensor is not None:
+        matrix = channels_from_xyz(prepared.sensor).T
         light.channels = np.asarray(xyz_of(rgb) @ matrix, np.float32)
     return light

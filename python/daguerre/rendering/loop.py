@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 #: Approximate length of a pass, so that stops and checkpoints need not wait.
 PASS_S = 3.0
-#: Largest share of the time that goes into checkpoints.
+#: Largest share of the time spent on checkpoints.
 SAVING = 0.05
 
 
@@ -129,7 +129,7 @@ class Loop:
             self.reporter.warning(f"snapshot not saved: {error}")
 
     def _draw(self, size: float) -> bool:
-        """Draws a pass in another thread, as Python runs signal handlers only in the main one."""
+        """Draws a pass in another thread, as Python runs signal handlers in the main thread."""
         fraction, given_up = 0.0, False
         result: list[bool] = []
         failure: list[BaseException] = []

@@ -52,7 +52,7 @@ def _materials(scene: Scene) -> list[str]:
 def _assets(scene: Scene) -> list[str]:
     """Names of the topmost nodes: for each instance, the node with the most instances.
 
-    A scene lists a node before its children, so of two equal ones the first is the upper one.
+    A scene lists a node before its children, so the first of two equal nodes is the parent.
     """
     names = _objects(scene)
     size = [0] * len(names)
@@ -86,7 +86,7 @@ def mattes_of(
 
     Returns:
         Mattes by layer, number of pixels with more names than ranks, and the largest coverage that
-        such a pixel loses.
+        is lost in any of these.
     """
     found: dict[str, Cryptomatte] = {}
     cut, most = 0, 0.0

@@ -71,7 +71,7 @@ def refuse_gaps(total: Pass) -> None:
     """Checks that no range is missing between the passes.
 
     Raises:
-        MismatchError: One is missing; the message names it.
+        MismatchError: A range is missing; the message names it.
     """
     if text := gaps(total):
         raise MismatchError(f"merge: {text}")

@@ -28,7 +28,7 @@ _EXPOSURE = (
 def merge(
     passes: Iterable[str | os.PathLike[str] | Pass], *, aovs: bool = True
 ) -> tuple[Frame, Pass]:
-    """Merges passes exactly, in any order; the result is bit-identical to one render.
+    """Merges passes exactly, in any order; the result is bit-identical to a single render.
 
     Args:
         passes: Files or passes.
@@ -36,7 +36,7 @@ def merge(
 
     Returns:
         The picture, and the sum as a pass, which also has the ground truth. Both have the exposure
-        of the first pass; a note tells of others.
+        of the first pass; a note reports passes with another exposure.
 
     Raises:
         InputError: A file cannot be read.
@@ -48,13 +48,13 @@ def merge(
     ranges: list[tuple[Range, Path | None]] = []
     notes: list[str] = []
     for item in passes:
-        # One at a time: a pass of a large picture takes gigabytes.
+        # Read in turn, as a pass of a large picture takes gigabytes.
         one = item if isinstance(item, Pass) else read_pass(item)
         if first is None:
             first = replace(one, state={})
         check_key(first, one)
         notes += _exposure_notes(first, one)
-        if one.truth and not first.truth:  # every pass that has it has all of it
+        if one.truth and not first.truth:  # a pass with ground truth has all of it
             first = replace(first, truth=one.truth, metadata=first.metadata | _truth_facts(one))
         if one.round is not None:
             raise MismatchError(
@@ -85,7 +85,7 @@ def merge(
 
 
 def _exposure_notes(first: Pass, one: Pass) -> list[str]:
-    """Note on a pass whose picture is exposed in another way than the first one's."""
+    """Note on a pass with another exposure than the first pass."""
     facts, others = first.metadata, one.metadata
     if all(facts.get(name) == others.get(name) for name in _EXPOSURE):
         return []

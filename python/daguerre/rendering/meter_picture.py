@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 
 
 def metered_point(
-    one: Prepared, pattern: str, size: tuple[int, int] | None = None
+    prepared: Prepared, pattern: str, size: tuple[int, int] | None = None
 ) -> tuple[float, float] | None:
     """Point that a metering pattern looks at, px of a picture; None: the middle.
 
     Args:
-        one: The picture.
+        prepared: The picture.
         pattern: Metering pattern, such as ``spot:480,270`` or ``spot:NODE``.
-        size: Size of the picture, px, of which ``spot:X,Y`` is a pixel; None: this one's.
+        size: Size of the picture that ``spot:X,Y`` refers to, px; None: the size of ``prepared``.
 
     Raises:
         UsageError: The pixel is not in the picture.
@@ -39,16 +39,16 @@ def metered_point(
     """
     _, place = split_pattern(pattern)
     if not place:
-        return one.camera.focus_at
-    if (instances := _instances(one.scene, place)) is not None:
-        return _seen_at(one, place, instances)
-    width, height = size or one.size
+        return prepared.camera.focus_at
+    if (instances := _instances(prepared.scene, place)) is not None:
+        return _seen_at(prepared, place, instances)
+    width, height = size or prepared.size
     x, y = numbers("--meter spot", place, 2, "480,270, or the name of a node")
     if not (0 <= x < width and 0 <= y < height):
         raise UsageError(
             f"--meter spot:{place}: wanted a pixel of the picture of {width} x {height} px"
         )
-    return (x + 0.5) * one.size[0] / width, (y + 0.5) * one.size[1] / height
+    return (x + 0.5) * prepared.size[0] / width, (y + 0.5) * prepared.size[1] / height
 
 
 def _instances(scene: Scene, name: str) -> list[int] | None:
@@ -62,24 +62,27 @@ def _instances(scene: Scene, name: str) -> list[int] | None:
     raise InputError(f"--meter spot: {no_node(name, known)}")
 
 
-def _seen_at(one: Prepared, name: str, instances: list[int]) -> tuple[float, float]:
-    """Pixel of a node that is nearest to the middle of its pixels."""
-    truth = ground_truth(one, one.crop, one.overscan)
+def _seen_at(prepared: Prepared, name: str, instances: list[int]) -> tuple[float, float]:
+    """Pixel of a node nearest to the mean position of its pixels."""
+    truth = ground_truth(prepared, prepared.crop, prepared.overscan)
     seen = np.isin(truth.object_ids(truth.moment(0)), [i + 1 for i in instances])
     rows, columns = np.nonzero(seen)
     if not rows.size:
         raise InputError(f"--meter spot:{name}: this node is not in view")
     away = (rows - rows.mean()) ** 2 + (columns - columns.mean()) ** 2
     at = int(away.argmin())
-    left, top = one.crop[:2]
+    left, top = prepared.crop[:2]
     return left + float(columns[at]) + 0.5, top + float(rows[at]) + 0.5
 
 
-def meter_picture(one: Prepared) -> Frame:
+def meter_picture(prepared: Prepared) -> Frame:
     """Draws the picture of a meter, without flare, scatter, crop or plate."""
-    plan = plan_light(one, None)
-    film, samples = new_film(one, film_layout(one, plan)), (0, one.settings.sampling.most)
+    plan = plan_light(prepared, None)
+    film, samples = (
+        new_film(prepared, film_layout(prepared, plan)),
+        (0, prepared.settings.sampling.most),
+    )
     for part in plan.parts:
-        part.draw(_core.render, one.core_scene, film, (0, 0), samples, None)
-    facts = {"resolution": one.size, "crop": one.crop, **sensor_metadata(one.sensor)}
+        part.draw(_core.render, prepared.core_scene, film, (0, 0), samples, None)
+    facts = {"resolution": prepared.size, "crop": prepared.crop, **sensor_metadata(prepared.sensor)}
     return frame_of(film, facts, aovs=False)

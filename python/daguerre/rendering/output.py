@@ -31,7 +31,7 @@ class Output:
     """Files of a picture.
 
     Attributes:
-        paths: Files to write, .exr, .png and so on; with a bracket each stands for several.
+        paths: Files to write, .exr, .png and so on; a bracket writes several files for each.
         aovs: Groups of channels to keep, see ``daguerre.frame.aovs``.
         denoise: Whether to denoise the picture.
         noisy: Files for the picture before denoising.
@@ -65,7 +65,7 @@ class Output:
 
     @property
     def written(self) -> tuple[Path, ...]:
-        """All files to write, with those of the front end."""
+        """All files to write, including the files of the front end."""
         return (*self.files, *self.beside)
 
     def renamed(self, name: Callable[[Path], Path]) -> Output:
@@ -109,7 +109,7 @@ class Output:
         if self.exposed:
             from daguerre.exposure.lux_seconds import exposure_of_one
 
-            exposure_of_one(metadata, 100.0)  # or an error that names what is missing
+            exposure_of_one(metadata, 100.0)  # raises an error that names missing metadata
 
     def _load_writers(self) -> None:
         """Imports the libraries that write, as memory may be short after hours of drawing.
@@ -134,7 +134,7 @@ class Output:
         """Refuses outputs that would process the plate twice, or lose it.
 
         Raises:
-            UsageError: The message says what to do instead.
+            UsageError: The message says how to avoid it.
         """
         developed = [
             path
@@ -188,11 +188,11 @@ class Output:
         return replace(frame, metadata={**frame.metadata, **facts}, aovs={})
 
     def look(self, frame: Frame, *, complete: bool = False) -> Look:
-        """Makes a preview of an incomplete picture, developed like the final one."""
-        one = replace(self.photograph, bracket=())
+        """Makes a preview of an incomplete picture, developed like the complete picture."""
+        photograph = replace(self.photograph, bracket=())
 
         def write(path: Path) -> None:
-            one.write(frame, [path], self.tone, Reporter())
+            photograph.write(frame, [path], self.tone, Reporter())
 
         return Look(frame, self.preview, write, complete)
 

@@ -24,7 +24,7 @@ def metered_part(
 
     Args:
         session: Session that drew it.
-        size: Size of the picture of which ``spot:X,Y`` is a pixel; None: this one's.
+        size: Size of the picture that ``spot:X,Y`` refers to, px; None: the session's picture.
 
     Raises:
         DaguerreError: The spot is not in the picture.

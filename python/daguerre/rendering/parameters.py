@@ -44,7 +44,7 @@ class Setting(Parameter):
         """Checks a value and returns it in the form that settings keep; None: not given.
 
         Raises:
-            UsageError: The message says where, what is wanted and what it got.
+            UsageError: The message says where, the wanted and the given value.
         """
         if value is None and self.default is None:
             return None

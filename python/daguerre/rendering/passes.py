@@ -3,7 +3,7 @@
 A pass is an EXR of several parts:
 
 - The first part is the picture, as in any frame.
-- ``sums`` has the film's fixed-point sums as they lie in memory, without a copy: 28 words of 32
+- ``sums`` has the film's fixed-point sums as they are in memory, without a copy: 28 words of 32
   bits per pixel, in a picture of four channels that is seven times as wide. Its header has the key
   that two passes must share to be added (``daguerre:key``: hashes of scene, camera, settings and
   build), the samples drawn (``daguerre:ranges``) and the format of the pass (``daguerre:pass``;
@@ -11,8 +11,8 @@ A pass is an EXR of several parts:
 - ``aovs`` has the sums of the auxiliary channels in the same way.
 - ``splats`` and ``flare`` have the light of light paths (``daguerre.rendering.light_paths``) and
   ghosts (``daguerre.setup.body``), if any were drawn.
-- ``bands`` has the wavelength bands that the frame keeps, or those of a diffracted picture, whose
-  pupils are in the metadata (``daguerre.rendering.diffraction``).
+- ``bands`` has the wavelength bands that the frame keeps, or that diffraction needs; its pupils
+  are in the metadata (``daguerre.rendering.diffraction``).
 - ``channels`` and ``channel_splats`` have the channels of the sensor.
 - ``objects`` lists the coverage of each pixel by objects; its rows are as long as the longest list.
 - ``round``, in the checkpoint of an adaptive render, has begin and count of each pixel in the
@@ -82,7 +82,7 @@ SETTINGS = ("resolution", "crop", "overscan", "seed", "filter", "light_paths")
 
 @dataclass(frozen=True, repr=False)
 class Pass(BriefRecord):
-    """The sums of some samples of one picture.
+    """The sums of a part of the samples of a picture.
 
     Attributes:
         state: The film's words by part, each (H, W, words) uint32.
@@ -182,7 +182,7 @@ def read_pass(path: str | os.PathLike[str]) -> Pass:
 
 
 def check_key(first: Pass, other: Pass) -> None:
-    """Checks that two passes belong to one picture; the error names the differences."""
+    """Checks that two passes are of the same picture; the error names the differences."""
     names = sorted({*first.key, *other.key})
     differing = [name for name in names if first.key.get(name) != other.key.get(name)]
     if differing:

@@ -28,7 +28,7 @@ PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
 
 
 class Like(Protocol):
-    """A camera whose look pictures imitate: that of a plate."""
+    """A camera with a look that pictures imitate: the camera of a plate."""
 
     @property
     def facts(self) -> dict[str, Any]:
@@ -46,12 +46,12 @@ class Photograph:
     """Development, sensor and bracketing of pictures; frames know their exposure.
 
     Attributes:
-        sensor: Sensor that takes the picture; None: a perfect one.
+        sensor: Sensor that takes the picture; None: a perfect sensor.
         iso: ISO that the sensor must have; None: the camera's, else the base ISO of the sensor.
         bracket: Exposures, EV, each of which gives a picture; empty: a single picture.
         look: Tone curve; None: neutral.
         seed: Seed of the noise.
-        like: Camera whose look pictures imitate; None: none.
+        like: Camera with the look that pictures imitate; None: none.
         colorspace: Colour space of .exr files, of ``color.spaces.LINEAR``; None: linear Rec.709.
     """
 
@@ -64,11 +64,11 @@ class Photograph:
     colorspace: str | None = None
 
     def develops(self, metadata: Mapping[str, Any]) -> bool:
-        """Whether pictures of a frame with such metadata are developed, not just encoded."""
+        """Whether pictures of a frame with this metadata are developed, not just encoded."""
         from daguerre.exposure.lux_seconds import is_developed
 
         own = (self.sensor, self.look, self.like)
-        return any(one is not None for one in own) or is_developed(metadata)
+        return any(value is not None for value in own) or is_developed(metadata)
 
     def packages(self, path: Path) -> list[str]:
         """Packages of extras that an output needs."""
@@ -78,7 +78,7 @@ class Photograph:
         return ["tifffile"] * writes_tags + ["rawpy"] * (mosaic and kind in PICTURES)
 
     def files(self, path: Path) -> list[tuple[Path, float]]:
-        """Files that an output stands for, and their exposures, EV."""
+        """Files that an output writes, and their exposures, EV."""
         if not self.bracket or not shows_exposure(path):
             return [(path, 0.0)]
         return [
@@ -119,9 +119,9 @@ class Photograph:
         offsets = self.bracket or (0.0,)
         for offset in offsets if exposed else ():
             files = [file for path in exposed for file, ev in self.files(path) if ev == offset]
-            # Messages about a bracket name one of its pictures.
-            told = tell if offset == min(offsets, key=abs) else Reporter()
-            self._shoot(frame, offset, files, tone, told)
+            # Only the picture nearest to 0 EV reports messages, as they are the same for all.
+            reporter = tell if offset == min(offsets, key=abs) else Reporter()
+            self._shoot(frame, offset, files, tone, reporter)
 
     def _shoot(
         self, frame: Frame, offset: float, files: list[Path], tone: str, tell: Reporter
@@ -143,7 +143,7 @@ class Photograph:
                 frame.save(file, tone=tone)
 
     def _exposed(self, frame: Frame, offset: float, *, raw: bool) -> tuple[Frame, Raw | None]:
-        """Exposes a frame at an offset, EV; with a sensor, or if one is wanted, also a raw one."""
+        """Exposes a frame at an offset, EV; adds a raw picture if a sensor is set or ``raw``."""
         from daguerre.exposure.lux_seconds import with_exposure
 
         if offset:

@@ -79,7 +79,7 @@ def in_order(pictures: Sequence[Picture], frames: Sequence[int] | None) -> list[
     """Lists the pictures of all frames: frame by frame, all cameras of each.
 
     Args:
-        pictures: One for each camera; their file names have placeholders for cameras and frames.
+        pictures: Picture of each camera; their file names have placeholders for cameras and frames.
         frames: Frame numbers; None: not a sequence.
     """
     several = len(pictures) > 1

@@ -15,30 +15,32 @@ from .prepare import Prepared
 from .truth import GroundTruth
 
 
-def ground_truth(one: Prepared, region: Box, overscan: Overscan) -> GroundTruth:
+def ground_truth(prepared: Prepared, region: Box, overscan: Overscan) -> GroundTruth:
     """Makes the ground truth at the moment of the settings; default: mid-exposure."""
-    truth = one.settings.truth
+    truth = prepared.settings.truth
     return GroundTruth(
-        one.scene,
-        one.focused_camera,
-        one.size,
+        prepared.scene,
+        prepared.focused_camera,
+        prepared.size,
         region,
         truth.moment or "mid",
         truth.gt_lens,
         truth.rays,
-        one.settings.threads,
-        None if one.scene.motion else one.core_scene,
+        prepared.settings.threads,
+        None if prepared.scene.motion else prepared.core_scene,
         overscan,
     )
 
 
-def truth_planes(one: Prepared, whole: GroundTruth) -> dict[str, NDArray[Any]]:
+def truth_planes(prepared: Prepared, whole: GroundTruth) -> dict[str, NDArray[Any]]:
     """Channels (H, W) by name; pixels of the picture are computed as without overscan."""
-    motion = one.settings.truth.motion
+    motion = prepared.settings.truth.motion
     planes = whole.planes(motion=motion)
-    if one.overscan and area(one.window):
-        (left, top), (x0, y0, x1, y1) = one.crop[:2], one.window
+    if prepared.overscan and area(prepared.window):
+        (left, top), (x0, y0, x1, y1) = prepared.crop[:2], prepared.window
         part = np.s_[y0 - top : y1 - top, x0 - left : x1 - left]
-        for name, plane in ground_truth(one, one.window, NONE).planes(motion=motion).items():
+        for name, plane in (
+            ground_truth(prepared, prepared.window, NONE).planes(motion=motion).items()
+        ):
             planes[name][part] = plane
     return planes

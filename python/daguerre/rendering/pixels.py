@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from daguerre.camera.camera import Camera
 
 Box = tuple[int, int, int, int]
-#: Left, top, right and bottom edge, px, right and bottom exclusive; None: that of the picture.
+#: Left, top, right and bottom edge, px, right and bottom exclusive; None: the picture's edge.
 Crop = tuple[int | None, int | None, int | None, int | None]
 CropLike = Crop | Mapping[str, int]
 FILTERS = ("box", "gaussian", "blackman_harris", "mitchell", "tent")
@@ -77,7 +77,7 @@ def crop_within(crop: CropLike | None, region: Box, where: str = "crop") -> Box:
     """Pixels of a crop like :func:`crop_box`, checked to lie in a region.
 
     Raises:
-        UsageError: They lie outside, or there are none.
+        UsageError: The crop is empty, or not inside the region.
     """
     box = crop_box(crop, region)
     x0, y0, x1, y1 = region

@@ -26,18 +26,22 @@ ACROSS, SPP = 64, 256
 DARK = 0.02
 
 
-def throw_plate(one: Prepared, core: _core.RenderSettings) -> None:
-    """Passes the scene's plate, if it has one, to the core as light seen by its camera."""
-    plate = one.scene.plate
+def throw_plate(prepared: Prepared, core: _core.RenderSettings) -> None:
+    """Passes the scene's plate, if any, to the core as light seen by its camera."""
+    plate = prepared.scene.plate
     if plate is None:
         return
-    camera = one.camera if plate.camera is None else plate.camera
+    camera = prepared.camera if plate.camera is None else plate.camera
     size = plate.pixels.shape[1], plate.pixels.shape[0]
-    setup = one.setup if plate.camera is None else set_up(one.scene, camera, size, one.core_scene)
+    setup = (
+        prepared.setup
+        if plate.camera is None
+        else set_up(prepared.scene, camera, size, prepared.core_scene)
+    )
     options = {"seed": 0, "filter": _core.Filter("box", 0.0)}
     taken = core_settings(setup, size, shutter.core_shutter(camera, size), NONE, options)
     light = plate.pixels / np.maximum(shading(setup.core, taken, size), DARK)
-    core.set_plate(one.core_scene, setup.core, taken, np.ascontiguousarray(light, np.float32))
+    core.set_plate(prepared.core_scene, setup.core, taken, np.ascontiguousarray(light, np.float32))
 
 
 def shading(

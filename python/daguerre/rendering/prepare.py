@@ -43,7 +43,7 @@ class Prepared:
         interval: Begin and end of the exposure, s.
         overscan: Extra pixels around the picture.
         crop: Pixels to draw, (x0, y0, x1, y1).
-        sensor: Sensor whose channels the film has, if the camera has one.
+        sensor: Sensor of the camera, which defines the channels of the film; None: no channels.
         pupils: Pupils for the kernels of diffraction, as JSON.
         mattes: Names of objects for mattes (``mattes.matte_facts``), if requested.
         overscan_notes: Remarks for users about the extra pixels.
@@ -84,7 +84,7 @@ class Prepared:
 
     @property
     def window(self) -> Box:
-        """Part of the crop that lies in the picture."""
+        """Part of the crop inside the picture."""
         return inside(self.crop, self.size)
 
     def exposed(self, camera: Camera) -> Prepared:
@@ -157,12 +157,12 @@ def prepare(
     return replace(made, pupils=_pupils(made))
 
 
-def _pupils(one: Prepared) -> dict[str, Any] | None:
+def _pupils(prepared: Prepared) -> dict[str, Any] | None:
     """Pupils at mid-exposure, for the film with its overscan, if diffraction is on."""
-    if one.settings.diffraction is None:
+    if prepared.settings.diffraction is None:
         return None
-    camera = one.camera.frozen_at(0.5 * (one.interval[0] + one.interval[1]))
-    frame, middle = frame_around(one.setup, one.size, one.overscan)
-    setup = replace(one.setup, frame_size_mm=frame, shift_mm=middle)
-    grown = one.overscan.grown(one.size)
-    return diffraction.plan(one.settings.diffraction, camera, setup, grown, one.sensor)
+    camera = prepared.camera.frozen_at(0.5 * (prepared.interval[0] + prepared.interval[1]))
+    frame, middle = frame_around(prepared.setup, prepared.size, prepared.overscan)
+    setup = replace(prepared.setup, frame_size_mm=frame, shift_mm=middle)
+    grown = prepared.overscan.grown(prepared.size)
+    return diffraction.plan(prepared.settings.diffraction, camera, setup, grown, prepared.sensor)

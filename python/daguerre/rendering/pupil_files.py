@@ -1,7 +1,7 @@
 """Pupils as JSON, so that a pass file contains all that its diffraction needs.
 
 Numbers are exact to the last bit, rasters have 8 bits. Sessions use pupils that went through this
-form too, so a merged picture is bit-identical to one drawn in one go.
+form too, so a merged picture is bit-identical to a picture drawn at once.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Pupils = list[list[Pupil]]
 
 
 def to_json(pupils: Sequence[Sequence[Pupil]]) -> dict[str, Any]:
-    """Converts rows of pupils that share one iris to JSON."""
+    """Converts rows of pupils that share an iris to JSON."""
     first: Any = pupils[0][0]
     return {"iris": _iris(first.iris), "pupils": [[_pupil(p) for p in row] for row in pupils]}
 
@@ -35,7 +35,7 @@ def from_json(value: Mapping[str, Any]) -> Pupils:
     """Reads pupils from JSON.
 
     Raises:
-        ValueError: The JSON is not such an object.
+        ValueError: The JSON does not describe pupils.
     """
     try:
         iris = _read_iris(value["iris"])

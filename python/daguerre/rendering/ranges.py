@@ -8,7 +8,7 @@ Range = tuple[int, int]
 
 
 def join_ranges(ranges: Iterable[Range]) -> list[Range]:
-    """Sorts ranges [begin, end) and joins adjacent ones."""
+    """Sorts ranges [begin, end) and joins adjacent ranges."""
     joined: list[Range] = []
     for begin, end in sorted(ranges):
         if joined and begin <= joined[-1][1]:

@@ -52,7 +52,7 @@ def render(
             from it.
         progress: Called about ten times a second with a ``rendering.Status``. Returning False
             stops the render after the current samples and returns the picture so far.
-        cluster: ``distributed.Client`` of a Dask cluster whose workers draw, or an address as for
+        cluster: ``distributed.Client`` of a Dask cluster that draws, or an address as for
             ``--cluster``, such as ``local:4``; None: this machine draws. The bits are the same.
         {keywords}
 

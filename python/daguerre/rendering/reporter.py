@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Finished:
-    """A complete picture, whose files are written.
+    """A complete picture with written files.
 
     Attributes:
         session: Session that drew it.
@@ -46,7 +46,7 @@ class Stopped:
     Attributes:
         samples: Samples per pixel drawn.
         total: Samples per pixel that a complete picture has.
-        checkpoint: File that keeps samples; None: there is none.
+        checkpoint: File that keeps samples; None: no such file.
         saved: Whether the checkpoint has all samples drawn.
     """
 
@@ -82,14 +82,14 @@ class Reporter:
         return False
 
     def drawing(self, facts: Mapping[str, Any]) -> AbstractContextManager[Any]:
-        """Context of the drawing of a picture; ``frame`` and ``camera`` name one of several."""
+        """Context for drawing a picture; ``facts`` may have ``frame`` and ``camera``."""
         return nullcontext()
 
     def progress(self, status: Status) -> None:
         """Shows the progress of the picture; called several times a second."""
 
     def preview(self, look: Look) -> None:
-        """Shows previews of a picture, and at the end the complete one."""
+        """Shows previews of a picture, and finally the complete picture."""
 
     def note(self, text: str) -> None:
         """Reports a note."""

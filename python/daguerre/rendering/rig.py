@@ -38,17 +38,17 @@ def render_rig(
     settings: RenderSettings | None = None,
     **keywords: Unpack[RigKeywords],
 ) -> dict[str, Frame]:
-    """Renders one picture for each camera; the scene is built once.
+    """Renders a picture for each camera; the scene is built once.
 
     All cameras use the same random numbers. So each frame is bit-identical to ``render`` with that
-    camera alone, and cameras with similar views have similar noise. Cameras of one automatic
-    exposure mode share what a meter chooses for the first of them.
+    camera alone, and cameras with similar views have similar noise. Cameras with the same automatic
+    exposure mode share the exposure that a meter chooses for the first of them.
 
     Args:
         scene: The scene.
         cameras: Cameras by name, or names of the scene's cameras.
         resolution: Width and height of all pictures, px; default: each calibrated camera's own,
-            else that of the settings.
+            else as in the settings.
         settings: How they are rendered; the keywords change it.
         {keywords}
 
@@ -65,14 +65,14 @@ def render_rig(
     for name, given in cameras.items():
         camera = given if isinstance(given, Camera) else scene.camera(given)
         own = camera.projection.size if camera.projection else common.film.resolution
-        one = common.with_(resolution=resolution or own)
+        sized = common.with_(resolution=resolution or own)
         choice = None
         if is_automatic(camera.exposure):
             if camera.exposure not in chosen:
-                chosen[camera.exposure], built = choose(scene, camera, one, built)
+                chosen[camera.exposure], built = choose(scene, camera, sized, built)
             choice = chosen[camera.exposure]
             camera = choice.of(camera)
-        session = Session(scene, camera, settings=one, built=built)
+        session = Session(scene, camera, settings=sized, built=built)
         session.metering = {} if choice is None else choice.facts
         frames[name] = finish(session)
         built = session.built
@@ -100,7 +100,7 @@ def check_straight(metadata: dict[str, Any]) -> None:
     """Checks that a camera images straight lines as straight lines, as disparity needs.
 
     Raises:
-        InputError: It does not.
+        InputError: The camera has distortion.
     """
     straight_focal_px(metadata, "disparity")
 
@@ -120,7 +120,7 @@ def disparity(frame: Frame, baseline: float) -> NDArray[np.float32]:
         Disparity, px, shape (H, W).
 
     Raises:
-        InputError: The frame has another kind of camera or no such ground truth.
+        InputError: The frame has another kind of camera, or no ground truth by chief rays.
     """
     number(baseline, "disparity: baseline", above=0)
     focal = straight_focal_px(frame.metadata, "disparity")

@@ -33,7 +33,7 @@ def rounds(session: Session, noise: float, spp: int | None = None) -> Iterator[R
 
 
 def plan_round(session: Session, noise: float, ceiling: int, judge: Judge | None = None) -> bool:
-    """Plans the next round, unless one is under way.
+    """Plans the next round, unless a round is under way.
 
     Args:
         session: Session that draws.

@@ -109,7 +109,7 @@ class Rounds:
             )
 
     def prepare(self, limit: float) -> float:
-        """Plans a part of the round under way, or of the next one."""
+        """Plans a part of the round under way, or of the next round."""
         from . import adaptive
 
         if not rounds.plan_round(self.session, self.noise, self.ceiling, self.judge):
@@ -148,7 +148,7 @@ class Rounds:
         return self.session.round
 
 
-#: Type of :func:`work_of`, and of what draws elsewhere.
+#: Type of :func:`work_of`, and of its replacements that draw on other machines.
 WorkOf = Callable[["Session", tuple[int, int], "float | None", "Judge | None"], Work]
 
 
@@ -164,7 +164,7 @@ def pass_size(missing: tuple[int, int], limit: float) -> int:
 
     Args:
         missing: First missing range, [begin, end).
-        limit: Maximum samples; the size is at least one.
+        limit: Maximum samples; the size is at least 1.
     """
     begin, end = missing
     size = 1

@@ -87,22 +87,26 @@ class Session:
             chosen, built = choose(scene, camera, self.settings, built)
             camera, self.metering = chosen.of(camera), chosen.facts
             metered = [text for text in (chosen.note, chosen.warning) if text]
-        self.prepared = one = prepare(scene, camera, self.settings, built)
-        self.light_plan = plan_light(one, piloted)
-        self.scene, self.camera, self.built = one.scene, one.camera, one.built
-        self.width, self.height = one.size
-        self.crop, self.overscan, self.interval = one.crop, one.overscan, one.interval
-        self.notes = [*metered, *one.notes, *self.light_plan.notes]
-        self.warnings = list(one.built.warnings)
+        self.prepared = prepared = prepare(scene, camera, self.settings, built)
+        self.light_plan = plan_light(prepared, piloted)
+        self.scene, self.camera, self.built = prepared.scene, prepared.camera, prepared.built
+        self.width, self.height = prepared.size
+        self.crop, self.overscan, self.interval = (
+            prepared.crop,
+            prepared.overscan,
+            prepared.interval,
+        )
+        self.notes = [*metered, *prepared.notes, *self.light_plan.notes]
+        self.warnings = list(prepared.built.warnings)
         self.light_paths = self.light_plan.light_paths
         self.flare, self.scatter = self.light_plan.flare, self.light_plan.scatter
         self.flare_spots, self.survey_rays = self.light_plan.core.flare_survey
         self.counters = _core.RenderCounters()
         self.ranges: list[tuple[int, int]] = []
         self.round: Round | None = None  # of adaptive sampling, instead of more ranges
-        self._layout = film_layout(one, self.light_plan)
-        self._plate: NDArray[np.float32] | None = None  # behind every frame, once there is one
-        self._kernels: Kernels = {}  # of diffraction, kept from frame to frame
+        self._layout = film_layout(prepared, self.light_plan)
+        self._plate: NDArray[np.float32] | None = None  # background of all frames, made on demand
+        self._kernels: Kernels = {}  # of diffraction, cached between frames
         self._torn = False  # a pass was stopped midway: the sums are of no use
 
     @property
@@ -148,7 +152,7 @@ class Session:
         return True
 
     def _new_range(self, begin: int, end: int) -> tuple[int, int]:
-        """Checks a range of samples, none of which may be drawn already."""
+        """Checks a range of samples; samples already drawn are an error."""
         begin = whole(begin, "samples", 0, MAX_SAMPLES)
         end = whole(end, "samples", 0, MAX_SAMPLES)
         if not begin < end:
@@ -164,7 +168,7 @@ class Session:
         """Round that is under way.
 
         Raises:
-            UsageError: There is none.
+            UsageError: No round is under way.
         """
         if self.round is None:
             raise UsageError("draw_round: wanted a planned round, got none")
@@ -193,9 +197,9 @@ class Session:
         self._torn = True  # until the pass is complete; a second film would take as much memory
         all_pixels, done, counters = area(self.crop), 0, self.counters
         for part in self.light_plan.parts:
-            told = _scaled(progress, done / all_pixels, part.pixels / all_pixels)
+            report = _scaled(progress, done / all_pixels, part.pixels / all_pixels)
             corner = self.crop[0], self.crop[1]
-            complete, found = part.draw(draw, self.prepared.core_scene, film, corner, which, told)
+            complete, found = part.draw(draw, self.prepared.core_scene, film, corner, which, report)
             if not complete:
                 return False
             done += part.pixels
@@ -249,14 +253,14 @@ class Session:
     def object_ids(self, moment: Moment) -> NDArray[np.uint32]:
         """Index + 1 of the instance that each pixel sees by ground truth, (H, W); 0: none.
 
-        ``moment`` is that of ``ground_truth``, for reuse.
+        ``moment`` is the moment of ``ground_truth``, for reuse.
         """
         known = self.settings.truth.moment is not None
         return self._truth["object_id"] if known else self.ground_truth.object_ids(moment)
 
     @property
     def bad_samples(self) -> tuple[int, list[tuple[int, int, int]]]:
-        """Number of dropped (NaN, Inf) samples, and (x, y, sample) of the first ones."""
+        """Number of dropped (NaN, Inf) samples, and (x, y, sample) of the first of them."""
         film = self._whole_film()
         return film.bad_sample_count, list(film.bad_samples)
 
@@ -313,7 +317,7 @@ class Session:
             until: One past the last part of ``round`` that it drew, from those drawn here on.
 
         Raises:
-            UsageError: The sums are no columns, or a range is none.
+            UsageError: The sums are not ``Columns``, or a range is empty or invalid.
             MismatchError: The sums have another layout, or samples are drawn already.
         """
         if not all(isinstance(one, Columns) for one in sums.values()):
@@ -341,14 +345,14 @@ class Session:
         Raises:
             MismatchError: The camera sees other light.
         """
-        one = self.prepared.exposed(camera)
-        self.prepared, self.camera, self.metering = one, one.camera, metering or {}
-        self.notes = [*one.notes, *self.light_plan.notes]
+        prepared = self.prepared.exposed(camera)
+        self.prepared, self.camera, self.metering = prepared, prepared.camera, metering or {}
+        self.notes = [*prepared.notes, *self.light_plan.notes]
 
     def exposed(self, frame: Frame) -> Frame:
         """Returns a frame of this session from before with the brightness of now."""
-        one = self.prepared
-        facts = camera_metadata(one.camera, one.setup, one.size[0])
+        prepared = self.prepared
+        facts = camera_metadata(prepared.camera, prepared.setup, prepared.size[0])
         found = {**frame.metadata, **facts, "metering": None, **self.metering}
         kept = {name: value for name, value in found.items() if value is not None}
         return replace(frame, metadata=kept)

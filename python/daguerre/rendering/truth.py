@@ -28,7 +28,7 @@ from daguerre.setup.scene import build
 Shot = tuple[_core.Scene, _core.Camera, _core.RenderSettings]
 #: Moments of the exposure of a pixel, as fractions of its length.
 GT_TIMES = {"open": 0.0, "mid": 0.5, "close": 1.0}
-#: Rays of a pixel: the chief ray of its centre, or a mean over all that expose it.
+#: Rays of a pixel: the chief ray of its centre, or a mean over all rays that expose it.
 GT_LENSES = ("chief", "mean")
 #: Number of rays per pixel for means: default and maximum.
 GT_RAYS = 64
@@ -41,7 +41,7 @@ class Moment:
 
     Attributes:
         shot: Shot of the core.
-        scene: Scene at that moment; with a rolling shutter, that of the middle line.
+        scene: Scene at that moment; with a rolling shutter, at the moment of the middle line.
         setup: Camera at that moment, like the scene.
     """
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Scene"]
 
-if not TYPE_CHECKING:  # checkers know the names above, and report all others
+if not TYPE_CHECKING:  # type checkers use the imports above, and report other names
     __getattr__, __dir__ = lazy_attributes(
         __name__,
         {

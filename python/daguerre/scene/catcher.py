@@ -1,4 +1,4 @@
-"""Catchers: parts of a scene that stand in for something that a photograph shows already."""
+"""Catchers: stand-ins for real surfaces that a photograph shows already."""
 
 from __future__ import annotations
 

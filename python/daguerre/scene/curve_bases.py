@@ -1,4 +1,4 @@
-"""Curves of any basis as Bezier segments: what the core traces.
+"""Conversion of curves in any basis to Bezier segments, which the core traces.
 
 A cubic segment of control points p0 .. p3 is rewritten by a matrix; both forms are the same curve.
 Sources: Farin 2002, Curves and Surfaces for CAGD (B-splines); Catmull and Rom 1974, A class of
@@ -53,11 +53,11 @@ def fitting_counts(counts: Counts, basis: str, wrap: str) -> Counts:
 
 @dataclass(frozen=True, eq=False)
 class BezierForm(FixedArrays):
-    """The way from the control points of curves to those of their segments.
+    """Map from the control points of curves to the control points of their segments.
 
     Attributes:
         basis: Basis of the curves.
-        first: Control points with those that wraps add, as ``2 p[first] - p[second]`` where
+        first: Control points, including points that wraps add: ``2 p[first] - p[second]`` where
             ``mirrored``, else ``p[first]``; shape (E,).
         second: See ``first``.
         mirrored: See ``first``.
@@ -137,7 +137,7 @@ class Layout(FixedArrays):
 
     @cached_property
     def form(self) -> BezierForm:
-        """The way to the control points of the segments."""
+        """Map to the control points of the segments."""
         return bezier_form(self.counts, self.basis, self.wrap)
 
 
@@ -154,5 +154,5 @@ def _segments(lengths: Counts, basis: str) -> tuple[Counts, int]:
 
 
 def _places(lengths: Counts) -> Counts:
-    """Counts 0, 1, 2, ... in each of several lists, one after the other."""
+    """Index of each element within its list, for concatenated lists of these lengths."""
     return np.arange(lengths.sum()) - np.repeat(np.cumsum(lengths) - lengths, lengths)

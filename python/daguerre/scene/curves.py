@@ -101,7 +101,7 @@ def curves_of(
     """Makes curves from arrays.
 
     Returns:
-        The curves, and what the layout of their segments follows from.
+        The curves, and the layout of their segments.
 
     Raises:
         InputError: A shape, a count or a number is wrong; the message names it.
@@ -134,12 +134,12 @@ def curves_of(
 
 
 def moving_curves(path: Dynamic, curves: Curves, layout: Layout) -> MovingCurves:
-    """Makes the vertices over time of curves whose control points follow a path."""
+    """Makes the vertices over time of curves with control points that follow a path."""
     return MovingCurves(path, layout, vertices_of(curves), f"curves {curves.name!r}")
 
 
 def layout_of(counts: object, basis: str, wrap: str, where: str) -> Layout:
-    """Checks what the layout of curves follows from.
+    """Checks counts, basis and wrap of curves; makes the layout of their segments.
 
     Raises:
         InputError: No such basis or wrap, or a count that is wrong.

@@ -1,7 +1,7 @@
-"""Concave polygons as triangles: one ear after the other, for many polygons at once.
+"""Concave polygons as triangles: ear clipping, for many polygons at once.
 
-An ear is a convex corner whose triangle with its neighbors holds no other corner. Source: Meisters
-1975, American Mathematical Monthly 82, 648: a simple polygon always has one.
+An ear is a convex corner that forms a triangle with its neighbors without other corners inside.
+Source: Meisters 1975, American Mathematical Monthly 82, 648: every simple polygon has an ear.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from daguerre.errors import InputError
 IntArray = NDArray[np.int64]
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
-#: Maximum number of corners that are compared with triangles, about 10 s; and what a step costs
-#: besides.
+#: Maximum number of comparisons of a corner with a triangle, about 10 s; and the fixed cost of a
+#: step, in comparisons.
 MAX_WORK, _STEP = 1 << 27, 5000
 
 
 class Effort:
-    """Counts what ears cost, so that a small file does not take hours."""
+    """Limits the cost of ear clipping, so that a small file does not take hours."""
 
     def __init__(self) -> None:
         self._spent = 0
@@ -29,7 +29,7 @@ class Effort:
         """Counts a step.
 
         Raises:
-            InputError: It has become more than ``MAX_WORK``.
+            InputError: The sum exceeds ``MAX_WORK``.
         """
         self._spent += comparisons + _STEP
         if self._spent > MAX_WORK:
@@ -40,7 +40,7 @@ class Effort:
 
 
 def plane_of(near: FloatArray) -> FloatArray:
-    """Polygons (B, n, 3) in the coordinate plane that shows most of them, shape (B, n, 2).
+    """Projects polygons (B, n, 3) onto the coordinate plane of largest area, shape (B, n, 2).
 
     The area is positive: Newell's normal points to the viewer.
     """
@@ -76,7 +76,7 @@ def clipped(flat: FloatArray, effort: Effort) -> IntArray:
 
 
 class _Rings:
-    """The rest of polygons, each with a corner that is looked at."""
+    """Remaining corners of polygons, and the current corner of each."""
 
     def __init__(self, flat: FloatArray) -> None:
         count, size = flat.shape[:2]
@@ -88,14 +88,14 @@ class _Rings:
         self._tried = np.zeros(count, np.int64)
 
     def step(self, rows: IntArray) -> tuple[IntArray, BoolArray]:
-        """Takes the corners that are looked at if they are ears, and goes on.
+        """Clips the current corners that are ears, and moves on to the next corners.
 
         Returns:
-            Corners with their neighbors, shape (A, 3), and whether they were taken, shape (A,).
+            Corners with their neighbors, shape (A, 3), and whether they were clipped, shape (A,).
         """
         now = self._now[rows]
         three = np.stack([self._before[rows, now], now, self._after[rows, now]], axis=1)
-        # A polygon that crosses itself may have none: then any corner will do.
+        # A polygon that crosses itself may have no ear: then any corner is clipped.
         ear = self._are_ears(rows, three) | (self._tried[rows] > self._left[rows].sum(axis=1))
         taken, (one, gone, other) = rows[ear], three[ear].T
         self._after[taken, one], self._before[taken, other] = other, one
@@ -111,12 +111,12 @@ class _Rings:
         inside = self._left[rows].copy()
         for one, other in ((a, b), (b, c), (c, a)):
             inside &= _left_of(one, other, points) >= 0
-        for corner in (a, b, c):  # also others of the same place, as at the ends of a slit
+        for corner in (a, b, c):  # also corners at the same point, as at the ends of a slit
             inside &= (points != corner).any(axis=2)
         return np.asarray((_left_of(a, b, c)[:, 0] > 0) & ~inside.any(axis=1))
 
 
 def _left_of(one: FloatArray, other: FloatArray, points: FloatArray) -> FloatArray:
-    """Twice the area of triangles; positive if the points lie to the left of the line."""
+    """Twice the signed area of triangles; positive if the points are left of the line."""
     line, ray = other - one, points - one
     return np.asarray(line[..., 0] * ray[..., 1] - line[..., 1] * ray[..., 0])

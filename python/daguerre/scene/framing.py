@@ -1,4 +1,4 @@
-"""Default camera for scenes without one: from the front, slightly above, all in view."""
+"""Camera for scenes without a camera: from the front, slightly above, all in view."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _TOWARD_CAMERA = np.array([0.35, 0.3, 1.0]) / math.sqrt(0.35**2 + 0.3**2 + 1)
 _HALF_FIELD = math.atan(12 / 50)  # of 50 mm over the height of 24 mm
 
 
-#: Name of the camera of a file without one.
+#: Name of this camera.
 NAME = "framing"
 
 
 def is_framed(scene: Scene) -> bool:
-    """Whether the scene has no camera of its own, only the one that shows everything."""
+    """Whether the scene has no other camera than the default camera of this module."""
     return list(scene.cameras) == [NAME]
 
 

@@ -1,7 +1,7 @@
 """Light profiles: how the light of a lamp depends on direction, on the photometric sphere.
 
-Directions are in the lamp's own frame, in which it shines along -z. theta is the angle from -z,
-the nadir of a lamp that hangs. phi goes from +x toward +y: counter-clockwise, seen along -z.
+Directions are in the lamp's frame; it shines along -z. theta is the angle from -z, the nadir of a
+hanging lamp. phi is the angle from +x toward +y: counter-clockwise, seen along -z.
 Source: IES LM-63-2019, type C photometry.
 """
 
@@ -42,7 +42,7 @@ class ProfileCone(Value):
 
 @dataclass(frozen=True, eq=False)
 class ProfileFocus(Value):
-    """|cos theta|^exponent; ``tint`` takes the place of what that takes away."""
+    """Factor c + ``tint`` (1 - c), with c = |cos theta|^exponent."""
 
     exponent: float
     tint: Color = (0.0, 0.0, 0.0)
@@ -70,7 +70,7 @@ class LightProfile(Value):
     of 1 cd with its profile is the luminaire that was measured.
 
     Attributes:
-        parts: Parts whose factors are multiplied.
+        parts: Factors by direction, which are multiplied.
         scale: Number that multiplies them.
     """
 
@@ -147,7 +147,7 @@ class LightProfile(Value):
 
     @classmethod
     def focus(cls, exponent: float, tint: Color = (0.0, 0.0, 0.0)) -> LightProfile:
-        """Makes a focus: |cos theta|^exponent, and the tint in place of what that takes away.
+        """Makes a focus: the factor c + tint (1 - c), with c = |cos theta|^exponent.
 
         Source: UsdLux ShapingAPI, ``shaping:focus`` and ``shaping:focusTint``.
         """
@@ -247,7 +247,7 @@ def _line(values: ArrayLike, where: str) -> NDArray[np.float64]:
 
 
 def _stretched(table: ProfileTable, scale: float) -> ProfileTable:
-    """A table whose angles lie ``scale`` times as far from their origin; cut at the poles."""
+    """Scales the theta of a table about its origin; angles beyond the poles are cut off."""
     theta = table.theta_deg
     moved = theta * scale if scale > 0 else 180 + (theta - 180) * -scale
     ends = np.clip(moved[[0, -1]], 0.0, 180.0)

@@ -1,4 +1,4 @@
-"""Lights that are not meshes. They stand at the origin of their transform and shine along -z."""
+"""Lights that are not meshes. They are at the origin of their transform and shine along -z."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Limits of coordinates and transforms: the same for arrays and for every reader.
 
-The core holds what changes over time to the same limits (``core/math/vec.h``, ``transform.h``).
+The core checks values over time against the same limits (``core/math/vec.h``, ``transform.h``).
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def check_coordinates(points: NDArray[Any], where: str, what: str = "positions")
         what: Name of the array, for messages.
 
     Raises:
-        InputError: One is not; the message names its row.
+        InputError: A coordinate is not; the message names its row.
     """
     if largest(points) < MAX_SIZE:  # NaN is not
         return
@@ -51,10 +51,10 @@ def check_coordinates(points: NDArray[Any], where: str, what: str = "positions")
 
 
 def check_size(values: NDArray[Any], where: str) -> float:
-    """Checks numbers of any shape, such as those of a transform; returns the largest magnitude.
+    """Checks numbers of any shape, such as a transform; returns the largest magnitude.
 
     Raises:
-        InputError: One is not finite, or ``MAX_SIZE`` and beyond.
+        InputError: A number is not finite, or at least ``MAX_SIZE``.
     """
     size = largest(values)
     if not size < MAX_SIZE:  # NaN is not

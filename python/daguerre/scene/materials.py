@@ -55,9 +55,9 @@ class Material(BriefRecord):
         kind: Diffuse, Conductor, Dielectric, Coated, Mix, Boundary or Gltf.
         emission: Luminance that the front side emits, cd/m2.
         two_sided_emission: Whether the back emits too.
-        profile: Factor on all emission, also that of the kind, by its direction in the frame of the
-            instance, which shines along -z.
-        opacity: Share of the surface that is there, 0 to 1; rays pass through the rest unseen.
+        profile: Factor on all emission, including the emission of the kind, by its direction in the
+            frame of the instance, which shines along -z.
+        opacity: Share of the surface that is opaque, 0 to 1; rays pass through the rest.
         opacity_texture: R, a factor on ``opacity``.
         normal_texture: Normal map in tangent space, as glTF has it: R along u, G along -v. A
             ``Gltf`` has its own.
@@ -65,8 +65,9 @@ class Material(BriefRecord):
         two_sided: Whether the kind is seen from behind too; otherwise the back is black, emission
             aside.
         emission_texture: RGB, a factor on ``emission``.
-        interior: Medium inside a closed mesh, in place of what the kind absorbs; None: none.
-        exterior: Medium outside of it, as where it lies within another one; None: the scene's fog.
+        interior: Medium inside a closed mesh, instead of the kind's absorption; None: no medium.
+        exterior: Medium outside of the mesh, such as the interior of a mesh around it; None: the
+            scene's fog.
     """
 
     kind: Kind = field(default_factory=Diffuse)

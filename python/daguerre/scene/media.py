@@ -80,11 +80,11 @@ class DensityGrid(FixedArrays, ArrayValue, array="values"):
     def load(cls, path: str | os.PathLike[str], grid: str = "") -> DensityGrid:
         """Loads a grid from a file of NanoVDB (``.nvdb``) or Mitsuba (``.vol``).
 
-        The box stands where the file has it, in metres.
+        Units and position of the box are as in the file, in metres.
 
         Args:
             path: The file.
-            grid: Name of a grid of NanoVDB. Default: the first one.
+            grid: Name of a grid of NanoVDB. Default: the first grid.
 
         Raises:
             InputError: The file is damaged, has no such grid, or its numbers are no densities.
@@ -156,7 +156,7 @@ def check_media(interior: object, exterior: object, where: str) -> None:
     """Checks the media on both sides of a surface.
 
     Raises:
-        InputError: One is neither a medium nor None.
+        InputError: A value is neither a medium nor None.
     """
     check_medium(interior, f"{where}: interior")
     check_medium(exterior, f"{where}: exterior")

@@ -31,7 +31,7 @@ def unit_normals(
 
 
 def unit_tangents(tangents: FloatArray | None, notes: Notes) -> FloatArray | None:
-    """Normalizes tangents and their signs; drops all if one has length 0."""
+    """Normalizes tangents and their signs; drops all if any has length 0."""
     if tangents is None:
         return None
     lengths = np.linalg.norm(tangents[:, :3].astype(np.float64), axis=1)

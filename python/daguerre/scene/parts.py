@@ -45,8 +45,8 @@ class Curves(Mesh):
     """Round curves of one material, in local space (m): a mesh without triangles.
 
     ``positions`` are the control points of segments, curve after curve: 3 n + 1 of n cubic Bezier
-    segments, or n + 1 of n straight ones. ``uv`` and ``colors`` have one row per position or one
-    per curve.
+    segments, or n + 1 of n straight segments. ``uv`` and ``colors`` have a row per position or per
+    curve.
 
     Attributes:
         radii: Radius at each position, shape (P,), m.

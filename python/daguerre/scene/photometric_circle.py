@@ -51,7 +51,7 @@ def whole_circle(
 
 
 def _mirrored(phi: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Goes on beyond the last angle as it came there."""
+    """Continues a table by its mirror image about the last angle."""
     return (
         np.concatenate([phi, 2 * phi[-1] - phi[-2::-1]]),
         np.concatenate([values, values[:, -2::-1]], axis=1),

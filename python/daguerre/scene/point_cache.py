@@ -26,7 +26,7 @@ class PointCache(Value):
 
     Attributes:
         positions: Positions over time, shape (N, 3), m.
-        normals: Normals over time; None: those of ``rest``, rotated with the surface.
+        normals: Normals over time; None: normals of ``rest``, rotated with the surface.
         rest: Vertices of one moment, with the normals and tangents at that moment.
         triangles: Indices, shape (M, 3).
         where: Owner of the vertices, for messages.

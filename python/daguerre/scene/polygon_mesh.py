@@ -198,7 +198,7 @@ class Picked(Value):
 
 @dataclass(frozen=True, eq=False)
 class SurfaceOverTime(Value):
-    """The vertices of a subdivision surface whose control points change.
+    """The vertices of a subdivision surface with control points that move.
 
     Attributes:
         positions: Control points over time, shape (N, 3), m.
@@ -231,7 +231,7 @@ def _surface_of(
 ) -> tuple[Mesh, SurfaceOverTime | None]:
     """Makes a mesh of a subdivision surface, and its vertices over time if it moves.
 
-    Values per vertex follow the rule of positions, values per corner that of seams.
+    Values per vertex follow the rule of positions, values per corner the rule of seams.
 
     Raises:
         InputError: Numbers do not fit together, or the surface has too many faces.

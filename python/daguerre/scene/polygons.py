@@ -26,10 +26,10 @@ def triangulate(
 ) -> tuple[IntArray, IntArray]:
     """Divides polygons into triangles of the same orientation.
 
-    Quadrangles get their shorter diagonal, and concave ones that inside of them. Larger polygons
-    become fans about their first corner where all triangles of it face the same side; others lose
-    one ear after the other. Polygons that cross themselves get some triangles. Without points all
-    polygons become fans.
+    Quadrangles are split along the shorter diagonal, concave quadrangles along the inner diagonal.
+    Larger polygons become fans about their first corner if all triangles of the fan face the same
+    side; otherwise their ears are clipped. The triangles of polygons that cross themselves are
+    arbitrary. Without points all polygons become fans.
 
     Args:
         sizes: Corners of each polygon, at least 3, shape (F,).
@@ -167,15 +167,15 @@ def _fans_fit(flat: FloatArray) -> BoolArray:
 
 
 def weld(corner_vertices: ArrayLike, *corner_attributes: ArrayLike) -> tuple[IntArray, IntArray]:
-    """Makes corners with the same vertex and the same bits of all attributes one.
+    """Merges corners with the same vertex and the same bits of all attributes.
 
     Args:
         corner_vertices: Vertex of each corner, at least 0, shape (C,).
         *corner_attributes: Values of each corner, shape (C,) or (C, K), numbers.
 
     Returns:
-        A corner for each different one, rising, shape (U,), and the number of each corner among
-        them, shape (C,).
+        The first of each group of equal corners, rising, shape (U,), and the group of each corner,
+        shape (C,).
     """
     vertices = np.asarray(corner_vertices, np.int64)
     attributes = [_bits(np.asarray(attribute)) for attribute in corner_attributes]
@@ -183,7 +183,7 @@ def weld(corner_vertices: ArrayLike, *corner_attributes: ArrayLike) -> tuple[Int
     first = np.zeros(int(vertices.max(initial=-1)) + 1, np.int64)
     first[vertices[::-1]] = corners[::-1]
     leader = first[vertices]
-    # All corners agree at most vertices; those of others are sorted.
+    # All corners agree at most vertices; the corners of the other vertices are sorted.
     apart = np.zeros(len(first), bool)
     apart[vertices[_differ(attributes, leader)]] = True
     if apart.any():
@@ -231,9 +231,9 @@ def _leaders(columns: list[NDArray[np.uint64]]) -> IntArray:
 
 
 def _mixed(columns: list[NDArray[np.uint64]]) -> NDArray[np.uint64]:
-    """A number for each row, equal for equal rows; others rarely have the same.
+    """Hash of each row.
 
-    Rows of one number that differ stay apart, at worst with copies that could be one.
+    Different rows with the same hash are not merged; at worst, equal rows between them stay apart.
     """
     total = np.zeros(len(columns[0]), np.uint64)
     for column in columns:

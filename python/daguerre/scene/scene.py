@@ -73,14 +73,14 @@ class Scene(Value):
     lights: list[tuple[Light, NDArray[np.float64]]] = field(default_factory=list)
     cameras: dict[str, Camera] = field(default_factory=dict)
     default_camera: str | None = None
-    #: other names of cameras, such as that of the glTF camera of a node
+    #: other names of cameras, such as the name of the glTF camera of a node
     camera_aliases: dict[str, str] = field(default_factory=dict)
     environment: Environment | None = None
     #: values over time
     motion: SceneMotion = field(default_factory=SceneMotion)
     #: length of the animations of a file, s
     duration: float | None = None
-    #: node name -> indices of its instances (its own and its descendants'), for ``focus_on``
+    #: node name -> indices of the instances of the node and its descendants, for ``focus_on``
     nodes: dict[str, list[int]] = field(default_factory=dict)
     #: node name -> world position (m), also of nodes without a mesh
     node_positions: dict[str, NDArray[np.float64]] = field(default_factory=dict)
@@ -164,10 +164,10 @@ class Scene(Value):
             self.motion.node_positions[name] = motion
 
     def group_instances(self, name: str, instances: Sequence[int]) -> None:
-        """Sets the instances of a node: its own and its descendants'; there may be a million.
+        """Sets the instances of a node and its descendants; there may be a million.
 
         Raises:
-            InputError: They are no whole numbers of at least 0.
+            InputError: They are not whole numbers of at least 0.
         """
         found = integers(instances, f"node {name!r}", "instances", MAX_NUMBERS)
         self.nodes[name] = found.reshape(-1).tolist()
@@ -185,7 +185,7 @@ class Scene(Value):
                 "holdout" for none of them.
 
         Raises:
-            UsageError: No such node, one without meshes, or an unknown effect.
+            UsageError: No such node, a node without meshes, or an unknown effect.
         """
         named = find_node(node, self.nodes)
         if named is None:
@@ -207,7 +207,7 @@ class Scene(Value):
 
         Args:
             pixels: Shape (H, W, 3), linear Rec.709, in units of a frame: 1 is a white of 1 cd/m2.
-            camera: Camera that took the photograph; default: the one that renders.
+            camera: Camera that took the photograph; default: the camera that renders.
 
         Raises:
             InputError: Another shape, or numbers that are not finite.
@@ -323,7 +323,7 @@ class Scene(Value):
             positions: Positions of vertices, shape (N, 3), m; they may change over time.
             indices: Triangles, shape (M, 3) or (3 M,); with ``sizes``: corners of polygons.
             normals: Unit normals, shape (N, 3); default: flat shading. Normals that do not change
-                belong to ``positions`` at the scene's time, and turn with the surface.
+                are the normals at the scene's time, and turn with the surface.
             uv: Texture coordinates, set 0, shape (N, 2); (0, 0) is the top left of an image.
             {keywords}
 
@@ -370,14 +370,14 @@ class Scene(Value):
     ) -> int:
         """Adds round curves, such as hair, grass or cables; returns the index of the mesh.
 
-        All curves of one call are one mesh for ``add_instance``. Cubic curves are swept by
-        a disc across them and end flat; linear ones are round at ends and corners. They shine by
-        their material, but light is not sampled from them.
+        All curves of a call are one mesh for ``add_instance``. Cubic curves have flat ends; linear
+        curves are round at ends and corners. Curves with an emissive material shine, but light is
+        not sampled from them.
 
         Args:
             points: Control points, curve after curve, shape (N, 3), m; they may change over time.
             counts: Number of control points of each curve, shape (C,).
-            widths: Diameters, m: one, one per curve, or one per control point.
+            widths: Diameters, m: a single number, or a number per curve or per control point.
             {keywords}
 
         Raises:
@@ -420,9 +420,9 @@ class Scene(Value):
             motion: The transform over time; ``transform`` then is its state at the scene's time.
 
         Raises:
-            InputError: No such mesh or material, or the transform is not a finite matrix. One that
-                does not change must also have an inverse, and place the mesh within 1e18 m of the
-                origin; while a motion does not, the instance is not there.
+            InputError: No such mesh or material, or the transform is not a finite matrix. A
+                constant transform must also have an inverse, and place the mesh within 1e18 m of
+                the origin; while a moving transform does not, the instance is absent.
             UsageError: The transform is a list of (time, matrix); pass it through ``dg.keys``.
         """
         where = f"instance {name or len(self.instances)!r}"
@@ -467,13 +467,13 @@ class Scene(Value):
             mesh: Index from ``add_mesh``.
             material: Index from ``add_material``.
             transforms: World from local, shape (N, 4, 4).
-            name: Name of all of them, as in :meth:`add_instance`.
+            name: Name of all instances, as in :meth:`add_instance`.
             motions: Each transform over time, N values; ``transforms`` then are their states at the
                 scene's time.
 
         Raises:
             InputError: No such mesh or material, a transform is wrong (:meth:`add_instance`), or
-                the number of motions is another.
+                the number of motions differs from the number of transforms.
         """
         where = f"instances {name or len(self.instances)!r}"
         mesh = self._index(mesh, len(self.meshes), f"{where}: mesh")
@@ -611,7 +611,7 @@ class Scene(Value):
         return self.cameras[self._camera_name(name)]
 
     def film_size(self, name: str | None = None) -> tuple[int, int] | None:
-        """Width and height, px, of the picture that the file asks of a camera; None: it does not.
+        """Width and height, px, that the file sets for pictures of a camera; None: not set.
 
         Raises:
             InputError: There is no such camera.
@@ -633,7 +633,7 @@ class Scene(Value):
         return name
 
     def _lacking(self) -> str:
-        """Tells what a scene without a camera needs."""
+        """Message for a scene without a camera."""
         if any(instance.shown for instance in self.instances):
             return "no camera: the file has none; use add_camera, or --position and --look-at"
         return "no camera and nothing visible (--position and --look-at place a camera)"

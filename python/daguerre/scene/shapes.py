@@ -1,9 +1,9 @@
 """Meshes of shapes: sphere, disk, cylinder, rectangle, cube, bilinear patches, revolved profiles.
 
-The corners of round shapes lie on the exact surface and have its normals; facets lie inside of it.
+The vertices of round shapes are on the exact surface and have its normals; facets are inside of it.
 The largest gap between both is at most ``error`` times the radius. u runs around the axis, from +x
 toward +y, and v from the top (+z) down, so that (0, 0) is the top left of an image. Shapes face
-outward, flat ones toward +z; :meth:`ShapeMesh.flipped` turns them.
+outward, flat shapes toward +z; :meth:`ShapeMesh.flipped` reverses them.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class ShapeMesh:
     triangles: NDArray[np.int64]
 
     def flipped(self) -> ShapeMesh:
-        """The same surface that faces the other side."""
+        """Returns the surface facing the opposite side."""
         return replace(self, normals=-self.normals, triangles=self.triangles[:, ::-1])
 
 
@@ -97,7 +97,7 @@ def disk(
 ) -> ShapeMesh | None:
     """A disk in the plane z = ``height`` that faces +z; None if it has no area.
 
-    u runs around, v from the inner rim (0) to the outer one (1).
+    u runs around, v from the inner rim (0) to the outer rim (1).
 
     Args:
         radius: Outer radius.
@@ -168,13 +168,13 @@ def cube(size: float = 2.0) -> ShapeMesh | None:
 
 
 def quads(corners: Array, normals: Array, uv: Array | None = None) -> ShapeMesh | None:
-    """Flat parallelograms, each by itself; None if they have no area.
+    """Separate flat parallelograms; None if they have no area.
 
     Args:
         corners: Corners, counter-clockwise, shape (F, 4, 3).
         normals: Shape (F, 3).
         uv: Texture coordinates of the corners, shape (4, 2) or (F, 4, 2); default: a whole image,
-            whose lower left corner is the first one.
+            with its lower left at the first corner.
     """
     count = len(corners)
     if uv is None:
@@ -195,15 +195,16 @@ def bilinear(
     uv: ArrayLike | None = None,
     error: float = ERROR,
 ) -> ShapeMesh | None:
-    """Bilinear patches, each with vertices of its own; None if they have no area.
+    """Bilinear patches that share no vertices; None if they have no area.
 
     A patch is p(u, v) = (1 - v) ((1 - u) p00 + u p10) + v ((1 - u) p01 + u p11), and faces the side
-    of dp/du x dp/dv. All patches of a call have as many cells, so that patches with a common edge
-    have no gap between them; a call makes at most 4,194,304 cells, with larger gaps if need be.
+    of dp/du x dp/dv. All patches of a call have the same number of cells, so that patches with a
+    common edge have no gap between them; a call makes at most 4,194,304 cells, even if ``error``
+    would need more.
 
     Args:
         corners: p00, p10, p01 and p11, shape (F, 4, 3).
-        normals: Normals at the corners, shape (F, 4, 3); default: those of the surface.
+        normals: Normals at the corners, shape (F, 4, 3); default: normals of the surface.
         uv: Texture coordinates at the corners, shape (F, 4, 2); default: (u, 1 - v).
         error: Largest gap between cells and patch, in diagonals of the largest patch.
 
@@ -235,7 +236,7 @@ def bilinear(
 def _steps(points: Array, error: float) -> int:
     """Cells along a side of bilinear patches.
 
-    A cell lies farthest from its two triangles in its middle, by a quarter of its twist
+    The distance of a cell from its two triangles is largest in its middle: a quarter of the twist
     p00 - p10 - p01 + p11, which falls with the square of the number of cells.
     """
     twist = np.linalg.norm(points[:, 0] - points[:, 1] - points[:, 2] + points[:, 3], axis=1)
@@ -249,7 +250,7 @@ def _bilinear_normals(points: Array, u: Array, v: Array) -> Array:
     along = np.matmul(np.stack([v - 1, 1 - v, -v, v], axis=1), points)
     up = np.matmul(np.stack([u - 1, -u, 1 - u, u], axis=1), points)
     found = np.cross(along, up)
-    # Where two corners coincide the surface has no normal; that of the whole patch is near.
+    # Where two corners coincide the surface has no normal; the patch's mean normal is close.
     whole = np.cross(points[:, 3] - points[:, 0], points[:, 2] - points[:, 1])
     lost = np.einsum("fkd,fkd->fk", found, found) == 0
     return np.asarray(np.where(lost[:, :, None], whole[:, None], found).reshape(-1, 3))
@@ -298,7 +299,7 @@ def _grid(columns: int, rows: int) -> NDArray[np.int64]:
 def with_area(
     positions: Array, normals: Array, uv: Array, triangles: NDArray[np.int64]
 ) -> ShapeMesh | None:
-    """A mesh without its triangles of no area; None if all are such."""
+    """A mesh of the triangles that have an area; None if there are none."""
     a, b, c = (positions[triangles[:, k]] for k in range(3))
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     kept = triangles[areas > 1e-12 * max(float(areas.max(initial=0)), 1e-300)]

@@ -22,7 +22,7 @@ class Influences(Value):
 
     Attributes:
         joints: Indices into the joints of the skin, one array (N, 4) for each set.
-        weights: Weights in the same shape; those of a vertex in all sets add to 1.
+        weights: Weights in the same shape; the sum over all sets is 1 at each vertex.
     """
 
     joints: list[NDArray[Any]]

@@ -1,4 +1,4 @@
-"""Sampled spectra, for what is measured by wavelength."""
+"""Sampled spectra, for quantities measured by wavelength."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Spectrum:
         values: Values there, of at least 0.
 
     Raises:
-        InputError: The samples are no such numbers.
+        InputError: The samples are invalid.
     """
 
     wavelengths_nm: tuple[float, ...]
@@ -50,7 +50,7 @@ class Spectrum:
         return np.asarray(np.interp(nm, self.wavelengths_nm, self.values))
 
     def __repr__(self) -> str:
-        """Tells the range alone: a measured spectrum has many samples."""
+        """Shows only the range, as a measured spectrum has many samples."""
         ends = f"{self.wavelengths_nm[0]:g}..{self.wavelengths_nm[-1]:g} nm"
         return f"Spectrum({len(self.values)} samples, {ends})"
 

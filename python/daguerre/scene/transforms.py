@@ -29,7 +29,7 @@ def affine(matrices: Matrix, item: Item) -> Matrix:
 
 def compose(t: Matrix, q: Matrix, s: Matrix) -> Matrix:
     """Composes translation (..., 3), rotation (..., 4; unit x, y, z, w) and scale (..., 3)."""
-    x, y, z, w = q.tolist() if q.ndim == 1 else q.T  # one by one, floats are faster
+    x, y, z, w = q.tolist() if q.ndim == 1 else q.T  # single floats are faster than arrays
     rows = np.array(
         (
             (1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),

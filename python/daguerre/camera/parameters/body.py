@@ -169,8 +169,8 @@ STANDING = (
         metavar="M",
         panel="Camera",
         tells_default=True,
-        more="Clipped surfaces still cast shadows and are visible in mirrors. A lens that sees to the "
-        "side has a sphere instead",
+        more="Clipped surfaces still cast shadows and are visible in mirrors. A lens that sees to "
+        "the side has a sphere instead",
         explained=("lens-models.md#the-near-clipping-plane",),
     ),
     _LensRow(

@@ -21,7 +21,7 @@ class Metal:
         name: Chemical symbol or formula.
         eta: Real part of the index of refraction.
         k: Extinction coefficient.
-        source: Who measured it, and where it was published.
+        source: Authors and publication of the measurement.
     """
 
     name: str

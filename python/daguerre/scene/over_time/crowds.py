@@ -33,7 +33,7 @@ class Crowd(Value):
         positions: Shape (K, N, 3).
         turns: Unit quaternions x, y, z, w, shape (K, N, 4).
         scales: Shape (K, N, 3).
-        velocities: Per second, shape (K, N, 3); None: positions lie on lines between samples.
+        velocities: Per second, shape (K, N, 3); None: positions are linear between samples.
         accelerations: Per second squared, shape (K, N, 3), or None.
         spins: Angular velocities, rad/s, shape (K, N, 3); None: turns follow arcs between samples.
         held: Whether values are held between samples.
@@ -49,7 +49,7 @@ class Crowd(Value):
     held: bool = False
 
     def at(self, time_s: float, copy: int | slice = _ALL) -> Array:
-        """The matrices at a time, s, shape (N, 4, 4); that of one copy has shape (4, 4)."""
+        """The matrices at a time, s, shape (N, 4, 4); the matrix of one copy, shape (4, 4)."""
         last = len(self.times) - 1
         i = min(max(int(np.searchsorted(self.times, time_s, side="right")) - 1, 0), last)
         j = min(i + 1, last)
@@ -84,7 +84,7 @@ class Crowd(Value):
         return len(self.times) > 1 or self.velocities is not None or self.spins is not None
 
     def each(self) -> list[OneOfCrowd]:
-        """All copies, one by one."""
+        """Each copy as a separate value."""
         return [OneOfCrowd(self, number) for number in range(self.positions.shape[1])]
 
     def of(self, chosen: NDArray[np.int64]) -> Crowd:

@@ -97,7 +97,7 @@ class Emission(Value):
 
 
 def bounded(value: float) -> float:
-    """A luminance within 0 and ``MOST``; 0 for what is no number."""
+    """Clamps a luminance to 0 .. ``MOST``; NaN becomes 0."""
     return min(max(0.0, value), MOST)  # max keeps its first argument against a NaN
 
 

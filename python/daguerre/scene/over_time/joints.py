@@ -33,7 +33,7 @@ class JointPoses(Value):
         translations: Places of the animated joints, shape (A, 3), constant or over time.
         rotations: Their quaternions x, y, z, w, shape (A, 4), constant or over time.
         scales: Their scales, shape (A, 3), constant or over time.
-        animated: Joint of the skeleton for each animated one, shape (A,).
+        animated: Index in the skeleton of each animated joint, shape (A,).
         rest: Local transform of each joint where it is not animated, shape (J, 4, 4).
         parents: Parent of each joint, or -1; parents come first.
         inverse_bind: Joint from skeleton in the bind pose, shape (J, 4, 4).

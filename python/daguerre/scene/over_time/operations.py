@@ -1,4 +1,4 @@
-"""Transforms over time: stacks of operations, and what follows from them.
+"""Transforms over time: stacks of operations, and values derived from them.
 
 USD interpolates the value of each operation, then multiplies; so a turn by keyed angles is a turn
 at any time. Matrices here act on column vectors; USD's act on rows.
@@ -30,7 +30,8 @@ class Operation(Value):
     Attributes:
         kind: ``transform``, ``translate``, ``scale``, ``rotate`` or ``orient``.
         axes: Axes of a translation or scale along some axes, or of rotations, in their order.
-        value: Its numbers: a matrix, lengths, factors, degrees or a quaternion; or such over time.
+        value: Its numbers: a matrix, lengths, factors, degrees or a quaternion; constant or over
+            time.
         inverse: Whether the inverse is meant.
     """
 
@@ -77,7 +78,7 @@ class Transform(Value):
 
 @dataclass(frozen=True, eq=False)
 class Rigid(Value):
-    """A transform without its scale, over time: that of a camera or a lamp."""
+    """A transform without its scale, over time, for a camera or a lamp."""
 
     transform: Dynamic
 
@@ -121,7 +122,7 @@ def _scale(factors: Matrix, axes: str) -> Matrix:
 
 
 def _rotation(degrees: Matrix, axes: str) -> Matrix:
-    """Turns about axes, the first one innermost; angles belong to x, y, z in that order."""
+    """Turns about axes, the first innermost; the angles are about x, y and z, in this order."""
     made = np.eye(4)
     for axis in axes:
         angle = degrees[0] if len(axes) == 1 else degrees[_AXES[axis]]

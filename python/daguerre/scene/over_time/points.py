@@ -31,7 +31,7 @@ class Ballistic(Value):
     accelerations: tuple[Array, ...] | None
 
     def at(self, time_s: float) -> Array:
-        """The points at a time, s, from the sample before it; or from the first one."""
+        """The points at a time, s, from the last sample up to it, else from the first sample."""
         i = max(int(np.searchsorted(self.times, time_s, side="right")) - 1, 0)
         dt = np.float32(time_s - self.times[i])
         moved = self.points[i] + dt * self.velocities[i]
@@ -46,11 +46,11 @@ class Ballistic(Value):
 
 @dataclass(frozen=True, eq=False)
 class ChosenOverTime(Value):
-    """Some of the points of a prim over time, such as those of the vertices of a polygon mesh.
+    """Chosen points of a prim over time, such as the point of each vertex of a polygon mesh.
 
     Attributes:
         points: Points of the prim over time, shape (P, 3).
-        origins: Number of each point that is meant, shape (N,).
+        origins: Indices of the chosen points, shape (N,).
     """
 
     points: Dynamic

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 def normalized(quaternions: Array) -> Array:
-    """Scales quaternions (..., 4) to length 1; those of length 0 become no turn."""
+    """Scales quaternions (..., 4) to length 1; quaternions of length 0 become the identity."""
     lengths = np.linalg.norm(quaternions, axis=-1, keepdims=True)
     made: Array = np.where(
         lengths > 0, quaternions / np.where(lengths > 0, lengths, 1), (0.0, 0.0, 0.0, 1.0)

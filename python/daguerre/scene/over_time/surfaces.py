@@ -171,8 +171,8 @@ class LimitOverTime(Value):
         points: Control points over time, shape (P, 3).
         surface: The surface over them.
         origins: Vertex of the surface for each vertex of the mesh, shape (N,).
-        rest: Vertices at a moment, with what does not change.
-        flipped: Whether normals are those of a left-handed mesh.
+        rest: Vertices at a moment, with the attributes that do not change.
+        flipped: Whether the mesh is left-handed, so that normals are reversed.
     """
 
     points: Dynamic

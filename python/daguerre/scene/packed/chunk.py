@@ -64,5 +64,5 @@ def scene_of(chunk: memoryview, path: Path) -> Scene:
 
 
 def _elsewhere(name: str) -> bytes:
-    """Refuses arrays that do not lie in the chunk."""
+    """Refuses arrays outside the chunk."""
     raise LookupError(f"array {name[:20]!r} is not in the file")

@@ -13,9 +13,9 @@ from daguerre.scene.scene import Scene
 
 
 class Instances(list[Instance]):
-    """Instances in their order: single ones, and blocks of one mesh, material and name.
+    """Instances in order: single instances, and blocks with one mesh, material and name.
 
-    A block counts as its instances in the length, which is all that readers ask for.
+    The length counts the instances of blocks; readers of files use nothing else.
     """
 
     def __init__(self) -> None:
@@ -75,7 +75,7 @@ class Instances(list[Instance]):
 
 
 class Gathered(Scene):
-    """A scene with ``Instances``, whose arrays may lie in memory of an ``owner``."""
+    """A scene with ``Instances``; its arrays may be views of memory of an ``owner``."""
 
     def __init__(self, **given: Any) -> None:
         super().__init__(**given)

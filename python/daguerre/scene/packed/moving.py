@@ -40,7 +40,7 @@ def make(name: str, state: Mapping[str, Any]) -> Any:
     """Makes a value from the name of its class, one of ``NAMES``, and its attributes.
 
     Raises:
-        ValueError: Attributes are not those of the class.
+        ValueError: The class has other attributes.
         InputError: A surface has wrong faces or rules.
     """
     module, _, kind = name.partition(":")

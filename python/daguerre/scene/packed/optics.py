@@ -39,7 +39,7 @@ def parted(camera: Camera, where: str) -> tuple[Camera, _Contents | None, _Conte
 
     Raises:
         InputError: A file cannot be read.
-        UsageError: The lens is another one than its file describes.
+        UsageError: The lens differs from its file.
     """
     lens = sensor = None
     if camera.lens is not None and not _is_one_of(camera.lens, (*IDEAL, *library.names())):

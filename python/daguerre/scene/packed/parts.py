@@ -21,7 +21,7 @@ from .gathered import Gathered
 from .moving import NAMES
 from .optics import parted
 
-#: Arrays of a mesh, and those of one moment of a mesh whose points move.
+#: Arrays of a mesh, and the arrays that change when its points move.
 ARRAYS = ("positions", "indices", "normals", "uv", "uv1", "tangents", "colors")
 OF_MOMENT = ("positions", "normals", "tangents")
 #: Further attributes of a mesh of curves.
@@ -29,15 +29,15 @@ OF_CURVES = ("radii", "starts", "ends", "cubic", "closed")
 
 
 def parts_of(scene: Scene) -> dict[str, Any]:
-    """Parts of a scene, from which ``rebuild.py`` makes one that has the bits of its pictures.
+    """Parts of a scene; ``rebuild.py`` makes a scene from them with bit-identical pictures.
 
     Args:
         scene: The scene.
 
     Raises:
         InputError: A camera's lens or sensor is a file that cannot be read.
-        UsageError: Something moves in a way that cannot be packed, or the lens of a camera is
-            another one than its file describes.
+        UsageError: A value over time cannot be packed, or the lens of a camera differs from its
+            file.
     """
     motion = scene.motion
     return {

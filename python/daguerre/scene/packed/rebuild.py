@@ -156,7 +156,7 @@ class Rebuild:
     def _curves(
         self, given: Mapping[str, Any], arrays: dict[str, Any], name: str, where: str
     ) -> None:
-        """Curves, whose segments are control points of Bezier curves or of straight lines."""
+        """Curves of Bezier or linear segments, by their control points."""
         radii = self._array(given["radii"], f"{where}: radii")
         ends = self._array(given["ends"], f"{where}: ends").astype(np.int64)
         if ends.ndim != 1 or not (np.diff(ends, prepend=0) > 0).all():
@@ -224,7 +224,7 @@ class Rebuild:
         self._single(given)
 
     def _single(self, given: Mapping[str, Any]) -> None:
-        """Values that some instances have of their own."""
+        """Values of single instances that differ from their block."""
         scene = self.scene
         for k in given["hidden"]:
             i = self._index(k, "instances: hidden")
@@ -324,7 +324,7 @@ class Rebuild:
 
 
 def _camera(given: Any, where: str) -> Any:
-    """A camera, with the lens and the sensor whose contents the file has."""
+    """A camera, with lens and sensor from their contents in the file."""
     camera, lens, sensor = given
     if lens is sensor is None:
         return camera
@@ -365,7 +365,7 @@ def _point(value: object, where: str) -> NDArray[Any]:
 
 @contextmanager
 def rebuilding(where: str) -> Iterator[None]:
-    """Turns whatever wrong parts lead to into ``InputError``, with the place in front, once.
+    """Turns errors by invalid parts into ``InputError``, with ``where`` in front, once.
 
     Errors of another version (``MismatchError``) pass.
     """

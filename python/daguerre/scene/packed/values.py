@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 
 def make(name: object, state: Mapping[str, Any]) -> Any:
-    """Makes a value from the name of its class and its attributes, whose texts become printable.
+    """Makes a value from the name of its class and its attributes; makes texts printable.
 
     Raises:
         ValueError: A scene holds no values of this class.
@@ -98,7 +98,7 @@ def _camera(**given: Any) -> Camera:
     if not isinstance(motion, Mapping) or not all(map(is_dynamic, motion.values())):
         raise InputError("camera: motion: values must change over time")
     if given.get("sensor_size") is None:
-        given.pop("sensor_size", None)  # nobody chose one
+        given.pop("sensor_size", None)  # was not given
     return Camera(**given)
 
 

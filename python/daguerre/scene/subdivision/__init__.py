@@ -3,8 +3,8 @@
 A :class:`Refiner` takes the faces of a control mesh once and makes points of the limit surface from
 control points as often as they change. ``cut.py`` opens the mesh along boundaries, seams and
 infinitely sharp creases, so that a vertex has one fan of faces from then on. ``level.py`` holds the
-faces, edges and rings of one level and ``split.py`` those of the next. ``step.py`` and ``limit.py``
-make points of them as weighted sums (``stencils.py``).
+faces, edges and rings of a level; ``split.py`` makes the next level. ``step.py`` and ``limit.py``
+compute points as weighted sums (``stencils.py``).
 
 Sources: Catmull and Clark 1978, Computer-Aided Design 10, 350; Loop 1987, Smooth subdivision
 surfaces based on triangles; Halstead, Kass and DeRose 1993, SIGGRAPH, 35; Hoppe et al. 1994,
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Refiner", "Rules", "Subdivision", "edges_of_chains"]
 
-if not TYPE_CHECKING:  # checkers know the names above, and report all others
+if not TYPE_CHECKING:  # type checkers use the imports above, and report other names
     __getattr__, __dir__ = lazy_attributes(
         __name__,
         {

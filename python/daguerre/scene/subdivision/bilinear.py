@@ -1,4 +1,4 @@
-"""Bilinear surfaces: quadrangles that are halved and stay as they are.
+"""Bilinear surfaces: quadrangles, divided without smoothing.
 
 Each control face has its own normals, so the mesh is cut along all edges. Four corners span a
 bilinear patch; the tangents of ``Scheme.limit`` at corners are exact for it.

@@ -65,7 +65,7 @@ class CatmullClark(Scheme):
         return weights
 
     def pulled(self, weights: FloatArray, vertex: FloatArray, blend: FloatArray) -> FloatArray:
-        """Weights of a ring that give what ``weights`` give of the ring of the next level."""
+        """Pulls weights on the ring of the next level back to weights on the ring of this level."""
         count = blend.shape[1]
         closed = weights.shape[1] == 1 + 2 * count
         own, spokes, opposite = weights[:, :1], weights[:, 1 : 1 + count], weights[:, 1 + count :]
@@ -73,7 +73,7 @@ class CatmullClark(Scheme):
         result = vertex[:, :, None] * own
         result[:, :1] += (spokes * (sharp + soft)).sum(axis=1, keepdims=True)
         result[:, 1 : 1 + count] += spokes * (sharp + soft)
-        side = spokes * soft  # what a spoke takes of each of its two face points
+        side = spokes * soft  # weight of each of the two face points beside a spoke
         other = np.roll(side, -1, axis=1) if closed else side[:, 1:]
         points = result[:, 1 + count :] + opposite + other + (side if closed else side[:, :-1])
         result[:, :1] += points.sum(axis=1, keepdims=True) / 4

@@ -1,13 +1,13 @@
 """Tangent across a crease: the left eigenvector of the map of an open ring.
 
-Inside, its weights are sines that vanish on the crease, as for a smooth vertex of twice as many
-faces. The weights a of the vertex and b of both ends follow from the rows of the crease, with
+Inside, its weights are sines that vanish on the crease, as for a smooth vertex with twice the
+number of faces. The weights a of the vertex and b of both ends follow from the rows of the crease:
 v' = 3/4 v + (e + e')/8 and e' = (v + e)/2::
 
     lambda b = a/8 + b/2 + r
     lambda a = 3/4 a + b + t
 
-r and t are what inner points give to an end and to the vertex.
+r and t are the contributions of inner points to an end and to the vertex.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
 Both sides of an infinitely sharp crease follow the rules of a boundary. So the mesh is opened there
 before the first level: each vertex gets one copy for each fan of faces. Copies keep equal positions
-and have the normals of their own side. Edges of three and more faces, or of two that disagree about
-the sides of the surface, are opened in the same way.
+and have the normals of their side. Edges with three or more faces, or with two faces of opposite
+orientation, are opened in the same way.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Cut:
 
 @dataclass(frozen=True)
 class Corners:
-    """Vertices of the uncut mesh, as their edges and fans tell.
+    """Sharpness of the vertices of the uncut mesh, from their edges and fans.
 
     Attributes:
         infinite: Number of infinitely sharp edges at each vertex, shape (N,).
@@ -74,7 +74,7 @@ def opened_mesh(faces: Faces, rules: Rules, *, everywhere: bool = False) -> Open
 
 
 def cut_mesh(faces: Faces, opened: Opened) -> Cut:
-    """Gives each fan of an opened mesh a vertex of its own."""
+    """Makes a separate vertex for each fan of an opened mesh."""
     found, corners = opened.fans, opened.corners
     vertex = faces.vertices[found.heads]
     kinds = np.where(found.opened, OPEN, CLOSED).astype(np.uint8)
@@ -104,10 +104,11 @@ def given_sharpness(faces: Faces, rules: Rules) -> FloatArray:
 
 
 def classify(faces: Faces, rules: Rules, edges: FloatArray, found: Fans) -> Corners:
-    """Sharpness of vertices: their own, and that which their edges and fans give them.
+    """Sharpness of vertices, by the rules and by their edges and fans.
 
-    A vertex is a crease if it has two infinitely sharp edges and all its fans lie between them, the
-    end of a crease (a dart) with one, and smooth with none; in other places it is a corner.
+    With two infinitely sharp edges, and all fans between them, a vertex is a crease; with a single
+    sharp edge it is a dart, the end of a crease; without sharp edges it is smooth. All other
+    vertices are corners.
     """
     one, other = np.divmod(faces.edges[0], max(faces.count, 1))
     ends = np.concatenate([one, other[other != one]])
@@ -168,7 +169,7 @@ def opened_level(
     edges: FloatArray,
     sharpness: FloatArray,
 ) -> Level:
-    """Level of the fans of a mesh; ``edges`` are those of the uncut one."""
+    """First level of a cut mesh; ``edges`` is the sharpness of the edges of the uncut mesh."""
     corners = np.arange(len(faces.vertices))
     first = np.concatenate([corners[twins > corners], corners[twins < 0]])
     second = twins[twins > corners]

@@ -1,4 +1,4 @@
-"""Values per corner as a surface of their own: seams are cut, and follow rules of their own."""
+"""Values per corner, refined as a separate surface that is cut at seams, which have own rules."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .rules import INFINITE, FloatArray, IntArray
 
 
 def value_indices(vertices: IntArray, values: FloatArray) -> IntArray:
-    """Corner that stands for each corner: the first with the same vertex and an equal value.
+    """Representative of each corner: the first corner with the same vertex and value.
 
     Args:
         vertices: Vertex of each corner, shape (C,).
@@ -29,7 +29,7 @@ def cut_values(faces: Faces, opened: Opened, rule: str, values: IntArray) -> Cut
 
     Args:
         faces: The control mesh.
-        opened: The same, opened along the others.
+        opened: The mesh, opened along boundaries and infinitely sharp creases.
         rule: One of ``FACE_VARYING``, but "all".
         values: Number of the value of each corner, shape (C,).
     """

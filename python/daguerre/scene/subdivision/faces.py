@@ -112,7 +112,7 @@ class Fans:
     """Fans of faces around vertices.
 
     Attributes:
-        rings: Corners, one fan after the other, each counter-clockwise, shape (C,).
+        rings: Corners, fan by fan, each counter-clockwise, shape (C,).
         sizes: Corners of each fan, shape (V,).
         of_corner: Fan of each corner, shape (C,).
         opened: Whether a fan has two ends, shape (V,).
@@ -125,7 +125,7 @@ class Fans:
 
     @property
     def heads(self) -> IntArray:
-        """First corner of each fan; the clockwise end if it has one."""
+        """First corner of each fan: its clockwise end if it is open."""
         return np.asarray(self.rings[np.cumsum(self.sizes) - self.sizes])
 
     @property
@@ -156,10 +156,10 @@ def fans(faces: Faces, twins: IntArray) -> Fans:
 def _ranked(head: NDArray[np.bool_], step: IntArray) -> tuple[IntArray, IntArray]:
     """First corner of the list or loop of each corner, and the number of steps to it.
 
-    Lists end at a head, which steps to itself; loops have none and begin at their least corner.
+    Lists end at a head, which steps to itself; loops have no head and begin at their least corner.
     Lists are ranked by doubling of steps (Wyllie 1979), so that a vertex of many faces costs no
-    more than many vertices. Heads count as less than all others while the least is sought: so
-    nothing changes any more once each step reaches around its loop, or to the end of its list.
+    more than many vertices. While the least corner is sought, heads compare as less than all other
+    corners: the result is final once each step reaches around its loop, or to the end of its list.
     """
     corners = np.arange(len(step))
     least, jump = np.where(head, corners - len(corners), corners), step

@@ -15,8 +15,8 @@ from daguerre.cached import cached_property
 
 from .rules import INFINITE, FloatArray, IntArray
 
-#: Kinds of vertices: inside of the surface, on its edge, and the end of a sharp crease, whose fan
-#: begins and ends at that crease.
+#: Kinds of vertices: inside of the surface, on its edge, and the end of a sharp crease, with a fan
+#: that begins and ends at the crease.
 CLOSED, OPEN, DART = 0, 1, 2
 
 
@@ -64,8 +64,8 @@ class Level:
     Attributes:
         vertices: Vertex of each corner, shape (C,).
         starts: First corner of each face, and C, shape (F + 1,).
-        rings: Corners around each vertex, counter-clockwise, one vertex after the other, shape
-            (C,). An open fan begins at its clockwise end.
+        rings: Corners around each vertex, counter-clockwise, vertex by vertex, shape (C,). An open
+            fan begins at its clockwise end.
         valences: Number of faces at each vertex, shape (V,).
         kinds: CLOSED, OPEN or DART, shape (V,).
         first: Half-edge of each edge, shape (E,).
@@ -148,7 +148,7 @@ class Level:
         return np.asarray(self.rings[self.ring_starts[vertices][:, None] + np.arange(valence)])
 
     def fan_sharpness(self, fan: IntArray, kind: int) -> FloatArray:
-        """Sharpness of the spokes of fans; that of the crease at a dart is infinite.
+        """Sharpness of the spokes of fans; infinite for the crease at a dart.
 
         An open fan has one spoke more than corners; its outer spokes are infinitely sharp.
         """
@@ -162,7 +162,7 @@ class Level:
 
     @cached_property
     def special(self) -> IntArray:
-        """Vertices whose own sharpness or that of a spoke is above 0, rising."""
+        """Vertices that are sharp, or have a sharp spoke, rising."""
         halves = self.first[self.sharp_edges.ids]
         ends = self.vertices[halves], self.vertices[self.after(halves)]
         return np.unique(np.concatenate([*ends, self.sharp_vertices.ids]))

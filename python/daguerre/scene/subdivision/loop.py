@@ -54,10 +54,10 @@ class Loop(Scheme):
         return np.array([vertex, end, *spokes, end])
 
     def pulled(self, weights: FloatArray, vertex: FloatArray, blend: FloatArray) -> FloatArray:
-        """Weights of a ring that give what ``weights`` give of the ring of the next level.
+        """Pulls weights on the ring of the next level back to weights on the ring of this level.
 
-        An open ring differs from a closed one only in its outer spokes, which are creases and take
-        nothing of their neighbors; so that there is none behind the first and the last.
+        Only the outer spokes of an open ring differ: they are creases, and do not depend on
+        neighbors, which would be missing before the first and after the last spoke.
         """
         own, spokes = weights[:, :1], weights[:, 1:]
         sharp, soft = blend[:, :, None] / 2, 1 - blend[:, :, None]

@@ -124,9 +124,9 @@ class Refiner(Value):
         """Values per corner of a face: smooth inside, by ``Rules.face_varying`` at seams.
 
         Args:
-            values: One for each control corner, shape (C, K), or those that ``indices`` choose.
-            indices: Value of each control corner, shape (C,); default: equal values at a vertex
-                are one.
+            values: Value of each control corner, shape (C, K), or, with ``indices``, (N, K).
+            indices: Index of the value of each control corner, shape (C,); default: equal values
+                at a vertex are the same value.
 
         Returns:
             Values of refined corners, shape (C', K).
@@ -169,11 +169,11 @@ class Refiner(Value):
 
     @cached_property
     def _surfaces(self) -> dict[bytes, Surface]:
-        """Surfaces of values per corner, by their indices; the last one is kept."""
+        """Surfaces of values per corner, by their indices; at most the last surface."""
         return {}
 
     def _seams(self, chosen: IntArray) -> Surface:
-        """Surface whose control vertices are values."""
+        """Surface with values as control vertices."""
         key, kept = chosen.tobytes(), self._surfaces
         found = kept.get(key)
         if found is None:

@@ -24,14 +24,14 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Rules(Value):
-    """Rules of a subdivision surface; the defaults are those of USD.
+    """Rules of a subdivision surface; the defaults are the defaults of USD.
 
     Attributes:
         creases: Edges, pairs of control vertices, shape (E, 2); pairs that are no edge are ignored.
-        crease_sharpness: Sharpness of each, shape (E,), or one for all. An edge is sharp for as
-            many levels; 10 and more is sharp for ever.
+        crease_sharpness: Sharpness of each edge, shape (E,), or of all: the number of levels for
+            which it is sharp; 10 and more is infinite.
         corners: Control vertices, shape (V,).
-        corner_sharpness: Sharpness of each, shape (V,), or one for all.
+        corner_sharpness: Sharpness of each corner, shape (V,), or of all.
         boundary: "edge and corner": boundaries are creases, and vertices of one face are corners;
             "edge only": such vertices are smooth; "none": faces at a boundary are left out, unless
             its edges are creases of infinite sharpness.
@@ -98,10 +98,10 @@ class Subdivision(Value):
 def edges_of_chains(
     vertices: ArrayLike, lengths: ArrayLike, sharpness: ArrayLike, where: str = "creases"
 ) -> tuple[IntArray, FloatArray]:
-    """Makes edges for ``Rules.creases`` from chains of vertices, as files hold them.
+    """Makes edges for ``Rules.creases`` from chains of vertices, the form of files.
 
     Args:
-        vertices: Vertices of all chains, one chain after the other, shape (sum of lengths,).
+        vertices: Vertices of all chains, chain by chain, shape (sum of lengths,).
         lengths: Number of vertices of each chain, at least 2, shape (K,).
         sharpness: Sharpness of each chain, shape (K,), or of each edge.
         where: Owner of the chains, for messages.
@@ -142,7 +142,7 @@ def choice(value: object, known: tuple[str, ...], where: str) -> str:
 
 
 def _sharpness(values: ArrayLike, where: str, what: str, count: int) -> FloatArray:
-    """Checks numbers of at least 0, one for all or one for each."""
+    """Checks numbers of at least 0: a single number, or ``count`` of them."""
     found = to_numbers(values, where, what, "numbers").astype(np.float64)
     if found.ndim == 0:
         found = np.full(count, float(found))

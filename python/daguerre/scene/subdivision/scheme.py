@@ -16,7 +16,7 @@ from .level import CLOSED, OPEN, Level, softened
 from .rules import INFINITE, FloatArray
 from .sharpness import fan_weights, open_weights
 
-#: Steps that bring weights to their limit; each multiplies what is left by at most 0.66.
+#: Steps until weights converge; each multiplies the error by at most 0.66.
 _STEPS = 100
 #: Weights of a vertex on a crease and its two neighbors at the limit: a cubic B-spline.
 LIMIT_VERTEX, LIMIT_END = 2 / 3, 1 / 6
@@ -55,13 +55,13 @@ class Scheme(ABC):
 
     @abstractmethod
     def pulled(self, weights: FloatArray, vertex: FloatArray, blend: FloatArray) -> FloatArray:
-        """Weights of a ring that give what ``weights`` give of the ring of the next level.
+        """Pulls weights on the ring of the next level back to weights on the ring of this level.
 
         Args:
             weights: Shape (M, P, J).
             vertex: Weights of the vertex of the next level, shape (M, P), as of ``smooth``.
-            blend: How far each spoke follows the rule of creases, shape (M, spokes). An open ring
-                has one spoke more than faces, and its outer ones are creases.
+            blend: Weight of the crease rule for each spoke, 0 to 1, shape (M, spokes). An open ring
+                has one spoke more than faces, and its outer spokes are creases.
         """
 
     def limit(self, kind: int, faces: int, corner: bool) -> FloatArray:
@@ -97,7 +97,7 @@ def _limit(scheme: Scheme, kind: int, faces: int, corner: bool) -> FloatArray:
 
 
 def _crease_limit(scheme: Scheme, faces: int) -> FloatArray:
-    """Limit at a crease: the curve's, and its tangent; the other tangent is the scheme's."""
+    """Limit at a crease: limit and tangent of the crease curve, and the scheme's cross tangent."""
     weights = np.zeros((scheme.ring(OPEN, faces), 3))
     last = 1 + faces
     weights[[0, 1, last], 0] = LIMIT_VERTEX, LIMIT_END, LIMIT_END
@@ -109,8 +109,8 @@ def _crease_limit(scheme: Scheme, faces: int) -> FloatArray:
 def _corner_limit(scheme: Scheme, kind: int, faces: int) -> FloatArray:
     """Limit at a corner: the vertex, and first harmonics of its spokes.
 
-    The spokes of one face are its tangents. A corner of several faces has no tangent plane; the
-    harmonics give that of a mean.
+    The spokes of a single face are its tangents. A corner of several faces has no tangent plane;
+    the harmonics span a mean plane.
     """
     weights = np.zeros((scheme.ring(kind, faces), 3))
     weights[0, 0] = 1
@@ -124,8 +124,8 @@ def _corner_limit(scheme: Scheme, kind: int, faces: int) -> FloatArray:
 def _dart_limit(scheme: Scheme, faces: int) -> FloatArray:
     """Limit at the end of a crease, by powers of the map of its ring.
 
-    Odd weights about the crease are those of a smooth vertex, as they give the crease none. The
-    even tangent starts from a smooth one and loses its constant part.
+    The odd tangent is the tangent of a smooth vertex, as its weights vanish on the crease. The even
+    tangent is iterated from a smooth vertex, without its constant part.
     """
     vertex, blend = scheme.smooth(faces)[None], np.zeros((1, faces))
     blend[:, 0] = 1
@@ -142,7 +142,7 @@ def _dart_limit(scheme: Scheme, faces: int) -> FloatArray:
 def pulled_through(
     scheme: Scheme, kind: int, weights: FloatArray, vertex: FloatArray, spokes: FloatArray
 ) -> FloatArray:
-    """Limit weights of rings whose sharpness ends after some more levels.
+    """Limit weights of rings with sharpness that ends after some more levels.
 
     Args:
         scheme: The scheme.

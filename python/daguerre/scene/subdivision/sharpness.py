@@ -1,7 +1,7 @@
-"""Rules of a vertex whose sharpness, or that of its edges, ends after some levels.
+"""Rules of semi-sharp vertices: their sharpness, or their edges', ends after some levels.
 
 Source: DeRose, Kass and Truong 1998 (semi-sharp creases, uniform); the fraction of the last level
-is the mean over all that ends in it, as OpenSubdiv documents.
+is the mean over the edges and vertices with sharpness that ends in it, as OpenSubdiv documents.
 """
 
 from __future__ import annotations

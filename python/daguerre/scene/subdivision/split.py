@@ -1,8 +1,8 @@
 """Topology of the next level, in closed form: nothing is searched or sorted.
 
-Vertices of the next level are those of this one, then a point for each edge, then for quadrangles a
-point for each face. Edge e has the halves 2 e and 2 e + 1 (edges with one face stand C places
-later); between them come the C new edges inside of faces.
+The vertices of the next level are the vertices of this level, a point for each edge, and, for
+quadrangles, a point for each face. Edge e has the halves 2 e and 2 e + 1, plus C for edges with a
+single face, as the C new edges inside of faces come between.
 """
 
 from __future__ import annotations
@@ -84,9 +84,9 @@ def _quad_edges(level: Level, corners: IntArray, before: IntArray) -> Edges:
 
 
 def into_triangles(level: Level, final: bool) -> Level:
-    """Splits each triangle into four: one at each corner, and the middle one.
+    """Splits each triangle into four: a triangle at each corner, and the middle triangle.
 
-    Corner c of triangle f gives the triangle c + f; the middle one is 4 f + 3.
+    Corner c of triangle f gives the triangle c + f; the middle triangle is 4 f + 3.
 
     Args:
         level: The level before.
@@ -141,7 +141,7 @@ def _triangle_rings(level: Level) -> IntArray:
 def _triangle_edges(level: Level, corners: IntArray) -> Edges:
     """First and second halves of all edges of the next level, and the edge of each half.
 
-    The new edge c runs from the point of half-edge c to that of the half-edge before.
+    The new edge c runs from the point of half-edge c to the point of the half-edge before.
     """
     inside, rim, twin = _sides(level)
     half, before = _half_of(level), level.before(corners)
@@ -159,7 +159,7 @@ def _triangle_edges(level: Level, corners: IntArray) -> Edges:
 
 
 def _sides(level: Level) -> tuple[IntArray, IntArray, IntArray]:
-    """Half-edges: the first of edges with two faces, those of one face, and the second ones."""
+    """Half-edges: first half-edges of inner edges, half-edges of the rim, second half-edges."""
     inner = len(level.second)
     return level.first[:inner], level.first[inner:], level.second
 

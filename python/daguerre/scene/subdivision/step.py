@@ -1,4 +1,4 @@
-"""Points of the next level from those of this one."""
+"""Points of the next level from the points of this level."""
 
 from __future__ import annotations
 

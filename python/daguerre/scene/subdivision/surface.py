@@ -83,7 +83,7 @@ class Surface:
         return found[:, 0].copy(), self._unit(normals, near)
 
     def _unit(self, normals: FloatArray, near: FloatArray) -> FloatArray:
-        """Unit normals; one of length 0 becomes that of a face at the vertex, or (0, 1, 0)."""
+        """Unit normals; in place of length 0 the normal of a face at the vertex, or (0, 1, 0)."""
         lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals))
         empty = np.flatnonzero(~(lengths > 0))
         if len(empty):

@@ -1,1 +1,1 @@
-"""Kinds of surfaces: one file each, plain values whose fields ``checks.py`` checks."""
+"""Kinds of surfaces: one file each, plain values with fields that ``checks.py`` checks."""

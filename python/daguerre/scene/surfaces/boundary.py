@@ -7,4 +7,4 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Boundary:
-    """An invisible surface: light goes straight through, and only the medium changes there."""
+    """An invisible surface: light passes unchanged, and only the medium changes there."""

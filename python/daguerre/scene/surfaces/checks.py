@@ -83,7 +83,7 @@ def _distribution(value: object, where: str) -> None:
 
 
 def _base(value: object, where: str) -> None:
-    """Checks what lies under a coat."""
+    """Checks the surface under a coat."""
     if not isinstance(value, Diffuse | Conductor):
         raise InputError(f"{where}: wanted Diffuse or Conductor, got {short(value)}")
     check_surface(value, where)
@@ -111,7 +111,7 @@ _CHECKS: Mapping[str, Check] = MappingProxyType(
 
 
 def check_surface(surface: object, where: str) -> None:
-    """Checks the values of a surface, one by one and together.
+    """Checks the values of a surface, each alone and in combination.
 
     Raises:
         InputError: The message names the field.

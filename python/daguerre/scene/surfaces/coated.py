@@ -21,20 +21,20 @@ class Coated(BriefRecord):
     saturated.
 
     Attributes:
-        base: Surface below. The ``eta`` and ``k`` of a metal are those in air.
+        base: Surface below. The ``eta`` and ``k`` of a metal are relative to air.
         ior: Index of refraction of the coat, 1 to 10.
         alpha: Roughness of the coat, of slopes along u where ``alpha_v`` is given; < 1e-3:
             smooth.
         alpha_v: Roughness along v; None: ``alpha``.
         alpha_texture: Factors: R on ``alpha``, G on ``alpha_v``.
-        specular_tint: Factor on what the coat reflects.
+        specular_tint: Factor on light that the coat reflects.
         thickness: Thickness of the coat, m.
         absorption: Absorption coefficient of the coat, 1/m.
         nonlinear: Whether light that the coat reflects back takes on the base's colour once more.
-            Otherwise the base is lit as a white one would be, and scaled by its colour, which is
-            the default of Mitsuba's plastic.
+            Otherwise the base is lit like a white base, and scaled by its colour, which is the
+            default of Mitsuba's plastic.
         distribution: Distribution of the normals of the coat's facets: "ggx", or "beckmann",
-            whose lobes lack the long tails.
+            without the long tails.
         energy_compensation: Whether light that the facets of a rough coat block goes in, and comes
             back inside; without it, that light is lost, as in Mitsuba's rough plastic.
     """

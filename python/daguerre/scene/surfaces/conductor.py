@@ -23,15 +23,15 @@ class Conductor(BriefRecord):
     14.2). Light that bounces from facet to facet is left out.
 
     Attributes:
-        reflectance: Share of light that facets reflect, or a factor on what ``eta`` and ``k`` say.
+        reflectance: Share of light that facets reflect; with ``eta`` and ``k``, a factor on it.
         alpha: Roughness, of slopes along u where ``alpha_v`` is given.
         reflectance_texture: RGB, a factor on ``reflectance``.
         alpha_v: Roughness along v; None: ``alpha``.
         alpha_texture: Factors: R on ``alpha``, G on ``alpha_v``.
         eta: Real part of the index of refraction; a colour is one value for red, green and blue.
         k: Imaginary part, the extinction coefficient; given if ``eta`` is.
-        distribution: Distribution of the facets' normals: "ggx", or "beckmann", whose lobes have no
-            long tails.
+        distribution: Distribution of the facets' normals: "ggx", or "beckmann", without the long
+            tails.
     """
 
     reflectance: Color | Spectrum = (1.0, 1.0, 1.0)

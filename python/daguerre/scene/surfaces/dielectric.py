@@ -24,12 +24,12 @@ class Dielectric(BriefRecord):
         alpha_v: Roughness along v; None: ``alpha``.
         alpha_texture: Factors: R on ``alpha``, G on ``alpha_v``.
         reflection_tint: Factor on reflected light.
-        thin: Whether it is a pane with two parallel faces, in whose middle the mesh lies. Light
-            goes through it unbent, and what the faces reflect back and forth is counted.
+        thin: Whether it is a pane with two parallel faces, and the mesh in the middle. Light passes
+            undeviated; interreflection between the faces is counted.
         energy_compensation: Whether rough glass returns the light that facets block, as light that
             bounces between them would; without it, rough glass is too dark.
-        distribution: Distribution of the facets' normals: "ggx", or "beckmann", whose lobes have no
-            long tails.
+        distribution: Distribution of the facets' normals: "ggx", or "beckmann", without the long
+            tails.
     """
 
     ior: float | Spectrum = 1.5

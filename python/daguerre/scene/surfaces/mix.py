@@ -13,11 +13,11 @@ from .texture_slot import TextureSlot
 class Mix(BriefRecord):
     """A mixture of two materials of the scene, each of which covers a share of every point.
 
-    The mixture has an emission of its own; its parts emit nothing.
+    Only the emission of the mixture counts; its parts emit nothing.
 
     Attributes:
         first: Index from ``Scene.add_material``, of a material that was added before the mixture.
-        second: The same for the second material.
+        second: Index of the second material, added before the mixture, too.
         amount: Share of the second, 0 to 1.
         amount_texture: R, a factor on ``amount``.
     """
