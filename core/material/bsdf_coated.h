@@ -59,7 +59,7 @@ class CoatedBsdf {
     std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f u) const;
     Interior interior() const { return {}; }
     bool bounds_volume() const { return false; }
-    Spectrum straight(Vec3f) const { return 0.f; }
+    Spectrum straight_transmittance(Vec3f) const { return 0.f; }
     float reversed(Vec3f, Vec3f) const { return 1; }
 
   private:

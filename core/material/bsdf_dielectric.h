@@ -76,7 +76,7 @@ struct DielectricBsdf {
     Interior interior() const { return {}; }
     bool bounds_volume() const { return ior != 1; }
     float reversed(Vec3f, Vec3f) const { return 1; }
-    Spectrum straight(Vec3f wo) const {
+    Spectrum straight_transmittance(Vec3f wo) const {
         const Facing side(ns, ng, wo);
         if (!is_specular() || side.cos_o <= 0) return 0.f;
         const float r = fresnel_dielectric(side.cos_o, std::max(ior, 1 / ior));

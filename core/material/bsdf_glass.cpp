@@ -130,7 +130,7 @@ std::optional<BsdfSample> GlassBsdf::sample(Vec3f wo, float u_lobe, Vec2f u) con
     return s;
 }
 
-Spectrum GlassBsdf::straight(Vec3f wo) const {
+Spectrum GlassBsdf::straight_transmittance(Vec3f wo) const {
     const Facing side(ns, ng, wo);
     if (!is_specular() || side.cos_o <= 0) return 0.f;
     // Light counts as if it were not bent: see bsdf.h.

@@ -50,7 +50,7 @@ struct GlassBsdf {
     Interior interior() const { return {}; }
     bool bounds_volume() const { return !thin && ior != 1; }
     float reversed(Vec3f, Vec3f) const { return 1; }
-    Spectrum straight(Vec3f wo) const;
+    Spectrum straight_transmittance(Vec3f wo) const;
 
   private:
     /// Split of light at a facet whose normal makes cos_h with wo, and the chance to reflect.

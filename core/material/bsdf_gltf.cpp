@@ -202,7 +202,7 @@ GltfBsdf::Split GltfBsdf::split(float cos_h, float eta) const {
     return p;
 }
 
-Spectrum GltfBsdf::straight(Vec3f wo) const {
+Spectrum GltfBsdf::straight_transmittance(Vec3f wo) const {
     const Facing side(ns, ng, wo);
     if (!smooth || clear == Clear::none || side.cos_o <= 0) return 0.f;
     if (disperses) {

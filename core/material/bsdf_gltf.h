@@ -129,7 +129,7 @@ struct GltfBsdf {
     float albedo_estimate(Vec3f wo) const;
     Interior interior() const { return inside; }
     bool bounds_volume() const { return bends; }
-    Spectrum straight(Vec3f wo) const;
+    Spectrum straight_transmittance(Vec3f wo) const;
     float reversed(Vec3f, Vec3f) const { return 1; }
     float diffuse_share(Vec3f wo, Vec3f wi) const;
 

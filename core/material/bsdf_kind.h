@@ -1,12 +1,13 @@
-// bsdf_kind.h -- what a BSDF provides. bsdf.h asserts it of each alternative, transport/phase_bsdf.h of the phase functions.
+// bsdf_kind.h -- what a BSDF provides. bsdf.h asserts it of each alternative, transport/phase_bsdf.h of the phase
+// functions.
 //
 // To add a BSDF:
 //   1. core/material/bsdf_x.h: a struct that satisfies BsdfKind. The compiler names what is missing.
 //   2. core/material/bsdf.h: the struct becomes an alternative of Bsdf.
 //   3. core/material/bsdf_test.cpp: a row. Its checks integrate the density, compare sample() with it (chi-square), and
 //      test reciprocity and energy.
-//   4. core/material/shade_surfaces.cpp: return it for a surface. A surface with new parameters is a struct in surfaces.h
-//      and an alternative of Material's `kind` too (material.h).
+//   4. core/material/shade_surfaces.cpp: return it for a surface. A surface with new parameters is a struct in
+//      surfaces.h and an alternative of Material's `kind` too (material.h).
 // CONTRIBUTING.md names a diff that does all this.
 //
 // All directions are unit vectors in the world frame that point away from the surface: `wo` to the camera's side of the
@@ -25,16 +26,16 @@ concept Evaluates = requires(const B& bsdf, Vec3f wo, Vec3f wi) {
     { bsdf.evaluate_with_pdf(wo, wi) } -> std::same_as<Evaluation>;
 };
 
-/// Draws a direction wi; nothing where all light is absorbed. kOneLobe: sample() ignores u_lobe, which then costs no random
-/// number.
+/// Draws a direction wi; nothing where all light is absorbed. kOneLobe: sample() ignores u_lobe, which then costs no
+/// random number.
 template <typename B>
 concept Samples = requires(const B& bsdf, Vec3f wo, float u_lobe, Vec2f u) {
     { bsdf.sample(wo, u_lobe, u) } -> std::same_as<std::optional<BsdfSample>>;
     { B::kOneLobe } -> std::convertible_to<bool>;
 };
 
-/// is_specular(): all lobes are deltas, so that light sampling cannot find them. diffuse_share(): part of f without deltas
-/// that is diffuse, 0 to 1; effects of shadow catchers need it.
+/// is_specular(): all lobes are deltas, so that light sampling cannot find them. diffuse_share(): part of f without
+/// deltas that is diffuse, 0 to 1; effects of shadow catchers need it.
 template <typename B>
 concept HasLobes = requires(const B& bsdf, Vec3f wo, Vec3f wi) {
     { bsdf.is_specular() } -> std::same_as<bool>;
@@ -48,12 +49,12 @@ concept HasInterior = requires(const B& bsdf) {
     { bsdf.bounds_volume() } -> std::same_as<bool>;
 };
 
-/// straight(): share of light that a smooth clear surface passes without bending it. Where it bounds a volume, as if the
-/// light went on unbent: both faces of a plane slab have the Fresnel reflectance of the angle outside.
+/// straight_transmittance(): transmittance of a smooth clear surface along the unrefracted ray. At the boundary of a
+/// volume, both faces of a plane slab use the Fresnel reflectance of the angle outside.
 /// reversed(): weight of a delta lobe from wi to wo over its weight from wo to wi, without the factor 1 / eta^2.
 template <typename B>
 concept HasDeltas = requires(const B& bsdf, Vec3f wo, Vec3f wi) {
-    { bsdf.straight(wo) } -> std::convertible_to<Spectrum>;
+    { bsdf.straight_transmittance(wo) } -> std::convertible_to<Spectrum>;
     { bsdf.reversed(wo, wi) } -> std::convertible_to<float>;
 };
 

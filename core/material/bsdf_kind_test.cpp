@@ -16,7 +16,7 @@ struct Complete {
     float diffuse_share(Vec3f, Vec3f) const { return 1; }
     Interior interior() const { return {}; }
     bool bounds_volume() const { return false; }
-    Spectrum straight(Vec3f) const { return 0.f; }
+    Spectrum straight_transmittance(Vec3f) const { return 0.f; }
     float reversed(Vec3f, Vec3f) const { return 1; }
 };
 
@@ -36,7 +36,7 @@ struct NoSide : Complete {
     void interior() const {}
 };
 struct NoDeltas : Complete {
-    void straight() const {}
+    void straight_transmittance() const {}
 };
 struct OneWay : Complete {   // a light path cannot come back
     void reversed() const {}

@@ -33,10 +33,10 @@ float Sheen::passed(float cos_o, float cos_i) const {
     return 1 - largest * std::max(albedo(cos_o), albedo(cos_i));
 }
 
-Spectrum LayeredBsdf::straight(Vec3f wo) const {
+Spectrum LayeredBsdf::straight_transmittance(Vec3f wo) const {
     const float cos_o = dot(base.ns, wo);
     const float passed = sheen.present() ? sheen.passed(cos_o, cos_o) : 1.f;
-    return base.straight(wo) * (passed * (1 - shares(wo).coat));
+    return base.straight_transmittance(wo) * (passed * (1 - shares(wo).coat));
 }
 
 /// The coat takes its share by the angle of wo alone. What it reflects itself leaves under that angle too.

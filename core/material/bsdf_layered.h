@@ -67,7 +67,7 @@ struct LayeredBsdf {
     Interior interior() const { return base.interior(); }
     bool bounds_volume() const { return base.bounds_volume(); }
     /// Coat and sheen take their share of what goes straight through.
-    Spectrum straight(Vec3f wo) const;
+    Spectrum straight_transmittance(Vec3f wo) const;
     float reversed(Vec3f wo, Vec3f wi) const;
     /// Sheen is diffuse, a coat is not.
     float diffuse_share(Vec3f wo, Vec3f wi) const;

@@ -51,7 +51,7 @@ struct MetalBsdf {
     }
     Interior interior() const { return {}; }
     bool bounds_volume() const { return false; }
-    Spectrum straight(Vec3f) const { return 0.f; }
+    Spectrum straight_transmittance(Vec3f) const { return 0.f; }
     float reversed(Vec3f, Vec3f) const { return 1; }
 };
 

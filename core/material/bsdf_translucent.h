@@ -38,7 +38,7 @@ struct TranslucentBsdf {
     bool is_specular() const { return false; }
     Interior interior() const { return {}; }
     bool bounds_volume() const { return false; }
-    Spectrum straight(Vec3f) const { return 0.f; }
+    Spectrum straight_transmittance(Vec3f) const { return 0.f; }
     float reversed(Vec3f, Vec3f) const { return 1; }
     float diffuse_share(Vec3f, Vec3f) const { return 1; }
 

@@ -87,7 +87,7 @@ TEST_CASE("a pane reflects 2 F / (1 + F), and loses nothing") {
     const auto r = pane.sample(at_cosine(0.6f), 0, {0.5f, 0.5f});
     REQUIRE(r);
     CHECK(r->pdf * r->weight[1] == doctest::Approx(series).epsilon(1e-5));
-    CHECK(pane.straight(at_cosine(0.6f))[2] == doctest::Approx(1 - series).epsilon(1e-5));
+    CHECK(pane.straight_transmittance(at_cosine(0.6f))[2] == doctest::Approx(1 - series).epsilon(1e-5));
     const auto t = pane.sample(at_cosine(0.6f), 0.9f, {0.5f, 0.5f});
     REQUIRE(t);
     CHECK(t->transmitted);

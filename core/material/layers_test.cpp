@@ -126,7 +126,7 @@ TEST_CASE("what goes straight through a window is what sample() lets through") {
         const auto s = b.sample(hit.wo, u_lobe, random.next_2d());
         if (s && s->transmitted && s->specular) sum += s->weight[1];
     }
-    CHECK(b.straight(hit.wo)[1] == doctest::Approx(sum / kCount).epsilon(0.02));
+    CHECK(b.straight_transmittance(hit.wo)[1] == doctest::Approx(sum / kCount).epsilon(0.02));
 }
 
 TEST_CASE("emission is seen through the coat") {

@@ -112,7 +112,7 @@ bool emits_from_behind(const Material& material);
 bool emits(const Material& material);
 
 /// Ways in which light may go straight on through at some point of the material: never less than
-/// its BSDFs' straight() says.
+/// its BSDFs' straight_transmittance() says.
 Clear clearness(const Material& material);
 
 /// True when a texture bends its normals.

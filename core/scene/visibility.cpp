@@ -65,7 +65,7 @@ Spectrum Scene::through_crossings(const Ray& ray, Crossings& crossings, Interior
         std::visit(
             [&](const auto& kind) {
                 const bool bent = kind.bounds_volume() && !crossings.volumes;
-                left *= bent ? Spectrum(0.f) : kind.straight(surface.wo);
+                left *= bent ? Spectrum(0.f) : kind.straight_transmittance(surface.wo);
                 medium = beyond(medium, hit.instance, kind.interior(), kind.bounds_volume(), surface.front);
             },
             bsdf);

@@ -8,7 +8,8 @@
 namespace dg {
 namespace {
 
-/// Weight of emission that light sampling at the last vertex finds with the density `light_pdf`.
+/// MIS weight of BSDF sampling for an emitter that light sampling at the last vertex finds with the density
+/// `light_pdf`.
 float bsdf_weight(const PathState& path, float light_pdf) {
     using Strategy = PathSettings::Strategy;
     const LastVertex& last = path.walk.last;
@@ -17,7 +18,7 @@ float bsdf_weight(const PathState& path, float light_pdf) {
     return power_heuristic(last.bsdf_pdf, float(last.tries) * light_pdf);
 }
 
-EmitterMet met(const Walk& walk, float distance, float light_pdf) {
+EmitterMet met(const WalkState& walk, float distance, float light_pdf) {
     const float ratio = walk.last.delta ? 0 : light_pdf / walk.last.bsdf_pdf;
     return {walk.last.position, walk.ray.direction, distance, walk.ray.time, ratio};
 }
@@ -25,7 +26,7 @@ EmitterMet met(const Walk& walk, float distance, float light_pdf) {
 }  // namespace
 
 Spectrum sky_emission(const PathState& path) {
-    const Walk& walk = path.walk;
+    const WalkState& walk = path.walk;
     const LightSet& lights = path.scene.lights();
     if (!lights.has_environment()) return walk.throughput * Spectrum(0.f);
     const Vec3f direction = walk.ray.direction;
@@ -38,7 +39,7 @@ Spectrum sky_emission(const PathState& path) {
 }
 
 Spectrum sphere_emission(const PathState& path, std::uint32_t sphere, const SurfaceHit& hit) {
-    const Walk& walk = path.walk;
+    const WalkState& walk = path.walk;
     const LightSet& lights = path.scene.lights();
     const float pdf = walk.last.delta ? 0 : lights.pdf_sphere(sphere, walk.last.position, hit.time);
     const float left = walk.sharing.off() ? 1
@@ -49,13 +50,13 @@ Spectrum sphere_emission(const PathState& path, std::uint32_t sphere, const Surf
 }
 
 Spectrum surface_emission(const PathState& path, const Material& material, const SurfaceHit& hit) {
-    const Walk& walk = path.walk;
+    const WalkState& walk = path.walk;
     if (!emits(material)) return walk.throughput * Spectrum(0.f);
-    SurfaceHit seen = hit;
-    // Light sampling and light paths find the emission at a point, without a footprint. Light paths straight to the
-    // lens know the cone of the camera's sample, and use its footprint.
-    if (!walk.in_view) seen.footprint[0] = seen.footprint[1] = {};
-    const Rgb luminance = emitted(material, path.scene.textures(), seen) * path.scene.shaping(material, hit);
+    SurfaceHit lookup = hit;
+    // Light sampling and light paths with bounces look up emission without a footprint. Light paths from an emitter
+    // directly to the lens know the cone of the camera's sample, and use its footprint.
+    if (!walk.in_view) lookup.footprint[0] = lookup.footprint[1] = {};
+    const Rgb luminance = emitted(material, path.scene.textures(), lookup) * path.scene.shaping(material, hit);
     if (max_component(luminance) <= 0) return walk.throughput * Spectrum(0.f);
     const LightSet& lights = path.scene.lights();
     const float distance = walk.last.windows + hit.t;

@@ -1,5 +1,5 @@
-// emission.h -- emission that a path meets by following its BSDF, with the weight that multiple importance sampling and
-// light paths leave to it. Each function includes the path's throughput.
+// emission.h -- emission that a camera path hits by BSDF sampling, weighted by MIS against light sampling and against
+// light paths. The returned values include the path's throughput.
 #pragma once
 #include "material/material.h"
 #include "transport/walk/path_state.h"

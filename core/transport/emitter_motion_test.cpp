@@ -1,5 +1,5 @@
-// Light that changes while the shutter is open: every strategy has the same mean, and it is the mean
-// of the pictures of the still scenes.
+// Light that changes while the shutter is open: all strategies have the same mean, which is the mean of the pictures
+// of static scenes at single times.
 #include <doctest/doctest.h>
 
 #include "math/hash.h"
@@ -21,7 +21,7 @@ Mesh quad(float half) {
     return mesh;
 }
 
-/// A floor at y = 0, half white, and what the tests add to it.
+/// Scene of a floor at y = 0 with reflectance 0.5, for tests to extend.
 SceneDescription floor_scene() {
     SceneDescription d;
     d.meshes = {quad(20)};
@@ -47,7 +47,7 @@ Motion between(const Affine3d& a, const Affine3d& b) {
     return Motion::keys(std::array{kOpen, kClose}, std::array{a, b}, Interpolation::decomposed);
 }
 
-/// The scene as it stands at a time (fraction of the interval).
+/// The static scene at a time (fraction of the interval).
 SceneDescription still(SceneDescription d, float fraction) {
     const double t = kOpen + double(fraction) * (kClose - kOpen);
     for (Instance& i : d.instances) {
@@ -77,7 +77,7 @@ SceneDescription still(SceneDescription d, float fraction) {
     return d;
 }
 
-/// Values of n paths to the floor near the origin at one of kTimes times.
+/// Luminances of n paths to the floor near the origin at one of kTimes times.
 void look(const Scene& scene, Strategy strategy, int time, int n, std::vector<double>& values) {
     PathSettings settings;
     settings.strategy = strategy;
@@ -128,7 +128,7 @@ TEST_CASE("an area light that travels and turns by 170 degrees") {
 }
 
 TEST_CASE("an area light that spins, and shines to one side") {
-    for (const double turns : {0.7, 3.0, 60.0}) {  // the last one is bounded as a whole
+    for (const double turns : {0.7, 3.0, 60.0}) {  // for 60 turns, the bounds are those of a whole turn
         SceneDescription d = floor_scene();
         add_lamp(d, {9, 9, 9}, false);
         Spin spin;
@@ -138,7 +138,7 @@ TEST_CASE("an area light that spins, and shines to one side") {
         d.instances[1].motion =
             std::make_shared<const Motion>(Motion(turned(20, {0.3, 1, 0})).spinning(spin));
         check_all(d);
-        // Where light sampling found nothing the BSDF would have to find all, with the same mean.
+        // The means would differ if light sampling missed the emitter at some times.
         const auto scene = Scene::build(d);
         const Wavelengths wl = Wavelengths::sample(0.4f);
         int found = 0;
@@ -203,9 +203,9 @@ TEST_CASE("a glTF lamp whose veil, texture transform and strength change") {
     GltfMaterial b = a;
     b.base_alpha = 1;
     b.emissive = {20, 30, 40};
-    b.emissive_texture.m[2] = 2;  // slides by twice its width
+    b.emissive_texture.m[2] = 2;  // translated by twice its width
     d.material_keys[1] = {{kOpen, kClose}, {{"lamp", a}, {"lamp", b}}};
-    CHECK(Scene::build(d)->lights().lights().size() == 2);  // of one triangle dark at first
+    CHECK(Scene::build(d)->lights().lights().size() == 2);  // a triangle that is dark at first is a light, too
     check_all(d, 80000);
 }
 
@@ -235,7 +235,7 @@ TEST_CASE("a sky that turns and fades") {
     for (int i : {18, 19, 34, 35}) sky.pixels[i] = {40, 40, 40};
     d.environment = Environment::image(sky, 1, {});
     d.environment_keys = {{10, 10.25, 10.5}, {{{1, 1, 1}, 0}, {{2, 1, 0.5f}, 4}, {{0, 0, 0}, 3}}};
-    // A wall that hides a part of the sky, so that its turning is seen on the floor.
+    // A wall occludes a part of the sky, so that the floor's luminance depends on the sky's rotation.
     d.meshes.push_back(quad(3));
     d.instances.push_back({"wall", 1, 0, {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}, {1, 0, 0}}});
     check_all(d);

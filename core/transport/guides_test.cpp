@@ -1,4 +1,4 @@
-// Guides for a denoiser: albedo and normal of what is seen through glass and in mirrors.
+// The denoiser's guides: albedo and normal behind glass and in mirrors.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ Mesh square(float z, float s, bool turned = false) {
     return mesh;
 }
 
-/// A wall at z = -5, and before it what `front` adds.
+/// A wall at z = -5 behind the objects that `front` adds.
 template <typename Front>
 std::shared_ptr<const Scene> before_wall(Front front) {
     SceneDescription d;
@@ -38,7 +38,7 @@ void add_pane(SceneDescription& d, float roughness = 0, float dispersion = 0) {
     add(d, square(-1.1f, 9, true), glass);
 }
 
-/// Means over paths straight ahead.
+/// Mean guides over paths along -z.
 FirstHit look(const Scene& scene, int splits, Vec3f direction = {0, 0, -1}) {
     FirstHit mean;
     PathSettings settings;
@@ -58,7 +58,7 @@ FirstHit look(const Scene& scene, int splits, Vec3f direction = {0, 0, -1}) {
     return mean;
 }
 
-/// Share of light that goes through both faces of plain glass, with all reflections within; n = 1.5, upright.
+/// Transmittance of a pane of glass with inter-reflections, n = 1.5, normal incidence.
 constexpr float kFace = 0.04f, kThrough = (1 - kFace) / (1 + kFace);
 
 }  // namespace
@@ -77,7 +77,7 @@ TEST_CASE("glass shows the wall behind it by the share of light that comes throu
             CAPTURE(splits);
             const auto scene = before_wall([&](SceneDescription& d) { add_pane(d, 0, dispersion); });
             const FirstHit hit = look(*scene, splits);
-            CHECK(hit.position.z == doctest::Approx(-1));   // the other channels stay those of the first surface
+            CHECK(hit.position.z == doctest::Approx(-1));   // position remains the first surface's
             CHECK(hit.seen_albedo.x == doctest::Approx(kWall.x * kThrough).epsilon(0.01));
             CHECK(hit.seen_albedo.y == doctest::Approx(kWall.y * kThrough).epsilon(0.01));
             CHECK(hit.seen_normal.z == doctest::Approx(kThrough).epsilon(0.01));
@@ -86,7 +86,7 @@ TEST_CASE("glass shows the wall behind it by the share of light that comes throu
 }
 
 TEST_CASE("a mirror shows what it reflects, of its own colour, and not what comes after") {
-    // The mirror stands at 45 degrees: a ray that goes ahead comes to the side wall.
+    // The mirror is tilted by 45 degrees: a ray along -z is reflected to the side wall.
     SceneDescription d;
     Mesh mirror = square(0, 1);
     mirror.positions = {{-1, -1, -1}, {1, -1, -3}, {1, 1, -3}, {-1, 1, -1}};

@@ -1,11 +1,12 @@
-// light_pick.h -- direct light by one of several light samples, picked by what each would bring if nothing were in its
-// way: the tree that draws them knows where a point is, but neither its normal nor how it reflects.
+// light_pick.h -- resampled direct lighting: several light samples are drawn, and a sample to trace is picked by its
+// unshadowed contribution. The light tree that draws them knows the position of the shading point, but neither its
+// normal nor its BSDF.
 //
-// Samples x_i, i < n, of density p; g is the light that one would bring without its shadow, with its share w against
-// BSDF sampling. One is picked in proportion to g_i / p_i, and counts (f L V w)(x) / g(x) * sum g_i / p_i / n. So only
-// shadows and what the sum varies by are left as noise. Source: Talbot, Cline and Egbert 2005, Importance Resampling
-// for Global Illumination, EGSR. w is the power heuristic (Veach 1997, 9.2.4) with n p in place of p, as n tries find
-// what one seldom does; any w would do that BSDF sampling knows as well.
+// The samples x_i, i < n, have density p; g is the unshadowed contribution times the MIS weight w. Sample i is picked
+// in proportion to g_i / p_i and contributes (f L V w)(x) / g(x) * sum g_i / p_i / n. Visibility and the sum remain as
+// sources of noise. Source: Talbot, Cline and Egbert 2005, Importance Resampling for Global Illumination, EGSR.
+// w is the power heuristic (Veach 1997, 9.2.4) with the density n p for n candidates. Any w is unbiased as long as
+// BSDF sampling uses the same.
 #pragma once
 #include <array>
 #include <cmath>
@@ -16,8 +17,9 @@
 
 namespace dg {
 
-/// How many light samples a vertex picks one of: one where there is little to choose from, and fewer where the lens does
-/// not look, straight or by mirrors. CPU time x error of bench/first_picture.py is the same from four to eight.
+/// Number of candidate light samples at a vertex: 1 in scenes with few lights, and fewer at vertices that the camera
+/// sees neither directly nor through specular bounces. CPU time x error of bench/first_picture.py is the same from four
+/// to eight.
 inline int light_tries(const LightSet& lights, bool in_view) {
     constexpr std::size_t kFew = 4;
     if (lights.empty()) return 0;
@@ -27,12 +29,12 @@ inline int light_tries(const LightSet& lights, bool in_view) {
 class LightPick {
   public:
     struct Random {
-        float select;   // which lights
-        Vec2f place;    // where on them
-        float pick;     // which of them
+        float select;   // the lights
+        Vec2f place;    // the points on them
+        float pick;     // the candidate
     };
-    /// One of `tries` samples. `shared`: whether BSDF sampling finds the same light. `evaluate` gives the BSDF toward a
-    /// light, `throughput` how its wavelengths count.
+    /// Picks a sample among `tries` candidates. `shared`: BSDF sampling can find the same light. `evaluate` returns the
+    /// BSDF toward a light; `throughput` weighs its wavelengths.
     template <typename Evaluate>
     static std::optional<DirectLight> pick(const Scene& scene, const SurfaceHit& hit, const Wavelengths& wavelengths,
                                            int tries, bool shared, const Random& u, Spectrum throughput,
@@ -41,8 +43,8 @@ class LightPick {
   private:
     static constexpr std::size_t kMost = LightSet::kMostSamples;
     std::array<LightSample, kMost> lights_;
-    std::array<Evaluation, kMost> seen_;
-    std::array<float, kMost> worth_, weight_;   // g / p; w / p
+    std::array<Evaluation, kMost> f_;
+    std::array<float, kMost> worth_, weight_;   // g / p and w / p
 };
 
 template <typename Evaluate>
@@ -57,7 +59,7 @@ std::optional<DirectLight> LightPick::pick(const Scene& scene, const SurfaceHit&
         const LightSample& light = all.lights_[i];
         all.worth_[i] = 0;
         if (!(light.pdf > 0)) continue;
-        const Evaluation& e = all.seen_[i] = evaluate(light.wi);
+        const Evaluation& e = all.f_[i] = evaluate(light.wi);
         const bool alone = light.delta || !shared;
         all.weight_[i] = (alone ? 1 : power_heuristic(float(tries) * light.pdf, e.pdf)) / light.pdf;
         all.worth_[i] = (throughput * e.f_cos * light.radiance).average() * all.weight_[i];
@@ -69,7 +71,7 @@ std::optional<DirectLight> LightPick::pick(const Scene& scene, const SurfaceHit&
     for (int i = 0; i < tries && (chosen < 0 || left >= 0); ++i)
         if (all.worth_[i] > 0) chosen = i, left -= all.worth_[i];
     const float share = sum / (float(tries) * all.worth_[chosen]);
-    DirectLight found{all.lights_[chosen], all.seen_[chosen], all.weight_[chosen] * share};
+    DirectLight found{all.lights_[chosen], all.f_[chosen], all.weight_[chosen] * share};
     if (found.light.uneven) scene.resolve(found.light, hit.time, wavelengths);
     return found;
 }

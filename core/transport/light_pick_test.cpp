@@ -1,4 +1,4 @@
-// Direct light by one of several light samples: the same light as by one, with less noise.
+// Resampled direct lighting: the same mean as with one light sample, and less noise.
 #include "transport/light_pick.h"
 
 #include <doctest/doctest.h>
@@ -21,7 +21,7 @@ Mesh floor() {
     return mesh;
 }
 
-/// Two triangles that hang about a point, one of them turned away.
+/// Two triangles around a point, the second facing away.
 Mesh sign(Vec3f at, float size) {
     Mesh mesh;
     mesh.positions = {at, at + Vec3f{size, 0, 0}, at + Vec3f{0, size, size}, at + Vec3f{0, 0.5f * size, -size}};
@@ -29,7 +29,7 @@ Mesh sign(Vec3f at, float size) {
     return mesh;
 }
 
-/// Shines unevenly: its coat lets less through the more it is seen from aside.
+/// An emitter with directional emission: its coat transmits less at grazing angles.
 Material coated(Rgb emission) {
     GltfMaterial m;
     m.base_color = {0, 0, 0};
@@ -39,7 +39,7 @@ Material coated(Rgb emission) {
     return {"sign", m};
 }
 
-/// Balls and triangles about a floor, some behind a wall, with a sun and a sky of two colours.
+/// Spheres and triangles around a floor, some behind a wall, with a sun and a sky of two colours.
 std::shared_ptr<const Scene> many_lamps(const Material& ground, bool small = false) {
     SceneDescription d;
     add(d, floor(), ground);
@@ -56,7 +56,7 @@ std::shared_ptr<const Scene> many_lamps(const Material& ground, bool small = fal
     return Scene::build(std::move(d));
 }
 
-/// Five of them about a point of the floor, which sees them from far aside, two not at all.
+/// Five coated lamps around a point of the floor, at grazing angles; two of them face away.
 std::shared_ptr<const Scene> few_lamps() {
     SceneDescription d;
     add(d, floor(), {"matte", DiffuseMaterial{{0.8f, 0.6f, 0.4f}}});
@@ -78,7 +78,7 @@ std::shared_ptr<const Scene> few_lamps() {
     return Scene::build(std::move(d));
 }
 
-/// Means over the wavelengths of paths to a point of the floor.
+/// Radiances of paths to a point of the floor, each the mean over its wavelengths.
 SampleMoments look(const Scene& scene, Strategy strategy, int depth, int seed, int n = 60000,
                    Vec3f from = {0, 1, 4}) {
     std::vector<double> found(n);

@@ -5,11 +5,11 @@
 namespace dg {
 namespace {
 
-constexpr float kRouletteThreshold = 0.3f;   // of the flux at the start
+constexpr float kRouletteThreshold = 0.3f;   // fraction of the emitted flux
 
 }  // namespace
 
-/// The choice of the light, the point on it and the direction.
+/// Samples the light, a point on it and a direction.
 std::optional<LightWalk> LightWalk::begin(const Scene& scene, const LightSharing& sharing,
                                           const PathSettings& settings, const Start& start,
                                           const PathSampler& sampler) {
@@ -29,7 +29,7 @@ std::optional<LightWalk> LightWalk::begin(const Scene& scene, const LightSharing
     walk.flux_ = walk.wavelengths_.emission(leaving.value) * (1 / emitted->pdf);
     if (scene.has_media()) {
         walk.medium_ = scene.medium_around(walk.ray_);
-        const Medium* const fog = walk.medium_.medium;   // light from infinity has come through all of it
+        const Medium* const fog = walk.medium_.medium;   // attenuates light from infinity along an endless ray
         if (walk.infinite() && fog && !fog->density)
             walk.flux_ *= scene.left_after(walk.medium_, walk.ray_, 0, std::numeric_limits<float>::infinity(),
                                            walk.wavelengths_);
@@ -40,14 +40,14 @@ std::optional<LightWalk> LightWalk::begin(const Scene& scene, const LightSharing
     return walk;
 }
 
-/// Light that a material absorbs; a medium takes its place.
+/// Absorbs light over a length (m) inside a material. A participating medium replaces the material's absorption.
 void LightWalk::absorb(float length) {
     if (medium_.medium) return;
-    if (volume_.where == VolumeWalk::Where::unknown) unknown_ += length;
-    if (volume_.where == VolumeWalk::Where::inside) flux_ *= volume_.interior.transmittance(length);
+    if (volume_.where == VolumeState::Where::unknown) unknown_ += length;
+    if (volume_.where == VolumeState::Where::inside) flux_ *= volume_.interior.transmittance(length);
 }
 
-/// Through surfaces where nothing but media changes. These dim the light on all of its way.
+/// Traces through the invisible boundaries of media, which attenuate the light, to the next visible surface.
 std::optional<Scene::Hit> LightWalk::meet_visible() {
     for (;;) {
         const auto found = scene_->intersect(ray_);
@@ -57,7 +57,7 @@ std::optional<Scene::Hit> LightWalk::meet_visible() {
         if (found->sphere_light >= 0 || !scene_->is_invisible(hit.instance)) return found;
         absorb(hit.t);
         medium_ = scene_->beyond(medium_, hit.instance, {}, false, hit.front);
-        straight_ += hit.t;
+        distance_ += hit.t;
         ray_ = spawn_ray(hit, ray_.direction, ray_.time);
     }
 }
@@ -68,7 +68,7 @@ bool LightWalk::meet(std::optional<LightVertex>& vertex) {
     const SurfaceHit& hit = found->surface;
     if (is_last() && !scene_->has_clear()) return false;
     absorb(hit.t);
-    straight_ += hit.t;
+    distance_ += hit.t;
     vertex.emplace(*scene_, hit, wavelengths_);
     return true;
 }
@@ -77,9 +77,9 @@ bool LightWalk::sends(LightVertex& vertex) const {
     return !is_last() && vertices_ > 0 && !is_specular(vertex.both().seen_from(vertex.hit().wo));
 }
 
-/// The way on from a surface into what lies beyond it along `w`: what was absorbed on the way there, if a
-/// light was within a volume and it is left only now. Empty: see volume_walk.h.
-std::optional<Spectrum> LightWalk::enter(VolumeWalk& volume, const Bsdf& bsdf, const SurfaceHit& hit,
+/// Crosses a surface along `w`. Returns the transmittance of the volume around the emitter if the walk leaves it here,
+/// as its absorption is known only at its boundary. Empty: a combination of volumes that volume_state.h excludes.
+std::optional<Spectrum> LightWalk::enter(VolumeState& volume, const Bsdf& bsdf, const SurfaceHit& hit,
                                          Vec3f w) const {
     const bool entering = dot(w, hit.ng) < 0;
     if (entering != hit.front) return 1.f;   // reflected
@@ -87,7 +87,7 @@ std::optional<Spectrum> LightWalk::enter(VolumeWalk& volume, const Bsdf& bsdf, c
         [&](const auto& b) -> std::optional<Spectrum> {
             if (!b.bounds_volume()) return 1.f;
             Spectrum left{1.f};
-            if (volume.where == VolumeWalk::Where::unknown && !entering) {
+            if (volume.where == VolumeState::Where::unknown && !entering) {
                 if (infinite()) return std::nullopt;
                 left = b.interior().transmittance(unknown_);
             }
@@ -97,8 +97,9 @@ std::optional<Spectrum> LightWalk::enter(VolumeWalk& volume, const Bsdf& bsdf, c
         bsdf);
 }
 
-/// Density of the camera's techniques toward the light, per projected solid angle. A point light is found by
-/// its choice alone: what its rays have per sr, EmissionRays::pdf() has per m2 at the first vertex.
+/// Density with which camera paths sample the direction toward the light, per projected solid angle. Light sampling
+/// finds a point light by choosing it: its rays have a density per sr, and EmissionRays::pdf() is per m2 at the first
+/// vertex.
 double LightWalk::camera_density(const SurfaceHit& hit, float bsdf_pdf) const {
     double pdf = bsdf_pdf;
     if (vertices_ == 0) {
@@ -106,7 +107,7 @@ double LightWalk::camera_density(const SurfaceHit& hit, float bsdf_pdf) const {
             scene_->lights().pdf(emission_.light, hit.position, hit.wo, distance(), hit.time);
         pdf = !delta_       ? pdf + by_choice
               : infinite()  ? by_choice
-                            : double(by_choice) * straight_ * straight_;
+                            : double(by_choice) * distance_ * distance_;
     }
     return pdf / std::abs(double(dot(hit.ng, hit.wo)));
 }
@@ -115,9 +116,9 @@ std::optional<LightWalk::Sent> LightWalk::send(LightVertex& vertex, Vec3f w, flo
     const SurfaceHit& hit = vertex.hit();
     const Scattering s = vertex.both().scattering(w, hit.wo);
     if (s.f_cos.is_black() || s.hero_only) return std::nullopt;
-    VolumeWalk volume = volume_;
+    VolumeState volume = volume_;
     const auto left = enter(volume, vertex.both().seen_from(w), hit, w);
-    if (!left || volume.where == VolumeWalk::Where::inside) return std::nullopt;
+    if (!left || volume.where == VolumeState::Where::inside) return std::nullopt;
     const double cosine = std::abs(double(dot(hit.ng, w)));
     Sent sent;
     sent.density = odds_ * lens_pdf / (cosine * camera_density(hit, s.camera_pdf));
@@ -132,18 +133,18 @@ bool LightWalk::go_on(LightVertex& vertex, const Random& u) {
     const bool last = is_last();
     const auto step = vertex.both().step(vertex.hit().wo, u.lobe, u.direction);
     if (!step || !pass(vertex, *step)) return false;
-    if (last && straight_ == 0) return false;
+    if (last && distance_ == 0) return false;
     return survives();
 }
 
-/// Beyond a vertex, or a window. False: the path ends.
+/// Continues beyond a vertex or a window. False: the walk ends.
 bool LightWalk::pass(LightVertex& vertex, const LightStep& step) {
     const SurfaceHit& hit = vertex.hit();
     const Bsdf& bsdf = vertex.both().seen_from(step.to_camera);
     const bool bounds = std::visit([](const auto& b) { return b.bounds_volume(); }, bsdf);
     const Vec3f w = step.to_camera;
     if (!(step.specular && step.transmitted && !bounds)) {
-        // No path from the camera finds what a delta lobe does with the light of a delta light.
+        // Camera paths cannot connect a delta lobe to a delta light.
         if (step.specular && delta_ && vertices_ == 0) return false;
         const auto left = enter(volume_, bsdf, hit, w);
         if (!left) return false;
@@ -152,7 +153,7 @@ bool LightWalk::pass(LightVertex& vertex, const LightStep& step) {
             odds_ *= step.pdf / (std::abs(double(dot(hit.ng, w))) * camera_density(hit, step.camera_pdf));
         if (!(odds_ > 0) || !std::isfinite(odds_)) return false;
         ++vertices_;
-        straight_ = 0;
+        distance_ = 0;
     }
     flux_ *= step.weight;
     const bool entering = dot(w, hit.ng) < 0;
@@ -162,7 +163,7 @@ bool LightWalk::pass(LightVertex& vertex, const LightStep& step) {
     return true;
 }
 
-/// Russian roulette: what survives is raised by what was ended.
+/// Russian roulette. Surviving walks are divided by their survival probability.
 bool LightWalk::survives() {
     const float survival = (flux_ / start_).max() / kRouletteThreshold, u = sampler_.next_1d();
     if (survival >= 1) return true;

@@ -1,4 +1,4 @@
-// Light from emitters without camera and film: what it brings to a point is what paths from there find.
+// Light walks without camera and film: they bring as much light to a point as paths from the point find.
 #include "transport/light_walk.h"
 
 #include <doctest/doctest.h>
@@ -15,7 +15,7 @@ namespace {
 constexpr int kPaths = 60000;
 const Vec3f kPoint{-0.3f, -0.2f, 0.5f};
 
-/// A closed cube of half side 1 with a lamp in it.
+/// A closed cube [-1, 1]^3 with a lamp inside.
 SceneDescription describe_room(Light lamp, Material wall) {
     SceneDescription d;
     d.meshes.push_back(closed_cube());
@@ -28,7 +28,7 @@ std::shared_ptr<const Scene> room(Light lamp, Material wall) {
     return Scene::build(describe_room(std::move(lamp), std::move(wall)));
 }
 
-/// The same full of fog that absorbs, with a ball of another such medium, on a grid or even.
+/// The cube filled with absorbing fog, with a ball of another absorbing medium, on a grid or homogeneous.
 std::shared_ptr<const Scene> foggy_room(Light lamp, Material wall, bool grid) {
     SceneDescription d = describe_room(std::move(lamp), std::move(wall));
     add(d, ball_mesh(3), {"boundary", DiffuseMaterial{}});
@@ -43,7 +43,7 @@ std::shared_ptr<const Scene> foggy_room(Light lamp, Material wall, bool grid) {
     return Scene::build(std::move(d));
 }
 
-/// The integral over directions of the radiance at the point that two surfaces or more have sent on.
+/// Integral over directions of the radiance at the point that was scattered by two surfaces or more.
 SampleMoments by_paths(const Scene& scene, PathSettings settings) {
     std::vector<double> values;
     for (int i = 0; i < kPaths; ++i) {
@@ -60,7 +60,7 @@ SampleMoments by_paths(const Scene& scene, PathSettings settings) {
     return moments(values);
 }
 
-/// Light that walks send there. A point has no size: the density of its direction is distance squared per sr.
+/// Light that walks send to the point, by connections with a density of distance squared, 1/sr.
 SampleMoments by_walks(const Scene& scene, const PathSettings& settings) {
     const EmissionSampler none;
     const EmissionRays rays(scene.lights(), scene.emission_reach());
@@ -108,14 +108,14 @@ TEST_CASE("walks bring to a point the light that paths find there after two surf
             INFO("paths ", a.mean, " walks ", b.mean);
             CHECK(a.mean > 0.1);
             CHECK(welch_p_value(a, b) > 1e-3);
-            b.mean *= 1.05;   // the check sees 5 %
+            b.mean *= 1.05;   // the check detects 5 %
             CHECK(welch_p_value(a, b) < 1e-3);
         }
 }
 
 TEST_CASE("walks bring the light of paths through media that absorb") {
     const Material wall{"wall", DiffuseMaterial{{0.6f, 0.6f, 0.6f}}};
-    const SphereLight lamp{{{0.1f, 0.1f, 0.1f}, 0.1f}, {20, 20, 20}};   // in the ball
+    const SphereLight lamp{{{0.1f, 0.1f, 0.1f}, 0.1f}, {20, 20, 20}};   // inside the ball
     for (const bool grid : {false, true}) {
         const auto clear = room(lamp, wall), foggy = foggy_room(lamp, wall, grid);
         SampleMoments a = by_paths(*foggy, {}), b = by_walks(*foggy, {});

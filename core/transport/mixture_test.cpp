@@ -1,4 +1,4 @@
-// Mixtures in a closed furnace: each vertex of a path chooses a part for itself, whatever finds its light.
+// Mixtures in a closed furnace: each vertex of a path chooses a part independently, for every sampling strategy.
 #include <doctest/doctest.h>
 
 #include "transport/test_furnace.h"
@@ -31,7 +31,7 @@ Material shining(Material m) {
 }  // namespace
 
 TEST_CASE("in a furnace of a mixture the radiance is that of the mean albedo, by every strategy") {
-    // Were a path of one part all the way, it would be the mean of 1 and 5 instead.
+    // If a path chose its part once for all vertices, the result would be the mean of 1 and 5.
     const auto scene = cube_of({grey(0), grey(0.8f), shining(mixed(0, 1, 0.5f))});
     using Strategy = PathSettings::Strategy;
     for (const auto strategy : {Strategy::mis, Strategy::light, Strategy::bsdf}) {
@@ -51,7 +51,7 @@ TEST_CASE("mixtures of mixtures, of mirrors too") {
 }
 
 TEST_CASE("of what is partly not there, each part counts by what is there of it") {
-    // Walls stop 1 or 0.5 of the rays; beyond them is nothing: R = a (1 + p R).
+    // Walls stop all or half of the rays, and the world outside is black: R = a (1 + p R).
     const auto scene = cube_of({grey(0), grey(0.8f, 0.5f), shining(mixed(0, 1, 0.5f))});
     const double stopped = 0.75, albedo = 0.8 * 0.25 / 0.75;
     for (const auto strategy : {PathSettings::Strategy::mis, PathSettings::Strategy::bsdf})
@@ -61,7 +61,7 @@ TEST_CASE("of what is partly not there, each part counts by what is there of it"
 
 TEST_CASE("a boundary is not there") {
     Material boundary{"boundary", BoundaryMaterial{}};
-    const auto scene = cube_of({shining(boundary)});   // seen once on the way to nothing
+    const auto scene = cube_of({shining(boundary)});   // each path passes it once
     CHECK(agrees(look(*scene, by(PathSettings::Strategy::bsdf), 2000), 1));
 }
 

@@ -20,12 +20,12 @@ namespace dg {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kBranchDraws = 1 << 15;   // dimensions of the sampler from way to way: more than the longest path has
+constexpr int kBranchDraws = 1 << 15;   // sampler dimensions between branches: more than the longest path uses
 
-/// Both ways on from a smooth clear interface, weighted by the share of light that takes each. Nothing where there are
-/// not exactly two: light is reflected totally, the glass is black, or a coat reflects, too.
+/// Reflection and refraction at a smooth clear interface, each weighted by its probability. Empty unless there are
+/// exactly two lobes: for total internal reflection, black glass, and coats.
 template <Scatters B>
-std::optional<std::array<BsdfSample, 2>> both_ways(const B& bsdf, Vec3f wo) {
+std::optional<std::array<BsdfSample, 2>> both_lobes(const B& bsdf, Vec3f wo) {
     auto one = bsdf.sample(wo, 0, {}), other = bsdf.sample(wo, kBelowOne, {});
     if (!one || !other || one->transmitted == other->transmitted) return std::nullopt;
     if (std::abs(one->pdf + other->pdf - 1) > 1e-5f) return std::nullopt;
@@ -34,7 +34,7 @@ std::optional<std::array<BsdfSample, 2>> both_ways(const B& bsdf, Vec3f wo) {
     return std::array{*one, *other};
 }
 
-/// The cone that leaves a hit. Curvature is asked for only where it matters.
+/// The ray cone after a hit. Curvature is computed only if the sample needs it.
 RayCone next_cone(const Scene& scene, const RayCone& cone, const SurfaceHit& hit, const BsdfSample& sample) {
     if (cone.empty()) return cone;
     const RayCone here = cone.after(hit.t);
@@ -43,7 +43,7 @@ RayCone next_cone(const Scene& scene, const RayCone& cone, const SurfaceHit& hit
     return sample.eta == 1 ? here : here.refracted(scene.curvature(hit), sample.eta);
 }
 
-/// One path: the steps from vertex to vertex, with light sampling and BSDF sampling at each. `Worlds` is OneWorld, or
+/// A path tracer's loop over vertices, with light sampling and BSDF sampling at each. `Worlds` is OneWorld, or
 /// TwoWorlds for scenes with catchers and plates. Functions that return false end the path.
 template <class Worlds>
 class Path : public PathState {
@@ -61,33 +61,34 @@ class Path : public PathState {
     Path(const Path&) = delete;
     Path& operator=(const Path&) = delete;
 
-    /// False: a ray cannot be traced. The film counts the sample as bad; the ray tracer never sees the ray.
+    /// False: a ray is not traceable (not finite). It is not passed to the ray tracer, and the film counts a bad
+    /// sample.
     bool follow() { return follow(0); }
 
-    /// Branches the path: follows one way, and comes back with all state as before. What the way found stays. Its
-    /// random numbers come after the `skipped` ones. Where light paths may find what comes next, no path branches, as
-    /// bounces_ is not saved.
-    template <typename Way>
-    void aside(int skipped, const Way& way) {
-        const Walk walk_before = walk;
+    /// Branches the path: runs `branch` and restores the state; the radiance that the branch gathered stays. The branch
+    /// draws random numbers beyond the `skipped` dimensions. Paths that share light with light paths must not branch,
+    /// as bounces_ is not saved.
+    template <typename Branch>
+    void aside(int skipped, const Branch& branch) {
+        const WalkState walk_before = walk;
         const typename Worlds::State worlds_before = worlds_.state;
         const PathSampler sampler_before = sampler;
         const bool secondary_ended = wavelengths.secondary_ended;
         sampler.skip(skipped);
-        way();
+        branch();
         walk = walk_before;
         worlds_.state = worlds_before;
         sampler = sampler_before;
         wavelengths.secondary_ended = secondary_ended;
     }
 
-    /// Follows a way that has just left a vertex, unless roulette ends it.
+    /// Follows a branch that has just left a vertex to its end, unless roulette ends it.
     void follow_to_end(int vertex) {
         const int next = vertex + walk.last.is_ray_origin();
         if (next < settings.roulette_depth || survives_roulette(walk, sampler.next_1d())) follow(next);
     }
 
-    /// To what the ray meets, and on from there.
+    /// Traces the ray through media to the next hit and processes the hit.
     bool step(int vertex) {
         ++rays;
         const bool counted = counts(vertex);
@@ -101,7 +102,7 @@ class Path : public PathState {
         return found ? worlds_.arrive(*this, *found, vertex, counted) : leave_scene(counted);
     }
 
-    /// At a surface or a lamp.
+    /// Processes a hit on a surface or a sphere light.
     bool arrive(Scene::Hit& found, int vertex, bool counts) {
         SurfaceHit& hit = found.surface;
         if (walk.media.interior.present) walk.throughput *= walk.media.interior.transmittance(hit.t);
@@ -116,12 +117,12 @@ class Path : public PathState {
         const MaterialAt material = scene.material(hit);
         worlds_.show_plate(*this, material, hit);
         if (counts) worlds_.gather_emission(*this, surface_emission(*this, material, hit));
-        if (vertex == settings.max_depth && !scene.has_clear()) return false;   // behind it only windows count
+        if (vertex == settings.max_depth && !scene.has_clear()) return false;   // only windows may follow
         return scatter(material, hit, vertex);
     }
 
   private:
-    using SharedVertex = PathMis::Vertex;   // null: light paths find nothing that comes next
+    using SharedVertex = PathMis::Vertex;   // a null pointer: no MIS with light paths from here on
 
     bool follow(int vertex) {
         for (;; vertex += walk.last.is_ray_origin()) {   // a window is no vertex
@@ -131,10 +132,10 @@ class Path : public PathState {
         }
     }
 
-    /// Whether emission met here counts. Other passes bring the rest.
+    /// Whether emission hit here counts. Other passes render excluded emission.
     bool counts(int vertex) const {
         const bool caustic = walk.last.delta && !walk.in_view;
-        return (settings.straight || vertex > 0) && (settings.caustics || !caustic);
+        return (settings.visible_emitters || vertex > 0) && (settings.caustics || !caustic);
     }
 
     bool leave_scene(bool counts) {
@@ -143,7 +144,7 @@ class Path : public PathState {
         return false;
     }
 
-    /// Through a surface where nothing but the medium changes: a window.
+    /// Passes a window where only the medium changes.
     bool pass_boundary(const SurfaceHit& hit) {
         walk.media.interior = scene.beyond(walk.media.interior, hit.instance, {}, false, hit.front);
         walk.last.windows += hit.t;
@@ -152,7 +153,7 @@ class Path : public PathState {
         return true;
     }
 
-    /// Adds the light of a way through a medium, and leaves the point at which the medium scatters the path.
+    /// Adds the light gathered in a medium, and continues from the point where the medium scatters the path.
     bool after_crossing(const MediumEvent& event, int vertex) {
         using Kind = MediumEvent::Kind;
         const PhaseBsdf phase{walk.media.interior.medium->phase};
@@ -160,7 +161,7 @@ class Path : public PathState {
         if (event.lamp.direct.weight > 0)
             gather_direct(phase, in_medium(walk.ray, event.lamp.t), event.lamp.direct, event.lamp_throughput, nullptr);
         if (event.kind == Kind::passed || event.kind == Kind::ended) return event.kind == Kind::passed;
-        walk.sharing.bounces = nullptr;   // media scatter no light paths
+        walk.sharing.bounces = nullptr;   // light paths are not scattered by media
         const SurfaceHit at = in_medium(walk.ray, event.t);
         if (event.kind == Kind::collided) return leave(phase, at, vertex, nullptr);
         go(phase, at, {.wi = event.wi, .weight = 1.f, .pdf = event.phase_pdf}, nullptr);
@@ -168,15 +169,15 @@ class Path : public PathState {
         return true;
     }
 
-    /// At a surface: its BSDF, and the way on.
+    /// Evaluates the BSDF at a surface and continues from there.
     bool scatter(const Material& material, SurfaceHit& hit, int vertex) {
         if (walk.sharing.bounces) return scatter_shared(material, hit, vertex);
         const Bsdf bsdf = shade(material, scene.textures(), hit, wavelengths);
         return leave_by_kind(bsdf, material, hit, vertex, nullptr);
     }
 
-    /// The same, where light paths may find what comes next. A function of its own, because gcc clears room for a
-    /// vertex that may be absent (bug 86173): 1.7 kB at each surface.
+    /// scatter() for a path that shares light with light paths. Separate, because gcc zeroes the storage of an optional
+    /// vertex (bug 86173): 1.7 kB at each surface.
     bool scatter_shared(const Material& material, SurfaceHit& hit, int vertex) {
         const SurfaceHit bare = hit;
         const Bsdf bsdf = shade(material, scene.textures(), hit, wavelengths);
@@ -191,41 +192,40 @@ class Path : public PathState {
         return std::visit([&](const auto& kind) { return leave(kind, hit, vertex, shared); }, bsdf);
     }
 
-    /// Direct light, and a direction to go on in.
+    /// Adds direct light and samples the next direction.
     template <Scatters B>
     bool leave(const B& bsdf, const SurfaceHit& hit, int vertex, SharedVertex* shared) {
         const bool last = vertex == settings.max_depth;
         const int tries = light_tries(scene.lights(), walk.in_view);
         const VertexRandom u = draw_vertex(bsdf, tries, sampler);
-        const auto seen = seen_from(bsdf, hit.wo);
-        if (!last && !bsdf.is_specular()) sample_light(bsdf, seen, tries, hit, u, shared);
+        const auto view = seen_from(bsdf, hit.wo);
+        if (!last && !bsdf.is_specular()) sample_light(bsdf, view, tries, hit, u, shared);
         if constexpr (!B::kOneLobe)
             if (!last && walk.in_view && walk.splits < settings.splits && split(bsdf, hit, vertex)) return true;
-        const auto sample = bsdf.sample(seen, u.lobe, u.direction);
+        const auto sample = bsdf.sample(view, u.lobe, u.direction);
         if (!sample || sample->weight.is_black()) return false;
         go(bsdf, hit, *sample, shared);
         if (walk.last.is_ray_origin()) walk.last.tries = tries;
         return !last || !walk.last.is_ray_origin();
     }
 
-    /// Follows one way to its end and goes on by the other, if there are two. To draw one of them is the noise of
-    /// glass: a bright reflection that few paths take, among many that pass. Measured: two splits lower rays x error by
-    /// 11 %, more of them buy nothing.
+    /// Follows one of two lobes to its end, then continues with the other. Choosing one at random makes glass noisy,
+    /// since few paths sample a bright reflection. Measured: two splits lower rays x error by 11 %; more do not help.
     template <Scatters B>
     bool split(const B& bsdf, const SurfaceHit& hit, int vertex) {
         if (!bsdf.is_specular() || !bsdf.bounds_volume()) return false;
-        const auto ways = both_ways(bsdf, hit.wo);
-        if (!ways) return false;
-        walk.sharing.bounces = nullptr;   // no light path ends at a delta lobe that the lens sees
+        const auto lobes = both_lobes(bsdf, hit.wo);
+        if (!lobes) return false;
+        walk.sharing.bounces = nullptr;   // light paths cannot connect to the lens at a delta lobe
         aside(kBranchDraws << walk.splits++, [&] {
-            go(bsdf, hit, (*ways)[0], nullptr);
+            go(bsdf, hit, (*lobes)[0], nullptr);
             follow_to_end(vertex);
         });
-        go(bsdf, hit, (*ways)[1], nullptr);
+        go(bsdf, hit, (*lobes)[1], nullptr);
         return true;
     }
 
-    /// On from a vertex, with the ray of what comes next.
+    /// Leaves a vertex along a BSDF sample and spawns the next ray.
     template <Scatters B>
     void go(const B& bsdf, const SurfaceHit& hit, const BsdfSample& sample, SharedVertex* shared) {
         const RayCone cone = next_cone(scene, walk.ray.cone, hit, sample);
@@ -234,13 +234,13 @@ class Path : public PathState {
         walk.open = walk.open && through;
         advance(bsdf, hit, sample, shared);
         worlds_.uncover(*this, hit);
-        // The throughput carries the hero's share from here on, so the weights of what was gathered before stay. A BSDF
-        // disperses no path whose secondary wavelengths have ended.
+        // The throughput holds the hero's factor from here on, so earlier contributions keep their weights. A BSDF does
+        // not disperse a path without secondary wavelengths.
         if (sample.hero_only) wavelengths.secondary_ended = walk.hero_only = true;
         spawn(hit, sample.wi, cone);
     }
 
-    /// A clear sheet leaves the last vertex as it is: light sampling there sees through the sheet, too.
+    /// Updates the state. A clear sheet is no vertex: light sampling at the vertex before it passes through the sheet.
     template <Scatters B>
     void advance(const B& bsdf, const SurfaceHit& hit, const BsdfSample& sample,
                  SharedVertex* shared) {
@@ -258,7 +258,7 @@ class Path : public PathState {
         walk.last = {hit.position, sample.pdf, walk.last.tries, sample.specular, 0};
     }
 
-    /// The ray from a hit. It meets the same objects as the last one.
+    /// Spawns the next ray from a hit, in the same world (full scene or set).
     void spawn(const SurfaceHit& hit, Vec3f direction, RayCone cone) {
         const bool of_set = walk.ray.of_set;
         walk.ray = spawn_ray(hit, direction, walk.ray.time);
@@ -267,28 +267,28 @@ class Path : public PathState {
     }
 
     /// Next-event estimation.
-    template <Scatters B, typename Seen>
-    void sample_light(const B& bsdf, const Seen& seen, int tries, const SurfaceHit& hit,
+    template <Scatters B, typename View>
+    void sample_light(const B& bsdf, const View& view, int tries, const SurfaceHit& hit,
                       const VertexRandom& u, SharedVertex* shared) {
         using Strategy = PathSettings::Strategy;
         const bool mis = settings.strategy != Strategy::light, by_bsdf = settings.strategy == Strategy::bsdf;
         if (tries > 1 && !by_bsdf) {
             const auto picked =
                 LightPick::pick(scene, hit, wavelengths, tries, mis, {u.select, u.light, u.lobe}, walk.throughput,
-                                [&](Vec3f wi) { return bsdf.evaluate_with_pdf(seen, wi); });
+                                [&](Vec3f wi) { return bsdf.evaluate_with_pdf(view, wi); });
             if (picked) gather_direct(bsdf, hit, *picked, walk.throughput, shared);
             return;
         }
         const auto light = scene.sample_light(u.select, u.light, hit.position, hit.time, wavelengths);
         if (!light || light->pdf <= 0) return;
         if (by_bsdf && !light->delta) return;
-        const Evaluation f = bsdf.evaluate_with_pdf(seen, light->wi);
+        const Evaluation f = bsdf.evaluate_with_pdf(view, light->wi);
         if (f.f_cos.is_black()) return;
         const float share = light->delta || !mis ? 1.f : power_heuristic(light->pdf, f.pdf);
         gather_direct(bsdf, hit, {*light, f, share / light->pdf}, walk.throughput, shared);
     }
 
-    /// Adds a light sample, where nothing is in its way.
+    /// Adds a light sample times its visibility.
     template <Scatters B>
     void gather_direct(const B& bsdf, const SurfaceHit& hit, const DirectLight& direct,
                        Spectrum throughput, SharedVertex* shared) {

@@ -1,4 +1,4 @@
-// path.h -- radiance along a ray. Knows neither camera nor film, so it can be held against a furnace.
+// path.h -- radiance along a ray, by path tracing. Independent of camera and film, so furnace tests need neither.
 #pragma once
 #include <cstdint>
 
@@ -12,14 +12,15 @@ namespace dg {
 
 class FirstRay;   // sharing/first_ray.h
 
-/// Radiance that arrives along `ray`, by path tracing with next-event estimation and multiple importance sampling. At
-/// the first smooth clear interfaces that it sees, a path goes both ways. `hit`, if given, receives the first surface;
-/// `first`, if given, says which share of what emitters send straight along the ray is left to this path.
+/// Radiance that arrives along `ray`, by path tracing with next-event estimation and multiple importance sampling. The
+/// path follows both reflection and refraction at the first smooth clear interfaces (PathSettings::splits). `hit`, if
+/// given, receives the first surface. `first`, if given, holds the camera ray's densities for MIS with light paths.
 Radiance radiance(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
                   const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count,
                   const FirstRay* first = nullptr);
 
-/// The same with coverage, in parts where the scene has catchers. Then light paths must not be in use.
+/// Radiance along `ray` with coverage, separated into objects and set if the scene has catchers. Scenes with catchers
+/// cannot use light paths.
 Sight look(const Scene& scene, Ray ray, const Wavelengths& wavelengths, PathSampler& sampler,
            const PathSettings& settings, FirstHit* hit, std::uint64_t* ray_count, const FirstRay* first = nullptr);
 

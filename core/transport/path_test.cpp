@@ -1,4 +1,4 @@
-// The path tracer without camera and film: closed worlds whose radiance is known.
+// The path tracer without camera and film, in closed scenes of known radiance.
 #include "transport/path.h"
 
 #include <doctest/doctest.h>
@@ -25,7 +25,7 @@ TEST_CASE("in a closed furnace the radiance is emission / (1 - albedo), by every
             settings.strategy = strategy;
             const SampleMoments m = look(*scene, settings, 40000);
             CHECK(agrees(m, 1 / (1 - albedo)));
-            // Light sampling alone is too noisy in the corners to tell 4 % apart.
+            // Light sampling alone is too noisy in the corners to detect 4 %.
             if (strategy != PathSettings::Strategy::light)
                 CHECK_FALSE(agrees(m, 1.04 / (1 - albedo)));
         }

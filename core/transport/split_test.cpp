@@ -1,4 +1,4 @@
-// Paths that go both ways at the first smooth clear interfaces: the same light, with less noise.
+// Paths that follow both lobes of the first smooth clear interfaces: the same mean, with less noise.
 #include <doctest/doctest.h>
 
 #include "math/statistics.h"
@@ -38,7 +38,7 @@ Material tumbler(Rgb color) {
     return {"tumbler", m};
 }
 
-/// Two blocks of glass, one behind the other, on a floor under a lamp and a grey sky.
+/// Two blocks of glass in a row, on a floor under a lamp and a grey sky.
 std::shared_ptr<const Scene> blocks(const Material& glass, bool mirror = false) {
     SceneDescription d;
     add(d, cube(0.5f, {0, 0, -2}), glass);
@@ -59,7 +59,7 @@ std::shared_ptr<const Scene> slab(const Material& glass) {
     return Scene::build(std::move(d));
 }
 
-/// One path down to the slab at 45 degrees, by wavelength over what the sky sends.
+/// Radiance of a path down to the slab at 45 degrees, relative to the sky, for each wavelength.
 Radiance look_down(const Scene& scene, int depth, int i, int splits = 5) {
     PathSampler sampler(i, 0, 0, 7);
     const Wavelengths wavelengths = Wavelengths::sample(sampler.camera().lambda);
@@ -76,14 +76,14 @@ Radiance look_down(const Scene& scene, int depth, int i, int splits = 5) {
     return light;
 }
 
-/// Fresnel's reflectance of an index at 45 degrees.
+/// Fresnel reflectance of a refractive index at 45 degrees.
 double reflectance(double n) {
     const double in = std::sqrt(0.5), out = std::sqrt(1 - 0.5 / (n * n));
     const double s = (in - n * out) / (in + n * out), p = (n * in - out) / (n * in + out);
     return (s * s + p * p) / 2;
 }
 
-/// Luminance of paths into the scene, about the axis.
+/// Luminances of paths into the scene, near the axis.
 SampleMoments look(const Scene& scene, int splits, std::uint64_t seed) {
     PathSettings settings;
     settings.splits = splits;

@@ -1,11 +1,11 @@
-// test_furnace.h -- a closed cube, and paths that look at its walls, for tests.
+// test_furnace.h -- a closed cube for furnace tests, and the luminance of paths inside it.
 #pragma once
 #include "math/statistics.h"
 #include "transport/path.h"
 
 namespace dg {
 
-/// A cube of half side 1 around the origin; its front faces point in.
+/// Cube [-1, 1]^3 with front faces inward.
 inline Mesh closed_cube() {
     Mesh cube;
     cube.name = "cube";
@@ -17,7 +17,7 @@ inline Mesh closed_cube() {
     return cube;
 }
 
-/// A closed cube of half side 1 around the origin, made of the last of some materials.
+/// Scene of the cube [-1, 1]^3, with the last of the materials.
 inline std::shared_ptr<const Scene> cube_of(std::vector<Material> materials) {
     SceneDescription d;
     d.meshes.push_back(closed_cube());
@@ -26,7 +26,7 @@ inline std::shared_ptr<const Scene> cube_of(std::vector<Material> materials) {
     return Scene::build(std::move(d));
 }
 
-/// Luminances of n paths from the middle, in all directions.
+/// Luminances of n paths from the center in uniformly distributed directions.
 inline SampleMoments look(const Scene& scene, const PathSettings& settings, int n) {
     std::vector<double> values;
     for (int i = 0; i < n; ++i) {

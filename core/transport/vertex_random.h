@@ -5,14 +5,14 @@
 namespace dg {
 
 struct VertexRandom {
-    float select = 0;      // which light
-    Vec2f light;           // where on it
-    float lobe = 0;        // which lobe of the BSDF, and which of several light samples
+    float select = 0;      // the light
+    Vec2f light;           // the point on the light
+    float lobe = 0;        // the lobe of the BSDF, and the pick among several light samples
     Vec2f direction;
 };
 
-/// Every vertex takes the same four dimensions, so that stratification stays; those that this BSDF has
-/// no use for are left out.
+/// Every vertex consumes the same four dimensions, which keeps samples stratified; dimensions that the BSDF does not
+/// need are skipped.
 template <Scatters B>
 VertexRandom draw_vertex(const B& bsdf, int tries, PathSampler& sampler) {
     VertexRandom u;

@@ -1,5 +1,5 @@
-// Light through glass: smooth sheets let it through by every strategy alike; volumes let
-// delta lights through straight on.
+// Light through glass: smooth sheets transmit the same light with every strategy; volumes transmit the light of delta
+// lights unrefracted.
 #include <doctest/doctest.h>
 
 #include "material/fresnel.h"
@@ -41,8 +41,7 @@ GltfMaterial glass(Rgb colour, float thickness = 0) {
     return m;
 }
 
-/// Radiance along a ray, in units of emission(1, 1, 1) at each wavelength: mean and
-/// variance of the hero's.
+/// Radiance of the hero along a ray, relative to emission(1, 1, 1) at its wavelength: mean and variance.
 SampleMoments radiance_along(const Ray& ray, const SceneDescription& d, Strategy strategy,
                              int n, int max_depth) {
     const auto scene = Scene::build(d);
@@ -59,7 +58,7 @@ SampleMoments radiance_along(const Ray& ray, const SceneDescription& d, Strategy
     return moments(values);
 }
 
-/// That of the floor at the origin, seen from below the lowest glass (y = 0.1).
+/// Radiance of the floor at the origin, seen from below the lowest glass (y = 0.1).
 SampleMoments floor_radiance(const SceneDescription& d, Strategy strategy, int n,
                              int max_depth = 16) {
     Ray ray;
@@ -72,7 +71,7 @@ float green() {
     return Wavelengths::sample(0.4f).reflectance(kGreen)[0];
 }
 
-/// Schlick's transmittance of a sheet of index 1.5, as glTF's dielectric has it.
+/// Schlick's transmittance of a sheet of index 1.5, as in glTF's dielectric.
 double sheet(double cosine) {
     return green() * (1 - (0.04 + 0.96 * std::pow(1 - cosine, 5)));
 }
@@ -83,7 +82,7 @@ void check(const SampleMoments& m, double expected, double tolerance = 1e-3) {
     CHECK(m.mean == doctest::Approx(expected).epsilon(tolerance + spread / expected));
 }
 
-/// Light that the glass sends back to the floor is none of the lamp's.
+/// Depth that excludes light which the glass reflects back to the floor.
 constexpr int kDirectOnly = 1;
 
 }  // namespace
@@ -107,7 +106,7 @@ TEST_CASE("a pane lets light through as a picture hangs: texture, vertex colour,
     SceneDescription d = white_floor();
     GltfMaterial m = glass({1, 1, 1});
     m.alpha_mode = GltfMaterial::AlphaMode::blend;
-    m.base_alpha = 0.5f;  // half of the light passes the pane without meeting it
+    m.base_alpha = 0.5f;  // half of the light passes the pane unaffected
     Mesh pane = plate(20, 0.3f);
     const std::array<float, 4> colour{kGreen.x, kGreen.y, kGreen.z, 1};
     pane.colors = {colour, colour, colour, colour};
@@ -127,8 +126,8 @@ TEST_CASE("a pane lets light through as a picture hangs: texture, vertex colour,
 
 TEST_CASE(
     "lamps with an extent and skies through panes: every strategy has the same mean") {
-    // A lamp that covers the floor's whole sky, and a sky of the same luminance, make the
-    // same light: the integral of the panes' transmittance over the hemisphere.
+    // A lamp that covers the hemisphere above the floor, and a sky of the same luminance, give the same light: the
+    // integral of the panes' transmittance over the hemisphere.
     for (int panes : {1, 2}) {
         double expected = 0;
         const int n = 1000;
@@ -217,7 +216,7 @@ TEST_CASE(
           30 * cosine / 5 * through / kPiD,
           5e-3);  // glTF's curve is rescaled between F0 and F90
 
-    // From inside the slab one boundary and the way to it are left.
+    // A ray from inside the slab passes a boundary and the distance to it.
     const auto scene = Scene::build(d);
     const Wavelengths wl = Wavelengths::sample(0.4f);
     Ray ray;
@@ -228,8 +227,8 @@ TEST_CASE(
     ray.t_max = 5;
     CHECK(scene->visibility(ray, true, inside, wl)[0] ==
           doctest::Approx(normal * std::pow(green(), 0.1 / 0.25)).epsilon(1e-3));
-    // Light that a path can find behind the boundary is not approximated; within, it is
-    // dimmed.
+    // Emitters that a path can hit are not approximated by unrefracted shadow rays; inside the volume they are
+    // attenuated.
     CHECK(scene->visibility(ray, false, inside, wl).is_black());
     ray.t_max = 0.05f;
     CHECK(scene->visibility(ray, false, inside, wl)[0] ==
@@ -294,7 +293,7 @@ TEST_CASE("many panes: dark in the end, never wrong in order") {
     d.instances.resize(1 + Crossings::kMost);
     CHECK(floor_radiance(d, Strategy::mis, 4, kDirectOnly).mean ==
           doctest::Approx(30 / kPiD * std::pow(0.96, 32)).epsilon(0.03));
-    // Straight up the diagonal, where both triangles of each pane are met.
+    // Along the diagonal, where the ray hits both triangles of each pane.
     d.instances.resize(1 + 3);
     d.lights = {PointLight{{0, 1, 0}, {30, 30, 30}}};
     CHECK(floor_radiance(d, Strategy::mis, 4, kDirectOnly).mean ==

@@ -21,7 +21,7 @@ def assert_small(text: str, record: str) -> None:
     assert found.count("bool") <= 4, found
 
 
-@pytest.mark.parametrize("record", ["Walk", "LastVertex", "MediaWalk"])
+@pytest.mark.parametrize("record", ["WalkState", "LastVertex", "MediaState"])
 def test_the_state_of_a_path_is_small(record):
     assert_small(WALK, record)
 
@@ -35,6 +35,6 @@ def test_the_integrator_is_one_short_file():
     ["    bool bent = false;   // a fifth\n", "".join(f"    float a{i} = 0;\n" for i in range(4))],
 )
 def test_a_planted_fault_is_caught(fault):
-    head = "\nstruct Walk {\n"
+    head = "\nstruct WalkState {\n"
     with pytest.raises(AssertionError):
-        assert_small(WALK.replace(head, head + fault), "Walk")
+        assert_small(WALK.replace(head, head + fault), "WalkState")

@@ -14,13 +14,6 @@ PATTERNS, comments, files, rates = (WORDS[k] for k in ("PATTERNS", "comments", "
 
 #: Rooms with comments that are still to be rewritten.
 LEFT = {
-    "core/bind",
-    "core/light",
-    "core/material",
-    "core/medium",
-    "core/render",
-    "core/scene",
-    "core/transport",
     "python/daguerre/apart",
     "python/daguerre/export",
     "python/daguerre/exporters",

@@ -10,8 +10,8 @@
 namespace dg {
 namespace {
 
-constexpr std::size_t kMostFour = 1024;   // ghosts by four reflections
-constexpr double kFurthestBack = 0.45;    // cosine: no lens sees what lies further behind it
+constexpr std::size_t kMostFour = 1024;   // limit of ghosts with four reflections
+constexpr double kFurthestBack = 0.45;    // cosine of the largest angle behind a lens that it can see
 
 }  // namespace
 
@@ -26,7 +26,7 @@ Spectrum flare_light(const Scene& scene, const Camera& camera, const PathSetting
     const Ray ray = to_world(camera, path.lens.ray);
     if (path.from.reflected) {
         PathSettings onward = settings;
-        onward.straight = onward.caustics = false;
+        onward.visible_emitters = onward.caustics = false;
         Wavelengths wavelengths = path.wavelengths;
         return radiance(scene, ray, wavelengths, sampler, onward, nullptr, &rays).sum();
     }
@@ -66,7 +66,7 @@ void FlareAim::add_state(const Camera& camera, const ExactLens& lens) {
     states_.push_back({lens, lens.ghosts(camera.sensor_stack), {}});
 }
 
-/// All around, at some moments.
+/// Cones of all directions, at several times.
 std::vector<ViewCone> FlareAim::views() const {
     std::vector<ViewCone> views;
     const bool still = !camera_.world_from_camera.moves();
@@ -116,7 +116,7 @@ std::optional<Vec2f> FlareAim::on_frame(const Reprojection& landing, float time)
     if (!shutter_.rolls()) return px;
     const int line = int(std::floor(shutter_.scans_columns() ? px.x : px.y));
     const int lines = shutter_.scans_columns() ? sensor_.width : sensor_.height;
-    for (int i = -1; i <= 1; ++i)   // the filter reaches some lines
+    for (int i = -1; i <= 1; ++i)   // the filter covers neighbouring lines
         if (shutter_.opening(std::clamp(line + i, 0, lines - 1), time) > 0) return px;
     return std::nullopt;
 }
@@ -125,7 +125,7 @@ int FlareAim::mark_arrived(std::span<Reprojection> landings, float time) const {
     int arrived = 0;
     for (Reprojection& landing : landings) {
         const bool on_film = on_frame(landing, time).has_value();
-        landing.etendue = on_film ? 1.f : 0.f;   // RayOnFilm's sign of what arrives
+        landing.etendue = on_film ? 1.f : 0.f;   // RayOnFilm skips landings with 0
         arrived += on_film;
     }
     return arrived;
@@ -143,7 +143,7 @@ std::optional<FlareAim::Way> FlareAim::way(const EmitterPoint& from, Vec2f at, f
     const Vec3d p = from.at_infinity ? to_camera.vector(position) : to_camera.point(position);
     const Vec3d toward = from.at_infinity ? p : p - center_;
     const double distance = from.at_infinity ? 1 : length(toward);
-    if (!(distance > radius_ * (from.at_infinity ? 0 : 1))) return std::nullopt;   // within the glass
+    if (!(distance > radius_ * (from.at_infinity ? 0 : 1))) return std::nullopt;   // inside the glass
     const Vec3d e = toward / distance;
     const Across across(e);
     const Vec3d q = center_ + radius_ * (double(at.x) * across.x + double(at.y) * across.y);
@@ -170,7 +170,7 @@ std::optional<FlareArrival> FlareAim::aim(int source, int ghost, Vec2f at, doubl
     FlareArrival path;
     path.lens.ray = {.origin = to_float(way->start), .direction = to_float(way->direction), .time = time};
     path.lens.iris_opening = u.moment.iris_opening * setting_at(camera_, time).iris_opening;
-    // Per m2 of the square, then per sr at the point (or per m2 across the ray), then per m2 sr.
+    // Converts the density from m2 of the square to sr at the point (or m2 across the ray) to m2 sr.
     path.density = double(from->point.pdf) * pdf / (radius_ * radius_) * way->spread;
     if (!(path.density > 0) || !std::isfinite(path.density)) return std::nullopt;
     const Rgb value = value_of(*from, *way);
@@ -202,7 +202,7 @@ Rgb FlareAim::value_of(const EmitterPoint& from, const Way& way) const {
 }
 
 double FlareAim::visible_share(int source) const {
-    if (sources_.reflected(source)) return 1;   // as it was seen
+    if (sources_.reflected(source)) return 1;   // found by rays from the lens, so unoccluded
     int seen = 0, all = 0;
     for (int i = 0; i < 64; ++i) {
         PathSampler sampler(source, -5, std::uint32_t(i), 0);

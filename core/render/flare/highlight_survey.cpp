@@ -12,20 +12,20 @@ namespace dg {
 namespace {
 
 constexpr int kAcross = 16, kDown = 8;   // tiles
-constexpr int kCells = 4;                // of a tile, across and down: some 5 degrees
-constexpr int kWide = 64;                // paths per cell
-constexpr int kClose = 512;              // of a closer look
+constexpr int kCells = 4;                // per tile along each axis: about 5 degrees
+constexpr int kWide = 64;                // paths per cell in the first look
+constexpr int kClose = 512;              // paths of a closer look
 constexpr int kMostLooks = 9;
-constexpr float kSpread = 0.5f;          // rad: of lamps in mirrors, at first
-constexpr float kSharper = 0.4f;         // in each closer look
-constexpr int kGrid = 16, kPerCell = 4;  // what is known of a spot in the end
+constexpr float kSpread = 0.5f;          // rad: initial cone of lamps in mirrors
+constexpr float kSharper = 0.4f;         // factor on the cone in each closer look
+constexpr int kGrid = 16, kPerCell = 4;  // resolution of a spot, and paths per cell
 constexpr std::size_t kMostSpots = 48;
-constexpr double kHot = 8;               // times the mean: a spot
-constexpr double kPeak = 16;             // what one path finds: there may be one
-constexpr double kMoves = 0.1;           // of the variance of what is bright: such a share is no chance
-constexpr float kBright = 0.1f;          // of the luminance of what is bright: belongs to it
-constexpr float kLeast = 0.1f;           // of the mean: no part of a spot or tile is drawn less often
-constexpr int kTileSequence = -6, kSpotSequence = -16;   // where pixels have their row
+constexpr double kHot = 8;               // ratio to the mean above which a cell is a spot
+constexpr double kPeak = 16;             // ratio to the mean of a single path above which there may be a spot
+constexpr double kMoves = 0.1;           // fraction of the variance that a significant motion explains
+constexpr float kBright = 0.1f;          // fraction of a spot's luminance above which a cell belongs to it
+constexpr float kLeast = 0.1f;           // fraction of the mean: lower bound of sampling weights in a spot or tile
+constexpr int kTileSequence = -6, kSpotSequence = -16;   // in place of a pixel row
 
 struct Look {
     Ray ray;
@@ -33,7 +33,7 @@ struct Look {
     int cell;
 };
 
-/// A rectangle that holds points.
+/// Bounding rectangle of points.
 struct Extent {
     Vec2f low{1e9f, 1e9f}, high{-1e9f, -1e9f};
     int count = 0;
@@ -44,12 +44,12 @@ struct Extent {
     }
 };
 
-/// Evenly, but for what is brighter.
+/// Uniform distribution over cells.
 Distribution2D even(int cells) {
     return {cells, cells, std::vector<float>(std::size_t(cells) * cells, 1.f)};
 }
 
-/// Nothing is left out because few paths looked at it.
+/// Raises weights to a minimum, as few paths have sampled each cell.
 std::vector<float> raised(std::vector<float> weights, int cells, float mean) {
     std::vector<float> out(weights.size());
     for (int r = 0; r < cells; ++r)
@@ -68,7 +68,7 @@ class Surveyor {
   public:
     Surveyor(const Scene& scene, const EmitterPoints& lamps, const SurveyView& view)
         : scene_(scene), view_(view), glints_(scene, lamps) {
-        view_.path.straight = view_.path.caustics = false;
+        view_.path.visible_emitters = view_.path.caustics = false;
         tiles_ = direction_tiles(kAcross, kDown);
     }
 
@@ -86,7 +86,7 @@ class Surveyor {
     }
 
   private:
-    /// Look along one path, with lamps in mirrors spread out; nothing where no light enters.
+    /// Samples a path, with enlarged lamps in mirrors; empty where no light enters.
     template <typename Toward>
     std::optional<Look> look(const Toward& toward, PathSampler& sampler, float spread, std::uint64_t& rays) const {
         const CameraRandom u = sampler.camera();
@@ -115,8 +115,8 @@ class Surveyor {
     SurveyView view_;
     Glints glints_;
     std::vector<DirectionTile> tiles_;
-    std::vector<std::vector<Look>> looks_;   // of each tile
-    double mean_ = 0;                        // luminance of all directions from which light enters
+    std::vector<std::vector<Look>> looks_;   // per tile
+    double mean_ = 0;                        // mean luminance of directions from which light enters
     std::atomic<std::uint64_t> rays_{0};
 };
 
@@ -146,7 +146,7 @@ void Surveyor::look_around() {
     mean_ = area > 0 ? sum / area : 0;
 }
 
-/// The brightest first.
+/// Bright cells, by decreasing brightness.
 std::vector<HighlightSpot> Surveyor::hot_cells() const {
     std::vector<HighlightSpot> spots;
     for (std::size_t t = 0; t < tiles_.size(); ++t) {
@@ -181,7 +181,7 @@ std::vector<HighlightSpot> Surveyor::hot_cells() const {
     return spots;
 }
 
-/// Evenly over the rectangle. Of each its cell of kGrid.
+/// Uniform samples of a spot's rectangle.
 std::vector<Look> Surveyor::looks_at(const HighlightSpot& spot, int count, int sequence, float spread) {
     HighlightSpot evenly = spot;
     evenly.weights = even(1);
@@ -203,7 +203,8 @@ std::vector<Look> Surveyor::looks_at(const HighlightSpot& spot, int count, int s
     return looks;
 }
 
-/// Nearness of the plane on which what is bright moves least as it is seen from here and there: least squares.
+/// Inverse distance of the plane on which the spot has the least parallax between points of the front, by least
+/// squares.
 float Surveyor::nearness(const HighlightSpot& spot, std::span<const Look> looks) const {
     HighlightSpot far = spot, near = spot;
     far.nearness = 0, near.nearness = 1;
@@ -220,12 +221,12 @@ float Surveyor::nearness(const HighlightSpot& spot, std::span<const Look> looks)
     if (!(sum > 0)) return 0;
     ab -= (a[0] * b[0] + a[1] * b[1]) / sum, bb -= (b[0] * b[0] + b[1] * b[1]) / sum;
     if (!(bb > 0)) return 0;
-    // An image within the glass cannot be looked at; one far away is at infinity for a lens.
+    // Excludes images inside the glass; distant images are at infinity for a lens.
     const float best = std::clamp(float(-ab / bb), 0.f, 0.5f / view_.radius);
     return best * view_.radius < 1e-5f ? 0 : best;
 }
 
-/// By which what is bright moves along, as it is seen on the plane so far: least squares.
+/// Velocity of the spot on its plane, by least squares.
 Vec2f Surveyor::velocity(const HighlightSpot& spot, std::span<const Look> looks) const {
     HighlightSpot still = spot;
     still.velocity = {};
@@ -240,14 +241,14 @@ Vec2f Surveyor::velocity(const HighlightSpot& spot, std::span<const Look> looks)
     }
     if (!(sum > 0)) return spot.velocity;
     const double spread = tt - t * t / sum;
-    if (!(spread > 1e-6 * sum)) return {};   // an exposure of no length
+    if (!(spread > 1e-6 * sum)) return {};   // an exposure of length 0
     const double vx = (tx - t * x / sum) / spread, vy = (ty - t * y / sum) / spread;
     const double explained = (vx * vx + vy * vy) * spread, variance = squares - (x * x + y * y) / sum;
     if (explained < kMoves * variance) return {};
     return {float(vx), float(vy)};
 }
 
-/// The rectangle about what is bright in it, until that fills it.
+/// Shrinks a spot's rectangle to its bright part in closer looks.
 void Surveyor::close_in(HighlightSpot& spot, int index) {
     float spread = kSpread;
     for (int i = 0; i < kMostLooks; ++i, spread *= kSharper) {
@@ -271,14 +272,14 @@ void Surveyor::close_in(HighlightSpot& spot, int index) {
         const Vec2f margin{more * size.x + step * spot.size.x, more * size.y + step * spot.size.y};
         closer.low = extent.low - margin, closer.size = size + margin * 2.f;
         if (!(closer.solid_angle() < 0.7 * spot.solid_angle())) {
-            if (i > 3) return;   // not only as lamps are spread out
+            if (i > 3) return;   // earlier looks may fail to shrink it because lamps are enlarged
             continue;
         }
         spot = closer;
     }
 }
 
-/// Those that are bright by themselves, without what those before them hold.
+/// Spots that are bright without the light that earlier spots contain.
 std::vector<HighlightSpot> Surveyor::worth_it(std::vector<HighlightSpot> spots) {
     std::vector<char> keep(spots.size());
     parallel_tasks(view_.threads, std::int64_t(spots.size()), [&](std::int64_t i) {
@@ -305,7 +306,7 @@ bool Surveyor::learn(HighlightSpot& spot, std::span<const HighlightSpot> before,
     return true;
 }
 
-/// Rest of a tile without its spots.
+/// The remainder of a tile without its spots.
 std::optional<HighlightTile> Surveyor::rest(std::size_t tile, std::span<const HighlightSpot> spots) const {
     if (looks_[tile].empty()) return std::nullopt;
     std::vector<float> weights(kCells * kCells);
@@ -314,7 +315,7 @@ std::optional<HighlightTile> Surveyor::rest(std::size_t tile, std::span<const Hi
         if (held(spots, l.ray)) continue;
         weights[l.cell] += l.luminance / kWide, sum += l.luminance;
     }
-    // A cell that is dark where it was looked at may shine elsewhere.
+    // A cell with dark samples may contain light elsewhere.
     const double mean = std::max(sum / (kWide * kCells * kCells), 1e-3 * mean_);
     HighlightTile rest{tiles_[tile], Distribution2D(kCells, kCells, raised(weights, kCells, float(mean)))};
     rest.luminance = rest.weights.integral();

@@ -1,4 +1,4 @@
-// The set and its objects apart: what objects send past it, what the set sends with them and without, and coverage.
+// Catchers: radiance of objects, radiance of the set with objects and without them, and coverage.
 #include <doctest/doctest.h>
 
 #include "math/statistics.h"
@@ -55,14 +55,14 @@ Material pane() {
     return {"pane", m};
 }
 
-/// How a scene is built: everything, with catchers marked, or without the objects.
+/// Variants of the scene: without catchers, with catchers, or without the objects.
 enum class Kind { plain, caught, empty };
 
 struct Stage {
     Material ground = matte({0.6f, 0.5f, 0.4f});
     std::vector<std::pair<Mesh, Material>> objects;
     std::vector<Light> lights;
-    bool wall = true;   // of the set, behind the objects
+    bool wall = true;   // part of the set, behind the objects
 
     std::shared_ptr<const Scene> build(Kind kind, CatcherEffects effects = {}) const {
         SceneDescription d;
@@ -104,17 +104,17 @@ std::vector<std::pair<const char*, Stage>> stages() {
     return all;
 }
 
-/// Camera ray number i, over objects, ground and sky.
+/// Camera ray i; the rays cover objects, ground and sky.
 Sight look_at(const Scene& scene, int i, const PathSettings& settings, std::uint64_t seed = 3) {
     PathSampler sampler(i, 0, 0, seed);
     const CameraRandom u = sampler.camera();
     const Ray ray = test_ray({0, 1, 3}, {1.4f * (u.film.x - 0.5f), -0.35f + 0.7f * (u.film.y - 0.5f), -1});
-    // Four wavelengths as one number each, so that sums over paths mean something.
+    // Reduces four wavelengths to their mean, so that sums over paths are comparable.
     return look(scene, ray, Wavelengths::sample(u.lambda), sampler, settings, nullptr, nullptr);
 }
 
 struct Sums {
-    std::vector<double> light, with, without, change, covered;
+    std::vector<double> light, with, without, difference, covered;
 };
 
 Sums all_of(const Scene& scene, std::uint64_t seed, PathSettings settings = {}) {
@@ -125,7 +125,7 @@ Sums all_of(const Scene& scene, std::uint64_t seed, PathSettings settings = {}) 
         sums.light.push_back(s.light.sum().average());
         sums.with.push_back(s.light.sum().average() + with);
         sums.without.push_back(without);
-        sums.change.push_back(with - without);
+        sums.difference.push_back(with - without);
         sums.covered.push_back(s.covers.sum());
     }
     return sums;
@@ -159,18 +159,19 @@ TEST_CASE("a set without objects sends the same with and without them, to the bi
     }
 }
 
-TEST_CASE("effects add up to the whole change, and without them there is none") {
+TEST_CASE("effects add up to the whole difference, and without them there is none") {
     for (const auto& [name, stage] : stages()) {
         if (name != std::string("glossy floor") && name != std::string("lamp") && name != std::string("pane")) continue;
         CAPTURE(name);
-        const auto change = [&](CatcherEffects effects, std::uint64_t seed) {
+        const auto difference = [&](CatcherEffects effects, std::uint64_t seed) {
             const Sums sums = all_of(*stage.build(Kind::caught, effects), seed);
             CHECK(p_value(sums.without, all_of(*stage.build(Kind::empty), 9).light) > 1e-3);
-            return moments(sums.change);
+            return moments(sums.difference);
         };
-        // Both are sums over the whole view; what the set loses behind objects is in each of them, once.
-        const SampleMoments all = change({}, 3), none = change(kNone, 4), shadow = change({true, false, false}, 5),
-                            reflection = change({false, true, false}, 6), gi = change({false, false, true}, 7);
+        // Both sides are sums over the whole view, and contain the light of the set behind objects once.
+        const SampleMoments all = difference({}, 3), none = difference(kNone, 4),
+                            shadow = difference({true, false, false}, 5),
+                            reflection = difference({false, true, false}, 6), gi = difference({false, false, true}, 7);
         const double parts = shadow.mean + reflection.mean + gi.mean - 2 * none.mean;
         double variance = all.variance + shadow.variance + reflection.variance + gi.variance + 4 * none.variance;
         CHECK(std::abs(parts - all.mean) < 3.5 * std::sqrt(variance / kPaths));
@@ -179,7 +180,7 @@ TEST_CASE("effects add up to the whole change, and without them there is none") 
 }
 
 TEST_CASE("what the lens looks past an object to is covered by its share") {
-    // One pane in front of the sky, and the ball behind it.
+    // A pane in front of the sky, and a ball behind the pane.
     const Stage stage = stages()[3].second;
     const auto scene = stage.build(Kind::caught);
     const std::uint32_t pane = 2, behind = 3;

@@ -1,4 +1,4 @@
-// one_world.h -- a scene without catchers and plates: all light is the scene's own (compare two_worlds.h).
+// one_world.h -- gathers light in a scene without catchers and plates (compare two_worlds.h).
 #pragma once
 #include "material/bsdf_sample.h"
 #include "material/material.h"

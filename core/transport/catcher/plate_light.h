@@ -1,5 +1,5 @@
-// plate_light.h -- the light of a photograph of the set: what objects see of it in mirrors and through glass, and what
-// it sends to them. Which camera took it only `render` knows.
+// plate_light.h -- a photograph of the set as a light source: objects reflect and refract it, and it lights them. The
+// camera of the photograph is known to `render` only.
 #pragma once
 #include <optional>
 
@@ -11,10 +11,10 @@ namespace dg {
 class PlateLight {
   public:
     virtual ~PlateLight() = default;
-    /// Luminance (cd/m2) that the photograph shows at a place of the world: (p, 1) a point in m, (d, 0) a direction.
-    /// Nothing where the place is outside of it, or has no number.
+    /// Luminance (cd/m2) in the photograph of a world point (p, 1), m, or a direction (d, 0). Empty outside the
+    /// photograph and for pixels that are not finite.
     virtual std::optional<Rgb> at(Vec3f place, float w, float time) const = 0;
-    /// From where it was taken, m.
+    /// Viewpoint of the photograph, m.
     virtual Vec3f eye(float time) const = 0;
 };
 

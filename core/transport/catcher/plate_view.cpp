@@ -5,7 +5,7 @@
 namespace dg {
 namespace {
 
-/// Whether nothing of the set is in the ray's way.
+/// Whether the set does not occlude the ray.
 bool is_clear(PathState& path, Ray ray) {
     ray.of_set = true;
     ++path.rays;

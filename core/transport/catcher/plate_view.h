@@ -1,5 +1,5 @@
-// plate_view.h -- what a photograph of the set shows of a place, unless something of the set hides the place from the
-// camera that took it.
+// plate_view.h -- luminance of a place in a photograph of the set. Empty if the set occludes the place from the camera
+// of the photograph.
 #pragma once
 #include <optional>
 
@@ -7,10 +7,10 @@
 
 namespace dg {
 
-/// Luminance (cd/m2) of the background in the direction of the path's ray. Settings have a plate.
+/// Luminance (cd/m2) of the background in the direction of the path's ray. The settings must have a plate.
 std::optional<Rgb> plate_of_sky(PathState& path);
 
-/// Luminance of a surface of the set.
+/// Luminance (cd/m2) of a surface of the set.
 std::optional<Rgb> plate_of_surface(PathState& path, const SurfaceHit& hit);
 
 }  // namespace dg

@@ -1,17 +1,17 @@
 // two_worlds.h -- a path in a scene with catchers, for compositing over a photograph.
 //
-// Catchers model the set: things that the photograph shows already. The photograph then gets what objects change of the
-// set's light: the light of the scene with objects minus its light without (differential rendering; Debevec 1998,
-// Rendering Synthetic Objects into Real Scenes, SIGGRAPH). So there are two worlds: the full scene, and the set alone.
-// One path serves both as long as they agree. Where it meets an object, or where an object shadows a light, they part:
-// the full world goes on there, the set's world passes through the object. Both draw the same random numbers, so that
-// noise of the light that objects do not change cancels in the difference.
+// Catchers model the set: the things visible in the photograph. Compositing adds the light of the set with objects
+// minus its light without objects to the photograph (differential rendering; Debevec 1998, Rendering Synthetic Objects
+// into Real Scenes, SIGGRAPH). So there are two worlds: the full scene, and the set alone. One path serves both as long
+// as they agree. They part where the path hits an object, or where an object shadows a light: in the full world the
+// path continues at the object, in the set's world it passes through the object. Both draw the same random numbers, so
+// the noise of light that both worlds have in common cancels in the difference.
 //
-// Effects of a catcher (CatcherEffects) choose which differences count, at the first catcher that the camera sees: the
-// factor `kept` of a difference is 1 where its effect is on, and else 0.
+// The effects of a catcher (CatcherEffects) select the differences that count, at the first catcher that the camera
+// sees: the weight of a difference is 1 if its effect is on, and 0 if it is off.
 //
-// A plate is the photograph itself, as objects see it in mirrors and by bounced light: where a path from an object
-// comes to a catcher, the photograph gives its light. From there on only differences between the worlds are added.
+// A plate is the photograph as a light source for objects: where a path from an object hits a catcher, it takes the
+// radiance from the photograph. After that only differences between the worlds are added.
 #pragma once
 #include <cstdint>
 #include <utility>
@@ -28,22 +28,22 @@ enum class World : std::uint8_t { both, full, set };
 
 class TwoWorlds {
   public:
-    /// Where the path is, seen from the first catcher on its way.
+    /// Position of the path relative to the first catcher that it hits.
     enum class FirstCatcher : std::uint8_t { ahead, here, left, behind };
-    /// A camera ray that met an object and looks past it: through a clear sheet, or in the set's world.
+    /// How a camera ray continues behind an object: through a clear sheet, or through the object in the set's world.
     enum class PastObject : std::uint8_t { no, through_sheet, in_set };
 
     /// Saved where a path branches.
     struct State {
         World world = World::full;
-        bool for_set = false;         // light found now belongs to the set; false: to the look of an object
+        bool for_set = false;         // gathered light is radiance of the set; false: of an object
         bool through_glass = false;   // the path passed smooth glass
-        bool plate_shown = false;     // the plate gave the light of a catcher: only differences count
+        bool plate_shown = false;     // a catcher's radiance came from the plate: only differences count
         PastObject past_object = PastObject::no;
         FirstCatcher first_catcher = FirstCatcher::ahead;
-        const CatcherEffects* effects = nullptr;   // of the first catcher, once it is met
-        float kept = 1;               // share of differences between the worlds that counts
-        float plate_share = 1;        // product of `kept` at the plates on the way
+        const CatcherEffects* effects = nullptr;   // of the first catcher; null before it is hit
+        float difference_weight = 1;   // factor on differences between the worlds
+        float plate_share = 1;        // product of `difference_weight` at catchers shown from the plate
     };
     State state;
 
@@ -53,32 +53,34 @@ class TwoWorlds {
 
     bool finds_first_hit() const { return state.world != World::set; }
 
-    void gather(PathState& path, Spectrum light, bool hero) const { gather(path, light, hero, state.kept); }
-    /// Adds emission that the path met.
+    void gather(PathState& path, Spectrum light, bool hero) const {
+        gather(path, light, hero, state.difference_weight);
+    }
+    /// Adds emission that the path hit.
     void gather_emission(PathState& path, Spectrum light) const;
-    /// Adds a light sample. `visibility(of_set)`: of the light, in the set alone or in the full scene;
-    /// `reflected(visible)`: what the path gets from the light then.
+    /// Adds a light sample. `visibility(of_set)`: visibility of the light, in the set alone or in the full scene;
+    /// `reflected(visible)`: contribution of the light sample for that visibility.
     template <Scatters B, typename Visibility, typename Reflected>
     void gather_direct(PathState& path, const B& bsdf, Vec3f wo, const DirectLight& direct,
                        const Visibility& visibility, const Reflected& reflected);
 
-    /// The path goes on from a hit. At an object the worlds part. False: the path ends.
+    /// Processes a hit. The worlds part at an object. False: the path ends.
     template <typename Path>
     bool arrive(Path& path, Scene::Hit& found, int vertex, bool counts);
-    /// False: the path does not get the light of the background.
+    /// False: the background does not contribute to the path.
     bool sees_background(PathState& path);
-    /// Adds the background from the plate; false: the plate does not show it.
+    /// Adds the background from the plate. False: the plate does not show it.
     bool show_plate_sky(PathState& path) const;
     void meet_sphere(PathState& path, std::uint32_t sphere);
     /// False: the path ends.
     bool meet_surface(PathState& path, const SurfaceHit& hit);
-    /// Adds the light of a catcher from the plate.
+    /// Adds the radiance of a catcher from the plate.
     void show_plate(PathState& path, const Material& material, const SurfaceHit& hit);
 
-    /// The path leaves a vertex or a window.
+    /// Updates the state when the path leaves a vertex or a window.
     template <Scatters B>
     void leave(const PathState& path, const B& bsdf, const SurfaceHit& hit, const BsdfSample& sample);
-    /// It went on: the surface covers no more than the light that did not pass straight through.
+    /// Reduces the surface's coverage by the share of the ray that continues behind it.
     void uncover(PathState& path, const SurfaceHit& hit) const {
         if (!path.scene.catcher(hit.instance)) cover(path, hit.instance, -1);
     }
@@ -88,13 +90,14 @@ class TwoWorlds {
     bool parts_at(const PathState& path, const Scene::Hit& found) const;
     bool look_through(PathState& path);
     void cover(PathState& path, std::uint32_t object, float sign) const;
-    void gather(PathState& path, Spectrum light, bool hero, float kept) const;
+    void gather(PathState& path, Spectrum light, bool hero, float weight) const;
     bool plate_is_seen(const PathState& path) const;
     template <Scatters B>
-    float kept_by(const B& bsdf, Vec3f wo, Vec3f wi) const;
+    float lobe_weight(const B& bsdf, Vec3f wo, Vec3f wi) const;
 
-    float seen_through_ = 0;   // share of the camera ray that passes objects by way of smooth glass; never restored:
-                               // the full world adds to it before the set's world reads it
+    /// Share of the camera ray that passes objects through smooth glass. Branches do not restore it: the full world
+    /// adds to it before the set's world reads it.
+    float share_through_glass_ = 0;
 };
 
 template <typename Path>
@@ -104,9 +107,9 @@ bool TwoWorlds::arrive(Path& path, Scene::Hit& found, int vertex, bool counts) {
     path.aside(0, [&] {
         state.world = World::full;
         if (from_camera) state.for_set = false;
-        if (state.kept > 0 && path.arrive(found, vertex, counts)) path.follow_to_end(vertex);
+        if (state.difference_weight > 0 && path.arrive(found, vertex, counts)) path.follow_to_end(vertex);
     });
-    // Past an earlier object, the way around that one brings the set's world.
+    // Behind an earlier object, the branch at that object gathers the set's world.
     if (from_camera && state.past_object == PastObject::through_sheet) return false;
     state.world = World::set;
     if (from_camera) state.past_object = PastObject::in_set;
@@ -119,19 +122,19 @@ void TwoWorlds::gather_direct(PathState& path, const B& bsdf, Vec3f wo, const Di
                               const Visibility& visibility, const Reflected& reflected) {
     const bool of_object = state.world != World::full && path.scene.is_of_object(direct.light.light);
     if (of_object && state.world == World::set) return;
-    const auto add = [&](Spectrum visible, World world, float kept) {
+    const auto add = [&](Spectrum visible, World world, float weight) {
         if (visible.is_black()) return;
         const World here = std::exchange(state.world, world);
-        gather(path, reflected(visible), direct.f.hero_only || path.walk.hero_only, kept);
+        gather(path, reflected(visible), direct.f.hero_only || path.walk.hero_only, weight);
         state.world = here;
     };
     const Spectrum now = visibility(state.world == World::set);
-    if (state.world != World::both) return add(now, state.world, state.kept);
-    if (of_object) return add(now, World::full, kept_by(bsdf, wo, direct.light.wi));
+    if (state.world != World::both) return add(now, state.world, state.difference_weight);
+    if (of_object) return add(now, World::full, lobe_weight(bsdf, wo, direct.light.wi));
     if (now.min() == 1 && now.max() == 1) return add(now, World::both, 1);
-    const float kept = at_first_catcher() ? float(state.effects->shadow) : state.kept;
-    add(now, World::full, kept);
-    add(visibility(true), World::set, kept);
+    const float weight = at_first_catcher() ? float(state.effects->shadow) : state.difference_weight;
+    add(now, World::full, weight);
+    add(visibility(true), World::set, weight);
 }
 
 template <Scatters B>
@@ -140,14 +143,15 @@ void TwoWorlds::leave(const PathState&, const B& bsdf, const SurfaceHit& hit, co
     if (sample.transmitted && sample.specular && !bsdf.bounds_volume()) return;   // a window
     if (state.first_catcher == FirstCatcher::left) state.first_catcher = FirstCatcher::behind;
     if (state.world != World::both || !at_first_catcher()) return;
-    state.kept = sample.specular ? float(state.effects->reflection) : kept_by(bsdf, hit.wo, sample.wi);
+    state.difference_weight = sample.specular ? float(state.effects->reflection) : lobe_weight(bsdf, hit.wo, sample.wi);
     state.first_catcher = FirstCatcher::left;
 }
 
-/// Share of light from a direction that counts, if objects send it or block it.
+/// Weight of light from a direction that objects emit, reflect or block: the weights of the gi and reflection effects,
+/// mixed by the diffuse share of the BSDF.
 template <Scatters B>
-float TwoWorlds::kept_by(const B& bsdf, Vec3f wo, Vec3f wi) const {
-    if (!at_first_catcher() || state.effects->all()) return state.kept;
+float TwoWorlds::lobe_weight(const B& bsdf, Vec3f wo, Vec3f wi) const {
+    if (!at_first_catcher() || state.effects->all()) return state.difference_weight;
     const float diffuse = bsdf.diffuse_share(wo, wi);
     return diffuse * float(state.effects->gi) + (1 - diffuse) * float(state.effects->reflection);
 }

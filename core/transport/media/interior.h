@@ -1,12 +1,12 @@
-// interior.h -- what fills the space of a ray that leaves a vertex: the one place where a path enters or leaves volumes
-// and media. Rules of nested volumes belong here.
+// interior.h -- the volume or medium around a ray that leaves a vertex. Paths enter and leave volumes and media only
+// here; rules for nested volumes belong here.
 #pragma once
 #include "material/bsdf_kind.h"
 #include "scene/scene.h"
 
 namespace dg {
 
-/// `here` fills the space from which the path came, `wi` is where the ray goes.
+/// `here`: interior on the side from which the path arrived. `wi`: direction of the outgoing ray.
 template <Scatters B>
 Interior interior_after(const Scene& scene, const Interior& here, const SurfaceHit& hit, const B& bsdf,
                         Vec3f wi) {

@@ -12,7 +12,8 @@ constexpr float kEquiangularShare = 0.9f;
 
 }  // namespace
 
-/// The lamp is chosen by what it brings to the whole way, and sampled from the place on it.
+/// Chooses the lamp by its contribution to the whole segment, then a distance, then a point on the lamp as seen from
+/// there.
 LampSample LampSampler::sample(float odds, const Random& u) const {
     const LightSet& lights = path_.scene.lights();
     const Ray& ray = path_.walk.ray;
@@ -39,30 +40,30 @@ LampSample LampSampler::sample(float odds, const Random& u) const {
 
 Vec3f LampSampler::start() const { return in_medium(path_.walk.ray, path_.walk.ray.t_min).position; }
 
-/// Share of light sampling in light that the path may find, too.
+/// MIS weight of light sampling against phase function sampling.
 float LampSampler::light_share(float light_pdf, float phase_pdf) const {
     using Strategy = PathSettings::Strategy;
     if (path_.settings.strategy == Strategy::bsdf) return 0;
     return path_.settings.strategy == Strategy::light ? 1 : power_heuristic(light_pdf, phase_pdf);
 }
 
-/// A distance at which the lamp lights the way.
+/// Samples a distance along the segment, for a lamp.
 LampSampler::Place LampSampler::place(const std::optional<LightSet::Place>& lamp, float u) const {
     using Distances = PathSettings::Distances;
-    std::optional<Equiangular> seen;
+    std::optional<Equiangular> equiangular;
     if (lamp) {
         const Vec3f from = start(), direction = path_.walk.ray.direction;
         RayPart lit{0, way_.length()};
         if (length_squared(lamp->normal) > 0)
             lit = lit.before_plane(dot(lamp->normal, from - lamp->position), dot(lamp->normal, direction));
-        if (!lit.empty()) seen.emplace(from, direction, lit, lamp->position, phase_.angles());
+        if (!lit.empty()) equiangular.emplace(from, direction, lit, lamp->position, phase_.angles());
     }
     const Distances distances = path_.settings.distances;
     float share = distances == Distances::both ? kEquiangularShare : float(distances == Distances::equiangular);
-    if (!seen || !seen->usable()) share = 0;
-    const float t = u < share ? seen->sample(u / share) : way_.collision((u - share) / (1 - share));
+    if (!equiangular || !equiangular->usable()) share = 0;
+    const float t = u < share ? equiangular->sample(u / share) : way_.collision((u - share) / (1 - share));
     const float even = share < 1 ? (1 - share) * way_.collision_density(t) : 0;
-    return {t, even + (share > 0 ? share * seen->pdf(t) : 0)};
+    return {t, even + (share > 0 ? share * equiangular->pdf(t) : 0)};
 }
 
 }  // namespace dg

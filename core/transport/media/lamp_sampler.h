@@ -1,13 +1,12 @@
-// lamp_sampler.h -- one light sample for a ray's way through an even medium: a lamp, and a distance on the way at which
-// its light is scattered toward the ray's origin.
+// lamp_sampler.h -- next-event estimation along a segment in a homogeneous medium: a lamp, and a distance at which its
+// light is scattered toward the ray's origin.
 //
-// The distance is drawn by equiangular sampling (equiangular.h) or like a collision, nine to one. The path itself may
-// find the same light: it is scattered after a free path and meets the lamp. With densities n(t) p_lamp and
-// c(t) p_phase, the power heuristic would want n / c at the distance. It gets the ratio for collisions instead,
-// 1 / chance of a collision. Both estimators know that, whichever lamp it is, so their weights add to 1. Equiangular
-// distances only improve the first.
-// Sources: Kulla and Fajardo 2012 (equiangular.h); Pharr, Jakob and Humphreys 2023, Physically Based Rendering,
-// chapter 14.
+// The distance is drawn by equiangular sampling (equiangular.h) with probability 0.9, else by the free-path density.
+// The path itself may find the same light by being scattered after a free path and hitting the lamp. With densities
+// n(t) p_lamp and c(t) p_phase, the power heuristic would use n / c at the distance. Here it uses the ratio for
+// free-path sampling, 1 / probability of a collision: both estimators can compute it for any lamp, so their weights add
+// to 1. Equiangular sampling only lowers the variance of light sampling. Sources: Kulla and Fajardo 2012
+// (equiangular.h); Pharr, Jakob and Humphreys 2023, Physically Based Rendering, chapter 14.
 #pragma once
 #include <optional>
 
@@ -17,28 +16,28 @@
 
 namespace dg {
 
-/// A lamp's light on its way to the ray's origin.
+/// A light sample with a scattering distance.
 struct LampSample {
-    DirectLight direct{};   // weight 0: it brings nothing
-    Spectrum scattered;     // share of light that is scattered at the distance, per m and sr, and reaches the origin
+    DirectLight direct{};   // weight 0: no contribution
+    Spectrum scattered;     // scattering coefficient (1/m) times transmittance to the ray's origin
     float t = 0;            // m along the ray
 };
 
 class LampSampler {
   public:
     struct Random {
-        float select, where;   // which lamp; at which distance
-        Vec2f place;           // on the lamp
+        float select, where;   // the lamp; the distance
+        Vec2f place;           // the point on the lamp
     };
     LampSampler(const PathState& path, const Phase& phase, const Segment& way)
         : path_(path), phase_(phase), way_(way) {}
 
-    /// `odds`: light samples over collisions of the path.
+    /// `odds`: expected number of light samples over expected number of collisions of the path.
     LampSample sample(float odds, const Random& u) const;
 
   private:
     struct Place {
-        float t, density;   // m from the start of the way; 1/m
+        float t, density;   // m from the start of the segment; 1/m
     };
     Vec3f start() const;
     Place place(const std::optional<LightSet::Place>& lamp, float u) const;
@@ -49,7 +48,7 @@ class LampSampler {
     const Segment& way_;
 };
 
-/// A point of the ray as a surface hit. It has no sides.
+/// A point of the ray as a surface hit, with normals opposite to the ray.
 inline SurfaceHit in_medium(const Ray& ray, float t) {
     SurfaceHit at;
     at.position = ray.origin + ray.direction * t;

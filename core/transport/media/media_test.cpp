@@ -1,4 +1,4 @@
-// Paths in media, held against worlds whose light is known.
+// Paths in media, compared with scenes of known radiance.
 #include <doctest/doctest.h>
 
 #include <functional>
@@ -19,7 +19,7 @@ std::shared_ptr<const Medium> medium(SpectralColor absorption, SpectralColor sca
 }
 SpectralColor grey(float v) { return {v, v, v}; }
 
-/// The same with a density of 1 on the cube from -1 to 1 in all directions, on a grid; `uneven`: 2 x, x from 0 to 1.
+/// The medium with a density grid on the cube [-1, 1]^3: density 1, or with `uneven` 2 x, for x from 0 to 1.
 std::shared_ptr<const Medium> on_grid(Medium m, bool uneven = false) {
     constexpr std::uint32_t kCells = 20;
     std::vector<float> values(kCells * kCells * kCells, 1.f);
@@ -40,7 +40,7 @@ Mesh cube_mesh() {
     return cube;
 }
 
-/// Adds a closed mesh that nothing but a medium fills.
+/// Adds a closed mesh as an invisible boundary of a medium.
 void fill(SceneDescription& d, Mesh mesh, std::shared_ptr<const Medium> inside) {
     add(d, std::move(mesh), {"boundary", DiffuseMaterial{}});
     d.media.of_material[std::uint32_t(d.materials.size() - 1)] = {std::int32_t(d.media.all.size()), -1, true};
@@ -67,7 +67,7 @@ SampleMoments look(const Scene& scene, const Ray& ray, const PathSettings& setti
 bool agrees(const SampleMoments& m, double expected, double relative = 2e-3) {
     return std::abs(m.mean - expected) < 4 * std::sqrt(m.variance / m.count) + relative * expected;
 }
-/// Samples are stratified, so their mean is closer than their variance says.
+/// A tighter check than agrees(): samples are stratified, so the error of the mean is below its standard error.
 bool finds(const SampleMoments& m, double expected, double percent = 0.5) {
     return std::abs(m.mean - expected) < percent / 100 * expected;
 }
@@ -78,7 +78,7 @@ PathSettings deep(int depth) {
     return settings;
 }
 
-/// A look into a cube by multiple importance sampling, by light samples and by paths alone, which must agree.
+/// Luminances of a cube by MIS, by light sampling and by BSDF sampling, after a check that they agree.
 std::vector<SampleMoments> by_every_strategy(const Scene& scene, PathSettings settings) {
     std::vector<SampleMoments> found;
     using Strategy = PathSettings::Strategy;
@@ -91,7 +91,7 @@ std::vector<SampleMoments> by_every_strategy(const Scene& scene, PathSettings se
     return found;
 }
 
-/// The light that a lamp of 1 cd brings by light scattered once: the integral along the ray.
+/// Single scattering of a lamp of 1 cd, integrated numerically along the ray.
 double scattered_once(Vec3d lamp, double albedo, double extinction, const Phase& phase, double end) {
     constexpr int kSteps = 200000;
     double sum = 0;
@@ -107,7 +107,7 @@ double scattered_once(Vec3d lamp, double albedo, double extinction, const Phase&
 
 }  // namespace
 
-/// Looks along -z once by each way to draw distances.
+/// Runs a check on the luminance along -z for each sampling of distances.
 template <typename Check>
 void look_by_each_way(const Scene& scene, double expected, const Check& check) {
     using Distances = PathSettings::Distances;
@@ -153,7 +153,7 @@ TEST_CASE("many lamps in fog shine as each of them does") {
 }
 
 TEST_CASE("a lamp of triangles in fog lights places that most of them are turned away from") {
-    // Each face lights a part of the ray alone, and none of them is seen from all of it.
+    // Each face lights only a part of the ray, and no face is visible from the whole ray.
     constexpr float kHalf = 0.01f, kRadiance = 1000;
     const Vec3f centre{0.4f, 0.1f, -2};
     SceneDescription d;
@@ -231,7 +231,7 @@ TEST_CASE("a medium shines with (1 - exp(-optical depth)) j / s") {
             const auto flame = medium({0.5f, 0.2f, 0.1f}, {}, {{0, 1}}, {3, 2, 1});
             fill(d, cube_mesh(), grid ? on_grid(*flame) : flame);
             const auto scene = Scene::build(std::move(d));
-            double expected = 0;   // by wavelengths, as they are drawn
+            double expected = 0;   // mean over wavelengths, as they are sampled
             for (int i = 0; i < 4096; ++i) {
                 const Wavelengths w = Wavelengths::sample((i + 0.5f) / 4096);
                 const MediumAt m = flame->at(w);

@@ -10,14 +10,15 @@
 namespace dg {
 namespace {
 
-/// Light samples for each scattering of a path that carries all of its light: where the lens looks, and elsewhere. More
-/// of them, or the best of several for each, were measured to cost more time than noise (bench/fog.py).
+/// Light samples per scattering event of a path with throughput 1: on segments that the camera sees directly or through
+/// specular bounces, and on other segments. More samples, or resampling among candidates, were measured to cost more
+/// time than they save noise (bench/fog.py).
 constexpr float kSamplesInView = 8, kSamplesPerCollision = 0.5f;
-/// Light that a scattered path brings, over a path that passes with as much throughput: lamps that its way scatters
-/// once are sampled already.
+/// Expected contribution of a scattered path relative to an unscattered path of the same throughput. It is below 1, as
+/// light sampling already adds single scattering.
 constexpr float kScatteredWorth = 0.3f;
-/// Least illuminance that roulette assumes, over the brightest: the estimate knows lamps, but neither even skies nor
-/// media that shine.
+/// Lower bound of the relative illuminance in roulette: the estimate includes lamps, but neither uniform skies nor
+/// emissive media.
 constexpr float kLeastLit = 0.1f;
 
 }  // namespace
@@ -58,8 +59,9 @@ void MediumCrossing::cross_even(float t, bool last, MediumEvent& event) {
     else event.kind = MediumEvent::Kind::passed;
 }
 
-/// Share of the collisions at which the path is scattered; at the others it passes, and weighs less. Few where the lens
-/// looks and most light passes, all where none does. Elsewhere all of them: weights would multiply along long paths.
+/// Fraction of collisions at which the path is scattered; at the rest it passes with a lower weight. On segments that
+/// the camera sees the fraction is small in thin media and near 1 in dense media. On other segments it is 1, since
+/// weights would multiply along long paths.
 float MediumCrossing::scattering_drawn(const Segment& way) const {
     if (!walk_.in_view || path_.scene.lights().empty()) return 1;
     const float worth = kScatteredWorth * here_.scattering.average() / here_.extinction.average();
@@ -67,7 +69,7 @@ float MediumCrossing::scattering_drawn(const Segment& way) const {
     return std::min(1.f, worth / (worth * met + 1 - met));
 }
 
-/// One light sample at one place on the way; none at random where little can be scattered.
+/// Takes one light sample on the segment, with a probability that is below 1 in thin media.
 void MediumCrossing::sample_lamp(const Segment& way, float drawn, MediumEvent& event) {
     const float carried = std::min(1.f, walk_.share());
     const float samples = (walk_.in_view ? kSamplesInView : kSamplesPerCollision) * carried;
@@ -95,8 +97,8 @@ void MediumCrossing::scatter(float free_path, MediumEvent& event) {
     if (survives_dark(walk_.ray.origin, at.position)) event.kind = MediumEvent::Kind::scattered;
 }
 
-/// Russian roulette of a path that is scattered `at` a point: by its throughput, and by the illuminance there over the
-/// illuminance of the brightest point on its ways. Endless fog would otherwise keep each path to its last vertex.
+/// Russian roulette of a path that is scattered `at` a point, by its throughput and by the illuminance there relative
+/// to the highest illuminance along the path. Otherwise every path in endless fog would run to max_depth.
 bool MediumCrossing::survives_dark(Vec3f from, Vec3f at) {
     const LightSet& lights = path_.scene.lights();
     const float now = lights.illuminance(at);
@@ -132,7 +134,7 @@ void MediumCrossing::cross_grid(float t, bool last, MediumEvent& event) {
     }
 }
 
-/// False: the path carries nothing any more.
+/// False: the throughput is 0.
 bool MediumCrossing::take(const Segment::Onward& onward) {
     walk_.throughput *= onward.weight;
     walk_.media.lanes = onward.lanes;

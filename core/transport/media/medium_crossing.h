@@ -1,38 +1,37 @@
-// medium_crossing.h -- takes a path through the medium around it, up to the next surface.
+// medium_crossing.h -- traces a path through the medium around it, up to the next surface.
 //
-// In an even medium, the medium's own light is a closed form. The light of lamps that it scatters toward the path is
-// found like direct light at a surface: by one light sample (lamp_sampler.h), and by the path itself, which is scattered
-// after a free path and may meet a lamp. In a grid, delta tracking finds a collision; it is a vertex like one on a
-// surface.
+// In a homogeneous medium, emission is integrated in closed form. In-scattered light of lamps is estimated like direct
+// light at a surface: by a light sample (lamp_sampler.h), and by the path itself, which is scattered after a free path
+// and may hit a lamp. In a grid, delta tracking samples a collision, which becomes a vertex like a surface vertex.
 // Sources: Wilkie et al. 2014 (medium/segment.h); Pharr, Jakob and Humphreys 2023, Physically Based Rendering, ch. 14.
 #pragma once
 #include "transport/media/lamp_sampler.h"
 
 namespace dg {
 
-/// Result of a path's way through a medium.
+/// Result of tracing a path through a medium.
 struct MediumEvent {
     enum class Kind {
-        passed,      // it is at the surface
+        passed,      // reached the surface
         scattered,   // at `t`, toward `wi`
-        collided,    // at `t`: a vertex, where light and the direction are still to be sampled
-        ended,       // it carries nothing any more
+        collided,    // at `t`: a vertex; the caller samples light and the direction
+        ended,       // throughput 0, or ended by roulette
     } kind = Kind::ended;
     float t = 0;                       // m along the ray
     Vec3f wi;
     float phase_pdf = 0;               // of wi, 1/sr
-    float odds = 1;                    // light samples over collisions of the path
-    Spectrum emitted{0.f};             // light of the medium, with the throughput
-    LampSample lamp;                   // light that lamps bring to the way, of weight 0: none
+    float odds = 1;                    // expected light samples over expected collisions
+    Spectrum emitted{0.f};             // emission of the medium times the throughput
+    LampSample lamp;                   // light sample on the segment; weight 0: none
     Spectrum lamp_throughput{0.f};
 };
 
 class MediumCrossing {
   public:
-    /// `path` is in a medium.
+    /// `path` must be in a medium.
     explicit MediumCrossing(PathState& path);
 
-    /// `t`: distance of the surface, m. `last`: the path may not be scattered any more.
+    /// `t`: distance to the surface, m. `last`: the path has reached its maximum depth and is not scattered.
     MediumEvent cross(float t, bool last);
 
   private:
@@ -45,7 +44,7 @@ class MediumCrossing {
     bool survives_dark(Vec3f from, Vec3f at);
 
     PathState& path_;
-    Walk& walk_;
+    WalkState& walk_;
     const Medium& medium_;
     const MediumAt here_;
 };

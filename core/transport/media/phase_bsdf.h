@@ -1,5 +1,5 @@
-// phase_bsdf.h -- a medium's phase function in the form of a BSDF, so that a path is scattered in a medium as it is at
-// a surface. There is no cosine, and no side that light passes to.
+// phase_bsdf.h -- adapts a phase function to the BSDF interface, so that media and surfaces share the code that
+// scatters a path. There is no cosine factor and no transmission.
 #pragma once
 #include <optional>
 

@@ -7,7 +7,7 @@
 namespace dg {
 namespace {
 
-/// A ray that both techniques draw with given densities.
+/// A first ray with given densities of both techniques.
 class Known final : public FirstRay {
   public:
     Known(const LightSharing& sharing, float lens, double camera)

@@ -1,18 +1,18 @@
-// light_plan.h -- how much light is followed from the emitters to the film, beside the paths from the
-// camera. Both find the same light, and share it by the balance heuristic (light_sharing.h).
+// light_plan.h -- numbers of light paths to trace from the emitters to the film, in addition to camera paths. The
+// balance heuristic combines both (light_sharing.h).
 #pragma once
 
 namespace dg {
 
-/// Largest number of either kind: what no picture needs, and what indices of 64 bits bear.
+/// Upper limit for either kind. No picture needs as many, and 64-bit indices do not overflow.
 inline constexpr double kMostLightPaths = 1e9;
 
-/// Light paths per sample index, for the whole frame; 0: none, and the picture has the bits and the speed
-/// that it has without them.
+/// Light paths per sample index, for the whole frame. With 0 the picture is bit-identical to a picture rendered without
+/// this feature, at the same speed.
 struct LightPlan {
-    double m1 = 0;   // from an emitter straight to the lens
-    double m2 = 0;   // over two surfaces or more; direct light is the camera's
-    bool sky = true;   // straight from the sky, too: not where the lens does not see it
+    double m1 = 0;   // from an emitter directly to the lens
+    double m2 = 0;   // with two or more surface vertices; the camera computes direct light
+    bool sky = true;   // m1 includes the sky; false if the lens cannot see the sky
 
     bool off() const { return m1 <= 0 && m2 <= 0; }
     friend LightPlan operator*(LightPlan plan, double factor) {
@@ -20,8 +20,8 @@ struct LightPlan {
     }
 };
 
-/// Who draws what both could find: tests hold one against the other. What only one can find is always its
-/// own. rest: nobody does, which leaves that.
+/// Technique that renders light which both camera and light paths can find, for comparison in tests. Light that only
+/// one of them can find is always rendered. `rest`: only that light is rendered.
 enum class Technique { both, camera, light, rest };
 
 }  // namespace dg

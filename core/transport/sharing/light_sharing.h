@@ -1,11 +1,10 @@
-// light_sharing.h -- how the camera's paths and light paths share what both find.
+// light_sharing.h -- MIS between camera paths and light paths.
 //
-// The balance heuristic (Veach 1997, Robust Monte Carlo Methods, section 9.2) gives each technique the share
-// of its own density. Both densities are those of one ray, per m2 sr of the phase space in which it is a
-// point: film and emitter see the same measure, as both lie in air. How densely the camera draws a ray is asked
-// of it (first_ray.h); for light that goes straight to the lens light paths have
-//   M p(point) p(lens point | point) / cos, M paths per sample index,
-// and for light with bounces M p of the ray that leaves the emitter.
+// The balance heuristic (Veach 1997, Robust Monte Carlo Methods, section 9.2) weighs each technique by its density. The
+// densities are densities of rays, per m2 sr (etendue), a measure that film and emitter share because both are in air.
+// FirstRay provides the camera's density (first_ray.h). The density of M light paths per sample index is
+//   M p(point) p(lens point | point) / cos
+// for paths directly to the lens, and M p(emitted ray) for paths with bounces.
 #pragma once
 #include "light/emission.h"
 #include "light/emission_ray.h"
@@ -15,8 +14,8 @@ namespace dg {
 
 class LightSharing {
   public:
-    /// `plan`: paths per unit of the camera's density, which is divided by `scale`. `emission`, `rays`: how light
-    /// paths leave emitters; they outlive this, and are null if the plan is off.
+    /// `plan`: light paths per unit of the camera's density. `scale`: divisor of the camera's density. `emission`,
+    /// `rays`: samplers of emitters; they must outlive this object, and are null if the plan is off.
     LightSharing(LightPlan plan, Technique technique, double scale, const EmissionSampler* emission,
                  const EmissionRays* rays)
         : plan_(plan), technique_(technique), scale_(scale), emission_(emission), rays_(rays) {}
@@ -26,19 +25,20 @@ class LightSharing {
     const EmissionSampler& emission() const { return *emission_; }
     const EmissionRays& emission_rays() const { return *rays_; }
 
-    /// Density of light paths straight to the lens: `pdf` of the emitter's point and of the lens's, for a ray
-    /// that leaves it under this cosine (1 from infinity).
+    /// Density of light paths directly to the lens, from the densities of the emitter point and of the direction to the
+    /// lens, and the cosine at the emitter (1 for emitters at infinity).
     double of_light(float emission_pdf, float lens_pdf, float cosine) const {
         return plan_.m1 * scale_ * double(emission_pdf) * lens_pdf / cosine;
     }
 
-    /// The same for rays that leave emitters on their way to surfaces; `pdf` as EmissionRay::pdf.
+    /// Density of light paths with bounces; `pdf`: density of the emitted ray, as EmissionRay::pdf.
     double of_bounced(double pdf) const { return plan_.m2 * scale_ * pdf; }
 
-    /// Divisor of a light path's find, and the share of a camera path's find that counts.
+    /// Divisor of a light path's contribution, for densities of light and camera paths.
     double divisor(double light, double camera) const {
         return technique_ == Technique::both ? light + camera : light;
     }
+    /// MIS weight of a camera path's contribution.
     float camera_share(double light, double camera) const {
         if (technique_ == Technique::both) return float(camera / (light + camera));
         return technique_ == Technique::camera ? 1.f : 0.f;

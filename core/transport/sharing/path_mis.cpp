@@ -32,14 +32,14 @@ PathVertex& PathMis::Vertex::both() {
     return *both_;
 }
 
-/// p'_back of the vertex; of the first one p'_lens / D.
+/// p'_back of the vertex; p'_lens / D at the first vertex.
 double PathMis::back(Vertex& vertex, const Scattering& s) const {
     const SurfaceHit& hit = vertex.hit_;
     const double pdf = vertices_ > 0 ? s.light_pdf : first_.lens_over_camera(hit.position);
     return odds_ * pdf / std::abs(double(dot(hit.ng, hit.wo)));
 }
 
-bool PathMis::cross(VolumeWalk& volume, Vertex& vertex, Vec3f wi) {
+bool PathMis::cross(VolumeState& volume, Vertex& vertex, Vec3f wi) {
     const SurfaceHit& hit = vertex.hit_;
     const bool entering = dot(wi, hit.ng) < 0;
     if (entering != hit.front) return true;   // reflected
@@ -56,11 +56,11 @@ float PathMis::of_sample(const Scene& scene, Vertex& vertex, const LightSample& 
     const SurfaceHit& hit = vertex.hit_;
     const Scattering s = vertex.both().scattering(hit.wo, light.wi);
     if (s.hero_only || s.f_cos.is_black()) return 1;
-    VolumeWalk volume = volume_;
+    VolumeState volume = volume_;
     if (!cross(volume, vertex, light.wi)) return 1;
     const bool infinite = !(light.distance < std::numeric_limits<float>::infinity());
-    if (infinite && volume.where != VolumeWalk::Where::air) return 1;
-    // The light of delta lights goes straight through volumes, as if they did not bend it. Light paths don't.
+    if (infinite && volume.where != VolumeState::Where::air) return 1;
+    // Shadow rays to delta lights pass volumes unrefracted. Light paths cannot find that light.
     if (light.delta && scene.has_clear() &&
         scene.visibility(ray_to_light(hit, light, hit.time), false, {}, wavelengths).is_black())
         return 1;
@@ -76,7 +76,7 @@ float PathMis::of_emitter(std::int64_t light, Vec3f from, Vec3f direction, float
                               float time, float light_over_bsdf) const {
     if (!open_ || vertices_ < 2) return 1;
     const bool infinite = light == LightSet::kEnvironment;
-    if (infinite && volume_.where != VolumeWalk::Where::air) return 1;
+    if (infinite && volume_.where != VolumeState::Where::air) return 1;
     const float emission = first_.sharing().emission_rays().pdf(std::int32_t(light), from, direction,
                                                                distance, time);
     const double ratio = first_.sharing().of_bounced(emission) * odds_ / (1 + double(light_over_bsdf));
@@ -93,7 +93,7 @@ void PathMis::leave(Vertex& vertex, const BsdfSample& sample) {
     }
     Scattering s;
     if (vertices_ == 0 && vertex.point_)
-        s.camera_pdf = sample.pdf;   // the light's is not asked for
+        s.camera_pdf = sample.pdf;   // light_pdf is not needed
     else
         s = vertex.both().scattering(hit.wo, sample.wi);
     odds_ = back(vertex, s) * std::abs(double(dot(hit.ng, sample.wi))) / s.camera_pdf;

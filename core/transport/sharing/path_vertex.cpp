@@ -12,7 +12,7 @@ Vec3f shading_normal(const Bsdf& bsdf) {
         bsdf);
 }
 
-/// Not of a surface that is black from behind.
+/// Whether two BSDFs of one point, shaded from two directions, have equal normals. False for one-sided surfaces.
 bool same_normals(const Bsdf& a, const Bsdf& b) {
     if (a.index() != b.index()) return false;
     if (!(shading_normal(a) == shading_normal(b))) return false;
@@ -20,12 +20,12 @@ bool same_normals(const Bsdf& a, const Bsdf& b) {
     return !coated || coated->coat.ns == std::get<LayeredBsdf>(b).coat.ns;
 }
 
-/// Factor that makes a delta lobe's weight, sampled from to_light, one of flux.
+/// Factor that converts the radiance weight of a delta lobe, sampled from to_light, to a flux weight.
 float flux_correction(const Bsdf& bsdf, const BsdfSample& s, Vec3f to_light, Vec3f ng) {
     float factor = std::visit([&](const auto& b) { return b.reversed(to_light, s.wi); }, bsdf);
     factor *= std::abs(dot(ng, s.wi) / dot(ng, to_light));
     if (!s.transmitted || s.eta == 1) return factor;
-    // Solid angles n^2 |ns . w| dw are alike on both sides.
+    // n^2 |ns . w| dw is equal on both sides of the interface.
     const Vec3f ns = shading_normal(bsdf);
     return factor * s.eta * s.eta * std::abs(dot(ns, to_light) / dot(ns, s.wi));
 }

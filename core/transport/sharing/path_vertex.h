@@ -1,11 +1,11 @@
-// path_vertex.h -- a vertex of a path that can be followed either way.
+// path_vertex.h -- a path vertex that can be sampled from the camera and from the light.
 //
-// The BSDF counts as a path from the camera has it: f(wo, wi) with wo toward the camera and wi toward
-// the light, shaded as it looks from wo, and radiance is f |ns . wi| for a shading normal ns. A path from the
-// light carries flux past the same vertex, and finds the same light if it is scattered by
+// The BSDF is defined for camera paths: f(wo, wi) with wo toward the camera and wi toward the light, shaded for the
+// view direction wo, with the radiance factor f |ns . wi| for a shading normal ns. A light path carries flux. It is
+// scattered by
 //     f |ns . wi| |ng . wo| / |ng . wi|       with the geometric normal ng,
-// Veach's correction for shading normals (1997, Robust Monte Carlo Methods, section 5.3); and flux has no
-// 1 / eta^2 where a delta lobe refracts it (5.2).
+// Veach's correction for shading normals (1997, Robust Monte Carlo Methods, section 5.3), and without the factor
+// 1 / eta^2 of radiance at refracting delta lobes (5.2).
 #pragma once
 #include <optional>
 
@@ -13,37 +13,37 @@
 
 namespace dg {
 
-/// The BSDF between two directions, delta lobes aside, and the densities of either way to sample it (sr).
+/// The BSDF between two directions without delta lobes, and its sampling densities in both directions, 1/sr.
 struct Scattering {
     Spectrum f_cos{0.f};     // f |ns . to_light|
-    float camera_pdf = 0;    // of to_light, by a path that comes from the camera
-    float light_pdf = 0;     // of to_camera, by a path that comes from the light
-    bool hero_only = false;  // as in BsdfSample: no path from the light goes on from there
+    float camera_pdf = 0;    // density of to_light for camera paths
+    float light_pdf = 0;     // density of to_camera for light paths
+    bool hero_only = false;  // as in BsdfSample; light paths end here
 };
 
-/// How a path from the light goes on.
+/// A sampled direction of a light path.
 struct LightStep {
     Vec3f to_camera;
     Spectrum weight{0.f};    // of flux
-    float pdf = 0;           // as Scattering::light_pdf; a delta lobe has none
+    float pdf = 0;           // as Scattering::light_pdf; 0 for a delta lobe
     float camera_pdf = 0;
     bool specular = false, transmitted = false;
 };
 
 class PathVertex {
   public:
-    /// `hit` as a ray without a cone finds it, from either side, not yet shaded. `shaded`, if given, is its
-    /// BSDF as seen from hit.wo.
+    /// `hit`: intersection without a footprint, from either side, before shading. `shaded`, if given: its BSDF for the
+    /// view direction hit.wo.
     PathVertex(const Material& material, const std::vector<Texture>& textures, const SurfaceHit& hit,
            const Wavelengths& wavelengths, const Bsdf* shaded = nullptr);
 
-    /// The BSDF that a path finds which comes along w. Valid until the next call.
+    /// The BSDF shaded for the view direction w. Valid until the next call.
     const Bsdf& seen_from(Vec3f w);
     Scattering scattering(Vec3f to_camera, Vec3f to_light);
     /// Empty: the path ends.
     std::optional<LightStep> step(Vec3f to_light, float u_lobe, Vec2f u);
-    /// Whether a delta lobe that takes one direction to the other takes it back too: not where a shading
-    /// normal had to be bent to be visible.
+    /// Whether a delta lobe between two directions is symmetric. It is not if a shading normal was adjusted to face the
+    /// viewer.
     bool reversible(Vec3f a, Vec3f b);
 
   private:
@@ -52,8 +52,8 @@ class PathVertex {
     const std::vector<Texture>& textures_;
     const Wavelengths& wavelengths_;
     SurfaceHit hit_;
-    bool even_;      // shading does not depend on where it is seen from
-    Vec3f from_;     // of here_
+    bool even_;      // shading does not depend on the view direction
+    Vec3f from_;     // view direction of here_
     Bsdf here_;
     std::optional<Bsdf> there_;
 };

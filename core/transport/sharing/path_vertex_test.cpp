@@ -1,4 +1,4 @@
-// One vertex followed either way: both must find the same light.
+// A vertex sampled from the camera and from the light: both integrals must agree.
 #include "transport/sharing/path_vertex.h"
 
 #include <doctest/doctest.h>
@@ -16,14 +16,14 @@ Vec2f pair(int seed, int i) {
     return {float(hash_uniform(seed, 2 * i)), float(hash_uniform(seed, 2 * i + 1))};
 }
 
-/// How brightly a direction of the world shines, and how strongly a camera looks for one: lopsided, so that
-/// nothing is symmetric by chance. Grazing light is weak, or |ng . wo| / |ng . wi| had no variance.
+/// Radiance and importance of a direction. Asymmetric, so that no error cancels by symmetry. Grazing light is weak,
+/// else the variance of |ng . wo| / |ng . wi| would be infinite.
 double shine(Vec3f w) {
     return std::abs(w.z) * (1 + w.x + 0.5 * w.y * w.y + (w.z > 0 ? 0.4 : 0) + 0.5 * w.z * w.x);
 }
 double look(Vec3f w) { return 1 - 0.7 * w.x + 0.6 * w.y + (w.z > 0 ? 0 : 0.5); }
 
-/// Directions of the whole sphere by |cosine| about z, density |cos| / 2 pi.
+/// Samples the sphere with the density |cos| / 2 pi about z.
 Vec3f around(Vec2f u) {
     const bool below = u.x < 0.5f;
     u.x = below ? 2 * u.x : 2 * u.x - 1;
@@ -148,7 +148,7 @@ SampleMoments from_camera(const Case& c, int n) {
         double value = 0;
         if (s) {
             PathVertex both(c.material, c.textures, bare, wavelengths);
-            // Where a normal had to be bent to be visible, some directions are the camera's alone.
+            // With an adjusted shading normal, only the camera can sample some directions.
             const bool found = s->specular ? both.reversible(wo, s->wi)
                                            : both.scattering(wo, s->wi).light_pdf > 0;
             if (found)
@@ -159,7 +159,7 @@ SampleMoments from_camera(const Case& c, int n) {
     return moments(values);
 }
 
-/// The same, from the light.
+/// The integral of from_camera(), sampled from the light.
 SampleMoments from_light(const Case& c, int n) {
     const Wavelengths wavelengths = Wavelengths::sample(0.4f);
     std::vector<double> values;
@@ -219,7 +219,7 @@ TEST_CASE("what a delta lobe has from the other side is what reversed() says") {
             const Bsdf bsdf = shade(c.material, c.textures, hit, wavelengths);
             const auto s = sample(bsdf, wo, float(hash_uniform(2, i)), pair(3, i));
             if (!s || !s->specular) continue;
-            // Both lobes count of coat and base that mirror alike.
+            // Coat and base may have delta lobes in the same direction: both count.
             const auto all = [&](Vec3f from, Vec3f to) {
                 double sum = 0, last = -1;
                 for (int k = 0; k < 400; ++k) {

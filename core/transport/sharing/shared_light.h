@@ -1,5 +1,4 @@
-// shared_light.h -- a camera path's part in multiple importance sampling with light paths: the share that light paths
-// leave to it of an emitter that it meets.
+// shared_light.h -- MIS weights of a camera path against light paths, for emitters that it hits.
 #pragma once
 #include "light/light.h"
 #include "transport/sharing/first_ray.h"
@@ -7,21 +6,21 @@
 
 namespace dg {
 
-/// How a camera path came to an emitter.
+/// An emitter hit by a camera path.
 struct EmitterMet {
     Vec3f from, direction;         // the last vertex, m; unit
-    float distance, time;          // from there, m; of the ray
-    float light_over_bsdf;         // pdf of light sampling over the pdf of the BSDF
+    float distance, time;          // from the last vertex, m; time of the ray
+    float light_over_bsdf;         // density of light sampling over density of BSDF sampling
 };
 
-/// Off: there are no light paths that could find what this path finds.
+/// State of the MIS with light paths. Off if light paths cannot find the light of this path.
 struct SharedLight {
-    const FirstRay* first = nullptr;   // until the path has left its first vertex; windows are no vertices
-    PathMis* bounces = nullptr;        // as long as light paths may find what comes next
+    const FirstRay* first = nullptr;   // null once the path has left its first vertex; windows are no vertices
+    PathMis* bounces = nullptr;        // null once light paths cannot find the continuation of the path
 
     bool off() const { return !first && !bounces; }
 
-    /// The path leaves a vertex. `vertex` is null if bounces is.
+    /// Updates the state when the path leaves a vertex. `vertex` is null if `bounces` is null.
     void leave(PathMis::Vertex* vertex, const BsdfSample& sample) {
         first = nullptr;
         if (!vertex) return;

@@ -1,4 +1,4 @@
-// direct_light.h -- one light sample at a vertex, and its weight against BSDF sampling.
+// direct_light.h -- a light sample at a vertex, with its MIS weight against BSDF sampling.
 #pragma once
 #include "material/bsdf_sample.h"
 #include "scene/scene.h"
@@ -13,8 +13,8 @@ inline float power_heuristic(float pdf, float other) {
 
 struct DirectLight {
     LightSample light;
-    Evaluation f;      // the BSDF or phase function toward it
-    float weight;      // of f times the light, unless something is in its way
+    Evaluation f;      // BSDF or phase function toward the light
+    float weight;      // factor on f times the radiance, if the light is unoccluded
 };
 
 }  // namespace dg

@@ -1,4 +1,4 @@
-// path_state.h -- a camera path as its parts see it: the scene, its random numbers, its state and its results.
+// path_state.h -- a camera path: the scene, random numbers, the state of the walk, and the results so far.
 #pragma once
 #include "math/sampler.h"
 #include "scene/scene.h"
@@ -12,13 +12,13 @@ struct PathState {
     const Scene& scene;
     const PathSettings& settings;
     PathSampler& sampler;
-    FirstHit* first_hit;       // null: nobody asks for it
-    Wavelengths wavelengths;   // of the walk: a dispersive interface ends the secondary ones
-    Walk walk = {};
+    FirstHit* first_hit;       // null: not needed
+    Wavelengths wavelengths;   // a dispersive interface terminates the secondary wavelengths
+    WalkState walk = {};
     Sight sight = {};
     std::uint64_t rays = 0;
 
-    /// Adds the share of the camera ray that comes by this way to what an object covers, or takes it off (sign -1).
+    /// Adds this branch's share of the camera ray to the coverage of an object, or subtracts it (sign -1).
     void cover(std::uint32_t object, float sign) {
         if (walk.open) sight.covers.add(object, sign * walk.share());
     }

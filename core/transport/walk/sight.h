@@ -8,34 +8,34 @@
 
 namespace dg {
 
-/// Light in two parts that add up. `shared`: any wavelength of the path could have found it as the hero. `hero`: it
-/// lies behind a dispersive interface, where the path follows the hero alone (lane 0, with the share of all four
-/// already; see hero_alone()).
+/// Radiance as a sum of two parts. `shared`: light that any wavelength of the path could have found as the hero.
+/// `hero`: light behind a dispersive interface, where only the hero continues (lane 0, already scaled by four; see
+/// hero_alone()).
 struct Radiance {
     Spectrum shared{0.f}, hero{0.f};
     Spectrum sum() const { return shared + hero; }
 };
 
-/// The first surface on the way, and guides for a denoiser: the albedo and normal that the camera sees. In mirrors and
-/// smooth glass these are from the surfaces behind, each way weighted by its share of light; 0 where there is nothing.
+/// The first surface along a camera ray, and the denoiser's guides: albedo and normal. Mirrors and smooth glass show
+/// the guides of the surfaces that they reflect and transmit, each weighted by the throughput; 0 for the background.
 /// The documentation of Open Image Denoise (Albedos, Normals) recommends this.
 struct FirstHit {
     bool found = false;
     Vec3f position, normal, albedo;   // m, world; unit
     std::uint32_t instance = 0;
-    Vec3f seen_albedo, seen_normal;   // of the first surface that is not smooth, times that share
+    Vec3f seen_albedo, seen_normal;   // of the first rough surface, times the throughput
 };
 
-/// Share of a ray's light that an object covers. Without the object, the scene behind would have brought that share.
+/// Coverage of an object: the fraction of a ray's light that it blocks from the scene behind it.
 struct Cover {
     std::uint32_t instance;   // or, from kSpheres on, a sphere light
     float share;
     static constexpr std::uint32_t kSpheres = 0x80000000u;
 };
 
-/// The objects that cover the background, seen straight: through clear sheets, and through smooth glass if
-/// PathSettings::see_through. The shares add to 1 where nothing of the background is seen. The first kMost objects are
-/// kept; the last of them also gets the shares of all others.
+/// Coverage of the background by objects along the unrefracted ray: through clear sheets, and through smooth glass if
+/// PathSettings::see_through. The shares add to 1 where the background is not visible. Only the first kMost objects are
+/// stored; the last of them accumulates the shares of all further objects.
 class Covers {
   public:
     static constexpr std::size_t kMost = 4;
@@ -48,7 +48,7 @@ class Covers {
     }
     const Cover* begin() const { return all_.data(); }
     const Cover* end() const { return all_.data() + count_; }
-    /// Adds the share that media cover. They are no objects.
+    /// Adds the coverage of media, which belongs to no object.
     void add_veil(float share) { veil_ += share; }
     float sum() const {
         float sum = veil_;
@@ -62,9 +62,9 @@ class Covers {
     float veil_ = 0;
 };
 
-/// Radiance along a camera ray, and coverage. In a scene with catchers (catcher/two_worlds.h) `light` is from objects
-/// alone. `with` and `without` are from catchers and the background: with the objects in the scene, and without them.
-/// Both are for the whole ray, also where an object covers it.
+/// Radiance and coverage of a camera ray. In a scene with catchers (catcher/two_worlds.h) `light` is the radiance of
+/// objects; `with` and `without` are the radiance of catchers and background, in the scene with the objects and in the
+/// scene without them. Both are for the whole ray, also where an object covers it.
 struct Sight {
     Radiance light, with, without;
     Covers covers;

@@ -1,19 +1,18 @@
-// volume_walk.h -- the volume that a path is in.
+// volume_state.h -- the volume around a light path.
 //
-// Followed from the camera, what a volume absorbs depends on the order in which boundaries are met, unless
-// volumes lie apart. So paths from the light share only in what passes air and one volume at a time, each
-// left through the material by which it was entered. Lenses are in air; emitters may be in a volume, which
-// then shows when it is left.
+// On camera paths, absorption in nested or overlapping volumes depends on the order in which boundaries are hit. So MIS
+// with light paths covers only paths through air and one volume at a time, entered and left through the same material.
+// The lens is in air. An emitter may be inside a volume, which becomes known when the light leaves it.
 #pragma once
 #include "material/bsdf_sample.h"
 
 namespace dg {
 
-struct VolumeWalk {
+struct VolumeState {
     enum class Where { air, inside, unknown } where = Where::air;
     Interior interior{};
 
-    /// Crosses a boundary. False: not one volume after the other.
+    /// Crosses a boundary. False: volumes are nested or overlap.
     bool cross(const Interior& beyond, bool entering) {
         if (entering) {
             if (where == Where::inside) return false;
