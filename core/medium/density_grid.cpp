@@ -13,7 +13,7 @@ std::uint32_t blocks_for(std::uint32_t cells) {
     return (cells + DensityGrid::kBlock - 1) / DensityGrid::kBlock;
 }
 
-/// Two neighbours among `count` centres, and the share of the second.
+/// Two neighbours among `count` cell centers, and the interpolation weight of the second.
 struct Between {
     std::uint32_t first, second;
     float share;
@@ -46,7 +46,7 @@ DensityGrid::DensityGrid(Size size, SharedArray<float> values, const Affine3d& s
             for (std::uint32_t x = 0; x < blocks_.x; ++x) bounds_.push_back(find_bounds(x, y, z));
 }
 
-/// Points of a block lie between centres of its own cells and of those next to them.
+/// Interpolation inside a block uses the centers of its cells and of the cells next to it.
 DensityGrid::Bounds DensityGrid::find_bounds(std::uint32_t bx, std::uint32_t by, std::uint32_t bz) const {
     const auto first = [](std::uint32_t block) { return block == 0 ? 0 : block * kBlock - 1; };
     const auto last = [](std::uint32_t block, std::uint32_t cells) {
@@ -73,7 +73,7 @@ float DensityGrid::at(Vec3d unit) const {
     return mix(plane(z.first), plane(z.second), z.share);
 }
 
-BlockWalk::BlockWalk(const DensityGrid& grid, Vec3d origin, Vec3d direction, double begin, double end)
+BlockTraversal::BlockTraversal(const DensityGrid& grid, Vec3d origin, Vec3d direction, double begin, double end)
     : grid_(grid),
       origin_(origin),
       direction_(direction),
@@ -81,7 +81,7 @@ BlockWalk::BlockWalk(const DensityGrid& grid, Vec3d origin, Vec3d direction, dou
       count_{grid.blocks().x, grid.blocks().y, grid.blocks().z},
       here_(begin),
       end_(end) {
-    for (int k = 0; k < 3; ++k) {   // cut to the cube
+    for (int k = 0; k < 3; ++k) {   // clips the ray to the cube
         if (direction[k] == 0) {
             if (!(origin[k] >= 0 && origin[k] <= 1)) end_ = here_;
             continue;
@@ -96,14 +96,14 @@ BlockWalk::BlockWalk(const DensityGrid& grid, Vec3d origin, Vec3d direction, dou
                                count_[k] - 1);
 }
 
-/// Where the ray leaves its block along an axis.
-double BlockWalk::crossing(int axis) const {
+/// Ray parameter at which the ray leaves its block along an axis.
+double BlockTraversal::crossing(int axis) const {
     const double d = direction_[axis];
     if (d == 0) return std::numeric_limits<double>::infinity();
     return ((double(block_[axis]) + (d > 0)) * edge_[axis] - origin_[axis]) / d;
 }
 
-std::optional<BlockStep> BlockWalk::next() {
+std::optional<BlockStep> BlockTraversal::next() {
     if (!(here_ < end_)) return std::nullopt;
     int axis = 0;
     for (int k = 1; k < 3; ++k)

@@ -1,7 +1,7 @@
-// density_grid.h -- factors on a medium's coefficients, at the centres of cells that fill the unit cube, and bounds of
-// them in blocks of cells: delta and ratio tracking (tracking.h) step from block to block, each with its own bounds.
-// Between centres the factors are linear. From the outermost centres to the faces of the cube they stay as they are;
-// outside they are 0.
+// density_grid.h -- density factors on a medium's coefficients, at the cell centers of a grid over the unit cube, with
+// bounds for blocks of cells: delta and ratio tracking (tracking.h) step from block to block. Densities are
+// interpolated trilinearly between centers, constant from the outermost centers to the faces of the cube, and 0
+// outside.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -18,18 +18,18 @@ class DensityGrid {
     struct Size {
         std::uint32_t x, y, z;
     };
-    /// `values`: x runs fastest. `space_from_unit`: where the unit cube lies, in the world or in the space of a mesh.
-    /// Throws Error for another number of values, values that are negative or not finite, a transform without inverse.
+    /// `values`: x runs fastest. `space_from_unit`: transform of the unit cube to the world or to the space of a mesh.
+    /// Throws Error for a wrong number of values, negative or non-finite values, and singular transforms.
     DensityGrid(Size size, SharedArray<float> values, const Affine3d& space_from_unit);
 
-    /// At a point of the unit cube.
+    /// Interpolated density at a point of the unit cube.
     float at(Vec3d unit) const;
     const Affine3d& unit_from_space() const { return unit_from_space_; }
 
     struct Bounds {
         float least, most;
     };
-    /// Blocks along each axis, and the bounds of all factors within one of them.
+    /// Number of blocks along each axis, and the density bounds of a block.
     Size blocks() const { return blocks_; }
     Bounds bounds(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
         return bounds_[(std::size_t(z) * blocks_.y + y) * blocks_.x + x];
@@ -52,18 +52,18 @@ class DensityGrid {
     std::vector<Bounds> bounds_;
 };
 
-/// The part of a ray in one block: from `begin` to `end` (units of its direction).
+/// Segment of a ray in a block, from `begin` to `end` (in lengths of its direction vector).
 struct BlockStep {
     double begin, end;
     DensityGrid::Bounds bounds;
 };
 
-/// The blocks that a ray crosses, one after the other. Source: Amanatides and Woo 1987, A Fast Voxel Traversal
+/// Traverses the blocks that a ray crosses, front to back. Source: Amanatides and Woo 1987, A Fast Voxel Traversal
 /// Algorithm for Ray Tracing, Eurographics.
-class BlockWalk {
+class BlockTraversal {
   public:
-    /// Origin and direction in the unit cube's space.
-    BlockWalk(const DensityGrid& grid, Vec3d origin, Vec3d direction, double begin, double end);
+    /// `origin`, `direction`: in the space of the unit cube.
+    BlockTraversal(const DensityGrid& grid, Vec3d origin, Vec3d direction, double begin, double end);
     std::optional<BlockStep> next();
 
   private:

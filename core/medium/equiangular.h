@@ -1,8 +1,8 @@
-// equiangular.h -- distances along a ray at which a small lamp lights the medium.
+// equiangular.h -- equiangular sampling: distances along a ray for in-scattered light of a small lamp.
 //
-// The light of a lamp at the distance h from the ray's line falls as 1 / (h^2 + s^2), with s from the foot of the
-// lamp's perpendicular. Distances of even angles as seen from the lamp have that density, so that what remains has no
-// peak but that of the phase function, by which the angles are weighed (phase_angles.h).
+// The irradiance of a lamp at the distance h from the ray's line is proportional to 1 / (h^2 + s^2), with s measured
+// from the foot of the lamp's perpendicular. Distances at uniformly distributed angles from the lamp have that density.
+// The remaining factor is the phase function, which weighs the angles (phase_angles.h).
 // Source: Kulla and Fajardo 2012, Importance Sampling Techniques for Path Tracing in Participating Media, EGSR.
 #pragma once
 #include <limits>
@@ -12,12 +12,13 @@
 
 namespace dg {
 
-/// A part of a ray, m from its origin; the end may be infinite.
+/// Interval on a ray, m from its origin; the end may be infinite.
 struct RayPart {
     float begin, end;
 
     bool empty() const { return !(begin < end); }
-    /// Part of it before a plane: the origin lies `height` m before it, and each metre on the ray `slope` m more.
+    /// The subinterval in front of a plane. `height`: distance of the ray's origin in front of the plane, m. `slope`:
+    /// its change per metre along the ray.
     RayPart before_plane(float height, float slope) const {
         if (slope == 0) return {begin, height > 0 ? end : begin};
         const float met = -height / slope;
@@ -27,20 +28,20 @@ struct RayPart {
 
 class Equiangular {
   public:
-    /// Along `direction` (unit) from `origin`.
+    /// `origin`, `direction` (unit): of the ray.
     Equiangular(Vec3f origin, Vec3f direction, RayPart part, Vec3f lamp, const PhaseAngles& angles)
         : angles_(angles), begin_(part.begin), end_(part.end) {
         const Vec3d to_lamp = to_double(lamp) - to_double(origin), d = to_double(direction);
         foot_ = dot(to_lamp, d);
         const double far = dg::length(to_lamp);
-        height_ = std::max(dg::length(to_lamp - d * foot_), 1e-6 * far);   // a lamp on the line has no last distance
+        height_ = std::max(dg::length(to_lamp - d * foot_), 1e-6 * far);   // above 0 for a lamp on the line
         low_ = angles.before(half_tangent(begin_ - foot_, height_));
         share_ = angles.before(half_tangent(end_ - foot_, height_)) - low_;
     }
 
-    /// Distance, m; `u` in [0, 1).
+    /// Samples a distance, m; `u` in [0, 1).
     float sample(float u) const {
-        constexpr double kMost = 1 - 1e-12;   // at 1 it is infinite
+        constexpr double kMost = 1 - 1e-12;   // the distance is infinite at 1
         const double half = std::min(angles_.half(low_ + share_ * double(u)), kMost);
         return float(std::clamp(foot_ + height_ * 2 * half / (1 - half * half), begin_, end_));
     }
@@ -50,7 +51,7 @@ class Equiangular {
         if (double(t) < begin_ || double(t) > end_) return 0;
         return float(angles_.density(half_tangent(s, height_)) * height_ / (share_ * r * (r + height_)));
     }
-    /// False where the lamp stands at the very start of a way without length, or lights none of it.
+    /// False if the lamp lights no part of the interval, or is at the start of an interval of length 0.
     bool usable() const { return height_ > 0 && share_ > 0; }
 
   private:

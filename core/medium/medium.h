@@ -1,5 +1,5 @@
-// medium.h -- what fills a space: it absorbs, scatters and emits light on every metre (Pharr, Jakob and Humphreys 2023,
-// Physically Based Rendering, chapter 11). Coefficients are those of density 1, which a grid multiplies.
+// medium.h -- a participating medium: absorption, scattering and emission (Pharr, Jakob and Humphreys 2023, Physically
+// Based Rendering, chapter 11). Coefficients are for density 1; a density grid scales them.
 #pragma once
 #include <memory>
 
@@ -24,7 +24,7 @@ struct Medium {
     MediumAt at(const Wavelengths& wavelengths) const;
 };
 
-/// The share of light left after `length` metres (infinite: what neither absorbs nor scatters leaves all).
+/// Transmittance of `length` metres. An extinction of 0 has a transmittance of 1 over an infinite length, too.
 inline Spectrum transmittance(Spectrum extinction, float length) {
     Spectrum left;
     for (int i = 0; i < kWavelengths; ++i) left.set(i, extinction[i] > 0 ? std::exp(-extinction[i] * length) : 1.f);

@@ -27,8 +27,8 @@ float Phase::of_turn(float turn) const {
     return sum;
 }
 
-/// The angle by which light turns lies between -wo, in which it goes on, and wi. 1 - c by the difference of both: the
-/// dot product of directions that are almost one loses it.
+/// The scattering angle is between -wo and wi. 1 - c is computed from the difference of the vectors, since the dot
+/// product of nearly equal directions loses precision.
 float Phase::value(Vec3f wo, Vec3f wi) const {
     return of_turn(0.5f * length_squared(wo + wi));
 }

@@ -1,12 +1,11 @@
-// phase_angles.h -- how much of a lamp's light a medium scatters toward a ray, by the angle under which the lamp sees
-// the place on it.
+// phase_angles.h -- distribution of angles for equiangular sampling, weighted by the phase function.
 //
-// With the angle a from the foot of the lamp's perpendicular, from -pi / 2 far before it to pi / 2 far behind, light
-// turns by an angle of cosine -sin a on its way to the ray's origin. What a lamp brings falls on even angles
-// (equiangular.h) but for the phase function p(-sin a), whose integral is kept here. Angles are told by tan(a / 2),
-// from -1 to 1, which lengths give without trigonometry; over cells of it the integrand counts as even. A part of all
-// is even over all angles, so that no density is too small to be weighed by. Source: Georgiev et al. 2013, Joint
-// Importance Sampling of Low-Order Volumetric Scattering, ACM TOG 32(6), section 5.
+// Let a be the angle at the lamp between the foot of its perpendicular on the ray and a point of the ray, from -pi / 2
+// far before the foot to pi / 2 far behind it. The scattering angle toward the ray's origin then has the cosine -sin a.
+// In-scattered light is uniform in a (equiangular.h) except for the phase function p(-sin a). This class tabulates its
+// integral. Angles are represented by tan(a / 2), from -1 to 1, which needs no trigonometry; the density is constant in
+// cells of that variable. A uniform part bounds the density from below, which bounds the weights. Source: Georgiev et
+// al. 2013, Joint Importance Sampling of Low-Order Volumetric Scattering, ACM TOG 32(6), section 5.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -16,7 +15,7 @@
 
 namespace dg {
 
-/// tan(a / 2) of the angle to a point `along` m behind the foot, of a lamp `height` m from the line.
+/// tan(a / 2) for a point `along` m behind the foot, and a lamp at the distance `height` m from the line.
 inline double half_tangent(double along, double height) {
     if (std::isinf(along)) return along > 0 ? 1 : -1;
     return along / (height + std::sqrt(height * height + along * along));
@@ -24,12 +23,12 @@ inline double half_tangent(double along, double height) {
 
 class PhaseAngles {
   public:
-    PhaseAngles() : PhaseAngles([](float) { return 1.f; }) {}   // light turns evenly
-    /// `value`: the phase function of 1 - cosine of the angle by which light turns; its scale does not matter.
+    PhaseAngles() : PhaseAngles([](float) { return 1.f; }) {}   // isotropic scattering
+    /// `value`: the phase function, up to a factor, as a function of 1 - cosine of the scattering angle.
     template <typename Value>
     explicit PhaseAngles(const Value& value);
 
-    /// Share of all before an angle; the angle that has a share before it; density. Angles by their half tangent.
+    /// Cumulative distribution, its inverse, and the density. Angles are given by their half tangent.
     double before(double half) const {
         const int i = cell(half);
         return before_[i] + (half - begin(i)) / kWidth * (before_[i + 1] - before_[i]);
@@ -52,7 +51,7 @@ class PhaseAngles {
 
 template <typename Value>
 PhaseAngles::PhaseAngles(const Value& value) {
-    constexpr int kPoints = 16;   // in each cell
+    constexpr int kPoints = 16;   // quadrature points per cell
     std::array<double, kCells + 1> angles{};
     before_[0] = 0;
     for (int i = 0; i < kCells; ++i) {

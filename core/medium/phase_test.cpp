@@ -14,7 +14,7 @@ namespace {
 const std::vector<std::vector<PhaseLobe>> kPhases{
     {{0, 1}}, {{0.6f, 1}}, {{-0.85f, 2}}, {{0.9f, 3}, {-0.3f, 1}}, {{0.98f, 1}, {0, 1}, {-0.5f, 0.5f}}};
 
-/// Share of a lobe that turns by less than an angle of cosine c: the closed form of its integral from c to 1.
+/// Share of a lobe with scattering angles below acos(c): its integral from c to 1 in closed form.
 double below(const PhaseLobe& lobe, double c) {
     const double g = lobe.mean_cosine;
     if (std::abs(g) < 1e-6) return (1 - c) / 2;
@@ -27,8 +27,8 @@ Vec3f direction(int stream, int i) {
     return {float(r * std::cos(phi)), float(r * std::sin(phi)), float(z)};
 }
 
-/// Chi-square of the angles and azimuths of n samples against the integral of the lobes, each narrowed or widened by
-/// `wrong`.
+/// Chi-square test of sampled angles and azimuths against the integral of the lobes. `wrong`: planted error of the lobe
+/// widths.
 double p_value(const Phase& phase, float wrong, int stream) {
     constexpr int kTurns = 24, kAround = 8, kCount = 60000;
     std::vector<double> observed(kTurns * kAround), expected(kTurns * kAround);

@@ -1,6 +1,6 @@
-// ray_random.h -- random numbers along a ray, as many as a tracker asks for: the same for the same ray and salt,
-// whoever asks. So a frame does not depend on the order in which rays are traced, and no path reserves dimensions of its
-// sampler for collisions that it cannot count.
+// ray_random.h -- an unlimited sequence of random numbers for tracking along a ray, determined by the ray and a salt.
+// Frames do not depend on the order in which rays are traced, and paths need not reserve sampler dimensions for an
+// unknown number of collisions.
 #pragma once
 #include <bit>
 #include <cstdint>

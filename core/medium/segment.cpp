@@ -8,7 +8,7 @@
 namespace dg {
 namespace {
 
-constexpr float kLeastDensity = 1e-30f;   // below, its inverse overflows
+constexpr float kLeastDensity = 1e-30f;   // the inverse of smaller densities overflows
 
 }  // namespace
 
@@ -22,7 +22,7 @@ void Segment::find_collisions() {
         if (met_[k] > 0 && sum > 0) colliding_.set(k, float(kWavelengths) * lanes_[k] / (sum * met_[k]));
 }
 
-/// A wavelength by its share; what is left of u is as even as it was. A grey medium needs no choice.
+/// Chooses a wavelength by its share, and rescales u to be uniform again. Grey media need no choice.
 int Segment::choose(Spectrum shares, float& u) const {
     if (rate_.min() == rate_.max()) return 0;
     float left = u * (shares[0] + shares[1] + shares[2] + shares[3]);

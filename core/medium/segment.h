@@ -1,10 +1,10 @@
-// segment.h -- a straight way through an even medium, at the four wavelengths of a path.
+// segment.h -- a ray segment through a homogeneous medium, at the four wavelengths of a path.
 //
-// A path may be drawn by any of its wavelengths, each of which would have chosen other distances. With p_k the density
-// of the path so far had wavelength k drawn it, `lanes` has p_k over their mean. A distance is drawn by a wavelength
-// chosen by these shares, and counts f / mean_k(p_k): the balance heuristic over the four (Wilkie et al. 2014, Hero
-// Wavelength Spectral Sampling, EGSR), so that no weight exceeds 4 however colourful the medium is. The choice is made
-// anew at each medium, which has the same law as one choice for the path, and depends on nothing but the path.
+// The free-path density depends on the wavelength that draws the distance. Let p_k be the density of the path so far if
+// wavelength k had drawn it; `lanes` holds p_k over the mean of all four. A wavelength is chosen in proportion to
+// `lanes`, draws the distance, and the sample has the weight f / mean_k(p_k): the balance heuristic over the four
+// wavelengths (Wilkie et al. 2014, Hero Wavelength Spectral Sampling, EGSR), which limits weights to 4 in strongly
+// coloured media. Choosing a wavelength at each medium gives the same distribution as a single choice for the path.
 #pragma once
 #include <limits>
 
@@ -14,7 +14,7 @@ namespace dg {
 
 class Segment {
   public:
-    /// `length` m, or infinite; `hero_only`: the other wavelengths have ended.
+    /// `length`: m, may be infinite. `hero_only`: the secondary wavelengths are terminated.
     Segment(const MediumAt& medium, float length, Spectrum lanes, bool hero_only)
         : medium_(medium),
           rate_(hero_only ? Spectrum(medium.extinction[0]) : medium.extinction),
@@ -25,24 +25,26 @@ class Segment {
 
     float length() const { return length_; }
     const MediumAt& medium() const { return medium_; }
-    /// Chance that the path collides before the end.
+    /// Probability of a collision before the end.
     float collides() const { return (lanes_ * met_).average(); }
 
-    /// Distance to a collision, m, of a path that collides before the end; collides() > 0. `u` in [0, 1).
+    /// Samples the distance to a collision, m, given a collision before the end; requires collides() > 0. `u` in [0,
+    /// 1).
     float free_collision(float u) const;
-    /// Distance to a collision before the end, by wavelengths that count as if each collided there for sure.
+    /// Samples a distance like free_collision(), but chooses the wavelength without regard to its collision
+    /// probability.
     float collision(float u) const;
-    /// Density of collision() at a distance, per m: the mean over the wavelengths by which it may have been drawn.
+    /// Density of collision() at a distance, 1/m: the mean over the wavelengths that may have drawn it.
     float collision_density(float t) const { return (colliding_ * densities(t)).average(); }
 
-    /// Share of light that reaches a distance.
+    /// Transmittance to a distance.
     Spectrum left(float t) const { return transmittance(medium_.extinction, t); }
-    /// Radiance that the whole way adds.
+    /// Radiance emitted along the whole segment.
     Spectrum emitted() const;
 
-    /// A path that passes, or collides at a distance: factor on what it carries, and its lanes from there on.
-    /// Every collision scatters; what is absorbed there is a factor. A weight of 0: it carries nothing. `drawn`: the
-    /// share of those that collide before the end which is scattered; the rest passes.
+    /// Throughput factor and new lanes of a path that passes the segment or is scattered at a distance. Absorption is
+    /// part of the weight; a weight of 0 ends the path. `drawn`: fraction of collisions at which the path is scattered;
+    /// at the rest it passes.
     struct Onward {
         Spectrum weight, lanes;
     };
@@ -64,8 +66,8 @@ class Segment {
     float before_end(int k, float u) const;
 
     MediumAt medium_;
-    Spectrum rate_, lanes_, met_{0.f};   // met: chance of a collision before the end, by wavelength
-    Spectrum colliding_{0.f};            // shares of those that collide at all, over met
+    Spectrum rate_, lanes_, met_{0.f};   // met: probability of a collision before the end, per wavelength
+    Spectrum colliding_{0.f};            // shares of wavelengths that can collide, over met
     float length_;
 };
 

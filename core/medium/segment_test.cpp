@@ -19,20 +19,20 @@ const MediumAt kGrey = medium(0.6f, 0.2f);
 const MediumAt kColorful = medium({0.1f, 0.5f, 2.f, 0}, {0.f, 0.1f, 0.5f, 0});
 constexpr float kEndless = std::numeric_limits<float>::infinity();
 
-/// Lanes as a path has them that has come some way through the medium.
+/// Lanes of a path after a length of `way` m through the medium.
 Spectrum lanes_after(const MediumAt& m, float way) { return Segment(m, way, 1.f, false).passed().lanes; }
 
-/// Distance to a collision; infinite where the path passes.
+/// Distance to a collision; infinite if the path passes.
 float free_path(const Segment& way, float u) {
     return u < way.collides() ? way.free_collision(u / way.collides()) : kEndless;
 }
 
-/// Its density: the mean over the wavelengths by which the path may have been drawn.
+/// Density of free_path(): the mean over the wavelengths that may have drawn the path.
 float free_path_density(const MediumAt& m, Spectrum lanes, float t) {
     return (lanes * m.extinction * transmittance(m.extinction, t)).average();
 }
 
-/// Chi-square of distances against the integral of a density; those beyond `end` are one cell.
+/// Chi-square test of distances against the integral of a density. Distances beyond `end` form a single cell.
 template <typename Draw, typename Density>
 double p_value(float end, Draw draw, Density density, int stream) {
     constexpr int kCells = 30, kCount = 60000, kSteps = 200;
@@ -70,7 +70,7 @@ TEST_CASE("free paths are drawn by their density, by all wavelengths together") 
 }
 
 TEST_CASE("what passes and what is scattered have the right mean at each wavelength") {
-    // E[passed] = exp(-extinction length), E[scattered] = albedo (1 - that), whichever wavelength draws.
+    // E[passed] = exp(-extinction length), E[scattered] = albedo (1 - E[passed]), for every wavelength that draws.
     for (const bool hero_only : {false, true}) {
         const MediumAt m = kColorful;
         const Segment segment(m, 1.5f, hero_only ? Spectrum(1.f) : lanes_after(m, 0.7f), hero_only);
@@ -198,7 +198,7 @@ TEST_CASE("with the phase function's angles, what a lamp brings falls evenly on 
             const float brought = phase.value(-d, normalize(to)) / length_squared(to) / e.pdf(t);
             least = std::min(least, brought), most = std::max(most, brought);
         }
-        CHECK(most < 1.6f * least);   // some angles count too much by their even share, where little is scattered
+        CHECK(most < 1.6f * least);   // the uniform part oversamples angles with little scattering
     }
 }
 

@@ -10,7 +10,7 @@ double distance_to_next(RayRandom& random, double rate) {
     return rate > 0 ? -std::log1p(-random.next()) / rate : std::numeric_limits<double>::infinity();
 }
 
-/// A wavelength by its share.
+/// Chooses a wavelength in proportion to its lane.
 int choose(Spectrum lanes, double u) {
     double left = u * kWavelengths;
     int k = 0;
@@ -18,7 +18,8 @@ int choose(Spectrum lanes, double u) {
     return k;
 }
 
-/// Density of what has been drawn, by wavelength over that of the one that draws; and what the path carries.
+/// Sampling densities of the tracked distances per wavelength, relative to the wavelength that draws, and the
+/// throughput.
 class Lanes {
   public:
     Lanes(const MediumAt& medium, Spectrum lanes, bool hero_only, int lane)
@@ -26,14 +27,14 @@ class Lanes {
           rate_(hero_only ? Spectrum(medium.extinction[0]) : medium.extinction), lane_(lane) {}
 
     double rate() const { return double(rate_[lane_]); }
-    /// Over `length` m of density `bound` without a collision.
+    /// No collision along `length` m with the majorant density `bound`.
     void pass(float bound, double length) {
         const auto over = [&](Spectrum rate) {
             return exp((Spectrum(rate_[lane_]) - rate) * (bound * float(length)));
         };
         density_ *= over(rate_), value_ *= over(medium_.extinction);
     }
-    /// At a collision: its density, the bound aside. The path carries on what `share` says, over the chance of that.
+    /// A collision: multiplies the densities by the collision rates, without the majorant.
     void collide() { density_ *= rate_ / rate_[lane_]; }
     void carry(Spectrum share) { value_ *= share / rate_[lane_]; }
 
@@ -51,7 +52,7 @@ class Lanes {
 Spectrum ratio_tracking(const GridRay& ray, Spectrum extinction, double begin, double end, RayRandom random) {
     Spectrum left{1.f};
     const float strongest = extinction.max();
-    BlockWalk walk(ray.grid, ray.origin, ray.direction, begin, end);
+    BlockTraversal walk(ray.grid, ray.origin, ray.direction, begin, end);
     while (const auto step = walk.next()) {
         const float least = step->bounds.least, range = step->bounds.most - least;
         left *= transmittance(extinction, least * float(step->end - step->begin));
@@ -70,7 +71,7 @@ Tracked delta_tracking(const GridRay& ray, const MediumAt& medium, Spectrum lane
                        double end, RayRandom random) {
     Lanes path(medium, lanes, hero_only, hero_only ? 0 : choose(lanes, random.next()));
     Tracked found;
-    BlockWalk walk(ray.grid, ray.origin, ray.direction, begin, end);
+    BlockTraversal walk(ray.grid, ray.origin, ray.direction, begin, end);
     while (const auto step = walk.next()) {
         const float most = step->bounds.most;
         double t = step->begin;

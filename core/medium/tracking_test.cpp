@@ -11,7 +11,7 @@ namespace {
 
 using Size = DensityGrid::Size;
 
-/// Cells of random densities, many of them empty, in a box that is turned and stretched.
+/// Random densities, many of them 0, in a rotated and stretched box.
 DensityGrid uneven(Size size, int stream) {
     std::vector<float> values(std::size_t(size.x) * size.y * size.z);
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -47,7 +47,7 @@ TEST_CASE("the blocks of a ray follow each other without gaps and hold every den
         for (int i = 0; i < 200; ++i) {
             const auto u = [&](int k) { return 6 * hash_uniform(20 + k, i) - 3; };
             const GridRay ray = ray_through(grid, {u(0), u(1), u(2)}, {u(3), u(4), u(5)});
-            BlockWalk walk(grid, ray.origin, ray.direction, 0, 8);
+            BlockTraversal walk(grid, ray.origin, ray.direction, 0, 8);
             double last = -1, inside = 0;
             while (const auto step = walk.next()) {
                 if (last >= 0) CHECK(step->begin == last);
@@ -59,7 +59,7 @@ TEST_CASE("the blocks of a ray follow each other without gaps and hold every den
                     CHECK(d <= step->bounds.most * 1.0001f);
                 }
             }
-            double dense = 0;   // length within the cube, by points
+            double dense = 0;   // number of points inside the cube
             for (int k = 0; k < 4000; ++k) {
                 const Vec3d p = ray.origin + ray.direction * (8 * (k + 0.5) / 4000);
                 dense += p.x >= 0 && p.x <= 1 && p.y >= 0 && p.y <= 1 && p.z >= 0 && p.z <= 1;
